@@ -35,8 +35,8 @@ const REPORT_HTML: &str = "report.html";
 /// # Errors
 /// A table, a template or a text cannot be written.
 pub fn certification(found: &Certification, reports: Reports) -> Result<Files, Problems> {
-    let results = json::results(found);
-    let mut files = in_folder(tables::tables(found).map_err(|error| error.to_string()))?;
+    let (results, tables) = rayon::join(|| json::results(found), || tables::tables(found).map_err(|error| error.to_string()));
+    let mut files = in_folder(tables)?;
     if reports.pdf || reports.html {
         let data = view::view(found);
         let figures = figure::figures(found);

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use serde::{Deserialize, Serialize};
 
 use super::campaign::RecordKind;
-use super::folder::Folder;
+use super::folder::{Folder, Place};
 use crate::problem::{Problem, Problems};
 use crate::source::{Span, Spanned};
 use crate::yaml::{Node, Value};
@@ -21,6 +21,8 @@ pub(super) struct RecordFolder {
     pub folder: Spanned<String>,
     /// Files that belong to no section; listed if a record is missing.
     pub strangers: OnceLock<Vec<String>>,
+    /// Where the folder is, once it was looked for.
+    pub place: OnceLock<Place>,
 }
 
 /// One of the records of a section: its kind, and which of several of that kind.
@@ -95,7 +97,7 @@ pub(super) fn read(tree: &Node, kind: RecordKind, folder: &Folder, problems: &mu
 }
 
 fn of(kind: RecordKind, name: Option<Arc<str>>, called: Option<Arc<str>>, folder: Spanned<String>) -> RecordFolder {
-    RecordFolder { kind, name, called, folder, strangers: OnceLock::new() }
+    RecordFolder { kind, name, called, folder, strangers: OnceLock::new(), place: OnceLock::new() }
 }
 
 fn text(node: &Node, key: &str, problems: &mut Problems) -> Option<Spanned<String>> {

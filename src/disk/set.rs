@@ -1,7 +1,7 @@
 //! Sets of files with one commit point.
 //!
-//! The files are written to a folder inside the output folder, each synced, with a journal of the files they replace. One rename of that
-//! folder is the commit point. Then the files of the previous set are removed from their places, and the new ones installed. A run that
+//! The files are written to a folder inside the output folder, with a journal of the files they replace, and synced together. One rename of
+//! that folder is the commit point. Then the files of the previous set are removed from their places, and the new ones installed. A run that
 //! was interrupted in between is completed by the next one. Old and new files are never mixed: first only old files are in place, then only
 //! new ones.
 
@@ -14,7 +14,7 @@ use sha2::{Digest, Sha256};
 use super::journal::{JOURNAL, Journal, plain};
 use super::{
     Hold, Kind, ScratchFile, Writer, create, hold, is_file, is_folder, is_link, kind, make_folders, names, read, remove_file,
-    remove_folder, rename, sync_folder,
+    remove_folder, rename, sync_folder, sync_together,
 };
 
 /// Prefix of the names that this module uses in an output folder.
@@ -27,6 +27,9 @@ pub const UNFINISHED: &str = ".fishplate-unfinished";
 pub const SIGNATURE: &str = ".minisig";
 /// Largest file before, in bytes, that is compared with the one in its place; its signature goes if it is larger.
 const LARGEST_SIGNED: u64 = 512 << 20;
+/// Most files of a set that are open until they are synced together. A sync may take some milliseconds, whatever the size of the file, and
+/// several at the same time are hardly longer than one.
+const AT_ONCE: usize = 16;
 /// Largest manifest and journal in bytes: a hundred thousand files.
 const LARGEST_LIST: u64 = 32 << 20;
 
@@ -62,6 +65,8 @@ pub struct Set {
     /// Paths of the files, by number.
     paths: Vec<String>,
     hashes: Vec<String>,
+    /// Files that are written and not yet synced.
+    loose: Vec<Writer>,
     /// Folders created for the set, outermost first.
     made: Vec<PathBuf>,
     held: Option<Hold>,
@@ -80,6 +85,7 @@ impl Set {
             synced: true,
             paths: Vec::new(),
             hashes: Vec::new(),
+            loose: Vec::new(),
             made: Vec::new(),
             held: None,
             begun: false,
@@ -119,7 +125,7 @@ impl Set {
         Ok(())
     }
 
-    /// Adds a file by its path in the folder, with `/`. On return its bytes are on the disk, but not in their place.
+    /// Adds a file by its path in the folder, with `/`. On return its bytes are written, but not in their place.
     ///
     /// # Errors
     /// The system's error; `InvalidInput` for a path outside the folder.
@@ -142,17 +148,27 @@ impl Set {
         Ok(Open { inside: inside.to_string(), file, hash: Sha256::new() })
     }
 
-    /// Ends a file. On return its bytes are on the disk, but not in their place.
+    /// Ends a file. On return its bytes are written, but not in their place.
     ///
     /// # Errors
     /// The system's error.
     pub fn close(&mut self, open: Open) -> io::Result<()> {
-        if self.synced {
-            open.file.sync()?;
-        }
         self.paths.push(open.inside);
         self.hashes.push(in_hex(&open.hash.finalize()));
-        Ok(())
+        self.written(open.file)
+    }
+
+    /// A file is complete; it is synced with others, before the commit point.
+    fn written(&mut self, file: Writer) -> io::Result<()> {
+        if self.synced {
+            self.loose.push(file);
+        }
+        if self.loose.len() >= AT_ONCE { self.sync() } else { Ok(()) }
+    }
+
+    /// On return the bytes of all files are on the disk.
+    fn sync(&mut self) -> io::Result<()> {
+        sync_together(&std::mem::take(&mut self.loose))
     }
 
     /// A temporary file without a name, on the disk of the folder.
@@ -170,10 +186,10 @@ impl Set {
         Ok(())
     }
 
-    fn write(&self, name: &str, bytes: &[u8]) -> io::Result<()> {
+    fn write(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
         let mut file = create(&self.folder.join(NEW).join(name))?;
         file.write(bytes)?;
-        if self.synced { file.sync() } else { Ok(()) }
+        self.written(file)
     }
 
     /// Moves every file to its place, and removes files of the previous set that this one does not have.
@@ -196,6 +212,7 @@ impl Set {
         self.stage(self.kind.manifest(), manifest.as_bytes())?;
         let journal = Journal { installs: self.paths.clone(), removes };
         self.write(JOURNAL, journal.text().as_bytes())?;
+        self.sync()?;
         let (staged, unfinished) = (self.folder.join(NEW), self.folder.join(UNFINISHED));
         sync_folder(&staged)?;
         rename(&staged, &unfinished)?;
@@ -271,6 +288,7 @@ fn in_hex(hash: &[u8]) -> String {
 
 impl Drop for Set {
     fn drop(&mut self) {
+        self.loose.clear();
         if self.begun {
             let _ = clear(&self.folder.join(NEW));
         }

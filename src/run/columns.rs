@@ -2,10 +2,13 @@
 
 use std::collections::BTreeSet;
 
+use rayon::prelude::*;
+
 use super::facts::Facts;
 use super::record::needed;
 use super::unit::Unit;
 use crate::check::plan::{Plan, Side};
+use crate::data::record::RecordSource;
 use crate::data::{Campaign, RecordKind, WhichRecord};
 use crate::graph::{Graph, NodeId, Operation};
 
@@ -18,17 +21,13 @@ pub fn seen_columns(plan: &Plan, campaign: &Campaign, units: &[&Unit]) -> Seen {
     let sides = Side::ALL.into_iter().filter(|side| plan.reads(*side)).map(Side::kind);
     let kinds = sides.chain(Some(RecordKind::Track).filter(|kind| campaign.has(*kind)));
     for which in kinds.flat_map(|kind| campaign.records(kind)) {
-        let (mut columns, mut read) = (BTreeSet::new(), BTreeSet::new());
-        for unit in units {
-            // A record that cannot be read is a fault of its section and is reported when it is opened.
-            let Ok(source) = campaign.source_of(which, &unit.cell) else { continue };
-            // Sections of a run are in one file.
-            if !read.insert(source.inside().to_string()) {
-                continue;
-            }
-            let headings = source.headings().ok();
-            columns.extend(headings.into_iter().flatten().map(|heading| heading.name));
-        }
+        // A record that cannot be read is a fault of its section and is reported when it is opened.
+        let all: Vec<Option<RecordSource>> = units.par_iter().map(|unit| campaign.source_of(which, &unit.cell).ok()).collect();
+        // Sections of a run are in one file.
+        let mut read = BTreeSet::new();
+        let files: Vec<RecordSource> = all.into_iter().flatten().filter(|source| read.insert(source.inside().to_string())).collect();
+        let names = |source: &RecordSource| source.headings().into_iter().flatten().map(|heading| heading.name);
+        let columns = files.par_iter().flat_map_iter(names).collect();
         seen.push((which, columns));
     }
     seen

@@ -72,8 +72,12 @@ impl Campaign {
     }
 
     pub(super) fn record_folder(&self, which: WhichRecord) -> Result<(Place, &Span), Problem> {
-        let written = &self.found(which)?.folder;
-        Ok((self.folder.place(&written.value, &written.span)?, &written.span))
+        let RecordFolder { folder: written, place, .. } = self.found(which)?;
+        if let Some(place) = place.get() {
+            return Ok((place.clone(), &written.span));
+        }
+        let found = self.folder.place(&written.value, &written.span)?;
+        Ok((place.get_or_init(|| found).clone(), &written.span))
     }
 
     fn found(&self, which: WhichRecord) -> Result<&RecordFolder, Problem> {

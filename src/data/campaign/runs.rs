@@ -204,13 +204,15 @@ impl Campaign {
         if store::is_url(&file.value) {
             return run.known(kind).stored(&file.value, &file.span).map(RecordSource::Object);
         }
-        let place = self.folder.place(&file.value, &file.span)?;
+        let known = run.known(kind);
+        let place = known.place().map_or_else(|| self.folder.place(&file.value, &file.span), |place| Ok(place.clone()))?;
         if let Some(frame) = self.folder.memory().records.get(&place.inside) {
             return Ok(RecordSource::Memory(Arc::clone(frame)));
         }
         self.none_in_memory(&place.inside, &file.span)?;
         let unreadable = |error| Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", place.inside)).at(&file.span);
-        if disk::is_file(&place.path).map_err(unreadable)? {
+        if known.place().is_some() || disk::is_file(&place.path).map_err(unreadable)? {
+            known.found(&place);
             return Ok(RecordSource::File(place));
         }
         let problem = Problem::error("file-missing", format!("there is no file `{}`", place.inside)).at(&file.span);

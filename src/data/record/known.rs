@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use super::held::Held;
 use super::stored::refused;
 use super::{Column, Stored};
+use crate::data::folder::Place;
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::store::{Object, Refused};
@@ -16,6 +17,8 @@ pub struct Known {
     file: Arc<Mutex<Option<Arc<KnownFile>>>>,
     /// Of a record in a store: it is looked for once.
     object: Arc<OnceLock<Result<Object, Refused>>>,
+    /// Of a file that is there.
+    place: Arc<OnceLock<Place>>,
     /// Parts of this file and others.
     pub held: Held,
 }
@@ -79,6 +82,16 @@ impl Known {
             Ok(object) => Ok(Stored { object: object.clone(), held: self.held.clone() }),
             Err(why) => Err(refused(why, at)),
         }
+    }
+
+    /// Where the file is, if it was found before.
+    pub fn place(&self) -> Option<&Place> {
+        self.place.get()
+    }
+
+    /// Keeps where the file was found.
+    pub fn found(&self, place: &Place) {
+        self.place.get_or_init(|| place.clone());
     }
 
     /// What is known, if it is enough; otherwise what is computed now.
