@@ -101,13 +101,13 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Sect
         low: None,
         high: None,
     };
-    while !found.chosen.members.is_empty() {
+    while !found.answer.chosen.members.is_empty() {
         if let Some((either, reason)) = super::answer::causes::nothing_out_of_the_ordinary(&found, inputs.settings) {
             found.refuse(either, reason, inputs);
             continue;
         }
         (inputs.trying)("the protocol with the effects");
-        let all = applied(&found, &found.chosen.members);
+        let all = applied(&found, &found.answer.chosen.members);
         held_records = improved(&held, inputs.catalogue, inputs.simulator, &|_| all.clone()).map_err(one)?;
         let made = with(&found, &unseen(inputs, &found, None)?, &held_records)?;
         let fit_before = of_sections(&before, &fitted);
@@ -190,7 +190,7 @@ fn idle(
     after: &Certification,
     evaluate: Evaluate<'_>,
 ) -> Result<Option<(usize, String)>, Problems> {
-    let count = found.chosen.members.len();
+    let count = found.answer.chosen.members.len();
     let mut worst: Option<(usize, f64)> = None;
     for member in 0..count {
         let without = if count == 1 { before.clone() } else { evaluate(found, &unseen(inputs, found, Some(member))?)? };
@@ -200,8 +200,8 @@ fn idle(
         let by_value = 1.0 - (1.0 - touched.variance_explained).max(0.0).sqrt();
         let most = touched.fraction_removed.max(earned.fraction_removed).max(by_value);
         // The protocol has few numbers. An effect with strong evidence is therefore refused only if it increases the gap.
-        let member_of = &found.chosen.members[member];
-        let strength = member_of.evidence / (STRONG * found.bars.first);
+        let member_of = &found.answer.chosen.members[member];
+        let strength = member_of.evidence / (STRONG * found.rates.bars.first);
         let least = if strength >= 1.0 && !member_of.doubtful { -EARNED * strength } else { EARNED };
         if most < least && worst.is_none_or(|(_, least)| most < least) {
             worst = Some((member, most));
@@ -247,7 +247,7 @@ pub fn effect_of_truth(
         let others: Vec<Applied> = effects.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, one)| one.clone()).collect();
         let records = improved(&found.seen.sections, catalogue, simulator, &|_| others.clone()).ok()?;
         let others = changed(&records);
-        Some(across(&found.alone.whitener.apply(&less(&change, &others)), &found.alone.whitener.apply(&others)))
+        Some(across(&found.allowed.alone.whitener.apply(&less(&change, &others)), &found.allowed.alone.whitener.apply(&others)))
     };
     let several = if effects.len() > 1 { 0..effects.len() } else { 0..0 };
     let held = outcome.held.iter().map(|(observed, _)| (observed.section.name(), &observed.simulated));
@@ -257,7 +257,7 @@ pub fn effect_of_truth(
     let (before, made) = (of_sections(&outcome.before, &fitted), of_sections(&made, &fitted));
     let settings = Settings::read(catalogue, &mut Problems::default())?;
     Some(Really {
-        detectability: super::run::length(&found.alone.whitener, &change),
+        detectability: super::run::length(&found.allowed.alone.whitener, &change),
         weakest: several.filter_map(beside).reduce(f64::min),
         removed: compare(&before, &made, None, 1, Vec::new()).fraction_removed,
         cells: crate::diagnose::localisation::locate::moved(&settings, found, &change),

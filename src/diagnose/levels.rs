@@ -12,6 +12,8 @@ pub mod common {
 pub mod settings {
     /// Default of the largest lag in m. A larger lag means that the records belong to different places.
     pub const FURTHEST: f64 = 50.0;
+    /// Default of the share of campaigns with nothing hidden in which an effect may reach the required evidence by chance.
+    pub const FALSE_NAMES: f64 = 0.04;
 }
 
 pub mod cache {
@@ -176,17 +178,11 @@ pub mod chosen {
 }
 
 pub mod converge {
-    /// Random draws for the threshold.
-    pub const DRAWS: usize = 60;
-    /// Campaigns drawn from the covariance, with nothing hidden, for the rate of false names: 200 resolve half a per cent.
-    pub const NOTHING_HIDDEN: usize = 200;
     /// Least evidence of a cause: real discrepancies deviate from the assumed covariance.
     pub const FLOOR: f64 = 30.0;
     /// The same for an operation on the signals, which such discrepancies do not affect: half as much; 10 is called very strong (Kass and
     /// Raftery 1995).
     pub const FLOOR_EXACT: f64 = 15.0;
-    /// Evidence by which the threshold exceeds the largest of the random draws.
-    pub const ABOVE_CHANCE: f64 = 3.0;
     /// Least evidence that a confinement adds; its choice has a price as well.
     pub const CONFINED: f64 = 15.0;
     /// Largest number of effects in an answer.
@@ -194,6 +190,20 @@ pub mod converge {
     /// All sizes of a candidate are simulated from this share of the largest evidence on, and from this evidence on.
     pub const NEAR: f64 = 0.5;
     pub const WORTH: f64 = 10.0;
+}
+
+pub mod calibration {
+    /// Campaigns drawn from the covariance, with nothing hidden, for the required evidence and the rate of false names: 200 resolve half a
+    /// per cent.
+    pub const NOTHING_HIDDEN: usize = 200;
+    /// Campaigns drawn with a single effect, with two effects, and with an effect that the search does not know.
+    pub const SINGLES: usize = 60;
+    pub const PAIRS: usize = 20;
+    pub const OUTSIDE: usize = 20;
+    /// Share of the campaigns in which an effect is named that counts as detectable.
+    pub const NAMED: f64 = 0.9;
+    /// How often another effect and size is drawn where one could not be named.
+    pub const TRIES: usize = 50;
 }
 
 pub mod fit {
@@ -302,11 +312,6 @@ pub mod suspects {
     pub const BETTER_SHARE: f64 = 0.5;
     /// Cosine of two whitened changes above which they count as the same cause.
     pub const SAME: f64 = 0.8;
-}
-
-pub mod detectable {
-    /// Length of a whitened change that counts as detectable, in standard deviations.
-    pub const SEEN: f64 = 5.0;
 }
 
 pub mod pictures {

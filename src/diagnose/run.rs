@@ -29,14 +29,29 @@ use crate::diagnose::uncertainty::whiten::{Covariance, Whitener, dot};
 use crate::effects::{Action, Applied, Signals};
 use crate::model::parameter;
 use crate::problem::{Problem, Problems};
+use crate::result::diagnosis::Calibration;
 use crate::simulate::{Plan, Section, Task, incremented};
 
 /// Numerical results of a diagnosis.
 #[derive(Debug)]
 pub struct Found {
     pub seen: Observations,
+    pub strata: Vec<Vec<usize>>,
+    pub declared: Declared,
+    pub ground: Ground,
+    pub allowed: Allowed,
     pub candidates: Vec<Candidate>,
     pub masks: Vec<Mask>,
+    pub answer: Answer,
+    pub rates: Rates,
+    pub runs: Runs,
+}
+
+/// The allowed difference.
+#[derive(Debug)]
+pub struct Allowed {
+    /// Covariance of noise and tolerances alone.
+    pub tolerated: Covariance,
     /// The weighing without effects.
     pub alone: Arc<Place>,
     /// The weighing with the tolerances simulated together with the answer. Residuals are judged by it.
@@ -44,10 +59,12 @@ pub struct Found {
     /// The same without outlying sections. Sizes are fitted by it.
     pub settled: Arc<Place>,
     /// All weighings that were computed.
-    pub places: Places,
-    /// Covariance of noise and tolerances alone.
-    pub tolerated: Covariance,
-    pub ground: Ground,
+    places: Places,
+}
+
+/// The named effects, and what speaks for and against others.
+#[derive(Debug)]
+pub struct Answer {
     pub chosen: Chosen,
     pub refused: Vec<Refused>,
     /// Other candidates in place of a member: number of the member, fit, loss of evidence.
@@ -65,12 +82,16 @@ pub struct Found {
     /// Lack of fit by channel and kind of feature, before and after the effects are added.
     pub lack_before: Vec<Lack>,
     pub lack_after: Vec<Lack>,
+}
+
+/// The required evidence, and how often the search is right in drawn campaigns.
+#[derive(Debug)]
+pub struct Rates {
     pub bars: Bars,
     /// Share of drawn campaigns with nothing hidden in which a cause would be named.
     pub false_name_rate: f64,
-    pub runs: Runs,
-    pub strata: Vec<Vec<usize>>,
-    pub declared: Declared,
+    /// What the search names in drawn campaigns with known effects.
+    pub calibration: Calibration,
 }
 
 /// Warns of tolerances whose parameter is in neither the vehicle file nor the model: they cannot be simulated.
@@ -150,33 +171,32 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         return None;
     }
     let ground = Ground::find(inputs, &seen, &admitted, &mut runs, problems)?;
-    let (alone, tolerated) = ground.alone(inputs, &seen, &admitted);
     let strata = strata(&seen, settings);
-    let lack_before = lack_of_fit(&alone.covariance, &seen, &alone.difference);
-    let far = |candidate: &Candidate, size: f64| deviations(candidate, size, settings, &admitted, false);
     let mut masks = masks(&seen, settings);
     let families = families(&seen, &strata);
+    let far = |candidate: &Candidate, size: f64| deviations(candidate, size, settings, &admitted, false);
+    let (alone, tolerated) = ground.alone(settings, &seen, &admitted);
+    let lack_before = lack_of_fit(&alone.covariance, &seen, &alone.difference);
     let (candidates, converged, places) = ground.work(inputs, &seen, &admitted, Places::default(), |tolerances| {
         let workshop = tolerances.workshop;
         let mut candidates = workshop.candidates(&mut runs);
         (inputs.trying)("weighing");
-        let converging =
-            Converging { workshop, place: &alone, tolerances: Some(tolerances), families: &families, far: &far, seed: inputs.seed };
+        let converging = Converging {
+            workshop,
+            place: &alone,
+            tolerances: Some(tolerances),
+            families: &families,
+            far: &far,
+            false_name_rate: settings.false_name_rate,
+            seed: inputs.seed,
+        };
         let converged = converging.search(&mut candidates, &mut masks, &mut runs);
         let places = tolerances.looked_at().clone();
         (candidates, converged, places)
     });
-    let Converged { chosen, refused, bars, false_name_rate, known } = converged;
+    let Converged { chosen, refused, bars, false_name_rate, calibration, known } = converged;
     let alone = Arc::new(alone);
-    let mut found = Found {
-        candidates,
-        masks,
-        beside: alone.clone(),
-        settled: alone.clone(),
-        alone,
-        places,
-        tolerated,
-        ground,
+    let answer = Answer {
         chosen,
         refused,
         rivals: Vec::new(),
@@ -187,13 +207,10 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
         stability: Vec::new(),
         lack_after: lack_before.clone(),
         lack_before,
-        bars,
-        false_name_rate,
-        runs,
-        strata,
-        seen,
-        declared: admitted,
     };
+    let allowed = Allowed { tolerated, beside: alone.clone(), settled: alone.clone(), alone, places };
+    let rates = Rates { bars, false_name_rate, calibration };
+    let mut found = Found { seen, strata, declared: admitted, ground, allowed, candidates, masks, answer, rates, runs };
     found.settle(inputs, false, known);
     Some(found)
 }
@@ -201,8 +218,8 @@ pub fn find(inputs: &Inputs<'_>, sections: Vec<Section>, problems: &mut Problems
 impl Found {
     /// Refuses a member, then fits the others again.
     pub fn refuse(&mut self, at: usize, reason: String, inputs: &Inputs<'_>) {
-        self.refused.push(Refused::new(self.chosen.members.remove(at), reason));
-        alone_again(&mut self.candidates, &self.chosen.members);
+        self.answer.refused.push(Refused::new(self.answer.chosen.members.remove(at), reason));
+        alone_again(&mut self.candidates, &self.answer.chosen.members);
         self.settle(inputs, true, Known::new());
     }
 
@@ -214,81 +231,89 @@ impl Found {
         // it.
         let further = |candidate: &Candidate, size: f64| deviations(candidate, size, inputs.settings, &self.declared, true);
         let families = families(&self.seen, &self.strata);
-        let places = std::mem::take(&mut self.places);
-        let (masks, alone, bars) = (&self.masks, &self.alone, &self.bars);
+        let places = std::mem::take(&mut self.allowed.places);
+        let (masks, alone, bars) = (&self.masks, &self.allowed.alone, &self.rates.bars);
         let answered = self.ground.work(inputs, &self.seen, &self.declared, places, |tolerances| {
             let workshop = tolerances.workshop;
-            let (candidates, refused, runs) = (&mut self.candidates, &mut self.refused, &mut self.runs);
-            let converging =
-                Converging { workshop, place: alone, tolerances: Some(tolerances), families: &families, far: &far, seed: inputs.seed };
+            let (candidates, refused, runs) = (&mut self.candidates, &mut self.answer.refused, &mut self.runs);
+            let converging = Converging {
+                workshop,
+                place: alone,
+                tolerances: Some(tolerances),
+                families: &families,
+                far: &far,
+                false_name_rate: inputs.settings.false_name_rate,
+                seed: inputs.seed,
+            };
             let again = Settled { tolerances, far: &further };
             let first = |chosen: Chosen| Weighed { place: alone.clone(), chosen };
-            let mut chosen = self.chosen.clone();
+            let mut chosen = self.answer.chosen.clone();
             if gone && converging.again((candidates, masks), &mut chosen, bars, refused) {
                 alone_again(candidates, &chosen.members);
             }
             let before = refused.len();
-            let (mut beside, mut now) = again.answer((candidates, masks), first(chosen), &self.lack_before, bars, refused, runs);
+            let (mut beside, mut now) = again.answer((candidates, masks), first(chosen), &self.answer.lack_before, bars, refused, runs);
             let mut left = now.chosen.clone();
             if refused.len() > before && converging.again((candidates, masks), &mut left, bars, refused) {
                 alone_again(candidates, &left.members);
-                (beside, now) = again.answer((candidates, masks), first(left), &self.lack_before, bars, refused, runs);
+                (beside, now) = again.answer((candidates, masks), first(left), &self.answer.lack_before, bars, refused, runs);
             }
             let Weighed { place: settled, mut chosen } = now;
             let fitter = Fitter::of(&settled.whitener, candidates, masks.clone(), &chosen.members);
             refit(&fitter, &settled.z, &mut chosen);
-            let lack_after = drop_what_harms(&fitter, (&beside, &self.seen), &settled.z, &mut chosen, refused, &self.lack_before);
+            let lack_after = drop_what_harms(&fitter, (&beside, &self.seen), &settled.z, &mut chosen, refused, &self.answer.lack_before);
             drop(fitter);
             let first_of = |chosen: &Chosen| chosen.members.first().map(|member| member.candidate);
             // The suspect depends on the first member, and in place of several members on all of them.
-            if !gone || first_of(&chosen) != self.suspected || self.suspect.as_ref().is_some_and(|suspect| suspect.of_all) {
-                self.suspected = first_of(&chosen);
-                self.suspect = suspect(workshop, inputs.settings, alone, (candidates, masks, &chosen), runs);
+            if !gone || first_of(&chosen) != self.answer.suspected || self.answer.suspect.as_ref().is_some_and(|suspect| suspect.of_all) {
+                self.answer.suspected = first_of(&chosen);
+                self.answer.suspect = suspect(workshop, inputs.settings, alone, (candidates, masks, &chosen), runs);
             }
             let places = tolerances.looked_at().clone();
             (beside, settled, chosen, lack_after, places)
         });
-        (self.beside, self.settled, self.chosen, self.lack_after, self.places) = answered;
+        (self.allowed.beside, self.allowed.settled, self.answer.chosen, self.answer.lack_after, self.allowed.places) = answered;
         self.weigh(known, inputs.seed);
     }
 
     /// Evidence, rivals and stability of the answer. A member is weighed with the tolerances simulated together with the members before it.
     /// A tolerance of the same parameter is then free for rivals as well as for the member.
     fn weigh(&mut self, known: Known, seed: u64) {
-        let sizes = Fitter::of(&self.settled.whitener, &self.candidates, self.masks.clone(), &self.chosen.members);
+        let sizes = Fitter::of(&self.allowed.settled.whitener, &self.candidates, self.masks.clone(), &self.answer.chosen.members);
         let mut known = known;
         let (mut found, mut stable, mut evidence) = (Vec::new(), Vec::new(), Vec::new());
-        let before = |at: usize| self.places.beside(&self.chosen.members[..at]).unwrap_or_else(|| self.alone.clone());
-        let places: Vec<Arc<Place>> = (0..self.chosen.members.len()).map(before).chain([self.beside.clone()]).collect();
+        let before =
+            |at: usize| self.allowed.places.beside(&self.answer.chosen.members[..at]).unwrap_or_else(|| self.allowed.alone.clone());
+        let places: Vec<Arc<Place>> = (0..self.answer.chosen.members.len()).map(before).chain([self.allowed.beside.clone()]).collect();
         let mut last: Option<(&Arc<Place>, Fitter<'_>, Chosen)> = None;
         for (at, place) in places.iter().enumerate() {
             if last.as_ref().is_none_or(|(known, ..)| !Arc::ptr_eq(known, place)) {
-                let known = if Arc::ptr_eq(place, &self.alone) { std::mem::take(&mut known) } else { Known::new() };
+                let known = if Arc::ptr_eq(place, &self.allowed.alone) { std::mem::take(&mut known) } else { Known::new() };
                 let fitter = Fitter::knowing(&place.whitener, &self.candidates, self.masks.clone(), known);
-                let mut here = self.chosen.clone();
+                let mut here = self.answer.chosen.clone();
                 refit(&fitter, &place.z, &mut here);
                 last = Some((place, fitter, here));
             }
             let Some((_, fitter, here)) = &last else { continue };
             let Some(member) = here.members.get(at) else {
-                self.nearest = nearest(fitter, here, &self.refused);
-                self.contradicting = contradicting(fitter, here, &self.refused);
+                self.answer.nearest = nearest(fitter, here, &self.answer.refused);
+                self.answer.contradicting = contradicting(fitter, here, &self.answer.refused);
                 break;
             };
-            found.extend(Sets::new(fitter, &place.z).rivals(here, at, &self.bars));
+            found.extend(Sets::new(fitter, &place.z).rivals(here, at, &self.rates.bars));
             stable.push(stability(
                 (fitter, &place.z, here),
-                (&sizes, &self.settled.z, &self.chosen),
+                (&sizes, &self.allowed.settled.z, &self.answer.chosen),
                 at,
-                &self.refused,
+                &self.answer.refused,
                 &self.strata,
                 seed,
             ));
             evidence.push((member.fall, member.evidence));
         }
         found.sort_by(|a, b| a.2.total_cmp(&b.2));
-        (self.rivals, self.stability) = (found, stable);
-        for (member, evidence) in self.chosen.members.iter_mut().zip(evidence) {
+        (self.answer.rivals, self.answer.stability) = (found, stable);
+        for (member, evidence) in self.answer.chosen.members.iter_mut().zip(evidence) {
             (member.fall, member.evidence) = evidence;
         }
     }
@@ -320,9 +345,9 @@ pub fn length(whitener: &Whitener, change: &[f64]) -> f64 {
 /// Chi-squared per feature before and after the effects.
 #[must_use]
 pub fn chi(found: &Found) -> (f64, f64) {
-    let beside = &found.beside;
-    let before = beside.whitener.apply(&found.alone.difference);
-    let after = beside.whitener.apply(&left(&found.candidates, &found.masks, &beside.difference, &found.chosen));
+    let beside = &found.allowed.beside;
+    let before = beside.whitener.apply(&found.allowed.alone.difference);
+    let after = beside.whitener.apply(&left(&found.candidates, &found.masks, &beside.difference, &found.answer.chosen));
     let n = before.len().max(1) as f64;
     (chi_squared(&before) / n, chi_squared(&after) / n)
 }

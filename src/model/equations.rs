@@ -34,6 +34,7 @@ pub struct Equations<'a> {
 #[derive(Clone, Copy, Debug)]
 struct Has {
     yaw_damper: bool,
+    hysteresis: bool,
     centre_friction: bool,
     friction_z: bool,
     friction_y: bool,
@@ -105,6 +106,7 @@ impl<'a> Equations<'a> {
         let car_mass = v.car_mass + v.payload_mass;
         let has = Has {
             yaw_damper: v.yaw_damper_stiffness * v.yaw_damper_damping * v.yaw_damper_remaining > 0.0,
+            hysteresis: v.secondary_hysteresis > 0.0,
             centre_friction: v.centre_friction_torque > 0.0,
             friction_z: v.primary_friction_z > 0.0,
             friction_y: v.primary_friction_y > 0.0,
@@ -154,6 +156,7 @@ impl<'a> Equations<'a> {
         let groups = [
             (4, true),
             (2, self.has.yaw_damper),
+            (2, self.has.hysteresis),
             (2, self.has.centre_friction),
             (8, self.has.friction_z),
             (4, self.has.friction_y),
@@ -288,7 +291,13 @@ impl<'a> Equations<'a> {
                 - (x[b] + offset.e + v.secondary_height * offset.phi + hbs * x[b + PHI]);
             let d_rate = (u[CAR] + lever * u[CAR + PSI] - hcs * u[CAR + PHI]) - (u[b] + hbs * u[b + PHI]);
             let stop = v.bumpstop_stiffness * d.signum() * (d.abs() - v.bumpstop_gap).max(0.0);
-            let fy = -2.0 * v.secondary_ky * d - cy * d_rate - stop;
+            let mut fy = -2.0 * v.secondary_ky * d - cy * d_rate - stop;
+            if self.has.hysteresis {
+                // A spring and a dashpot in series, beside the spring.
+                let f = state.hysteresis[i];
+                rates.hysteresis[i] = 2.0 * v.secondary_hysteresis * v.secondary_ky * d_rate - f / v.secondary_hysteresis_time;
+                fy -= f;
+            }
             let dz = (x[CAR + Z] - lever * x[CAR + 3] + v.bending_shape * state.bending[0]) - x[b + Z];
             let dz_rate = (u[CAR + Z] - lever * u[CAR + 3] + v.bending_shape * state.bending[1]) - u[b + Z];
             let fz = -2.0 * v.secondary_kz * dz - 2.0 * cz * dz_rate;

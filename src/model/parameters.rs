@@ -115,6 +115,8 @@ parameters! {
     secondary_cz_scale "secondary.cz_scale" ["-"] NotNegative = 1.0, "factor of the vertical secondary damping";
     secondary_cy "secondary.cy" ["N s/m"] NotNegative, "lateral damping per bogie";
     secondary_cy_scale "secondary.cy_scale" ["-"] NotNegative = 1.0, "factor of the lateral secondary damping";
+    secondary_hysteresis "secondary.hysteresis" ["-"] NotNegative = 0.0, "lateral secondary stiffness in fast motion, less that at rest, as a share of that at rest";
+    secondary_hysteresis_time "secondary.hysteresis_time" ["s"] Positive = 0.15, "relaxation time of the additional lateral stiffness";
     secondary_half_spacing "secondary.half_spacing" ["m"] Positive, "track centre to secondary spring";
     secondary_height "secondary.height" ["m"] Positive, "secondary springs above the rail";
     anti_roll_stiffness "secondary.anti_roll_stiffness" ["N m/rad"] NotNegative = 0.0, "anti-roll bar per bogie";

@@ -31,6 +31,8 @@ pub struct State {
     pub spin: [f64; 4],
     /// Force of one yaw damper per bogie, N.
     pub yaw_damper: [f64; 2],
+    /// Force of the lateral springs per bogie in addition to that at rest, N.
+    pub hysteresis: [f64; 2],
     /// Friction torque per bogie, N m.
     pub centre_friction: [f64; 2],
     /// Dry friction per axle box, vertical: right and left of each wheelset, N.
@@ -45,7 +47,7 @@ impl State {
     /// Displacements of the seven bodies.
     pub const BODIES: usize = 31;
     /// All states.
-    pub const ALL: usize = 2 * Self::BODIES + 22;
+    pub const ALL: usize = 2 * Self::BODIES + 24;
     /// Indices of forces and torques in [`State::to_vec`].
     pub const FORCES: std::ops::Range<usize> = 2 * Self::BODIES + 4..Self::ALL - 2;
 
@@ -61,6 +63,7 @@ impl State {
         each(&mut self.v, &start.v, step, &rates.v);
         each(&mut self.spin, &start.spin, step, &rates.spin);
         each(&mut self.yaw_damper, &start.yaw_damper, step, &rates.yaw_damper);
+        each(&mut self.hysteresis, &start.hysteresis, step, &rates.hysteresis);
         each(&mut self.centre_friction, &start.centre_friction, step, &rates.centre_friction);
         each(&mut self.friction_z, &start.friction_z, step, &rates.friction_z);
         each(&mut self.friction_y, &start.friction_y, step, &rates.friction_y);
@@ -79,6 +82,7 @@ impl State {
         each(&mut self.v, step, &rates.v);
         each(&mut self.spin, step, &rates.spin);
         each(&mut self.yaw_damper, step, &rates.yaw_damper);
+        each(&mut self.hysteresis, step, &rates.hysteresis);
         each(&mut self.centre_friction, step, &rates.centre_friction);
         each(&mut self.friction_z, step, &rates.friction_z);
         each(&mut self.friction_y, step, &rates.friction_y);
@@ -88,15 +92,33 @@ impl State {
     /// The states as a vector of length [`State::ALL`].
     #[must_use]
     pub fn to_vec(&self) -> Vec<f64> {
-        let parts: [&[f64]; 8] =
-            [&self.x, &self.v, &self.spin, &self.yaw_damper, &self.centre_friction, &self.friction_z, &self.friction_y, &self.bending];
+        let parts: [&[f64]; 9] = [
+            &self.x,
+            &self.v,
+            &self.spin,
+            &self.yaw_damper,
+            &self.hysteresis,
+            &self.centre_friction,
+            &self.friction_z,
+            &self.friction_y,
+            &self.bending,
+        ];
         parts.concat()
     }
 
     /// Writes the states to a slice of length [`State::ALL`].
     pub fn write(&self, to: &mut [f64]) {
-        let parts: [&[f64]; 8] =
-            [&self.x, &self.v, &self.spin, &self.yaw_damper, &self.centre_friction, &self.friction_z, &self.friction_y, &self.bending];
+        let parts: [&[f64]; 9] = [
+            &self.x,
+            &self.v,
+            &self.spin,
+            &self.yaw_damper,
+            &self.hysteresis,
+            &self.centre_friction,
+            &self.friction_z,
+            &self.friction_y,
+            &self.bending,
+        ];
         let mut rest = to;
         for part in parts {
             let (head, tail) = rest.split_at_mut(part.len());
@@ -121,6 +143,7 @@ impl State {
             v: take(values),
             spin: take(values),
             yaw_damper: take(values),
+            hysteresis: take(values),
             centre_friction: take(values),
             friction_z: take(values),
             friction_y: take(values),

@@ -21,6 +21,7 @@ pub struct Diagnosis {
     pub protocol_after: Option<Verdict>,
     /// Share of campaigns drawn from what is allowed, with nothing hidden, in which an effect would be named.
     pub false_name_rate: f64,
+    pub calibration: Calibration,
     /// Faults of the recording; their channels are excluded.
     pub faults: Vec<Fault>,
     pub r#where: Vec<Where>,
@@ -56,6 +57,30 @@ pub struct Diagnosis {
     /// Signals of the sections with the largest gap, for figures.
     #[serde(skip)]
     pub pictures: Vec<Picture>,
+}
+
+/// What the search names in campaigns drawn on the basis of this one, with known effects. The consistency checks are left out.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Calibration {
+    /// Single effects that are named, and nothing else.
+    pub single: Share,
+    /// Pairs of which both are named, and nothing else.
+    pub pair: Share,
+    /// Effects that the search does not know, for which another one is named.
+    pub outside: Share,
+    /// Answers that name an effect that is not hidden.
+    pub further: Share,
+    /// 90 % intervals that contain the hidden size.
+    pub intervals: Share,
+    /// Length of the change in standard deviations from which nine of ten single effects are named.
+    pub length: Option<f64>,
+}
+
+/// A number of cases among others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Share {
+    pub count: usize,
+    pub of: usize,
 }
 
 /// Chi-squared of what is left with the answer, against noise, tolerances and model discrepancy.

@@ -161,3 +161,29 @@ fn energy_is_kept_without_dampers_and_lost_with_them() {
     assert!(damped.windows(2).all(|pair| pair[1] <= pair[0] * (1.0 + 1e-9) + 1e-12));
     assert!(damped[damped.len() - 1] < 1e-3 * damped[0]);
 }
+
+/// A Maxwell element beside the lateral springs of each bogie, H' = 2 r ky d' - H / T: at the rate 0.1 m/s of the body its force of 700 N
+/// changes by 2 r ky 0.1 - 700 / T. Both forces decelerate the body by 1400 N over its mass, in addition to springs and dampers. At rest only
+/// the relaxation is left, so that steady forces do not change.
+#[test]
+fn hysteresis_of_the_springs_is_a_maxwell_element() {
+    use fishplate::model::equations::Input;
+    let with = |share: f64| vehicle(COACH, &[("secondary.hysteresis", share), ("secondary.hysteresis_time", 0.2)]);
+    let rates = |vehicle: &Vehicle, speed: f64| {
+        let profile = profile(COACH, vehicle);
+        let equations = Equations::new(vehicle, &profile, 40.0);
+        let mut state = State { hysteresis: [700.0; 2], ..equations.at_rest() };
+        state.v[CAR] = speed;
+        let mut rates = State::default();
+        equations.rates(&state, &Input::default(), &mut rates);
+        rates
+    };
+    let (coach, without) = (with(0.9), with(0.0));
+    let moving = rates(&coach, 0.1);
+    let expected = 2.0 * 0.9 * coach.secondary_ky * 0.1 - 700.0 / 0.2;
+    assert!(moving.hysteresis.iter().all(|rate| (rate - expected).abs() < 1e-9 * expected.abs()), "{:?} for {expected}", moving.hysteresis);
+    assert_eq!(rates(&coach, 0.0).hysteresis, [-700.0 / 0.2; 2]);
+    let slower = rates(&without, 0.1).v[CAR] - moving.v[CAR];
+    assert!((slower * coach.car_mass - 1400.0).abs() < 1e-6, "{slower}");
+    assert_eq!(rates(&without, 0.1).hysteresis, [0.0; 2]);
+}

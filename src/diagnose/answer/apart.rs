@@ -22,7 +22,7 @@ pub struct Apart {
 pub fn apart(found: &Found, member: &Fitted, rival: &Fitted) -> Option<Apart> {
     let change = member.change(&found.candidates, &found.masks);
     let of = (&found.candidates[rival.candidate], &found.masks[rival.mask]);
-    best(&found.alone.covariance, &found.seen.first_runs(), &found.strata, &change, of)
+    best(&found.allowed.alone.covariance, &found.seen.first_runs(), &found.strata, &change, of)
 }
 
 fn best(covariance: &Covariance, all: &[usize], strata: &[Vec<usize>], change: &[f64], rival: (&Candidate, &Mask)) -> Option<Apart> {

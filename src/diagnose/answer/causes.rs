@@ -5,7 +5,6 @@ use serde_json::json;
 
 use crate::diagnose::inference::fit::Fitted;
 use crate::diagnose::inputs::Inputs;
-use crate::diagnose::levels::causes::INTERPOLATION;
 use crate::diagnose::levels::common::NINETY;
 use crate::diagnose::run::{Found, deviations};
 use crate::diagnose::selection::stability::Stability;
@@ -51,9 +50,7 @@ pub fn short(value: f64) -> String {
 pub fn interval(found: &Found, member: &Fitted) -> Option<(f64, f64)> {
     let of = &found.candidates[member.candidate];
     let (low, high) = around(found, member, stability_of(found, member).map(|stability| stability.sizes))?;
-    // An error of the response that all features share is another size: it is not seen in the residual.
-    let change = of.neutral().filter(|neutral| neutral.is_finite()).map_or(member.size, |neutral| member.size - neutral).abs();
-    let common = if of.exact { 0.0 } else { NINETY * found.beside.covariance.response.common * change };
+    let common = NINETY * member.common_error(&found.candidates, found.allowed.beside.covariance.response.common);
     let (below, above) = ((member.size - low).hypot(common), (high - member.size).hypot(common));
     Some(((member.size - below).max(of.range.0), (member.size + above).min(of.range.1)))
 }
@@ -64,7 +61,7 @@ fn around(found: &Found, member: &Fitted, drawn: Option<(f64, f64)>) -> Option<(
     if of.discrete || !member.size.is_finite() {
         return None;
     }
-    let error = if member.slope > 0.0 { NINETY * (1.0 / member.slope).hypot(INTERPOLATION * member.size.abs().min(1e12)) } else { 0.0 };
+    let error = NINETY * member.error();
     let drawn = drawn.unwrap_or((member.size, member.size));
     let (below, above) = (error.hypot((member.size - drawn.0).max(0.0)), error.hypot((drawn.1 - member.size).max(0.0)));
     Some(((member.size - below).max(of.range.0), (member.size + above).min(of.range.1)))
@@ -87,7 +84,7 @@ pub fn nothing_out_of_the_ordinary(found: &Found, settings: &Settings) -> Option
         };
         Some((at, format!("the interval of its size, {} to {}, includes {holds}", short(low), short(high)), member.evidence))
     };
-    let found = found.chosen.members.iter().enumerate().filter_map(holds).min_by(|a, b| a.2.total_cmp(&b.2));
+    let found = found.answer.chosen.members.iter().enumerate().filter_map(holds).min_by(|a, b| a.2.total_cmp(&b.2));
     found.map(|(at, says, _)| (at, says))
 }
 
@@ -142,7 +139,7 @@ fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
 /// The stability of a member of the answer; a rival has none.
 fn stability_of(found: &Found, member: &Fitted) -> Option<Stability> {
     let own = |known: &Fitted| known.candidate == member.candidate && known.mask == member.mask;
-    found.chosen.members.iter().position(own).and_then(|at| found.stability.get(at).cloned())
+    found.answer.chosen.members.iter().position(own).and_then(|at| found.answer.stability.get(at).cloned())
 }
 
 /// The confinement in the form of the report: `zones` and `sections` are lists, a direction is one word.

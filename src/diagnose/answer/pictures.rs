@@ -22,10 +22,10 @@ pub fn pictures(settings: &Settings, found: &Found, improved: &[Signals], units:
             .filter(|(_, feature)| feature.channel == channel && matches!(feature.kind, Kind::Level | Kind::Band(_)))
             .map(|(at, _)| {
                 let place = seen.place(section, at);
-                let shared: f64 = found.tolerated.shared.iter().map(|column| column[place].powi(2)).sum();
+                let shared: f64 = found.allowed.tolerated.shared.iter().map(|column| column[place].powi(2)).sum();
                 let inside: f64 =
-                    found.tolerated.inside.iter().filter(|(of, _)| *of == section).map(|(_, column)| column[at].powi(2)).sum();
-                found.alone.difference[place].powi(2) / (found.tolerated.diagonal[place] + shared + inside)
+                    found.allowed.tolerated.inside.iter().filter(|(of, _)| *of == section).map(|(_, column)| column[at].powi(2)).sum();
+                found.allowed.alone.difference[place].powi(2) / (found.allowed.tolerated.diagonal[place] + shared + inside)
             })
             .sum::<f64>()
     };

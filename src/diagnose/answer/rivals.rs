@@ -14,14 +14,14 @@ use crate::result::diagnosis::Cause;
 
 /// Sets in which another effect replaces one member, and whether the data discriminate them from the answer.
 pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
-    let best = found.chosen.evidence;
+    let best = found.answer.chosen.evidence;
     let mut causes: Vec<Cause> = Vec::new();
-    let own = |at: usize| &found.candidates[found.chosen.members[at].candidate];
-    for (at, fit, fall) in &found.rivals {
+    let own = |at: usize| &found.candidates[found.answer.chosen.members[at].candidate];
+    for (at, fit, fall) in &found.answer.rivals {
         let of = &found.candidates[fit.candidate];
         // The same effect on another channel is another cause if the data do not show which channel it is.
         let elsewhere = of.effect == own(*at).effect && of.channels != own(*at).channels && !of.channels.is_empty() && *fall <= NEAREST;
-        let named = found.chosen.members.iter().any(|member| found.candidates[member.candidate].effect == of.effect);
+        let named = found.answer.chosen.members.iter().any(|member| found.candidates[member.candidate].effect == of.effect);
         if named && !elsewhere {
             continue;
         }
@@ -29,17 +29,18 @@ pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
             continue;
         }
         // Effects refused by a guard are reported separately.
-        if found.refused.iter().any(|refused| found.candidates[refused.fitted.candidate].is_like(of)) || !plausible(of, fit.size) {
+        if found.answer.refused.iter().any(|refused| found.candidates[refused.fitted.candidate].is_like(of)) || !plausible(of, fit.size) {
             continue;
         }
         // A size within a declared tolerance is part of the covariance already.
         if deviations(of, fit.size, inputs.settings, &found.declared, true) < TOLERANCE_SD {
             continue;
         }
-        let near = *fall <= (NEAREST_SHARE * found.chosen.members[*at].evidence).max(NEAREST) && fit.evidence > found.bars.least(of)
-            || found.stability.get(*at).is_some_and(|stability| stability.as_well(fit.candidate));
-        let drawn = found.stability.get(*at).map_or(0.0, |stability| stability.instead_of(fit.candidate));
-        let mut members = found.chosen.members.clone();
+        let near = *fall <= (NEAREST_SHARE * found.answer.chosen.members[*at].evidence).max(NEAREST)
+            && fit.evidence > found.rates.bars.least(of)
+            || found.answer.stability.get(*at).is_some_and(|stability| stability.as_well(fit.candidate));
+        let drawn = found.answer.stability.get(*at).map_or(0.0, |stability| stability.instead_of(fit.candidate));
+        let mut members = found.answer.chosen.members.clone();
         members[*at] = fit.clone();
         let mut cause = cause(inputs, found, &members, causes.len() + 2);
         (cause.in_ambiguity_set, cause.probability) = (near, drawn);
@@ -86,7 +87,7 @@ pub fn discriminating(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verd
             measurements.push(settled);
         }
     }
-    measurements.extend(found.suspect.as_ref().map(|suspect| format!("a measurement of `{}`", suspect.key)));
+    measurements.extend(found.answer.suspect.as_ref().map(|suspect| format!("a measurement of `{}`", suspect.key)));
     measurements.extend(more_sections(inputs, found, causes));
     (!measurements.is_empty()).then(|| measurements.join("; or "))
 }
@@ -108,9 +109,9 @@ fn nearest<'a>(found: &'a Found, causes: &[Cause]) -> Option<([&'a str; 2], Apar
     let near =
         |name: &str| causes.iter().skip(1).any(|cause| cause.in_ambiguity_set && cause.effects.iter().any(|effect| effect.name == name));
     let effect = |fit: &Fitted| found.candidates[fit.candidate].effect.as_str();
-    let differs = |at: usize, fit: &Fitted| near(effect(fit)) && effect(fit) != effect(&found.chosen.members[at]);
-    let (at, rival, _) = found.rivals.iter().find(|(at, fit, _)| differs(*at, fit))?;
-    let member = &found.chosen.members[*at];
+    let differs = |at: usize, fit: &Fitted| near(effect(fit)) && effect(fit) != effect(&found.answer.chosen.members[at]);
+    let (at, rival, _) = found.answer.rivals.iter().find(|(at, fit, _)| differs(*at, fit))?;
+    let member = &found.answer.chosen.members[*at];
     Some(([effect(member), effect(rival)], apart(found, member, rival)?))
 }
 

@@ -52,29 +52,31 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
     let features: Vec<usize> = (0..found.seen.features.len()).collect();
     let view = View { says: String::new(), sections: kept.clone(), features: features.clone() };
     let size = found.seen.features.len();
-    let whitener = found.settled.covariance.part(&kept, &features).whitener();
+    let whitener = found.allowed.settled.covariance.part(&kept, &features).whitener();
     let part = |column: &[f64]| crate::diagnose::selection::guards::part(column, size, &view);
     let mut candidates: Vec<crate::diagnose::response::candidate::Candidate> =
-        found.chosen.members.iter().map(|member| found.candidates[member.candidate].clone()).collect();
+        found.answer.chosen.members.iter().map(|member| found.candidates[member.candidate].clone()).collect();
     for candidate in &mut candidates {
         candidate.nodes.iter_mut().filter(|node| !node.change.is_empty()).for_each(|node| node.change = part(&node.change));
     }
     let masks = found.masks.iter().map(|mask| crate::diagnose::response::mask::Mask {
         confined: mask.confined.clone(),
         sections: kept.iter().map(|at| mask.sections[*at]).collect(),
-        asked_by: mask.asked_by.map(|by| found.chosen.members.iter().position(|member| member.candidate == by).unwrap_or(usize::MAX)),
+        asked_by: mask
+            .asked_by
+            .map(|by| found.answer.chosen.members.iter().position(|member| member.candidate == by).unwrap_or(usize::MAX)),
     });
     let fitter = Fitter::new(&whitener, &candidates, masks.collect());
-    let z = whitener.apply(&part(&found.beside.difference));
-    let set: Vec<(usize, usize)> = found.chosen.members.iter().enumerate().map(|(at, member)| (at, member.mask)).collect();
+    let z = whitener.apply(&part(&found.allowed.beside.difference));
+    let set: Vec<(usize, usize)> = found.answer.chosen.members.iter().enumerate().map(|(at, member)| (at, member.mask)).collect();
     let chosen = crate::diagnose::inference::sets::Sets::new(&fitter, &z).chosen(&set);
     if chosen.members.len() != set.len() {
-        return found.chosen.members.clone();
+        return found.answer.chosen.members.clone();
     }
     chosen
         .members
         .into_iter()
-        .zip(&found.chosen.members)
+        .zip(&found.answer.chosen.members)
         .map(|(new, old)| Fitted { candidate: old.candidate, doubtful: old.doubtful, ..new })
         .collect()
 }
@@ -260,9 +262,9 @@ fn measure(of: &Certification, quantities: &[usize], names: &[String], drawn: &[
 /// The part of the whitened difference that each member removes alone, as a share of what all remove together.
 #[must_use]
 pub fn shares(found: &Found) -> Vec<(String, f64)> {
-    let all: f64 = found.chosen.members.iter().map(|member| dot(&member.whitened, &member.whitened)).sum();
+    let all: f64 = found.answer.chosen.members.iter().map(|member| dot(&member.whitened, &member.whitened)).sum();
     let share = |member: &Fitted| dot(&member.whitened, &member.whitened) / all.max(1e-300);
-    found.chosen.members.iter().map(|member| (found.candidates[member.candidate].effect.clone(), share(member))).collect()
+    found.answer.chosen.members.iter().map(|member| (found.candidates[member.candidate].effect.clone(), share(member))).collect()
 }
 
 #[cfg(test)]

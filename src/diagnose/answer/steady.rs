@@ -27,14 +27,15 @@ const SECTION: &str = "the section alone";
 #[must_use]
 pub fn drifts(settings: &Settings, found: &Found) -> Vec<Drift> {
     let exact = |member: &&Fitted| found.candidates[member.candidate].exact && !found.candidates[member.candidate].discrete;
-    let operations: Vec<&Fitted> = found.chosen.members.iter().filter(exact).collect();
+    let operations: Vec<&Fitted> = found.answer.chosen.members.iter().filter(exact).collect();
     if operations.is_empty() {
         return Vec::new();
     }
-    let whitener = with_room(&may_differ(found), &found.candidates, &found.masks, &found.chosen).whitener();
-    let rest: DVector<f64> = whitener.apply(&left(&found.candidates, &found.masks, &found.beside.difference, &found.chosen)).into();
+    let whitener = with_room(&may_differ(found), &found.candidates, &found.masks, &found.answer.chosen).whitener();
+    let rest: DVector<f64> =
+        whitener.apply(&left(&found.candidates, &found.masks, &found.allowed.beside.difference, &found.answer.chosen)).into();
     let columns: Vec<DVector<f64>> =
-        found.chosen.members.iter().map(|member| whitener.apply(&member.tangent(&found.candidates, &found.masks)).into()).collect();
+        found.answer.chosen.members.iter().map(|member| whitener.apply(&member.tangent(&found.candidates, &found.masks)).into()).collect();
     let sizes = DMatrix::from_columns(&columns).qr().q();
     let covariates = covariates(settings, &found.seen);
     let of = |member: &Fitted, covariate: &Covariate| {
@@ -129,10 +130,10 @@ impl Apart {
 /// The covariance with the answer, with the model error of simulated members as one column each. Lags that jump with the size are
 /// excluded. Outlying sections are kept: a drift is largest at its ends.
 fn may_differ(found: &Found) -> Covariance {
-    let mut covariance = found.settled.covariance.clone();
+    let mut covariance = found.allowed.settled.covariance.clone();
     for (at, _) in found.seen.features.iter().enumerate().filter(|(_, feature)| feature.kind != Kind::Lag) {
         for place in (0..found.seen.sections.len()).map(|section| found.seen.place(section, at)) {
-            covariance.diagonal[place] = found.beside.covariance.diagonal[place];
+            covariance.diagonal[place] = found.allowed.beside.covariance.diagonal[place];
         }
     }
     covariance

@@ -126,12 +126,12 @@ pub fn removed(shrink: Option<&Shrink>) -> Option<f64> {
 #[must_use]
 pub fn fit(found: &Found) -> Fit {
     use statrs::distribution::{ChiSquared, ContinuousCDF};
-    let covariance = with_room(&found.beside.covariance, &found.candidates, &found.masks, &found.chosen);
-    let rest = left(&found.candidates, &found.masks, &found.beside.difference, &found.chosen);
+    let covariance = with_room(&found.allowed.beside.covariance, &found.candidates, &found.masks, &found.answer.chosen);
+    let rest = left(&found.candidates, &found.masks, &found.allowed.beside.difference, &found.answer.chosen);
     let z = covariance.whitener().apply(&rest);
     let features = z.len().max(1) as f64;
     let chi_squared: f64 = z.iter().map(|z| z * z).sum();
-    let freedom = (features - found.chosen.members.len() as f64).max(1.0);
+    let freedom = (features - found.answer.chosen.members.len() as f64).max(1.0);
     let p_value = ChiSquared::new(freedom).map_or(f64::NAN, |law| law.sf(chi_squared));
     let per_feature = chi_squared / features;
     let scale = per_feature.sqrt();

@@ -42,11 +42,11 @@ pub fn diagnosis(
     (shrink, held_out): (Option<Shrink>, HeldOut),
 ) -> Diagnosis {
     let (before, after) = chi(found);
-    let (unexplained_share, too_much) = unexplained(&found.lack_before, &found.lack_after);
+    let (unexplained_share, too_much) = unexplained(&found.answer.lack_before, &found.answer.lack_after);
     // An outlying section does not refute an answer, but without an answer it is a significant difference.
-    let lacking = found.lack_after.iter().any(|lack| lack.sigma_with_them > LACK);
+    let lacking = found.answer.lack_after.iter().any(|lack| lack.sigma_with_them > LACK);
     let ambiguous = ambiguity(inputs, found);
-    let named = !found.chosen.members.is_empty();
+    let named = !found.answer.chosen.members.is_empty();
     let invariants = crate::diagnose::localisation::invariants::invariants(inputs.settings, found, units);
     let (mut trends, together) = crate::diagnose::localisation::trends::trends(inputs.settings, found, units);
     let drifts = super::steady::drifts(inputs.settings, found);
@@ -55,15 +55,15 @@ pub fn diagnosis(
         || super::steady::certain(&drifts).is_some()
         || crate::diagnose::localisation::invariants::stays(&invariants).is_some();
     // The smallest share of resamples in which a member has the most evidence, where that share is too small.
-    let least = found.stability.iter().filter(|stability| stability.fails()).map(|stability| stability.first).reduce(f64::min);
+    let least = found.answer.stability.iter().filter(|stability| stability.fails()).map(|stability| stability.first).reduce(f64::min);
     let fit = verdict::fit(found);
     let facts = Facts {
         named,
         faulty: !found.seen.faults.is_empty(),
         lacking,
         systematic: left,
-        much_left: too_much || found.suspect.as_ref().is_some_and(Suspect::beats) || found.contradicting.is_some(),
-        tied: found.suspect.is_some() || least.is_some() || ambiguous.iter().any(|rival| rival.in_ambiguity_set),
+        much_left: too_much || found.answer.suspect.as_ref().is_some_and(Suspect::beats) || found.answer.contradicting.is_some(),
+        tied: found.answer.suspect.is_some() || least.is_some() || ambiguous.iter().any(|rival| rival.in_ambiguity_set),
         protocol_fails: verdict::fails(protocol.0),
         removed: verdict::removed(shrink.as_ref()),
         held_out: held_out.fraction_removed,
@@ -72,13 +72,13 @@ pub fn diagnosis(
     let (verdict, reason) = verdict::verdict(&facts);
     let mut causes = vec![];
     if named {
-        causes.push(Cause { evidence: found.chosen.evidence, ..cause(inputs, found, &found.chosen.members, 1) });
+        causes.push(Cause { evidence: found.answer.chosen.evidence, ..cause(inputs, found, &found.answer.chosen.members, 1) });
         // Where the gap remains, the candidate with more evidence than the answer was refused. It is reported there and is not a rival.
         let best = causes[0].evidence;
         causes.extend(ambiguous.into_iter().filter(|rival| verdict != Verdict::Unexplained || rival.evidence <= best));
         causes.iter_mut().enumerate().for_each(|(at, cause)| cause.rank = at + 1);
     }
-    probabilities(&mut causes, verdict, found.suspect.is_some(), least);
+    probabilities(&mut causes, verdict, found.answer.suspect.is_some(), least);
     let discriminating_measurement = discriminating(inputs, found, &causes, verdict);
     let radius = |key: &str| crate::diagnose::inputs::value_of(inputs.campaign, key);
     let shapes = crate::diagnose::localisation::shapes::shapes(inputs.settings, &found.seen, &radius, inputs.seed);
@@ -122,7 +122,8 @@ pub fn diagnosis(
         says,
         fit,
         mirrored: inputs.settings.mirror.is_some(),
-        false_name_rate: found.false_name_rate,
+        false_name_rate: found.rates.false_name_rate,
+        calibration: found.rates.calibration,
         protocol_before: protocol.0,
         protocol_after: protocol.1,
         faults: found.seen.faults.clone(),
@@ -149,7 +150,7 @@ pub fn diagnosis(
             sections: found.seen.sections.len(),
             features: found.seen.len(),
             seed: inputs.seed,
-            threshold: found.bars.first,
+            threshold: found.rates.bars.first,
             chi_squared_before: before,
             chi_squared_after: after,
         },
@@ -170,12 +171,12 @@ fn simulated_time(found: &Found) -> f64 {
 fn alone(found: &Found) -> Option<String> {
     let one = |at: usize| {
         let mut channels: Vec<&str> =
-            found.lack_after.iter().filter(|lack| lack.alone.contains(&at)).map(|lack| lack.channel.as_str()).collect();
+            found.answer.lack_after.iter().filter(|lack| lack.alone.contains(&at)).map(|lack| lack.channel.as_str()).collect();
         channels.dedup();
         (!channels.is_empty()).then(|| format!("{} in {}", found.seen.sections[at].section.name(), channels.join(", ")))
     };
     let all: Vec<String> = (0..found.seen.sections.len()).filter_map(one).collect();
-    let told = !all.is_empty() && !found.chosen.members.is_empty();
+    let told = !all.is_empty() && !found.answer.chosen.members.is_empty();
     told.then(|| format!("individual outlying sections, which do not decide whether the gap is explained: {}", all.join("; ")))
 }
 
@@ -192,14 +193,14 @@ fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
             says: format!("{title}{on} improves the overall fit, but: {}", refused.reason),
         }
     };
-    found.refused.iter().map(one).collect()
+    found.answer.refused.iter().map(one).collect()
 }
 
 /// The closest candidates that are not named, and the criterion that each does not meet.
 fn nearest(inputs: &Inputs<'_>, found: &Found) -> Vec<Nearest> {
     let one = |fit: &Fitted| {
         let of = &found.candidates[fit.candidate];
-        let bar = found.bars.least(of);
+        let bar = found.rates.bars.least(of);
         let needed = if found.masks[fit.mask].asked_by.is_some() { 2.0 * bar } else { bar };
         let away = deviations(&found.candidates[fit.candidate], fit.size, inputs.settings, &found.declared, true);
         let wants = match () {
@@ -208,12 +209,12 @@ fn nearest(inputs: &Inputs<'_>, found: &Found) -> Vec<Nearest> {
                 format!("larger deviation from the declared value: {away:.1} of {TOLERANCE_SD:.1} standard deviations")
             }
             // Candidates are tested one at a time, by evidence.
-            () if found.chosen.members.is_empty() => "more evidence than the effect that was rejected in its place".into(),
+            () if found.answer.chosen.members.is_empty() => "more evidence than the effect that was rejected in its place".into(),
             () => "a larger share of the named effects".into(),
         };
         Nearest { effect: of.effect.clone(), says: cause(inputs, found, std::slice::from_ref(fit), 0).says, evidence: fit.evidence, wants }
     };
-    found.nearest.iter().map(one).collect()
+    found.answer.nearest.iter().map(one).collect()
 }
 
 fn says(
@@ -233,14 +234,14 @@ fn says(
         Verdict::Explained => lines.push(format!("{}.", causes[0].says)),
         Verdict::Ambiguous => {
             let mut set: Vec<String> = causes.iter().filter(|cause| cause.in_ambiguity_set).map(|cause| cause.says.clone()).collect();
-            set.extend(found.suspect.as_ref().map(|suspect| {
+            set.extend(found.answer.suspect.as_ref().map(|suspect| {
                 format!("`{}` multiplied by {:.2}, a parameter that no effect of the catalogue changes", suspect.key, suspect.factor)
             }));
             lines.push(match &set[..] {
                 [alone] => format!("{alone}; the data do not distinguish it from all alternatives."),
                 all => format!("The data do not distinguish between these causes: {}.", all.join(" | ")),
             });
-            let failing = found.chosen.members.iter().zip(&found.stability).filter(|(_, stability)| stability.fails());
+            let failing = found.answer.chosen.members.iter().zip(&found.answer.stability).filter(|(_, stability)| stability.fails());
             lines.extend(failing.map(|(member, stability)| {
                 let effect = &found.candidates[member.candidate].effect;
                 let title = inputs.catalogue.effect(effect).map_or(effect, |effect| &effect.title);
@@ -249,7 +250,7 @@ fn says(
             }));
         }
         _ => {
-            let mut worst: Vec<_> = found.lack_after.iter().filter(|lack| lack.sigma_with_them > LACK).collect();
+            let mut worst: Vec<_> = found.answer.lack_after.iter().filter(|lack| lack.sigma_with_them > LACK).collect();
             worst.sort_by(|a, b| b.sigma_with_them.total_cmp(&a.sigma_with_them));
             let named: Vec<String> = worst
                 .iter()
@@ -257,7 +258,7 @@ fn says(
                 .map(|lack| format!("{} ({})", lack.channel, if lack.kind == Kind::Level { "quasi-static" } else { "dynamic" }))
                 .collect();
             let catalogue = &inputs.catalogue.name;
-            if let Some(suspect) = &found.suspect {
+            if let Some(suspect) = &found.answer.suspect {
                 lines.push(format!(
                     "Outside the catalogue: `{}` multiplied by {:.2} explains more than {} (evidence {:.0} against {:.0}).",
                     suspect.key,
@@ -267,7 +268,7 @@ fn says(
                     suspect.answer
                 ));
             }
-            if let Some((refused, evidence)) = &found.contradicting {
+            if let Some((refused, evidence)) = &found.answer.contradicting {
                 let looks = cause(inputs, found, std::slice::from_ref(&refused.fitted), 0).says;
                 let reason = &refused.reason;
                 lines.push(format!(
@@ -275,7 +276,7 @@ fn says(
                 ));
             }
             lines.push(match named.is_empty() {
-                true if found.suspect.is_some() || found.contradicting.is_some() => {
+                true if found.answer.suspect.is_some() || found.answer.contradicting.is_some() => {
                     "With the closest effects, no remaining difference exceeds the allowed one.".into()
                 }
                 true if left => {

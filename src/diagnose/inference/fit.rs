@@ -2,9 +2,10 @@
 
 use std::collections::HashMap;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
-use crate::diagnose::response::candidate::{Candidate, between, blend};
+use crate::diagnose::levels::causes::INTERPOLATION;
+use crate::diagnose::response::candidate::{Candidate, Node, between, blend};
 use crate::diagnose::response::mask::{Mask, allowed};
 use crate::diagnose::response::path::{BySection, Closest, Path, closest};
 use crate::diagnose::uncertainty::metric::reduced;
@@ -89,20 +90,25 @@ impl<'a> Fitter<'a> {
         known.retain(|(candidate, _), path| path.is_of(&candidates[*candidate]));
         keys.retain(|key| !known.contains_key(key));
         let mut fitter = Self { whitener, candidates, masks, whitened: known };
-        let whitened: Vec<_> =
-            keys.par_iter().map(|(at, mask)| ((*at, *mask), Path::new(&candidates[*at], fitter.nodes(*at, *mask)))).collect();
-        fitter.whitened.extend(whitened);
+        let changes: Vec<Vec<f64>> = keys
+            .par_iter()
+            .flat_map_iter(|(at, mask)| {
+                let changed = candidates[*at].nodes.iter().filter(|node| !node.change.is_empty());
+                changed.map(|node| fitter.masks[*mask].on(&node.change)).collect::<Vec<_>>()
+            })
+            .collect();
+        let all = whitener.apply_all(&changes);
+        let mut next = all.column_iter();
+        for (at, mask) in keys {
+            let of = &candidates[at];
+            let whitened = |node: &Node| match node.change.is_empty() {
+                true => Vec::new(),
+                false => next.next().expect("one for each change").iter().copied().collect(),
+            };
+            let nodes = of.nodes.iter().map(whitened).collect();
+            fitter.whitened.insert((at, mask), Path::new(of, nodes));
+        }
         fitter
-    }
-
-    fn nodes(&self, candidate: usize, mask: usize) -> Vec<Vec<f64>> {
-        let all = |change: &Vec<f64>| {
-            if change.is_empty() {
-                return Vec::new();
-            }
-            self.whitener.apply(&self.masks[mask].on(change))
-        };
-        self.candidates[candidate].nodes.iter().map(|node| all(&node.change)).collect()
     }
 
     /// The best fit of a candidate under a mask to the whitened difference `z`.
@@ -134,9 +140,7 @@ impl<'a> Fitter<'a> {
         }
         let columns = path.errors[node].get_or_init(|| {
             let change = self.masks[member.1].on(&self.candidates[member.0].nodes[node].change);
-            let columns: Vec<DVector<f64>> =
-                self.whitener.response_error(&change).iter().map(|column| DVector::from(self.whitener.apply(column))).collect();
-            if columns.is_empty() { DMatrix::zeros(rows, 0) } else { reduced(&DMatrix::from_columns(&columns)) }
+            reduced(&self.whitener.apply_all(&self.whitener.response_error(&change)))
         });
         let there = blend(&path.nodes[segment], &path.nodes[segment + 1], share, rows);
         let length = path.lengths[node];
@@ -247,6 +251,20 @@ impl<'a> Fitter<'a> {
 }
 
 impl Fitted {
+    /// Standard error of the size, by the fit and by the interpolation between simulated sizes; 0 where it has none.
+    #[must_use]
+    pub fn error(&self) -> f64 {
+        if self.slope > 0.0 { (1.0 / self.slope).hypot(INTERPOLATION * self.size.abs().min(1e12)) } else { 0.0 }
+    }
+
+    /// Standard error of the size by the error of the response that all features share: it is another size, and not seen in the residual.
+    #[must_use]
+    pub fn common_error(&self, candidates: &[Candidate], common: f64) -> f64 {
+        let of = &candidates[self.candidate];
+        let change = of.neutral().filter(|neutral| neutral.is_finite()).map_or(self.size, |neutral| self.size - neutral).abs();
+        if of.exact { 0.0 } else { common * change }
+    }
+
     /// Derivative of the features with respect to the size, at the fitted size.
     #[must_use]
     pub fn tangent(&self, candidates: &[Candidate], masks: &[Mask]) -> Vec<f64> {

@@ -30,8 +30,8 @@ impl Covariance {
 #[must_use]
 pub fn invariants(settings: &Settings, found: &Found, units: &Units) -> Vec<Invariant> {
     let seen = &found.seen;
-    let rest = left(&found.candidates, &found.masks, &found.beside.difference, &found.chosen);
-    let beside = with_room(&found.beside.covariance, &found.candidates, &found.masks, &found.chosen);
+    let rest = left(&found.candidates, &found.masks, &found.allowed.beside.difference, &found.answer.chosen);
+    let beside = with_room(&found.allowed.beside.covariance, &found.candidates, &found.masks, &found.answer.chosen);
     let sections = seen.first_runs();
     let side = |at: usize| settings.side(&seen.sections[at].section);
     let mut all = Vec::new();
@@ -61,9 +61,9 @@ pub fn invariants(settings: &Settings, found: &Found, units: &Units) -> Vec<Inva
                 name: name.clone(),
                 parity,
                 unit: unit.map_or_else(|| "-".into(), |(_, unit)| unit.text.clone()),
-                before: -mean(&found.alone.difference),
+                before: -mean(&found.allowed.alone.difference),
                 after: -mean(&rest),
-                allowed: found.alone.covariance.variance(&weights).sqrt(),
+                allowed: found.allowed.alone.covariance.variance(&weights).sqrt(),
                 allowed_after: beside.variance(&weights).sqrt(),
             });
         }

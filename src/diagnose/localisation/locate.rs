@@ -44,7 +44,7 @@ pub fn locate(settings: &Settings, found: &Found, units: &Units) -> Vec<Where> {
 pub fn moved(settings: &Settings, found: &Found, change: &[f64]) -> Vec<String> {
     let far = |cell: &Cell| {
         let values: Vec<f64> = cell.members.iter().map(|(section, feature)| change[found.seen.place(*section, *feature)]).collect();
-        found.alone.covariance.among(&cell.members).chi_squared(&values) > MOVED * MOVED
+        found.allowed.alone.covariance.among(&cell.members).chi_squared(&values) > MOVED * MOVED
     };
     map(settings, found).into_iter().filter(far).map(|cell| says(settings, found, &cell)).collect()
 }
@@ -79,7 +79,7 @@ struct Tested {
 /// Tests a cell. `measured` are the measured features, whose sign decides the sign convention of levels.
 fn test(found: &Found, measured: &[f64], cell: &Cell) -> Tested {
     let values: Vec<f64> =
-        cell.members.iter().map(|(section, feature)| found.alone.difference[found.seen.place(*section, *feature)]).collect();
+        cell.members.iter().map(|(section, feature)| found.allowed.alone.difference[found.seen.place(*section, *feature)]).collect();
     // `difference` is measured - simulated; reported is simulated - measured, as in the protocol. A level is multiplied by the sign of the
     // measured value, so that left and right curves do not cancel.
     let side = |(section, feature): &(usize, usize)| match cell.kind {
@@ -91,7 +91,7 @@ fn test(found: &Found, measured: &[f64], cell: &Cell) -> Tested {
     // Bands are logarithms of ratios.
     let relative = |value: f64| if cell.kind == Kind::Level { value } else { value.exp() - 1.0 };
     let rms = (values.iter().map(|value| relative(-value).powi(2)).sum::<f64>() / freedom).sqrt();
-    let chi = found.alone.covariance.among(&cell.members).chi_squared(&values);
+    let chi = found.allowed.alone.covariance.among(&cell.members).chi_squared(&values);
     let p_value = statrs::distribution::ChiSquared::new(freedom).map_or(1.0, |law| statrs::distribution::ContinuousCDF::sf(&law, chi));
     Tested { excess: chi - freedom, p_value, mean: relative(mean), rms }
 }

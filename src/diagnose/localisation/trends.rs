@@ -43,8 +43,8 @@ pub fn trends(settings: &Settings, found: &Found, units: &Units) -> (Vec<Trend>,
         cells(settings, found, kind, position, &sections).into_iter().map(|cell| (cell, *turns)).collect::<Vec<(Cell, bool)>>()
     };
     let cells: Vec<(Cell, bool)> = kinds(found).flat_map(|kind| places.iter().flat_map(move |place| of_place(kind, place))).collect();
-    let wider = with_room(&found.beside.covariance, &found.candidates, &found.masks, &found.chosen);
-    let rest = left(&found.candidates, &found.masks, &found.beside.difference, &found.chosen);
+    let wider = with_room(&found.allowed.beside.covariance, &found.candidates, &found.masks, &found.answer.chosen);
+    let rest = left(&found.candidates, &found.masks, &found.allowed.beside.difference, &found.answer.chosen);
     let fold = Fold::new(settings, &found.seen, &found.ground.simulated);
     let of_cell = |(cell, turns): &(Cell, bool)| {
         let sign = |(section, feature): &(usize, usize)| match turns {
@@ -52,7 +52,7 @@ pub fn trends(settings: &Settings, found: &Found, units: &Units) -> (Vec<Trend>,
             false => 1.0,
         };
         let sides: Vec<f64> = cell.members.iter().map(sign).collect();
-        let before = slopes(found, cell, &sides, &covariates, (&found.alone.covariance, &found.alone.difference));
+        let before = slopes(found, cell, &sides, &covariates, (&found.allowed.alone.covariance, &found.allowed.alone.difference));
         let after = slopes(found, cell, &sides, &covariates, (&wider, &rest));
         let trend = |((covariate, before), after): ((&Covariate, Option<Slope>), Option<Slope>)| {
             let [from, to] = covariate.ends.clone();

@@ -1,18 +1,18 @@
 //! The search with simulation of the fitted sizes, so that neither an answer nor a refusal is based on interpolation.
 
 use crate::diagnose::features::bench::Runs;
-use crate::diagnose::inference::chosen::{Bars, Chosen, Refused, plausible, unconfine};
+use crate::diagnose::inference::chosen::{Bars, Chosen, Refused};
 use crate::diagnose::inference::fit::{Fitted, Fitter, Known};
 use crate::diagnose::inference::sets::{Conditions, Sets};
 use crate::diagnose::levels::chosen::TOLERANCE_SD;
-use crate::diagnose::levels::converge::{ABOVE_CHANCE, CONFINED, DRAWS, FLOOR, FLOOR_EXACT, MOST, NEAR, NOTHING_HIDDEN, WORTH};
+use crate::diagnose::levels::converge::{CONFINED, FLOOR, FLOOR_EXACT, MOST, NEAR, WORTH};
 use crate::diagnose::response::candidate::Candidate;
 use crate::diagnose::response::mask::Mask;
+use crate::diagnose::selection::calibration::{Draws, limit};
 use crate::diagnose::selection::converging::{Converged, Converging};
 use crate::diagnose::selection::masks::section_masks;
 use crate::diagnose::selection::place::Place;
 use crate::diagnose::selection::settle::polish;
-use crate::effects::Gauss;
 
 impl Converging<'_> {
     /// Searches until no relevant candidate has sizes left to simulate.
@@ -24,7 +24,7 @@ impl Converging<'_> {
         let mut reconsidered: Vec<usize> = Vec::new();
         let (chosen, bars) = loop {
             let fitter = Fitter::knowing(whitener, candidates, masks.clone(), std::mem::take(&mut known));
-            let bars = bars(*chance.get_or_insert_with(|| limit(&fitter, z.len(), self.seed)));
+            let bars = bars(*chance.get_or_insert_with(|| limit(&fitter, self.seed, self.false_name_rate)));
             refused.clear();
             let guard = |fit: &Fitted, chosen: &Chosen| self.guard(&fitter, chosen, fit);
             let of = Conditions { bars: &bars, far: self.far, guard: &guard };
@@ -49,28 +49,12 @@ impl Converging<'_> {
             (workshop.trying)("weighing");
         };
         let fitter = Fitter::knowing(whitener, candidates, masks.clone(), known);
-        let false_name_rate = self.false_name_rate(&fitter, z.len(), &bars);
+        (workshop.trying)("calibration on drawn campaigns");
+        let draws = Draws { fitter: &fitter, bars: &bars, far: self.far, seed: self.seed };
+        let (false_name_rate, calibration) = (draws.falsely_named(), draws.calibrate());
         let known = fitter.whitened;
-        let now = self.simulated((candidates, masks), Converged { chosen, refused, bars, false_name_rate, known }, runs);
+        let now = self.simulated((candidates, masks), Converged { chosen, refused, bars, false_name_rate, calibration, known }, runs);
         self.beside((candidates, masks), now, runs)
-    }
-
-    /// Share of campaigns drawn from the covariance, with nothing hidden, in which some candidate meets the criteria of a first member. The
-    /// guards are not asked, so that the rate is not underestimated by them.
-    fn false_name_rate(&self, fitter: &Fitter<'_>, features: usize, bars: &Bars) -> f64 {
-        use rayon::prelude::*;
-        let named = |draw: &usize| {
-            let z = drawn(features, self.seed.wrapping_add(1), *draw);
-            let mut fits = fitter.all(&z);
-            fits.retain(|fit| fit.evidence >= bars.least(&fitter.candidates[fit.candidate]));
-            fits.iter_mut().for_each(|fit| unconfine(fitter, &z, fit, bars));
-            fits.iter().any(|fit| {
-                let (of, mask) = (&fitter.candidates[fit.candidate], &fitter.masks[fit.mask]);
-                let needed = if mask.asked_by.is_some() { 2.0 * bars.least(of) } else { bars.least(of) };
-                fit.evidence >= needed && (self.far)(of, fit.size) >= bars.tolerance_sd + mask.picked() && plausible(of, fit.size)
-            })
-        };
-        (0..NOTHING_HIDDEN).into_par_iter().filter(named).count() as f64 / NOTHING_HIDDEN as f64
     }
 
     /// Searches again after a member was refused: members are added, replaced and dropped. The weighing is that with the tolerances
@@ -106,20 +90,6 @@ impl Converging<'_> {
 fn bars(chance: f64) -> Bars {
     let first = chance.max(FLOOR);
     Bars { first, exact: chance.max(FLOOR_EXACT), confined: CONFINED, tolerance_sd: TOLERANCE_SD, most: MOST }
-}
-
-/// A whitened difference with nothing hidden.
-fn drawn(features: usize, seed: u64, draw: usize) -> Vec<f64> {
-    let mut random = Gauss::new(seed ^ (draw as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15));
-    (0..features).map(|_| random.next()).collect()
-}
-
-/// Evidence larger than that of the best candidate in any random draw from the covariance.
-fn limit(fitter: &Fitter<'_>, features: usize, seed: u64) -> f64 {
-    use rayon::prelude::*;
-    let mut most: Vec<f64> = (0..DRAWS).into_par_iter().map(|draw| fitter.most(&drawn(features, seed, draw))).collect();
-    most.sort_by(f64::total_cmp);
-    most.last().copied().unwrap_or(0.0) + ABOVE_CHANCE
 }
 
 /// Candidates whose remaining sizes are simulated, and on which side: those close to the best for the whole difference, for the residual
@@ -172,7 +142,7 @@ mod tests {
         let catalogue = Catalogue { name: String::new(), title: String::new(), source, groups, units, effects, diagnosis: None };
         let (ground, trying, neutral) = (Ground::default(), |_: &str| {}, |_: &str| None);
         let workshop = Workshop { seen: &seen, catalogue: &catalogue, bench: None, ground: &ground, neutral: &neutral, trying: &trying };
-        work(&Converging { workshop: &workshop, place, tolerances: None, families, far: &|_, _| 100.0, seed: 1 })
+        work(&Converging { workshop: &workshop, place, tolerances: None, families, far: &|_, _| 100.0, false_name_rate: 0.04, seed: 1 })
     }
 
     fn per_section(of: &[f64]) -> Vec<f64> {

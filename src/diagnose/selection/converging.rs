@@ -13,6 +13,7 @@ use crate::diagnose::selection::lack::{left, with_room};
 use crate::diagnose::selection::place::Place;
 use crate::diagnose::selection::settle::polish;
 use crate::diagnose::selection::tolerances::Tolerances;
+use crate::result::diagnosis::Calibration;
 
 /// Inputs of the search.
 pub struct Converging<'a> {
@@ -23,6 +24,8 @@ pub struct Converging<'a> {
     pub families: &'a [Vec<View>],
     /// Distance of a size from neutral in declared standard deviations.
     pub far: &'a (dyn Fn(&Candidate, f64) -> f64 + Sync),
+    /// Share of the campaigns with nothing hidden in which an effect may reach the required evidence.
+    pub false_name_rate: f64,
     pub seed: u64,
 }
 
@@ -33,6 +36,7 @@ pub struct Converged {
     pub bars: Bars,
     /// Share of drawn campaigns with nothing hidden in which a cause has enough evidence.
     pub false_name_rate: f64,
+    pub calibration: Calibration,
     pub known: Known,
 }
 

@@ -1,5 +1,6 @@
 //! Which effects are named: the search with simulation of the fitted sizes, and the checks of every member.
 
+pub(super) mod calibration;
 pub(super) mod converge;
 pub(super) mod converging;
 pub(super) mod further;

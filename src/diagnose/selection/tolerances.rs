@@ -125,12 +125,12 @@ impl Tolerances<'_> {
 impl Ground {
     /// The weighing without effects, and the covariance of noise and tolerances alone.
     #[must_use]
-    pub fn alone(&self, inputs: &Inputs<'_>, seen: &Observations, admitted: &Declared) -> (Place, Covariance) {
+    pub fn alone(&self, settings: &Settings, seen: &Observations, admitted: &Declared) -> (Place, Covariance) {
         let columns: Vec<Sensitivity> = self.columns.iter().flatten().cloned().collect();
         let mut difference = self.whole.clone();
         expect(&columns, &mut difference);
         let declared = |name: &str| admitted.get(name);
-        let with = |standing| covariance(seen, inputs.settings, &self.simulated, &columns, &declared, standing);
+        let with = |standing| covariance(seen, settings, &self.simulated, &columns, &declared, standing);
         (Place::new(with(Some(&self.standing)), difference), with(None))
     }
 

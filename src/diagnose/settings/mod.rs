@@ -22,6 +22,8 @@ pub struct Settings {
     pub tolerances: Vec<Tolerance>,
     pub discrepancies: Vec<Discrepancy>,
     pub response: Response,
+    /// Share of the campaigns with nothing hidden in which some effect may reach the required evidence by chance.
+    pub false_name_rate: f64,
     /// Columns of the section table by which an effect may be confined.
     pub confine: Vec<String>,
     /// Columns of the section table tested as covariates of the residual; with the prefix `1 / ` the reciprocal.

@@ -1,14 +1,14 @@
 //! Reads the `diagnosis` part of a catalogue.
 
 use super::{Discrepancy, FeatureKind, GroupFeatures, INVERSE, Moves, Over, Position, Response, Settings, Shape, Times, Tolerance};
-use crate::diagnose::levels::settings::FURTHEST;
+use crate::diagnose::levels::settings::{FALSE_NAMES, FURTHEST};
 use crate::effects::Catalogue;
 use crate::problem::{Problem, Problems};
 use crate::source::Span;
 use crate::units::Unit;
 use crate::yaml::{Key, Node, Value};
 
-const TOP: [&str; 14] = [
+const TOP: [&str; 15] = [
     "bands",
     "alike",
     "furthest lag",
@@ -16,6 +16,7 @@ const TOP: [&str; 14] = [
     "tolerances",
     "discrepancies",
     "response error",
+    "false name rate",
     "confine to",
     "covariates",
     "mirrored",
@@ -220,6 +221,14 @@ impl Reader<'_> {
         Response { levels, others, groups, common }
     }
 
+    fn false_name_rate(&mut self, node: &Node) -> f64 {
+        let rate = self.number(node, "false name rate", FALSE_NAMES);
+        if let Some(found) = node.get("false name rate").filter(|_| !(rate > 0.0 && rate < 1.0)) {
+            self.outside("`false name rate` is a share above 0 and below 1", found);
+        }
+        rate
+    }
+
     fn settings(&mut self, node: &Node) -> Settings {
         self.keys(node, &TOP);
         let alike = node.get("alike").map_or(Vec::new(), |alike| self.rising(alike));
@@ -238,6 +247,7 @@ impl Reader<'_> {
             alike: (alike.first().copied().unwrap_or(0.5), alike.get(1).copied().unwrap_or(8.0)),
             furthest: self.furthest(node),
             response: node.get("response error").map_or_else(Response::default, |node| self.response(node)),
+            false_name_rate: self.false_name_rate(node),
             confine: names(confine),
             covariates: names(covariates),
             mirror: mirror.map(|(key, value)| (key.text, value)),
@@ -464,6 +474,7 @@ diagnosis:
             ("sd: [0.1, 0.2]", "sd: []", "none of them negative", "10:55"),
             ("[1, 2, 4]\n", "[1, 2, 4]\n  alike: [8]\n", "`alike` must be two", "8:10"),
             ("[1, 2, 4]\n", "[1, 2, 4]\n  furthest lag: -5\n", "must be positive", "8:17"),
+            ("[1, 2, 4]\n", "[1, 2, 4]\n  false name rate: 4\n", "above 0 and below 1", "8:20"),
         ] {
             let text = SOUND.replacen(good, bad, 1);
             assert_ne!(text, SOUND);

@@ -20,7 +20,7 @@ fn singular(columns: &DMatrix<f64>) -> Option<(DMatrix<f64>, Vec<f64>)> {
         return None;
     }
     // Eigenvectors of the small Gram matrix give the left singular vectors.
-    let eigen = columns.tr_mul(columns).symmetric_eigen();
+    let eigen = (columns.transpose() * columns).symmetric_eigen();
     let kept: Vec<usize> = (0..columns.ncols()).filter(|at| eigen.eigenvalues[*at] > NEGLIGIBLE).collect();
     if kept.is_empty() {
         return None;

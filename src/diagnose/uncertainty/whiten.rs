@@ -7,6 +7,9 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::diagnose::uncertainty::response::ResponseError;
 
+/// Number of differences that are whitened together: enough for a product of matrices to be fast.
+const TOGETHER: usize = 64;
+
 /// The factored covariance.
 #[derive(Clone, Debug)]
 pub struct Whitener {
@@ -152,10 +155,40 @@ impl Whitener {
         self.blocks.len() * self.size
     }
 
+    /// The relative error of a simulated change that all features share.
+    #[must_use]
+    pub fn common(&self) -> f64 {
+        self.response.common
+    }
+
     /// Columns of the model error of a simulated change, not whitened.
     #[must_use]
     pub fn response_error(&self, change: &[f64]) -> Vec<Vec<f64>> {
         self.response.columns(change, self.size)
+    }
+
+    /// Whitened differences, a column each. Faster than one by one.
+    #[must_use]
+    pub fn apply_all(&self, differences: &[Vec<f64>]) -> DMatrix<f64> {
+        use rayon::prelude::*;
+        let part = |columns: &[Vec<f64>]| {
+            let mut z = DMatrix::from_fn(self.features(), columns.len(), |i, j| columns[j][i]);
+            for (section, block) in self.blocks.iter().enumerate() {
+                block.l_dirty().solve_lower_triangular_mut(&mut z.rows_mut(section * self.size, self.size));
+            }
+            if self.shared.ncols() > 0 {
+                let mut weights = self.shared.transpose() * &z;
+                weights.column_iter_mut().for_each(|mut column| column.component_mul_assign(&self.shrink));
+                z.gemm(-1.0, &self.shared, &weights, 1.0);
+            }
+            z
+        };
+        let parts: Vec<DMatrix<f64>> = differences.par_chunks(TOGETHER).map(part).collect();
+        let mut all = DMatrix::zeros(self.features(), differences.len());
+        for (at, part) in parts.iter().enumerate() {
+            all.columns_mut(at * TOGETHER, part.ncols()).copy_from(part);
+        }
+        all
     }
 
     /// The whitened difference; of the same length as `difference`.
@@ -230,6 +263,12 @@ mod tests {
         let direct = (DVector::from_row_slice(&r).transpose() * full.try_inverse().expect("regular") * DVector::from_row_slice(&r))[0];
         let z = covariance.whitener().apply(&r);
         assert!((dot(&z, &z) - direct).abs() < 1e-10 * direct);
+        let other = [0.3, 0.1, -2.0, 4.0];
+        let all = covariance.whitener().apply_all(&[r.to_vec(), other.to_vec()]);
+        for (column, one) in [r, other].iter().enumerate() {
+            let alone = DVector::from(covariance.whitener().apply(one));
+            assert!((all.column(column) - alone).norm() < 1e-12);
+        }
         let products = covariance.products().of(&r, &r, true);
         assert!((products[0].0 - direct).abs() < 1e-10 * direct && products[0].0 == products[0].1);
         // Without the first section: the covariance of the second alone.
