@@ -176,13 +176,13 @@ fn least_squares(change: &[f64], column: &[f64], difference: &[f64]) -> f64 {
 fn what_stands_out_in_a_section_alone_does_not_pull_at_the_size() {
     let truth = 0.8;
     let found = found(EFFECTS, Truth { slack: truth, jump: 30.0, ..NOTHING });
-    let [member] = &found.chosen.members[..] else { panic!("{:?}", found.refused) };
-    assert_eq!(found.lack_after[0].alone, [ALONE]);
+    let [member] = &found.answer.chosen.members[..] else { panic!("{:?}", found.answer.refused) };
+    assert_eq!(found.answer.lack_after[0].alone, [ALONE]);
     let others = || LOADS.iter().enumerate().filter(|(at, _)| *at != ALONE).map(|(_, load)| *load);
     let change: Vec<f64> = others().map(|load| RISE * load * load - STIFFNESS * load).collect();
     let difference: Vec<f64> = others().map(|load| force(load, truth, RISE, STIFFNESS) - force(load, 0.0, RISE, STIFFNESS)).collect();
     let column: Vec<f64> =
-        others().map(|load| found.beside.covariance.shared[0][LOADS.iter().position(|known| *known == load).unwrap()]).collect();
+        others().map(|load| found.allowed.beside.covariance.shared[0][LOADS.iter().position(|known| *known == load).unwrap()]).collect();
     let wanted = least_squares(&change, &column, &difference);
     assert!((wanted - truth).abs() < 1e-9 && (member.size - truth).abs() < 1e-6, "{} for {wanted}", member.size);
 }
@@ -194,7 +194,7 @@ fn what_stands_out_in_a_section_alone_does_not_pull_at_the_size() {
 fn tolerances_are_weighed_as_they_act_beside_what_is_found() {
     let truth = 0.8;
     let found = found(EFFECTS, Truth { slack: truth, off: 1.5, ..NOTHING });
-    let [member] = &found.chosen.members[..] else { panic!("{:?}", found.chosen.members.len()) };
+    let [member] = &found.answer.chosen.members[..] else { panic!("{:?}", found.answer.chosen.members.len()) };
     let column = |slack: f64| LOADS.map(|load| RISE_SD * (slack + SLACK) * RISE * load * load);
     let near = |seen: &[f64], wanted: &[f64]| {
         for (seen, wanted) in seen.iter().zip(wanted) {
@@ -208,8 +208,8 @@ fn tolerances_are_weighed_as_they_act_beside_what_is_found() {
     });
     let size = |column: &[f64]| least_squares(&change, column, &difference);
     let first = size(&column(0.0));
-    near(&found.alone.covariance.shared[0], &column(0.0));
-    near(&found.settled.covariance.shared[0], &column(first));
+    near(&found.allowed.alone.covariance.shared[0], &column(0.0));
+    near(&found.allowed.settled.covariance.shared[0], &column(first));
     let wanted = size(&column(first));
     assert!((member.size - wanted).abs() < 1e-6, "{} for {wanted}", member.size);
     assert!((first - wanted).abs() > 0.01, "the test tells nothing");
@@ -221,7 +221,7 @@ fn tolerances_are_weighed_as_they_act_beside_what_is_found() {
 fn tolerances_and_what_they_act_beside_are_found_together() {
     let off = 7.0;
     let found = found(EFFECTS, Truth { slack: 0.8, off, ..NOTHING });
-    let [member] = &found.chosen.members[..] else { panic!("{} members", found.chosen.members.len()) };
+    let [member] = &found.answer.chosen.members[..] else { panic!("{} members", found.answer.chosen.members.len()) };
     let change = LOADS.map(|load| RISE * load * load - STIFFNESS * load);
     let difference = LOADS.map(|load| force(load, 0.8, RISE * (1.0 + off * RISE_SD), STIFFNESS) - force(load, 0.0, RISE, STIFFNESS));
     let size = |slack: f64| {
@@ -229,7 +229,7 @@ fn tolerances_and_what_they_act_beside_are_found_together() {
         least_squares(&change, &column, &difference)
     };
     let first = size(0.0);
-    let beside = found.beside.covariance.shared[0][0] / (RISE_SD * RISE * LOADS[0] * LOADS[0]) - SLACK;
+    let beside = found.allowed.beside.covariance.shared[0][0] / (RISE_SD * RISE * LOADS[0] * LOADS[0]) - SLACK;
     assert!((first / size(first) - 1.0).abs() > 0.1, "the test tells nothing: {first}");
     assert!((beside - size(first)).abs() < 1e-6, "{beside} for {}", size(first));
     assert!((member.size - size(beside)).abs() < 1e-6, "{} for {}", member.size, size(beside));
@@ -241,22 +241,24 @@ fn tolerances_and_what_they_act_beside_are_found_together() {
 #[test]
 fn what_may_as_well_be_nothing_is_not_named() {
     let (mut found, settings) = found_by(EFFECTS, Truth { slack: 0.8, ..NOTHING }, &[]);
-    assert!(interval(&found, &found.chosen.members[0]).is_some_and(|(low, high)| 0.5 < low && low < 0.8 && 0.8 < high && high < 1.1));
+    assert!(
+        interval(&found, &found.answer.chosen.members[0]).is_some_and(|(low, high)| 0.5 < low && low < 0.8 && 0.8 < high && high < 1.1)
+    );
     assert_eq!(nothing_out_of_the_ordinary(&found, &settings), None);
     // Were slack declared with a standard deviation of 0.05, an interval from 0.15 on would hold nothing ordinary, one from 0.07 on would.
-    let (candidate, sizes) = (found.chosen.members[0].candidate, found.stability[0].sizes);
+    let (candidate, sizes) = (found.answer.chosen.members[0].candidate, found.answer.stability[0].sizes);
     found.candidates[candidate].tolerance = Some("rise".into());
     for (low, ordinary) in [(0.15, false), (0.07, true)] {
-        found.stability[0].sizes.0 = low;
+        found.answer.stability[0].sizes.0 = low;
         let says = nothing_out_of_the_ordinary(&found, &settings).map(|(_, says)| says);
         assert_eq!(says.is_some_and(|says| says.contains("declared standard deviations away")), ordinary, "{low}");
     }
     found.candidates[candidate].tolerance = None;
-    found.stability[0].sizes = sizes;
+    found.answer.stability[0].sizes = sizes;
     // What is first in every draw is there; where another effect is first in some, a size to either side is as good.
-    found.stability[0].either_side.0 = -0.2;
-    assert_eq!((found.stability[0].first, nothing_out_of_the_ordinary(&found, &settings)), (1.0, None));
-    found.stability[0].first = 0.9;
+    found.answer.stability[0].either_side.0 = -0.2;
+    assert_eq!((found.answer.stability[0].first, nothing_out_of_the_ordinary(&found, &settings)), (1.0, None));
+    found.answer.stability[0].first = 0.9;
     let (at, says) = nothing_out_of_the_ordinary(&found, &settings).expect("an interval from nothing on");
     assert!(at == 0 && says.contains("includes 0, at which the effect has no influence"), "{says}");
 }
@@ -276,11 +278,11 @@ fn tolerances_act_on_what_was_recorded() {
       polarity.<channel>: {unit: '-', neutral: 1, default: -1, range: [-1, 1], trials: [-1], means: -1 where inverted}
 diagnosis:";
     let found = found(&EFFECTS.replace("\ndiagnosis:", turned), Truth { gain: (-1.0, -1.0), ..NOTHING });
-    let [member] = &found.chosen.members[..] else { panic!("{:?}", found.chosen.members.len()) };
+    let [member] = &found.answer.chosen.members[..] else { panic!("{:?}", found.answer.chosen.members.len()) };
     assert_eq!(found.candidates[member.candidate].effect, "turned");
     for (at, load) in LOADS.iter().enumerate() {
         let wanted = RISE_SD * SLACK * RISE * load * load;
-        let (before, beside) = (found.alone.covariance.shared[0][at], found.beside.covariance.shared[0][at]);
+        let (before, beside) = (found.allowed.alone.covariance.shared[0][at], found.allowed.beside.covariance.shared[0][at]);
         assert!((before - wanted).abs() < 1e-6 * wanted && (beside + wanted).abs() < 1e-6 * wanted, "{before} and {beside} for {wanted}");
     }
 }
@@ -292,10 +294,10 @@ fn of_a_tolerance_of_single_sections_all_have_a_part_in_common() {
     let effects = EFFECTS.replace("default: 0.05,", "default: 0.05, each section: true, shared: 0.7,");
     let found = found(&effects, NOTHING);
     let whole = LOADS.map(|load| RISE_SD * SLACK * RISE * load * load);
-    assert_eq!((found.alone.covariance.shared.len(), found.alone.covariance.inside.len()), (1, LOADS.len()));
+    assert_eq!((found.allowed.alone.covariance.shared.len(), found.allowed.alone.covariance.inside.len()), (1, LOADS.len()));
     for (at, whole) in whole.iter().enumerate() {
-        assert!((found.alone.covariance.shared[0][at] - 0.7 * whole).abs() < 1e-6 * whole);
-        let (section, own) = &found.alone.covariance.inside[at];
+        assert!((found.allowed.alone.covariance.shared[0][at] - 0.7 * whole).abs() < 1e-6 * whole);
+        let (section, own) = &found.allowed.alone.covariance.inside[at];
         assert!(*section == at && (own[0] - whole).abs() < 1e-6 * whole);
     }
 }
@@ -307,7 +309,7 @@ fn what_is_expected_of_a_tolerance_is_what_it_does_beside_what_is_found() {
     let (truth, expected) = (0.8, 0.5);
     let effects = EFFECTS.replace("default: 0.05,", "default: 0.05, expected: 0.5,");
     let found = found(&effects, Truth { slack: truth, off: expected, ..NOTHING });
-    let [member] = &found.chosen.members[..] else { panic!("{:?}", found.chosen.members.len()) };
+    let [member] = &found.answer.chosen.members[..] else { panic!("{:?}", found.answer.chosen.members.len()) };
     let change = LOADS.map(|load| RISE * load * load - STIFFNESS * load);
     let size = |slack: f64| {
         let column = LOADS.map(|load| RISE_SD * (slack + SLACK) * RISE * load * load);
@@ -330,10 +332,10 @@ fn what_is_expected_of_a_tolerance_is_what_it_does_beside_what_is_found() {
 fn a_parameter_that_no_effect_moves_is_a_suspect() {
     let effects = format!("{EFFECTS}{SUSPECT}");
     let raised = found(&effects, Truth { stiffness: 1.9, ..NOTHING });
-    let suspect = raised.suspect.expect("a suspect");
+    let suspect = raised.answer.suspect.expect("a suspect");
     assert!(suspect.key == "stiffness" && (suspect.factor - 1.9).abs() < 1e-6, "{suspect:?}");
     assert!(suspect.evidence > suspect.answer, "{suspect:?}");
-    assert!(found(&effects, Truth { slack: 0.8, ..NOTHING }).suspect.is_none());
+    assert!(found(&effects, Truth { slack: 0.8, ..NOTHING }).answer.suspect.is_none());
 }
 
 /// Two newtons in one section of eight, downwards: their mean over the cell, their root mean square, and their probability by the
@@ -347,7 +349,7 @@ fn a_cell_tells_mean_and_root_mean_square_of_its_differences() {
     assert!((place.difference - 2.0 / 8.0).abs() < 1e-9, "{}", place.difference);
     assert!((place.difference_rms - 2.0 / 8.0_f64.sqrt()).abs() < 1e-9, "{}", place.difference_rms);
     assert!((place.share_of_gap - 1.0).abs() < 1e-12);
-    let (column, v) = (&found.alone.covariance.shared[0], LEVEL_SD * LEVEL_SD);
+    let (column, v) = (&found.allowed.alone.covariance.shared[0], LEVEL_SD * LEVEL_SD);
     let chi = 4.0 * (1.0 - column[ALONE].powi(2) / (v + column.iter().map(|c| c * c).sum::<f64>())) / v;
     let wanted = ChiSquared::new(8.0).unwrap().sf(chi);
     assert!((place.p_value / wanted - 1.0).abs() < 1e-6 && place.significant, "{} for {wanted}", place.p_value);
@@ -391,7 +393,7 @@ fn a_difference_that_grows_with_a_column_is_told_with_its_slope() {
     assert!((load.before.correlation + 1.0).abs() < 1e-9);
     assert_eq!((load.from.as_str(), load.to.as_str()), ("1", "4.5"));
     // Of the matrix X' C^-1 X, X = [1, scaled load], the lower right of the inverse.
-    let column = &found.alone.covariance.shared[0];
+    let column = &found.allowed.alone.covariance.shared[0];
     let ones = [1.0; 8];
     let scaled = LOADS.map(|load| (load - LOADS[0]) / (LOADS[7] - LOADS[0]));
     let product = |a: &[f64; 8], b: &[f64; 8]| {
@@ -410,7 +412,7 @@ fn a_difference_that_grows_with_a_column_is_told_with_its_slope() {
     for (stiffness, sure) in [(1.26, false), (1.28, true)] {
         let (found, settings) = found_by(&no_effects, Truth { stiffness, ..NOTHING }, &[]);
         let errors = (stiffness - 1.0) / 0.2 * -wanted / error;
-        assert!(found.chosen.members.is_empty() && (errors > 4.79) == sure, "{errors}");
+        assert!(found.answer.chosen.members.is_empty() && (errors > 4.79) == sure, "{errors}");
         assert_eq!(certain(&fishplate::diagnose::localisation::trends::trends(&settings, &found, &Vec::new()).0), sure);
     }
     assert_eq!(over("1 / load").from, "load 4.5", "the reciprocal is least where the load is most");
@@ -438,11 +440,11 @@ fn a_gain_that_is_not_the_same_all_along_is_told_with_its_drift() {
     let effects = format!("{}{gain}{}", &EFFECTS[..slack], &EFFECTS[tail..]);
     let drifts = |fall: f64| {
         let (found, settings) = found_by(&effects, Truth { gain: (0.7, 0.7 - fall), ..NOTHING }, &[]);
-        assert_eq!(found.chosen.members.len(), 1, "{:?}", found.refused);
+        assert_eq!(found.answer.chosen.members.len(), 1, "{:?}", found.answer.refused);
         (drifts(&settings, &found), found)
     };
     let (seen, found) = drifts(0.1);
-    let column = &found.beside.covariance.shared[0];
+    let column = &found.allowed.beside.covariance.shared[0];
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let v = LEVEL_SD * LEVEL_SD;
     let product = |a: &[f64], b: &[f64]| (dot(a, b) - dot(a, column) * dot(column, b) / (v + dot(column, column))) / v;
@@ -477,8 +479,8 @@ fn stiff(effects: &str) -> String {
 fn a_further_effect_is_what_it_is_beside_the_first() {
     let found = found(&stiff(EFFECTS), Truth { slack: 0.3, stiffness: 3.0, ..NOTHING });
     let near = |effect: &str, truth: f64| {
-        let member = found.chosen.members.iter().find(|member| found.candidates[member.candidate].effect == effect);
-        let size = member.unwrap_or_else(|| panic!("no {effect}: {:?}", found.refused)).size;
+        let member = found.answer.chosen.members.iter().find(|member| found.candidates[member.candidate].effect == effect);
+        let size = member.unwrap_or_else(|| panic!("no {effect}: {:?}", found.answer.refused)).size;
         assert!((size / truth - 1.0).abs() < 0.01, "{effect}: {size}");
     };
     near("slack", 0.3);
@@ -490,9 +492,9 @@ fn a_further_effect_is_what_it_is_beside_the_first() {
 fn a_parameter_that_an_effect_moves_is_no_suspect() {
     let effects = stiff(&format!("{EFFECTS}{SUSPECT}"));
     let found = found(&effects, Truth { stiffness: 1.9, ..NOTHING });
-    let [member] = &found.chosen.members[..] else { panic!("{} members", found.chosen.members.len()) };
+    let [member] = &found.answer.chosen.members[..] else { panic!("{} members", found.answer.chosen.members.len()) };
     assert!(found.candidates[member.candidate].effect == "stiff" && (member.size - 1.9 * STIFFNESS).abs() < 1e-6, "{}", member.size);
-    assert!(found.suspect.is_none(), "{:?}", found.suspect);
+    assert!(found.answer.suspect.is_none(), "{:?}", found.answer.suspect);
 }
 
 /// One column of 2 N for all sections, three quarters of whose variance stands. Two references that are off by 1.5 N and 1.1 N say what it
@@ -509,10 +511,10 @@ fn what_stands_is_learnt_from_campaigns_of_known_state() {
     let stands = 1.0 - own;
     let variance = 1.0 / (1.0 + 2.0 * weigh * stands * sd * sd);
     let mean = variance * stands * sd * weigh * (lifts[0] + lifts[1]);
-    for difference in &found.alone.difference {
+    for difference in &found.allowed.alone.difference {
         assert!((difference - (1.3 - sd * mean)).abs() < 1e-9, "{difference} for {}", 1.3 - sd * mean);
     }
-    let [column] = &found.alone.covariance.shared[..] else { panic!("{} columns", found.alone.covariance.shared.len()) };
+    let [column] = &found.allowed.alone.covariance.shared[..] else { panic!("{} columns", found.allowed.alone.covariance.shared.len()) };
     let wanted = sd * (own + stands * variance).sqrt();
     assert!(column.iter().all(|value| (value - wanted).abs() < 1e-9), "{column:?} for {wanted}");
 }
