@@ -78,6 +78,11 @@ pub mod covariance {
     pub const NOTHING: f64 = 1e12;
 }
 
+pub mod whiten {
+    /// Number of differences that are whitened together: enough for a product of matrices to be fast.
+    pub const TOGETHER: usize = 64;
+}
+
 pub mod metric {
     /// A component of the model error below this variance, in units of the allowed difference, is left out.
     pub const NEGLIGIBLE: f64 = 1e-3;

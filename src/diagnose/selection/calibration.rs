@@ -142,6 +142,9 @@ impl Draws<'_> {
     /// A random effect with a size that may be named, in all sections. Nothing if a number of tries gives none.
     fn effect(&self, random: &mut Gauss, beside: &[Fitted]) -> Option<Fitted> {
         let candidates = self.fitter.candidates;
+        if candidates.is_empty() {
+            return None;
+        }
         (0..TRIES).find_map(|_| {
             let at = random.below(candidates.len());
             let of = &candidates[at];
@@ -244,5 +247,9 @@ mod tests {
         assert_eq!(draws.falsely_named(), 0.0);
         // Chance reaches more than the 4 % limit in 4 % of the draws: a chi-squared of one degree above 5.07 plus the limit.
         assert!(limit(&fitter, 1, 0.04) < 5.0);
+        // Without effects there is nothing to draw.
+        let none = Fitter::new(&whitener, &[], Vec::new());
+        let of = Draws { fitter: &none, ..draws }.calibrate();
+        assert!(of.single.of == 0 && of.length.is_none(), "{of:?}");
     }
 }

@@ -5,10 +5,8 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
+use crate::diagnose::levels::whiten::TOGETHER;
 use crate::diagnose::uncertainty::response::ResponseError;
-
-/// Number of differences that are whitened together: enough for a product of matrices to be fast.
-const TOGETHER: usize = 64;
 
 /// The factored covariance.
 #[derive(Clone, Debug)]
