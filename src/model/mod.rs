@@ -8,6 +8,7 @@
 mod contact;
 pub mod equations;
 pub mod integrate;
+mod masses;
 pub mod modes;
 mod parameters;
 mod profile;

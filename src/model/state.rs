@@ -89,10 +89,9 @@ impl State {
         each(&mut self.bending, step, &rates.bending);
     }
 
-    /// The states as a vector of length [`State::ALL`].
-    #[must_use]
-    pub fn to_vec(&self) -> Vec<f64> {
-        let parts: [&[f64]; 9] = [
+    /// All states, group by group.
+    fn parts(&self) -> [&[f64]; 9] {
+        [
             &self.x,
             &self.v,
             &self.spin,
@@ -102,25 +101,19 @@ impl State {
             &self.friction_z,
             &self.friction_y,
             &self.bending,
-        ];
-        parts.concat()
+        ]
+    }
+
+    /// The states as a vector of length [`State::ALL`].
+    #[must_use]
+    pub fn to_vec(&self) -> Vec<f64> {
+        self.parts().concat()
     }
 
     /// Writes the states to a slice of length [`State::ALL`].
     pub fn write(&self, to: &mut [f64]) {
-        let parts: [&[f64]; 9] = [
-            &self.x,
-            &self.v,
-            &self.spin,
-            &self.yaw_damper,
-            &self.hysteresis,
-            &self.centre_friction,
-            &self.friction_z,
-            &self.friction_y,
-            &self.bending,
-        ];
         let mut rest = to;
-        for part in parts {
+        for part in self.parts() {
             let (head, tail) = rest.split_at_mut(part.len());
             head.copy_from_slice(part);
             rest = tail;

@@ -1,12 +1,13 @@
 //! A diagnosis as a document: answer, location of the gap, causes, reduction of the gap, detectable effects.
 
+use crate::report::detectable::detectable;
 use crate::report::figure;
 use crate::report::number;
 use crate::report::study::{Chapter, Document, Head, Item, Table};
 use crate::report::view::{self, Fact, Finding};
 use crate::result::Certification;
 use crate::result::diagnosis::{
-    Cause, Detectable, Diagnosis, Invariant, NamedEffect, QuantityShrink, Ratio, Shape, Share, Shrink, Slope, Trend, Value, Where,
+    Cause, Diagnosis, Invariant, NamedEffect, QuantityShrink, Ratio, Shape, Shrink, Slope, Trend, Value, Where,
 };
 
 /// Number of significant cells listed, and of cells listed where fewer are significant; diagnosis.json contains all.
@@ -29,7 +30,7 @@ pub fn document(found: &Diagnosis, before: &Certification) -> Document {
         chapters.push(shrunk(shrink));
     }
     chapters.extend(signals(found));
-    chapters.push(seen(found));
+    chapters.push(chapter("seen", "Detectable effects", detectable(found)));
     chapters.push(how(found));
     let class = match found.verdict {
         "explained" | "no significant gap" => "good",
@@ -417,56 +418,6 @@ fn signals(found: &Diagnosis) -> Option<Chapter> {
     };
     let items: Vec<Item> = found.pictures.iter().enumerate().map(item).collect();
     (!items.is_empty()).then(|| chapter("signals", "Signals with the largest gap", items))
-}
-
-/// What the search names in drawn campaigns.
-fn drawn(found: &Diagnosis) -> Item {
-    let of = &found.calibration;
-    let rows = [
-        ("One effect", "it is named, and nothing else", of.single),
-        ("Two effects", "both are named, and nothing else", of.pair),
-        ("One effect, which the search does not know", "another effect is named", of.outside),
-        ("One or two effects, at least one named", "an effect is named that is not hidden", of.further),
-        ("The named effects", "the 90 % interval contains the hidden size", of.intervals),
-    ];
-    let row = |(hidden, result, share): (&str, &str, Share)| {
-        vec![hidden.to_string(), result.to_string(), share.count.to_string(), share.of.to_string()]
-    };
-    let head = vec![Head::text("Hidden"), Head::text("Result"), Head::number("Number"), Head::number("Of")];
-    let caption = "What the search names in campaigns drawn from the allowed difference of this one, with known effects of random size; the consistency checks are left out";
-    Item::Table { table: Table { caption: caption.into(), head, rows: rows.into_iter().map(row).collect() } }
-}
-
-fn seen(found: &Diagnosis) -> Chapter {
-    let significant = |size: f64| number::significant(size, 3);
-    let row = |one: &Detectable| {
-        let size = |change: Option<f64>| change.map_or_else(|| number::NONE.to_owned(), |change| significant(one.neutral + change));
-        vec![one.effect.clone(), one.parameter.clone(), significant(one.neutral), size(one.below), size(one.above), one.unit.clone()]
-    };
-    let rows = found.detectable.iter().map(row);
-    let head = vec![
-        Head::text("Effect"),
-        Head::text("Parameter"),
-        Head::number("Neutral"),
-        Head::number("Detectable below"),
-        Head::number("Detectable above"),
-        Head::short("Unit"),
-    ];
-    let length = found.calibration.length.map_or_else(
-        || "in the drawn campaigns, no length of the change suffices".into(),
-        |length| format!("their change is {} standard deviations of the allowed difference", significant(length)),
-    );
-    let caption = format!(
-        "Values from which this campaign can show each effect, if it is the only one: nine of ten are named ({length}; a dash where the range of the parameter ends before)"
-    );
-    let mut items = vec![drawn(found), Item::Table { table: Table { caption, head, rows: rows.collect() } }];
-    if !found.nearest.is_empty() {
-        let rows = found.nearest.iter().map(|one| vec![one.says.clone(), number::fixed(one.evidence, 1), one.wants.clone()]);
-        let head = vec![Head::text("Effect"), Head::number("Evidence"), Head::text("Criterion not met")];
-        let caption = "Effects closest to being named, each alone, for the remaining gap";
-        items.push(Item::Table { table: Table { caption: caption.into(), head, rows: rows.collect() } });
-    }
-    chapter("seen", "Detectable effects", items)
 }
 
 fn how(found: &Diagnosis) -> Chapter {

@@ -6,6 +6,7 @@ pub mod attached;
 pub mod blind;
 pub mod brief;
 pub mod comparison;
+mod detectable;
 pub mod diagnosis;
 pub mod estimates;
 pub mod figure;
