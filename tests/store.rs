@@ -77,6 +77,7 @@ fn a_program_without_stores_says_so() {
 mod with_the_feature {
     use std::io::{BufRead, BufReader, Write};
     use std::net::{TcpListener, TcpStream};
+    use std::process::Command;
     use std::sync::{Arc, Mutex};
 
     use parquet::arrow::ArrowWriter;
@@ -245,6 +246,71 @@ mod with_the_feature {
             assert!(read > whole / 20 && read < whole / 2, "{name}: {read} of {whole} bytes");
         }
         assert_eq!(of("north-measured.parquet"), 0, "the other run is not opened");
+    }
+
+    /// A campaign with a record for each section, as Parquet; the records in a folder of their own.
+    fn of_sections() -> TempDir {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let out = folder.path().join("campaign");
+        let made = ran(program().args(["convert-records", "examples/coach", "--to", "parquet", "--out"]).arg(&out));
+        assert_eq!(made.code, 0, "{}", made.stderr);
+        for name in ["measurement", "simulation"] {
+            fs::rename(out.join(name), folder.path().join(name)).expect("moved");
+        }
+        folder
+    }
+
+    #[test]
+    fn records_of_sections_are_in_folders_of_a_store() {
+        let folder = of_sections();
+        let campaign = folder.path().join("campaign");
+        let url = format!("file://{}", folder.path().display());
+        let text = fs::read_to_string(campaign.join("campaign.yaml")).expect("readable");
+        let far: String = text
+            .lines()
+            .map(|line| match line.split_once(':') {
+                Some((key @ ("measurement" | "simulation"), _)) => format!("{key}: {url}/{key}/\n"),
+                _ => format!("{line}\n"),
+            })
+            .collect();
+        assert_eq!(far.matches(&url).count(), 2, "{far}");
+        let certified = |text: &str, campaign: &Path, out: &str, allowed: &str| {
+            fs::write(campaign.join("campaign.yaml"), text).expect("written");
+            let out = folder.path().join(out);
+            let mut command = program();
+            command.arg("certify").arg(campaign).args(["--only", "results", "--out"]).arg(&out).env("FISHPLATE_STORES", allowed);
+            let done = ran(&mut command);
+            let json = fs::read_to_string(out.join("results.json")).map(|text| serde_json::from_str::<Value>(&text).expect("JSON"));
+            (done, json.unwrap_or_default())
+        };
+        let (done, far_results) = certified(&far, &campaign, "far", &format!("{url}/"));
+        assert!(done.code < 2, "{}", done.stderr);
+        // The same campaign with its records inside.
+        let near = folder.path().join("near");
+        let copied = Command::new("cp").arg("-r").arg(&campaign).arg(&near).status().expect("started");
+        assert!(copied.success());
+        for name in ["measurement", "simulation"] {
+            let copied = Command::new("cp").arg("-r").arg(folder.path().join(name)).arg(&near).status().expect("started");
+            assert!(copied.success());
+        }
+        let (done, near_results) = certified(&text, &near, "near-out", "");
+        assert!(done.code < 2, "{}", done.stderr);
+        for key in ["verdict", "reasons", "quantities", "zones"] {
+            assert_eq!(far_results[key], near_results[key], "{key}");
+        }
+        assert!(far_results.to_string().contains(&format!("{url}/measurement/")), "the files are named by their URLs");
+        // A store that is not allowed, a section without a record, a campaign that does not name its sections.
+        let (done, results) = certified(&far, &campaign, "refused", "");
+        assert!(format!("{}{}{results}", done.stdout, done.stderr).contains("may not be read"), "{}", done.stderr);
+        let first = fs::read_dir(folder.path().join("measurement")).expect("a folder").next().expect("a record").expect("a file");
+        fs::remove_file(first.path()).expect("removed");
+        let (_, results) = certified(&far, &campaign, "missing", &format!("{url}/"));
+        assert!(results.to_string().contains("there is no object"), "{results}");
+        let unnamed = far.lines().filter(|line| !line.starts_with("sections:")).collect::<Vec<_>>().join("\n");
+        fs::remove_file(campaign.join("sections.csv")).expect("removed");
+        let (done, _) = certified(&unnamed, &campaign, "unnamed", &format!("{url}/"));
+        assert_eq!(done.code, 2);
+        assert!(done.stderr.contains("the campaign must name its sections"), "{}", done.stderr);
     }
 
     #[test]

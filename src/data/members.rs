@@ -1,13 +1,16 @@
 //! The folders of records of a campaign: one of each kind, or several simulations or runs with a name each.
 
-use std::sync::{Arc, OnceLock};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use serde::{Deserialize, Serialize};
 
 use super::campaign::RecordKind;
 use super::folder::{Folder, Place};
+use super::record::{Format, Held, Known, Stored};
 use crate::problem::{Problem, Problems};
 use crate::source::{Span, Spanned};
+use crate::store;
 use crate::yaml::{Node, Value};
 
 /// A folder of records.
@@ -23,6 +26,37 @@ pub(super) struct RecordFolder {
     pub strangers: OnceLock<Vec<String>>,
     /// Where the folder is, once it was looked for.
     pub place: OnceLock<Place>,
+    /// What is known of the records, if the folder is in a store.
+    objects: Arc<Mutex<Objects>>,
+}
+
+/// Records in a store, by section.
+#[derive(Debug, Default)]
+struct Objects {
+    known: BTreeMap<String, Known>,
+    held: Held,
+}
+
+impl RecordFolder {
+    /// Whether the folder is in a store: its records are objects, and it is never listed.
+    pub fn in_store(&self) -> bool {
+        store::is_url(&self.folder.value)
+    }
+
+    /// The record of a section in a store, which must exist.
+    ///
+    /// # Errors
+    /// As [`Known::stored`].
+    pub fn object(&self, section: &str) -> Result<Stored, Problem> {
+        let url = format!("{}/{section}.{}", self.folder.value.trim_end_matches('/'), Format::Parquet.ending());
+        let known = {
+            // Nothing is half-written under the lock, so a panic of another thread does no harm.
+            let mut objects = self.objects.lock().unwrap_or_else(PoisonError::into_inner);
+            let Objects { known, held } = &mut *objects;
+            known.entry(section.to_string()).or_insert_with(|| Known::with(held)).clone()
+        };
+        known.stored(&url, &self.folder.span)
+    }
 }
 
 /// One of the records of a section: its kind, and which of several of that kind.
@@ -54,9 +88,9 @@ pub(super) fn read(tree: &Node, kind: RecordKind, folder: &Folder, problems: &mu
     let mut found: Vec<(Spanned<String>, Spanned<String>)> = Vec::new();
     for item in node.items() {
         let Some(written) = text(item, kind.key(), problems) else { continue };
-        match folder.place(&written.value, &written.span) {
-            Ok(place) => {
-                let name = place.inside.rsplit('/').next().unwrap_or_default().to_string();
+        match inside(folder, &written) {
+            Ok(inside) => {
+                let name = inside.rsplit('/').next().unwrap_or_default().to_string();
                 found.push((Spanned::new(name, written.span.clone()), written));
             }
             Err(problem) => problems.push(problem),
@@ -64,7 +98,7 @@ pub(super) fn read(tree: &Node, kind: RecordKind, folder: &Folder, problems: &mu
     }
     for (key, item) in node.entries() {
         let Some(written) = text(item, &key.text, problems) else { continue };
-        match folder.place(&written.value, &written.span) {
+        match inside(folder, &written) {
             Ok(_) => found.push((Spanned::new(key.text.trim().to_string(), key.span.clone()), written)),
             Err(problem) => problems.push(problem),
         }
@@ -97,7 +131,7 @@ pub(super) fn read(tree: &Node, kind: RecordKind, folder: &Folder, problems: &mu
 }
 
 fn of(kind: RecordKind, name: Option<Arc<str>>, called: Option<Arc<str>>, folder: Spanned<String>) -> RecordFolder {
-    RecordFolder { kind, name, called, folder, strangers: OnceLock::new(), place: OnceLock::new() }
+    RecordFolder { kind, name, called, folder, strangers: OnceLock::new(), place: OnceLock::new(), objects: Arc::default() }
 }
 
 fn text(node: &Node, key: &str, problems: &mut Problems) -> Option<Spanned<String>> {
@@ -123,8 +157,16 @@ fn check_name(name: &Spanned<String>) -> Result<(), Problem> {
 }
 
 fn same_folder(folder: &Folder, a: &Spanned<String>, b: &Spanned<String>) -> bool {
-    let inside = |written: &Spanned<String>| folder.place(&written.value, &written.span).map(|place| place.inside).ok();
+    let inside = |written: &Spanned<String>| inside(folder, written).ok();
     inside(a).is_some_and(|a| inside(b) == Some(a))
+}
+
+/// The path inside the campaign, or the URL without a `/` at its end.
+fn inside(folder: &Folder, written: &Spanned<String>) -> Result<String, Problem> {
+    if store::is_url(&written.value) {
+        return Ok(written.value.trim_end_matches('/').to_string());
+    }
+    folder.place(&written.value, &written.span).map(|place| place.inside)
 }
 
 /// What needs one record of a kind, and finds several.
@@ -165,6 +207,8 @@ mod tests {
         assert_eq!(of_text("simulation: [s/a, ./b/]\n"), (vec![named("a", "s/a"), named("b", "./b/")], vec![]));
         assert_eq!(of_text("simulation:\n  x: s/a\n  y: t/a\n"), (vec![named("x", "s/a"), named("y", "t/a")], vec![]));
         assert_eq!(of_text("measurement: a\n"), (vec![], vec![]));
+        let stored = of_text("simulation: ['s3://b/x/', b]\n");
+        assert_eq!(stored, (vec![named("x", "s3://b/x/"), named("b", "b")], vec![]));
     }
 
     #[test]
@@ -175,6 +219,7 @@ mod tests {
             ("simulation: [a, a]\n", "duplicate-name"),
             ("simulation: [s/a, t/a]\n", "duplicate-name"),
             ("simulation: {x: a, y: ./a}\n", "duplicate-name"),
+            ("simulation: {x: 's3://b/a', y: 's3://b/a/'}\n", "duplicate-name"),
             ("simulation: [a, [b]]\n", "wrong-kind"),
             ("simulation: {x: }\n", "wrong-kind"),
             ("simulation: [a, ../b]\n", "path-outside"),

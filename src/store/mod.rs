@@ -1,4 +1,4 @@
-//! Objects in a store: `s3://`, `az://`, `gs://`, `http://`, `https://`. A part of an object is read by itself.
+//! Objects in a store: `s3://`, `az://`, `gs://`, `http://`, `https://`, `file://`. A part of an object is read by itself.
 //!
 //! | file | content |
 //! |---|---|

@@ -54,9 +54,9 @@ fn place(bytes: &[u8]) -> Option<usize> {
     (at + DIGITS <= bytes.len()).then_some(at)
 }
 
-/// Compressed, as text.
+/// Compressed, as text. The fast level: most contents are marks of signals, which are nearly as long at any level.
 pub fn packed(bytes: &[u8]) -> String {
-    let mut compressed = DeflateEncoder::new(Vec::new(), flate2::Compression::default());
+    let mut compressed = DeflateEncoder::new(Vec::new(), flate2::Compression::fast());
     // Writing to memory cannot fail.
     let _ = compressed.write_all(bytes);
     STANDARD.encode(compressed.finish().unwrap_or_default())

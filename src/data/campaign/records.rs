@@ -44,6 +44,12 @@ const MOST_COMPARISONS: usize = 1_000_000;
 impl Campaign {
     /// The names of the measured records.
     pub(super) fn measured(&self) -> Result<Vec<Cell>, Problem> {
+        let measured = self.found(RecordKind::Measurement.into())?;
+        if measured.in_store() {
+            let says = "the measured records are in a store, which is not listed: the campaign must name its sections";
+            let help = "add `sections: sections.csv`, a table with a row for each section";
+            return Err(Problem::error("key-missing", says).at(&measured.folder.span).help(help));
+        }
         let (place, span) = self.record_folder(RecordKind::Measurement.into())?;
         let inside = format!("{}/", place.inside);
         let kept = self.folder.memory().records.keys().filter_map(|name| name.strip_prefix(&inside));
@@ -72,7 +78,12 @@ impl Campaign {
     }
 
     pub(super) fn record_folder(&self, which: WhichRecord) -> Result<(Place, &Span), Problem> {
-        let RecordFolder { folder: written, place, .. } = self.found(which)?;
+        let found = self.found(which)?;
+        let RecordFolder { folder: written, place, .. } = found;
+        if found.in_store() {
+            let says = format!("`{}` is in a store, and a folder of the campaign is needed here", written.value);
+            return Err(Problem::error("record-in-store", says).at(&written.span).help("copy the records to the campaign's folder"));
+        }
         if let Some(place) = place.get() {
             return Ok((place.clone(), &written.span));
         }
@@ -160,11 +171,16 @@ impl Campaign {
     /// Where a record of a section is, which must exist.
     ///
     /// # Errors
-    /// `key-missing`, `folder-missing`, `path-outside`, `file-missing` (with the nearest name in that folder), `two-formats`.
+    /// `key-missing`, `folder-missing`, `path-outside`, `file-missing` (with the nearest name in that folder), `two-formats`; of an object
+    /// as [`Campaign::run_source`].
     pub fn source_of(&self, which: WhichRecord, section: &Cell) -> Result<RecordSource, Problem> {
         check_file_name(&section.value, &section.span)?;
         if let Some(run) = self.run_of(section) {
             return self.run_source(run, which.kind);
+        }
+        let found = self.found(which)?;
+        if found.in_store() {
+            return found.object(&section.value).map(RecordSource::Object);
         }
         let (folder, span) = self.record_folder(which)?;
         let name = format!("{}/{}", folder.inside, section.value);
@@ -191,7 +207,7 @@ impl Campaign {
         if !disk::is_folder(&folder.path).map_err(|error| unreadable(&folder.inside, error))? {
             return Err(Problem::error("folder-missing", format!("there is no folder `{}`", folder.inside)).at(span));
         }
-        let others = self.found(which)?.strangers.get_or_init(|| self.strangers(&folder.path));
+        let others = found.strangers.get_or_init(|| self.strangers(&folder.path));
         let in_other_format = |name: &String| {
             let same = Path::new(name).file_stem().and_then(|stem| stem.to_str()) == Some(&section.value);
             other_format(Path::new(name), &format!("{}/{name}", folder.inside)).filter(|_| same)
