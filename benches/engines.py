@@ -1,9 +1,10 @@
 """What engines cost: the reduction of an archive by plain processes, by Dask, Spark and Ray, with as many workers; and the peer under Dask.
 
-    engines.py CAMPAIGN... [--workers 2] [--shards 8] [--rounds 2] [--only processes,dask,spark,ray,peer]
+    engines.py CAMPAIGN... [--workers 2] [--shards 8] [--rounds 2] [--repeat 1] [--only processes,dask,spark,ray,peer]
 
 CAMPAIGN: runs as Parquet with a table of sections, such as `archive_cost.py` leaves; several are evaluated as one. Start-up is not
-counted: each engine has made a small job before. Times are processor times of all processes together, and wall times, the least of all
+counted: each engine has made a small job before. `--repeat` evaluates the campaigns so many times, one after the other, and tells the sum:
+a long job of a short archive. Times are processor times of all processes together, and wall times, the least of all
 rounds; processor times tell more on a machine that does other work. The peak memory is the largest of a Python worker. The time of `judge`,
 which the caller needs by itself after all parts, is part of each time but the peer's, and is told.
 """
@@ -59,12 +60,13 @@ def peak():
     return max(found) / 1024
 
 
-def timed(work, rounds):
+def timed(work, rounds, repeat):
     work(True)
     times = []
     for _ in range(rounds):
         begin, before = time.monotonic(), processor()
-        work(False)
+        for _ in range(repeat):
+            work(False)
         times.append((processor() - before, time.monotonic() - begin))
     return min(spent for spent, _ in times), min(wall for _, wall in times)
 
@@ -75,6 +77,7 @@ def main():
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--shards", type=int, default=8)
     parser.add_argument("--rounds", type=int, default=2)
+    parser.add_argument("--repeat", type=int, default=1)
     parser.add_argument("--only", default="processes,dask,spark,ray,peer")
     given = parser.parse_args()
     only, rounds, shards = given.only.split(","), given.rounds, given.shards
@@ -83,7 +86,9 @@ def main():
 
     def tell(name, times):
         told[name] = times
-        share = f", {100 * (times[0] / told['processes'][0] - 1):+.0f} % of processor time" if "processes" in told else ""
+        plain = told["processes"] if "processes" in told else times
+        more = ", ".join(f"{100 * (mine / other - 1):+.0f} % {what}" for mine, other, what in zip(times, plain, ("of processor time", "wall")))
+        share = "" if plain is times else f", {more}"
         print(f"{name}: {times[0]:.1f} s of processor time, {times[1]:.1f} s wall, {peak():.0f} MB in a worker{share}", flush=True)
 
     def job(folder):
@@ -101,7 +106,7 @@ def main():
                 judging[:] = [time.process_time() - begin]
 
             judging = []
-            tell("processes", timed(processes, rounds))
+            tell("processes", timed(processes, rounds, given.repeat))
             print(f"    of it `judge`, by the caller: {judging[0]:.1f} s of processor time", flush=True)
     if {"dask", "peer"} & set(only):
         import dask
@@ -115,7 +120,7 @@ def main():
         if "dask" in only:
             with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
                 of = lambda first: fishplate.dask.certify(client, small if first else given.campaigns, shards=shards, plots=0)
-                tell("dask", timed(of, rounds))
+                tell("dask", timed(of, rounds, given.repeat))
         if "peer" in only:
             sys.path.insert(0, str(HERE / "peer"))
             spec = importlib.util.spec_from_file_location("archive_dask", HERE / "peer" / "archive_dask.py")
@@ -124,7 +129,7 @@ def main():
             spec.loader.exec_module(peer)
             os.environ["PYTHONPATH"] = os.pathsep.join([str(HERE / "peer"), os.environ.get("PYTHONPATH", "")])
             with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
-                tell("peer under dask", timed(lambda first: [peer.run(client, folder) for folder in given.campaigns], rounds))
+                tell("peer under dask", timed(lambda first: [peer.run(client, folder) for folder in given.campaigns], rounds, given.repeat))
     if "spark" in only:
         from pyspark.sql import SparkSession
 
@@ -135,7 +140,7 @@ def main():
         spark = builder.config("spark.executor.memory", "512m").getOrCreate()
         spark.sparkContext.setLogLevel("OFF")
         of = lambda first: fishplate.spark.certify(spark, small if first else given.campaigns, shards=shards, plots=0)
-        tell("spark", timed(of, rounds))
+        tell("spark", timed(of, rounds, given.repeat))
         spark.stop()
     if "ray" in only:
         import ray
@@ -143,7 +148,7 @@ def main():
         import fishplate.ray
 
         ray.init(num_cpus=given.workers, include_dashboard=False, log_to_driver=False, logging_level="error")
-        tell("ray", timed(lambda first: fishplate.ray.certify(small if first else given.campaigns, shards=shards, plots=0), rounds))
+        tell("ray", timed(lambda first: fishplate.ray.certify(small if first else given.campaigns, shards=shards, plots=0), rounds, given.repeat))
         ray.shutdown()
 
 

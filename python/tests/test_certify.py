@@ -67,6 +67,26 @@ def test_the_files_of_the_command(from_files, tmp_path, coach):
         assert (tmp_path / "command" / file).read_bytes() == (tmp_path / "python" / file).read_bytes(), file
 
 
+def test_a_report_as_pdf_needs_the_typesetter(from_files, tmp_path, coach):
+    """The wheel has no typesetter unless it was asked for (`--features typeset`)."""
+    if not fishplate.TYPESETS:
+        with pytest.raises(fishplate.Error, match="without the typesetter"):
+            from_files.write(tmp_path / "asked", pdf=True)
+        assert not (tmp_path / "asked").exists()
+        from_files.write(tmp_path / "default")
+        assert not (tmp_path / "default" / "report.pdf").exists()
+        return
+    from_files.write(tmp_path / "default")
+    pdf = (tmp_path / "default" / "report.pdf").read_bytes()
+    assert pdf.startswith(b"%PDF-") and len(pdf) > 100_000
+    program = ROOT / "target" / "release" / "fishplate"
+    if not program.exists():
+        pytest.skip("the program is not built")
+    command = [program, "certify", coach, "--out", tmp_path / "command", "--quiet"]
+    assert subprocess.run(command).returncode == 1
+    assert (tmp_path / "command" / "report.pdf").read_bytes() == pdf
+
+
 def test_the_result(from_files):
     assert (from_files.verdict, from_files.holds) == ("not validated", False)
     assert from_files.reasons == ["YQ_qst: mean 0.0609 exceeds the limit 0.0467 by 30 %"]

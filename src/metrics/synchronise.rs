@@ -1,9 +1,12 @@
 //! Shift between two records along the axis: cross-correlation of several signals together, with a confidence interval.
 
+mod sums;
+
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
+use self::sums::Sums;
 use super::random_effects::between;
-use super::resample::{interpolate, uniform_grid};
+use super::resample::uniform_grid;
 
 /// One signal of both records: axis and samples of each, with increasing axes.
 #[derive(Clone, Copy, Debug)]
@@ -124,95 +127,6 @@ fn student(freedom: usize) -> f64 {
     StudentsT::new(0.0, 1.0, freedom.max(1) as f64).map_or(f64::INFINITY, |t| t.inverse_cdf(0.975))
 }
 
-/// Sums of which a correlation is computed.
-#[derive(Clone, Copy, Debug, Default)]
-struct Sums {
-    n: f64,
-    x: f64,
-    y: f64,
-    xx: f64,
-    yy: f64,
-    xy: f64,
-}
-
-impl Sums {
-    fn of(x: &[f64], y: &[f64]) -> Self {
-        let mut sums = Self { n: x.len() as f64, ..Self::default() };
-        for (x, y) in x.iter().zip(y) {
-            sums.x += x;
-            sums.y += y;
-            sums.xx += x * x;
-            sums.yy += y * y;
-            sums.xy += x * y;
-        }
-        sums
-    }
-
-    fn plus(self, other: &Self) -> Self {
-        Self {
-            n: self.n + other.n,
-            x: self.x + other.x,
-            y: self.y + other.y,
-            xx: self.xx + other.xx,
-            yy: self.yy + other.yy,
-            xy: self.xy + other.xy,
-        }
-    }
-
-    /// Residual sum of squares of the regression line.
-    fn left(&self) -> f64 {
-        let r = self.correlation();
-        (self.xx - self.x * self.x / self.n) * (1.0 - r * r)
-    }
-
-    /// 0 where the correlation is not defined.
-    fn correlation(&self) -> f64 {
-        let (xx, yy) = (self.xx - self.x * self.x / self.n, self.yy - self.y * self.y / self.n);
-        let r = (self.xy - self.x * self.y / self.n) / (xx.max(0.0).sqrt() * yy.max(0.0).sqrt());
-        if r.is_finite() { r.clamp(-1.0, 1.0) } else { 0.0 }
-    }
-}
-
-/// Sums of each part of the range at each shift, the smallest shift first. `None` if a signal does not vary.
-///
-/// Shifts that are multiples of the grid step need one interpolation in total, others one each.
-fn sums(pair: &Pair<'_>, grid: &[f64], shifts: &[f64], on_grid: bool) -> Option<Vec<[Sums; BLOCKS]>> {
-    let (axis, values) = pair.measured;
-    let (first, last) = (*axis.first()?, *axis.last()?);
-    let simulated = centred(interpolate(pair.simulated.0, pair.simulated.1, grid).ok()?)?;
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    let mut varies = false;
-    // The grid has the range of the record; rounding may put its ends just outside.
-    let mut under = |points: &mut dyn Iterator<Item = f64>| {
-        let points: Vec<f64> = points.map(|x| x.clamp(first, last)).collect();
-        let mut measured = interpolate(axis, values, &points).ok()?;
-        measured.iter_mut().for_each(|value| *value -= mean);
-        varies |= measured.iter().any(|value| (value - measured[0]).abs() > 1e-12 * (1.0 + mean.abs()));
-        Some(measured)
-    };
-    let of_parts = |measured: &[f64]| {
-        std::array::from_fn(|block| {
-            let range = block * grid.len() / BLOCKS..(block + 1) * grid.len() / BLOCKS;
-            Sums::of(&simulated[range.clone()], &measured[range])
-        })
-    };
-    let found: Vec<[Sums; BLOCKS]> = if on_grid {
-        let (farthest, step) = (*shifts.last()?, grid[1] - grid[0]);
-        let wide = under(&mut (0..grid.len() + shifts.len() - 1).map(|k| grid[0] - farthest + k as f64 * step))?;
-        (0..shifts.len()).map(|at| of_parts(&wide[shifts.len() - 1 - at..][..grid.len()])).collect()
-    } else {
-        shifts.iter().map(|shift| Some(of_parts(&under(&mut grid.iter().map(|x| x - shift))?))).collect::<Option<_>>()?
-    };
-    varies.then_some(found)
-}
-
-/// The values minus their mean, so that sums of squares keep their digits.
-fn centred(mut values: Vec<f64>) -> Option<Vec<f64>> {
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    values.iter_mut().for_each(|value| *value -= mean);
-    values.iter().any(|value| value.abs() > 1e-12 * (1.0 + mean.abs())).then_some(values)
-}
-
 /// The best shift with the correlation there.
 struct Best {
     shift: f64,
@@ -228,7 +142,8 @@ struct Searched {
 
 impl Searched {
     fn new(pairs: &[Pair<'_>], grid: &[f64], shifts: Vec<f64>, on_grid: bool) -> Self {
-        let (signals, groups) = pairs.iter().filter_map(|pair| sums(pair, grid, &shifts, on_grid).map(|sums| (sums, pair.group))).unzip();
+        let sums = sums::of_pairs(pairs, grid, &shifts, on_grid);
+        let (signals, groups) = sums.into_iter().zip(pairs).filter_map(|(sums, pair)| Some((sums?, pair.group))).unzip();
         Self { signals, groups, shifts }
     }
 
@@ -337,18 +252,6 @@ mod tests {
             let other = Pair { simulated: (&axis, simulated), measured: (&axis, measured), group: 1 };
             assert_eq!(estimate(&[follows, other], &search), Some(alone));
         }
-    }
-
-    #[test]
-    fn sums_of_parts_are_those_of_the_whole() {
-        let (x, y) = ([1.0, 2.0, 4.0, 7.0, 11.0], [3.0, 1.0, 4.0, 1.0, 5.0]);
-        let parts = |sums: Sums| [sums.n, sums.x, sums.y, sums.xx, sums.yy, sums.xy];
-        let both = Sums::of(&x[..2], &y[..2]).plus(&Sums::of(&x[2..], &y[2..]));
-        assert_eq!(parts(both), [5.0, 25.0, 14.0, 191.0, 52.0, 83.0]);
-        assert_eq!(parts(both), parts(Sums::of(&x, &y)));
-        // Sums of squares about the means 66 and 12.8, sum of products 13.
-        assert!((both.correlation() - 13.0 / (66.0_f64 * 12.8).sqrt()).abs() < 1e-14);
-        assert!((both.left() - (66.0 - 169.0 / 12.8)).abs() < 1e-12, "{}", both.left());
     }
 
     /// Signals with phase errors of their own and with waves in one record only. The interval contains the imposed shift about as
