@@ -509,3 +509,26 @@ fn a_number_to_be_confirmed_says_so() {
     assert_eq!(words(TEXT, &Overrides::new()), (vec![true, true, false, true, true, true], 1, others.clone()));
     assert_eq!(words(TEXT, &set("highest", "5 kN")), (vec![false, false, false, true, true, true], 0, others));
 }
+
+/// A variant with a slip in a name adds something, and what it was to change stays: this is told. A new name is left alone.
+#[test]
+fn a_name_one_slip_away_from_one_of_the_parent_is_told() {
+    const VARIANT: &str = r#"protocol slips "A variant with two slips"
+  extends  en14363-2016-annex-t-found-sections
+
+parameter speed_chang
+  default  5 km/h
+
+find deficency
+  require  |cant_deficiency| <= 200 mm
+
+zone 5 "Another zone"
+  where  radius < 200 m
+  minimum length  50 m
+"#;
+    let (_, plan, problems) = checked_with(&Source::new("slips.fp", VARIANT), &Overrides::new());
+    assert!(plan.is_some(), "{}", problems.render(false));
+    let told: Vec<(&str, Option<&str>)> = problems.0.iter().map(|problem| (problem.code, problem.help.as_deref())).collect();
+    let helps = ["to override `speed_change`, use that name", "to override `deficiency`, use that name"];
+    assert_eq!(told, helps.map(|help| ("near-name", Some(help))));
+}

@@ -388,7 +388,13 @@ fn what_cannot_be_found_is_told_with_its_place() {
     };
     refused(&|_| {}, "none.fp", "no-search", "use found sections");
     refused(&yaml("    country: IT\n", ""), "runs.fp", "missing-run-data", "campaign.yaml:4:3");
-    refused(&yaml("country: IT", "county: IT"), "runs.fp", "missing-run-data", "did you mean `county`?");
+    refused(&yaml("country: IT", "country: Italy"), "runs.fp", "wrong-run-data", "campaign.yaml:8:14");
+    refused(
+        &yaml("country: IT", "county: IT"),
+        "runs.fp",
+        "missing-run-data",
+        "the run states `county`: if `country` is meant, write `country`",
+    );
     refused(&yaml("    track: runs/track.csv\n", ""), "runs.fp", "key-missing", "the run `R1` has no `track`");
     refused(&yaml("runs/track.csv", "runs/trak.csv"), "runs.fp", "file-missing", "did you mean `runs/track.csv`?");
     refused(&yaml("runs/track.csv", "../track.csv"), "runs.fp", "path-outside", "campaign.yaml:7");

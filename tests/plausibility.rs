@@ -83,6 +83,18 @@ fn a_finding_says_what_was_found_what_was_expected_and_why() {
     assert!(found.reasons.iter().any(|reason| reason.contains("Vertical wheel force against the static load")), "{:?}", found.reasons);
 }
 
+/// Of two bounds joined by `and`, the one that is missed is told, and no unit is guessed from a bound.
+#[test]
+fn a_finding_with_two_bounds_has_its_value() {
+    let found = with(|folder| {
+        folder.channels(Side::Simulation, &["S05".to_string()], &["ay_I"], |values| values.iter().map(|y| 100.0 * y).collect())
+    });
+    let finding = found.findings.iter().find(|finding| finding.code == "acceleration_level").expect("told");
+    assert!(finding.value.expect("a number") > 2.0 && finding.expected == Some(2.0), "{finding:?}");
+    assert!(finding.says.contains("required: 0.02 m/s^2 <= rms and rms <= 2 m/s^2 (2 m/s^2)"), "{finding:?}");
+    assert!(finding.cause.as_deref().is_some_and(|cause| cause.starts_with("the unit of the acceleration")), "{finding:?}");
+}
+
 /// A ratio of two correlations is no ratio of two units.
 #[test]
 fn a_plain_number_suggests_no_unit() {

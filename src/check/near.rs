@@ -70,18 +70,30 @@ impl Checker<'_> {
         Some(Near { holds: pair(Operator::LessEqual, &off, &room, Type::Flag), found, expected })
     }
 
-    /// The two numbers compared, where the condition is one comparison: `a near b within c`, `a <= b`.
-    pub(super) fn compared(&mut self, phrase: &Phrase, text: &Text, scope: &mut Scope) -> Option<(Expr, Option<(Expr, Expr)>)> {
+    /// A condition and the comparisons of which it consists: `a near b within c`, `a <= b`, or several of the latter joined by `and`.
+    /// Nothing where it has other parts.
+    pub(super) fn compared(&mut self, phrase: &Phrase, text: &Text, scope: &mut Scope) -> Option<(Expr, Vec<(Near, bool)>)> {
         if let Node::Near { .. } = &phrase.node {
-            return self.near(phrase, text, scope).map(|near| (near.holds, Some((near.found, near.expected))));
+            return self.near(phrase, text, scope).map(|near| (near.holds.clone(), vec![(near, true)]));
         }
         let holds = self.expr(phrase, text, scope)?;
-        let bound = match &holds.kind {
-            Kind::Binary(Operator::Less | Operator::LessEqual | Operator::Greater | Operator::GreaterEqual, left, right) => {
-                Some(((**left).clone(), (**right).clone()))
-            }
-            _ => None,
-        };
-        Some((holds, bound))
+        let mut found = Vec::new();
+        let whole = bounds(&holds, &mut found);
+        Some((holds, if whole { found.into_iter().map(|near| (near, false)).collect() } else { Vec::new() }))
+    }
+}
+
+/// Adds the comparisons with bounds that `and` joins; whether the condition has no other parts.
+fn bounds(condition: &Expr, found: &mut Vec<Near>) -> bool {
+    match &condition.kind {
+        Kind::Binary(Operator::And, left, right) => bounds(left, found) && bounds(right, found),
+        Kind::Binary(Operator::Less | Operator::LessEqual | Operator::Greater | Operator::GreaterEqual, left, right) => {
+            // `0.02 m/s^2 <= rms`: the number of the protocol is the bound on either side.
+            let is_bound = |side: &Expr| matches!(side.kind, Kind::Constant(_));
+            let (value, bound) = if is_bound(left) && !is_bound(right) { (right, left) } else { (left, right) };
+            found.push(Near { holds: condition.clone(), found: (**value).clone(), expected: (**bound).clone() });
+            true
+        }
+        _ => false,
     }
 }

@@ -2,7 +2,10 @@
 
 use super::Checker;
 use super::names::normalised;
-use super::plan::{Distinct, Exchanged, Expr, Input, InputSide, Looks, OnFault, Plausibility, Requirement, Signal, Step, Taken, Test};
+use super::near::Near;
+use super::plan::{
+    Comparison, Distinct, Exchanged, Expr, Input, InputSide, Looks, OnFault, Plausibility, Requirement, Signal, Step, Taken, Test,
+};
 use super::scope::Scope;
 use super::steps::after;
 use crate::problem::Problem;
@@ -102,16 +105,14 @@ impl Checker<'_> {
         let (holds, compared) = self.compared(&phrase, &field.value, &mut scope)?;
         self.flag_type(&holds)?;
         self.inputs_of_one_record(&scope.inputs)?;
-        let compared = match compared {
-            Some((found, expected)) => {
-                let dimension = self.number_type(&found)?;
-                let unit = self.unit_of(&found, &expected, &scope.inputs, dimension, own_unit);
-                Some((found, expected, unit))
-            }
-            None => None,
-        };
+        let mut comparisons = Vec::new();
+        for (Near { holds, found, expected }, about) in compared {
+            let dimension = self.number_type(&found)?;
+            let unit = self.unit_of(&found, &expected, &scope.inputs, dimension, own_unit);
+            comparisons.push(Comparison { holds, found, expected, unit, about });
+        }
         let of = looks(&scope.inputs);
-        Some(Requirement { holds, inputs: scope.inputs, of, compared, words: normalised(&field.value.text) })
+        Some(Requirement { holds, inputs: scope.inputs, of, compared: comparisons, words: normalised(&field.value.text) })
     }
 
     /// The unit in which a value is printed: that of the rule's own signal, of the axis, or SI.

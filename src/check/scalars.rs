@@ -367,12 +367,22 @@ impl Checker<'_> {
     }
 
     fn mismatch(&mut self, done: &str, left: &Expr, right: &Expr) {
-        self.problems.push(
-            Problem::error("unit-mismatch", format!("{} and {} cannot be {done}", in_words(&left.ty), in_words(&right.ty)))
-                .at(&right.span)
-                .label(in_words(&right.ty))
-                .also(&left.span, in_words(&left.ty)),
-        );
+        let problem = Problem::error("unit-mismatch", format!("{} and {} cannot be {done}", in_words(&left.ty), in_words(&right.ty)))
+            .at(&right.span)
+            .label(in_words(&right.ty))
+            .also(&left.span, in_words(&left.ty));
+        // A number as it is written, without a unit.
+        let bare = |expr: &Expr| expr.ty == Type::Number(Dimension::ONE) && matches!(expr.kind, Kind::Constant(Scalar::Number(_)));
+        let (number, other) = if bare(left) { (left, right) } else { (right, left) };
+        let written = number.span.text();
+        let unit = match other.ty {
+            Type::Number(dimension) if bare(number) && written.parse::<f64>().is_ok() => Some(self.own_unit("", dimension)),
+            _ => None,
+        };
+        self.problems.push(match unit {
+            Some(unit) => problem.help(format!("a number has its unit: `{written} {unit}`")),
+            None => problem,
+        });
     }
 
     pub(super) fn number_type(&mut self, expr: &Expr) -> Option<Dimension> {

@@ -313,11 +313,19 @@ impl Checker<'_> {
             return;
         }
         let known: Vec<String> = self.names.channels.keys().chain(self.names.signals.keys()).cloned().collect();
-        self.problems.push(
-            Problem::error("unknown-signal", format!("no channel or signal is called `{name}`"))
-                .at(span)
-                .suggest(name, known.iter().map(String::as_str)),
-        );
+        let problem = Problem::error("unknown-signal", format!("no channel or signal is called `{name}`")).at(span);
+        // `ay_I` is a column of the records: the channel at a position.
+        let column = name.rsplit_once('_').and_then(|(channel, member)| {
+            let places = &self.names.channels.get(channel)?.places;
+            let place = places
+                .iter()
+                .find(|place| self.names.places.get(*place).is_some_and(|known| known.members.iter().any(|own| own == member)))?;
+            Some(format!("`{channel}` at a position: `{channel} at {place} {member}`"))
+        });
+        self.problems.push(match column {
+            Some(help) => problem.help(help),
+            None => problem.suggest(name, known.iter().map(String::as_str)),
+        });
     }
 
     fn channel_at(&mut self, name: &str, channel: &Channel, span: &Span, at: &Assignment) -> Option<Signal> {

@@ -39,11 +39,11 @@ pub fn text(plan: &Plan, needs: &Needs) -> String {
         }
     }
     let tables = [
-        ("columns of the table of sections", &needs.sections),
-        ("columns of the table of wanted operation", &needs.application),
-        ("vehicle data", &needs.vehicle),
+        ("columns of the table of sections", &needs.sections, true),
+        ("columns of the table of wanted operation", &needs.application, false),
+        ("vehicle data", &needs.vehicle, false),
     ];
-    for (heading, data) in tables {
+    for (heading, data, of_sections) in tables {
         if !data.is_empty() {
             let _ = writeln!(out, "\n{heading}");
         }
@@ -51,11 +51,20 @@ pub fn text(plan: &Plan, needs: &Needs) -> String {
             let unit = need.unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}]"));
             let words = if need.words.is_empty() { String::new() } else { format!(": {}", need.words.join(", ")) };
             let range = need.range.as_ref().map_or(String::new(), |range| format!(", {range}"));
-            let default = need.default.as_ref().map_or_else(|| ", required".to_string(), |default| format!(", default {default}"));
+            let found = of_sections && is_found(needs, need);
+            let or_required = || if found { ", found in runs" } else { ", required" }.to_string();
+            let default = need.default.as_ref().map_or_else(or_required, |default| format!(", default {default}"));
             let _ = writeln!(out, "  {}{unit}{words}{range}{default}\n      {}. {}", need.key, need.title, users(&need.users, false));
         }
     }
     out
+}
+
+/// Whether a column of the table of sections is found in the runs of a campaign without such a table.
+fn is_found(needs: &Needs, need: &DatumNeed) -> bool {
+    // The program finds names and places of sections itself.
+    let given = ["section", "start", "end"];
+    needs.found.as_ref().is_some_and(|found| given.contains(&need.key.as_str()) || found.contains(&need.key))
 }
 
 /// Of a channel that numbers depend on, the plausibility rules are left out: they look at it only besides.
@@ -75,17 +84,23 @@ pub fn json(plan: &Plan, needs: &Needs) -> Value {
             })
         })
         .collect();
-    let datum = |need: &DatumNeed| {
-        json!({
-            "name": need.key, "title": need.title, "unit": need.unit, "words": need.words, "range": need.range,
-            "default": need.default, "required": need.required, "quantities": need.users.quantities, "rules": need.users.rules,
-        })
+    let section = |need: &DatumNeed| {
+        let mut json = datum(need);
+        json["found"] = is_found(needs, need).into();
+        json
     };
     json!({
         "protocol": plan.name, "title": plan.title, "channels": channels,
-        "sections": needs.sections.iter().map(datum).collect::<Vec<_>>(),
+        "sections": needs.sections.iter().map(section).collect::<Vec<_>>(),
         "application": needs.application.iter().map(datum).collect::<Vec<_>>(),
         "vehicle": needs.vehicle.iter().map(datum).collect::<Vec<_>>(),
+    })
+}
+
+fn datum(need: &DatumNeed) -> Value {
+    json!({
+        "name": need.key, "title": need.title, "unit": need.unit, "words": need.words, "range": need.range,
+        "default": need.default, "required": need.required, "quantities": need.users.quantities, "rules": need.users.rules,
     })
 }
 

@@ -10,6 +10,7 @@ use super::output::{Console, Exit};
 use super::places::{check_file, check_folder};
 use super::report::Report;
 use crate::data::Campaigns;
+use crate::disk;
 use crate::problem::{Problem, Problems, plain};
 use crate::run::Shard;
 use crate::values::{self, File, Joined, Part, Values};
@@ -52,6 +53,10 @@ impl Reduce {
             if let Err(problem) = check_folder(folder, &[name], campaign) {
                 problems.push(problem);
             }
+        }
+        if self.out.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("parquet")) {
+            let says = format!("`{}` will be a Parquet table, whatever its name ends in", self.out.display());
+            problems.push(Problem::warning("values-name", says).help("name it `values.parquet`"));
         }
         console.problems(&problems);
         let Some(Pool { compiled, campaigns, found, .. }) = prepared.filter(|_| !problems.any_error()) else { return Exit::Wrong };
@@ -132,7 +137,12 @@ impl Judge {
 
 /// Opens files of values and puts them together.
 pub fn joined(paths: &[PathBuf], problems: &mut Problems) -> Option<Joined> {
-    let opened: Vec<Result<File, Problem>> = paths.iter().map(|path| values::open(path)).collect();
+    let in_folder = |path: &PathBuf, problem: Problem| match disk::is_folder(path) {
+        Ok(true) => problem.help(format!("name the files in it: `{}`", path.join("*.parquet").display())),
+        _ => problem,
+    };
+    let opened: Vec<Result<File, Problem>> =
+        paths.iter().map(|path| values::open(path).map_err(|problem| in_folder(path, problem))).collect();
     let mut files = Vec::new();
     for file in opened {
         match file {

@@ -163,6 +163,8 @@ fn statistics(found: &Certification, console: &Console) -> String {
         "quantity", "unit", "statistic", "pairs", "n", "value", "limit", "|v|/limit"
     );
     for quantity in told {
+        // With too few pairs, statistics that are within their limits do not meet them.
+        let open = quantity.holds.is_none() && quantity.reason.is_some();
         for (index, statistic) in estimates::single(quantity).into_iter().enumerate() {
             let name = if index == 0 { quantity.id.as_str() } else { "" };
             let scope = if statistic.scope == "all" { String::new() } else { format!(", {}", statistic.scope) };
@@ -175,11 +177,13 @@ fn statistics(found: &Certification, console: &Console) -> String {
                 shown(statistic.value),
                 shown(statistic.limit),
                 ratio(statistic),
-                verdict(statistic.holds, statistic.marginal, console)
+                verdict(statistic.holds.filter(|_| !open), statistic.marginal && !open, console)
             );
         }
-        if let (Some(reason), true) = (&quantity.reason, quantity.statistics.is_empty()) {
-            out += &format!("{:width$}  {reason}\n", quantity.id);
+        match &quantity.reason {
+            Some(reason) if quantity.statistics.is_empty() => out += &format!("{:width$}  {reason}\n", quantity.id),
+            Some(reason) if open => out += &format!("{:width$}  not assessable: {reason}\n", ""),
+            _ => {}
         }
     }
     out

@@ -66,7 +66,13 @@ pub fn trace(carried: &Carried, compiled: Option<&Compiled>, asked: Asked<'_>, c
     let mut agrees = true;
     let read = |file: &File| again.as_ref().is_some_and(|again| again.records.iter().any(|side| side.file.path == file.path));
     let within = compiled.zip(index).and_then(|(compiled, index)| compiled.plan.quantities[index.0].evaluation.pairing()?.within());
-    let files: Vec<&File> = records(carried, pair, within.map(|side| side.kind().key()), &read).collect();
+    // A run is the record of many sections: it stands once.
+    let mut files: Vec<&File> = Vec::new();
+    for file in records(carried, pair, within.map(|side| side.kind().key()), &read) {
+        if files.iter().all(|known| known.path != file.path) {
+            files.push(file);
+        }
+    }
     for file in &files {
         let side = again.as_ref().and_then(|again| again.records.iter().find(|side| side.file.path == file.path));
         agrees &= record(&mut out, file, pair, side, compiled.zip(index));
@@ -218,8 +224,7 @@ fn record(out: &mut String, file: &File, pair: &Pair, side: Option<&Side>, compi
         let _ = writeln!(out, "  CHANGED    {} now", side.file.sha256);
     }
     let (first, last) = side.inside;
-    // The header is row 1.
-    let _ = writeln!(out, "  rows       {first} to {last} lie in the section, 2 to {} are filtered", side.last);
+    let _ = writeln!(out, "  rows       {first} to {last} lie in the section, {} to {} are filtered", side.filtered.0, side.filtered.1);
     let plan = &compiled.plan.quantities[index.0];
     for (node, value, samples) in &side.reduced {
         let node = &compiled.graph.nodes[*node];

@@ -37,7 +37,11 @@ pub fn drift_in_words(run: &FoundInRun, unit: &str) -> Option<String> {
         let all = range(&mut points.iter().map(|point| point.shift));
         parts.push(format!("{all} at {} section{}", points.len(), if points.len() == 1 { "" } else { "s" }));
     }
-    let done = if *corrected { "this was added to the distance of the measurement" } else { "nothing was corrected" };
+    let done = if *corrected {
+        "this was added to the distance of the measurement"
+    } else {
+        "nothing was corrected (`drift: correct` in the run adds it)"
+    };
     Some(format!(
         "run {}: the shift that aligns the measurement with the simulation, by correlation, is {}; {done}",
         run.run,

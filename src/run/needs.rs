@@ -7,8 +7,8 @@ use super::section::wanted_of;
 use super::sections::STATE;
 use super::wanted::columns as columns_of;
 use crate::check::plan::{
-    AxisOperation, Datum, DatumKind, Estimate, EstimateKind, Evaluation, Expr, Independent, Input, Key, Kind, Limit, OfGroup, Plan,
-    Quantity, Records, Report, Scalar, Scope, Side, Signal, SignalKind, Taking, Test, Valued,
+    AxisOperation, Datum, DatumKind, Estimate, EstimateKind, Evaluation, Expr, Independent, Input, InputSide, Key, Kind, Limit, OfGroup,
+    OfSignals, Plan, Quantity, Records, Report, Scalar, Scope, Side, Signal, SignalKind, Taking, Test, Valued,
 };
 use crate::data::campaign::POINT_KEY;
 use crate::data::sites;
@@ -190,13 +190,13 @@ fn channels(plan: &Plan, graph: &Graph) -> Vec<ChannelNeed> {
             .iter()
             .for_each(|&at| drop(read.insert((side, at), (true, Users { quantities: Vec::new(), rules: vec!["records".into()] }))));
     }
-    let mut add = |nodes: BTreeSet<NodeId>, records: &[usize], user: &str, is_quantity: bool, required: bool| {
+    let mut add = |nodes: BTreeSet<NodeId>, records: &[usize], user: &str, is_quantity: bool, [required, of_track_too]: [bool; 2]| {
         for (column, of_track) in reads(graph, nodes) {
             let at = number(&mut names, &column);
             let of: &[usize] = if of_track { &[Side::ALL.len()] } else { records };
             for &record in of {
                 let (is_required, users) = read.entry((record, at)).or_default();
-                *is_required |= required && !of_track;
+                *is_required |= if of_track { of_track_too } else { required };
                 let list = if is_quantity { &mut users.quantities } else { &mut users.rules };
                 push(list, user);
             }
@@ -205,15 +205,30 @@ fn channels(plan: &Plan, graph: &Graph) -> Vec<ChannelNeed> {
     for (quantity, nodes) in plan.quantities.iter().zip(&graph.quantities) {
         let mut wanted = BTreeSet::new();
         nodes.signals.iter().for_each(|signal| wanted_of(quantity, signal, &mut wanted));
-        add(wanted, &sides(&|side| quantity.evaluation.reads(side)), &quantity.id, true, true);
+        add(wanted, &sides(&|side| quantity.evaluation.reads(side)), &quantity.id, true, [true, false]);
     }
     let nodes_of = |inputs: &[InputNode]| inputs.iter().flat_map(InputNode::nodes).collect::<BTreeSet<_>>();
     for (check, inputs) in plan.checks.iter().zip(&graph.checks) {
-        add(nodes_of(inputs), &all, &format!("check {}", check.name), false, true);
+        add(nodes_of(inputs), &all, &format!("check {}", check.name), false, [true, false]);
     }
     for (rule, nodes) in plan.plausibility.iter().zip(&graph.plausibility) {
         let of = nodes.positions.iter().flat_map(|position| position.own.into_iter().chain(nodes_of(&position.inputs))).collect();
-        add(of, &all, &format!("plausibility {}", rule.name), false, false);
+        add(of, &all, &format!("plausibility {}", rule.name), false, [false; 2]);
+    }
+    if let Some(find) = &plan.sections.find {
+        let found = find.data.iter().map(|datum| format!("found {}", plan.columns[datum.column].key)).zip(&graph.find.data);
+        let conditions = find.conditions.iter().map(|condition| format!("find {}", condition.name)).zip(&graph.find.conditions);
+        let own = sides(&|side| side == super::find::own_side(plan));
+        for (user, inputs) in found.chain(conditions).chain([("prefer".to_string(), &graph.find.prefer)]) {
+            for input in inputs {
+                let of = match input.side {
+                    InputSide::Own => own.clone(),
+                    InputSide::Measured => sides(&|side| side == Side::Measured),
+                    InputSide::Simulated => sides(&|side| side == Side::Simulated),
+                };
+                add(BTreeSet::from([input.node]), &of, &user, false, [true; 2]);
+            }
+        }
     }
     let track = Side::ALL.len();
     if read.keys().any(|(record, _)| *record == track) {
@@ -322,6 +337,22 @@ fn other_rules(plan: &Plan) -> Vec<(String, Parts<'_>)> {
             plan.sections.reports.iter().for_each(|one| report(one, see));
         }),
     ));
+    if let Some(find) = &plan.sections.find {
+        for datum in &find.data {
+            rules.push((format!("found {}", plan.columns[datum.column].key), Box::new(|see| of_signals(&datum.of, see))));
+        }
+        for condition in &find.conditions {
+            rules.push((format!("find {}", condition.name), Box::new(|see| of_signals(&condition.require, see))));
+        }
+        let rest = |see: &mut dyn See| {
+            find.length.iter().for_each(|length| see.expr(length));
+            find.prefer.iter().for_each(|prefer| of_signals(prefer, see));
+        };
+        rules.push(("find".into(), Box::new(rest)));
+    }
+    if let Some(keep) = &plan.sections.keep {
+        rules.push(("keep".into(), Box::new(|see| keep.each.iter().for_each(|&index| see.column(index)))));
+    }
     for zone in &plan.zones {
         let parts = move |see: &mut dyn See| zone.condition.iter().chain(&zone.minimum_length).for_each(|part| see.expr(part));
         rules.push((format!("zone {}", zone.name), Box::new(parts)));
@@ -377,6 +408,11 @@ fn quantity(rule: &Quantity, see: &mut dyn See) {
     rule.limits.iter().for_each(|one| limit(one, see));
     rule.reports.iter().for_each(|one| report(one, see));
     rule.minimum_of_groups.iter().for_each(|minimum| scope(&minimum.scope, see));
+}
+
+fn of_signals(of: &OfSignals, see: &mut dyn See) {
+    see.expr(&of.expr);
+    of.inputs.iter().for_each(|part| input(part, see));
 }
 
 fn valued(value: &Valued, see: &mut dyn See) {

@@ -12,7 +12,7 @@ use super::section_values::SectionValues;
 use super::sides::{Evaluated, RecordOfSide, Sides, number_of, samples_of, section};
 use super::unit::Unit;
 use crate::check::evaluate::{flag, number, words};
-use crate::check::plan::{Exchanged, InputSide, Looks, Plausibility, Requirement, Test};
+use crate::check::plan::{Comparison, Exchanged, InputSide, Looks, Plausibility, Requirement, Test};
 use crate::graph::{InputNode, NodeId, PositionNodes};
 use crate::result::Finding;
 use crate::units::Dimension;
@@ -132,21 +132,22 @@ impl Position<'_> {
         if flag(&self.requirement.holds, &known) != Ok(false) {
             return None;
         }
-        let numbers = self.requirement.compared.as_ref().and_then(|(found, expected, unit)| {
+        let failing = self.requirement.compared.iter().find(|comparison| flag(&comparison.holds, &known) == Ok(false));
+        let numbers = failing.and_then(|Comparison { found, expected, unit, about, .. }| {
             let of = |expr| number(expr, &known).ok().map(|value| unit.from_si(value));
-            Some((of(found)?, of(expected)?, unit, words(found)))
+            Some((of(found)?, of(expected)?, unit, words(found), *about))
         });
         let says = match &numbers {
-            Some((value, expected, unit, what)) => {
+            Some((value, expected, unit, what, _)) => {
                 let unit = if unit.text == "-" { String::new() } else { format!(" {unit}") };
                 let (value, expected) = (rounded(*value), rounded(*expected));
                 format!("{}: {what} is {value}{unit}; required: {} ({expected}{unit})", self.rule.title, self.requirement.words)
             }
             None => format!("{}; required: {}", self.rule.title, self.requirement.words),
         };
-        // Units explain a ratio of two amounts, not of two correlations or shares.
-        let amounts = numbers.as_ref().filter(|(_, _, unit, _)| unit.dimension != Dimension::ONE);
-        let guessed = amounts.and_then(|(value, expected, ..)| causes::likely(*value, *expected));
+        // Units explain a ratio of two amounts that should be alike, not of two correlations, nor of a value and a bound.
+        let amounts = numbers.as_ref().filter(|(_, _, unit, _, about)| *about && unit.dimension != Dimension::ONE);
+        let guessed = amounts.and_then(|(value, expected, unit, ..)| causes::likely(*value, *expected, unit.dimension));
         let cause: Vec<String> = guessed.into_iter().chain(self.rule.cause.clone()).collect();
         Some(Finding {
             code: self.rule.name.clone(),
@@ -156,7 +157,7 @@ impl Position<'_> {
             record,
             value: numbers.as_ref().map(|(value, ..)| *value),
             expected: numbers.as_ref().map(|(_, expected, ..)| *expected),
-            unit: numbers.as_ref().map(|(_, _, unit, _)| unit.text.clone()),
+            unit: numbers.as_ref().map(|(_, _, unit, ..)| unit.text.clone()),
             says,
             cause: (!cause.is_empty()).then(|| cause.join("; ")),
             consequence: consequence(self.rule.otherwise),

@@ -255,11 +255,11 @@ impl Opened {
         Self { columns: Arc::new(columns), along, extent, file, margins: None, memo: None }
     }
 
-    /// First and last row of the file inside the section, and the last row of the file; the header is row 1.
-    pub fn rows(&self) -> ((usize, usize), usize) {
+    /// First and last row of the file inside the section, and of all that was read and is filtered; the header is row 1.
+    pub fn rows(&self) -> [(usize, usize); 2] {
         let first = self.along.first_row.unwrap_or(1);
         let inside = self.along.inside(self.extent);
-        ((first + inside.start, first + inside.end.saturating_sub(1)), first + self.along.axis.len().saturating_sub(1))
+        [(first + inside.start, first + inside.end.saturating_sub(1)), (first, first + self.along.axis.len().saturating_sub(1))]
     }
 
     /// Values of the requested nodes. Nodes run level by level, so that channels with the same filter are filtered together.

@@ -27,8 +27,8 @@ pub struct Side {
     pub file: FileHash,
     /// First and last row of the file inside the section; the header is row 1.
     pub inside: (usize, usize),
-    /// The last row of the file.
-    pub last: usize,
+    /// First and last row that was read and is filtered: of a run the part around the section.
+    pub filtered: (usize, usize),
     /// Values of signals: the index of the graph node, the value in SI, and the number of samples or windows.
     pub reduced: Vec<(usize, f64, usize)>,
     /// The value of this side, in the unit of the quantity; `None` where a metric gives one number for both.
@@ -94,9 +94,9 @@ pub fn single<'a>(
             plan::Side::Measured => row.measured,
         };
         let column = if of_all { plan::Side::Simulated } else { place };
-        let (inside, last) = one.opened.rows();
+        let [inside, filtered] = one.opened.rows();
         let value = value.map(|value| of.from_si(value));
-        Side { column: (!assessed).then_some(column), reduced: reduced.collect(), inside, last, value, file: one.opened.file }
+        Side { column: (!assessed).then_some(column), reduced: reduced.collect(), inside, filtered, value, file: one.opened.file }
     };
     let (difference, samples) = (of.from_si(row.value), row.samples);
     Ok(Single { records: found.records.into_iter().filter(own).map(side).collect(), difference, samples })

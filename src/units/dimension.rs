@@ -52,6 +52,9 @@ impl Dimension {
     pub const LENGTH: Self = Self([1, 0, 0, 0, 0, 0]);
     pub const TIME: Self = Self([0, 0, 1, 0, 0, 0]);
     pub const FREQUENCY: Self = Self([0, 0, -1, 0, 0, 0]);
+    pub const SPEED: Self = Self([1, 0, -1, 0, 0, 0]);
+    pub const ACCELERATION: Self = Self([1, 0, -2, 0, 0, 0]);
+    pub const FORCE: Self = Self([1, 1, -2, 0, 0, 0]);
 
     /// `self` to an integer power; `None` if an exponent exceeds the range.
     pub fn power(self, exponent: i8) -> Option<Self> {

@@ -156,3 +156,17 @@ fn results_alone_still_lead_to_files_and_lines() {
     let asked = traced(&bare.path().join("results.json"), OF, &["--campaign", &text(&written().campaign())]);
     assert!(asked.code == 2 && asked.stderr.contains("protocol-missing"), "{}", asked.stderr);
 }
+
+/// A run is the record of each of its sections. Of a section, the part around it is filtered.
+#[test]
+fn a_run_stands_once() {
+    let out = tempfile::tempdir().expect("a temporary folder");
+    let folder = text(out.path());
+    let ran = fishplate(&["certify", "examples/run", "--only", "results", "--out", &folder]);
+    assert!(ran.code < 2, "{}", ran.stderr);
+    let ran = traced(&out.path().join("results.json"), ["Y_max", "S02", "Y_1R"], &["--campaign", "examples/run"]);
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    assert_eq!(ran.stdout.matches("SHA-256").count(), 2, "{}", ran.stdout);
+    let filtered = ran.stdout.lines().find_map(|line| line.split_once("lie in the section, ")).expect("told").1;
+    assert!(filtered.ends_with("are filtered") && !filtered.starts_with("2 to"), "{filtered}");
+}

@@ -67,9 +67,21 @@ pub struct Requirement {
     pub holds: Expr,
     pub inputs: Vec<Input>,
     pub of: Looks,
-    /// The two numbers compared and the unit in which both are printed, where the condition is one comparison.
-    pub compared: Option<(Expr, Expr, Unit)>,
+    /// The comparisons of which the condition consists, where it consists of such alone.
+    pub compared: Vec<Comparison>,
     pub words: String,
+}
+
+/// Two numbers that are compared.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    pub holds: Expr,
+    pub found: Expr,
+    pub expected: Expr,
+    /// The unit in which both are printed.
+    pub unit: Unit,
+    /// Whether the value found should be about the expected one, which else is a bound.
+    pub about: bool,
 }
 
 /// The records that a requirement uses.

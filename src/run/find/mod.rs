@@ -198,7 +198,8 @@ impl Windows {
 }
 
 /// The side that values are taken from: the measurement, where the protocol evaluates it.
-fn own_side(plan: &Plan) -> Side {
+/// The side on whose records sections are looked for.
+pub fn own_side(plan: &Plan) -> Side {
     if plan.reads(Side::Measured) { Side::Measured } else { Side::Simulated }
 }
 

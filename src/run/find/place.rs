@@ -2,7 +2,7 @@
 
 use super::signals::Signals;
 use crate::check::evaluate::{evaluate, flag, number};
-use crate::check::plan::{Datum, DatumKind, Expr, Find, FindCondition, Plan, Scalar, Zone};
+use crate::check::plan::{Datum, DatumKind, Expr, Find, FindCondition, Kind, Plan, Scalar, Zone};
 use crate::check::possible::{Possible, possible};
 use crate::check::values::Values;
 use crate::data::Campaign;
@@ -101,8 +101,33 @@ impl<'a> Rules<'a> {
 
     /// Why a place may be rejected, in the order in which it is looked at.
     pub fn reasons(&self) -> Vec<String> {
-        let first = ["the record ends too close", "in no zone", "the length has no value"].map(str::to_string);
+        let first = ["the record ends too close".to_string(), "in no zone".to_string(), self.no_length()];
         first.into_iter().chain(self.find.conditions.iter().map(|condition| condition.title.clone())).collect()
+    }
+
+    /// Why a length has no value: the vehicle data that are not stated, with the zones that need them.
+    fn no_length(&self) -> String {
+        let (mut zones, mut keys): (Vec<&str>, Vec<&str>) = (Vec::new(), Vec::new());
+        for zone in self.zones() {
+            let mut lacking = Vec::new();
+            self.length_of(zone).into_iter().for_each(|length| {
+                length.visit(&mut |part| match part.kind {
+                    Kind::Vehicle(index) if self.vehicle.data[index].is_err() => lacking.push(self.plan.vehicle[index].key.as_str()),
+                    _ => {}
+                });
+            });
+            if !lacking.is_empty() {
+                zones.extend(zone.map(|zone| zone.name.as_str()));
+            }
+            let new: Vec<&str> = lacking.into_iter().filter(|key| !keys.contains(key)).collect();
+            keys.extend(new);
+        }
+        if keys.is_empty() {
+            return "the length has no value".to_string();
+        }
+        let keys = keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(" and ");
+        let of = if zones.is_empty() { String::new() } else { format!(" of zone {}", zones.join(" and ")) };
+        format!("the length{of} has no value: the vehicle file does not state {keys}")
     }
 
     fn zones(&self) -> Vec<Option<&'a Zone>> {

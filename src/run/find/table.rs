@@ -6,32 +6,37 @@ use crate::data::Campaign;
 use crate::data::campaign::{OFFSET, RUN_COLUMN, Run};
 use crate::data::table::Table;
 use crate::data::write::table_csv;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, nearest};
 use crate::run::facts::trimmed;
+use crate::run::sections::of_run;
 
 /// What found sections are called in messages, and the file that `sections` writes.
 pub const NAME: &str = "sections.csv";
 /// Data of a run that say on which line it was: sections of the same line at the same place are of one site.
 const LINE: &str = "line";
 
-/// Section data that are neither found nor have a default must be stated of every run.
+/// Section data that are neither found nor have a default must be stated of every run, and what is stated must be possible.
 ///
-/// Problems: `missing-run-data`.
+/// Problems: `missing-run-data`, `wrong-run-data`.
 pub fn check_facts(plan: &Plan, find: &Find, campaign: &Campaign, problems: &mut Problems) {
-    let stated = (0..plan.columns.len()).filter(|&index| is_stated(plan, find, index)).map(|index| &plan.columns[index]);
-    for datum in stated.filter(|datum| datum.default.is_none()) {
+    let stated = || (0..plan.columns.len()).filter(|&index| is_stated(plan, find, index)).map(|index| &plan.columns[index]);
+    for datum in stated() {
+        for run in campaign.runs() {
+            let Some(fact) = run.fact(&datum.key) else { continue };
+            if let Err(says) = of_run(datum, run, &campaign.short_name.value) {
+                problems.push(Problem::error("wrong-run-data", says).at(&fact.value.span).also(&datum.span, "what the protocol knows"));
+            }
+        }
+    }
+    for datum in stated().filter(|datum| datum.default.is_none()) {
         for run in campaign.runs().iter().filter(|run| run.fact(&datum.key).is_none()) {
             let says = format!("`{}` of the sections of run `{}` is neither found nor stated", datum.key, run.name.value);
-            let known = run.facts.iter().map(|fact| fact.name.as_str());
             let problem = Problem::error("missing-run-data", says).at(&run.name.span).also(&datum.span, "the protocol needs it");
-            let problem = problem.suggest(&datum.key, known);
-            problems.push(match problem.help {
-                Some(_) => problem,
-                None => problem.help(format!(
-                    "state it of the run in campaign.yaml, or write how it is found: `found ...` in `section {}`",
-                    datum.name
-                )),
-            });
+            let slip = nearest(&datum.key, run.facts.iter().map(|fact| fact.name.as_str()));
+            problems.push(problem.help(match slip {
+                Some(slip) => format!("the run states `{slip}`: if `{0}` is meant, write `{0}`", datum.key),
+                None => format!("state it of the run in campaign.yaml, or write how it is found: `found ...` in `section {}`", datum.name),
+            }));
         }
     }
 }
