@@ -157,9 +157,7 @@ pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Prob
     };
     let before = checker.problems.0.len();
     let plan = checker.plan(document);
-    if plan.is_some() && !checker.problems.any_error() {
-        checker.slips(family);
-    }
+    checker.slips(family);
     let names = std::mem::take(&mut checker.names);
     if plan.is_some() && !problems.any_error() {
         let checked = plan.as_ref().map_or(0, rule_count);

@@ -376,7 +376,9 @@ impl Checker<'_> {
         let (number, other) = if bare(left) { (left, right) } else { (right, left) };
         let written = number.span.text();
         let unit = match other.ty {
-            Type::Number(dimension) if bare(number) && written.parse::<f64>().is_ok() => Some(self.own_unit("", dimension)),
+            Type::Number(dimension) if done == "compared" && bare(number) && written.parse::<f64>().is_ok() => {
+                Some(self.own_unit("", dimension))
+            }
             _ => None,
         };
         self.problems.push(match unit {

@@ -14,7 +14,9 @@ impl Checker<'_> {
         for block in family.merged.blocks.iter().filter(|block| block.span().source.name == own.name) {
             let (kind, name) = (&block.kind.text, block.name_text());
             let siblings = || self.parent_names.iter().filter(|(of, _)| of == kind).map(|(_, name)| name.as_str());
-            if name.len() < SHORTEST || siblings().any(|known| known == name) {
+            // A part that is missing may be told of it with the same help.
+            let told = self.problems.0.iter().any(|problem| problem.at.as_ref() == Some(block.span()));
+            if told || name.len() < SHORTEST || siblings().any(|known| known == name) {
                 continue;
             }
             let without_digits = |name: &str| name.chars().filter(|c| !c.is_ascii_digit()).collect::<String>();

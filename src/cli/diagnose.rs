@@ -152,6 +152,7 @@ impl Diagnose {
     /// Refuses output folders that are inputs, or that are the same.
     fn check_folders(&self, out: &Path, campaign: &Campaign) -> Result<(), Problem> {
         check_folder(out, REPORT, campaign)?;
+        self.resume.as_ref().map_or(Ok(()), |folder| check_folder(folder, &[], campaign))?;
         let Some(improved) = &self.write_improved else { return Ok(()) };
         if same(improved, out) {
             let says = format!("the report and the improved simulation cannot both go to `{}`", improved.display());

@@ -64,7 +64,9 @@ impl Console {
         match std::io::stdout().lock().write_all(text.as_bytes()) {
             Ok(()) => Exit::Done,
             Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Exit::Done,
-            Err(_) => Exit::Unfinished,
+            Err(error) => {
+                self.fail(Problem::error("write-failed", format!("standard output cannot be written: {error}")), Exit::Unfinished)
+            }
         }
     }
 

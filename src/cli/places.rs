@@ -12,11 +12,23 @@ pub const REPORT: &[&str] =
 /// Names at the top level of a written campaign, which is copied with all files it names.
 pub const CAMPAIGN: &[&str] = &["campaign.yaml", "simulation"];
 
+/// Refuses an output folder that is a file, or in one.
+///
+/// # Errors
+/// `not-a-folder`, before the computation.
+pub fn check_out(out: &Path) -> Result<(), Problem> {
+    let file = out.ancestors().find(|above| matches!(disk::kind(above), Ok(Some(disk::Kind::File(_) | disk::Kind::Other))));
+    let Some(file) = file else { return Ok(()) };
+    let says = format!("the outputs cannot go to `{}`: `{}` is a file", out.display(), file.display());
+    Err(Problem::error("not-a-folder", says).help("give another folder; it is created if it does not exist"))
+}
+
 /// Refuses an output folder if files of the campaign would be overwritten; `names` are the outputs at its top level.
 ///
 /// # Errors
-/// `output-is-input`, before the computation.
+/// `output-is-input`, `not-a-folder`, before the computation.
 pub fn check_folder(out: &Path, names: &[&str], campaign: &Campaign) -> Result<(), Problem> {
+    check_out(out)?;
     let refused = |why: String| {
         Problem::error("output-is-input", format!("the outputs cannot go to `{}`: {why}", out.display()))
             .help("give another folder; it is created if it does not exist")

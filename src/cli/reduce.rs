@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::inputs::{Pool, prepare_all, progress_bar, start_jobs};
 use super::output::{Console, Exit};
-use super::places::{check_file, check_folder};
+use super::places::{check_file, check_folder, check_out};
 use super::report::Report;
 use crate::data::Campaigns;
 use crate::disk;
@@ -117,6 +117,9 @@ impl Judge {
             if let Err(problem) = check_file(&self.report.out.join(name), &inputs) {
                 problems.push(problem);
             }
+        }
+        if let Err(problem) = check_out(&self.report.out) {
+            problems.push(problem);
         }
         let joined = joined(&self.values, &mut problems);
         console.problems(&problems);

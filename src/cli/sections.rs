@@ -78,13 +78,18 @@ impl Sections {
                 }
             }
         };
+        // The copy is complete beside its folder before the table is written: if one of them cannot be written, neither is.
+        let copy = match self.cut.as_ref().map(|folder| cut_to(folder, &campaign, Format::from(self.records), console)).transpose() {
+            Ok(copy) => copy,
+            Err(exit) => return exit,
+        };
         if let (Some(out), Some(table)) = (&self.out, &campaign.sections) {
             let written = console.write(out, table.source.text.as_bytes());
             if written != Exit::Done {
                 return written;
             }
         }
-        let records = match self.cut.as_ref().map(|folder| cut_to(folder, &campaign, Format::from(self.records), console)).transpose() {
+        let records = match copy.map(|(outputs, records)| console.commit(Ok(outputs)).map(|()| records)).transpose() {
             Ok(records) => records,
             Err(exit) => return exit,
         };
@@ -101,14 +106,17 @@ impl Sections {
     }
 }
 
-/// Writes the copy with a record for each section.
-fn cut_to(folder: &Path, campaign: &Campaign, format: Format, console: &Console) -> Result<usize, Exit> {
+/// The copy with a record for each section, and their number.
+fn cut_to(folder: &Path, campaign: &Campaign, format: Format, console: &Console) -> Result<(Outputs, usize), Exit> {
     let mut outputs = Outputs::of(SetKind::Campaign, folder);
-    let records = cut(campaign, format, &mut outputs).map_err(|problems| {
-        console.problems(&Problems(problems));
-        Exit::Wrong
-    })?;
-    console.commit(Ok(outputs)).map(|()| records)
+    match cut(campaign, format, &mut outputs) {
+        Ok(records) => Ok((outputs, records)),
+        Err(problems) => {
+            let of_disk = problems.iter().any(|problem| problem.code == "write-failed");
+            console.problems(&Problems(problems));
+            Err(if of_disk { Exit::Unfinished } else { Exit::Wrong })
+        }
+    }
 }
 
 fn words(found: &FoundSections) -> String {

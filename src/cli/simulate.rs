@@ -298,7 +298,7 @@ fn steps(integrator: Integrator, written: &str) -> Result<Steps, Problem> {
     let milliseconds = Unit { text: "ms".into(), factor: SAMPLE, dimension: Dimension::TIME };
     let step = number::read(written, &milliseconds).map_err(|refused| wrong(refused.says))?.si;
     let parts = SAMPLE / step;
-    if !(1.0 - 1e-9..=MOST_STEPS).contains(&parts) {
+    if !(1.0 - 1e-9..=MOST_STEPS + 1e-9 * MOST_STEPS).contains(&parts) {
         let least = 1.0 / MOST_STEPS;
         return Err(wrong(format!("a step of {} ms is outside the range of the model, {least} to 1 ms", step / SAMPLE)));
     }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use rayon::prelude::*;
 
+use super::places::check_folder;
 use crate::data::text::read_text;
 use crate::data::{Campaign, RecordKind};
 use crate::effects::{Catalogue, Signals};
@@ -59,6 +60,9 @@ impl SimulatorChoice {
         let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut program = read_program(&source, folder, problems)?;
         program.launch = self.launch.iter().flat_map(|words| words.split_whitespace()).map(str::to_string).collect();
+        if let Some(folder) = &self.cache {
+            check_folder(folder, &[], campaign).map_err(|problem| problems.push(problem)).ok()?;
+        }
         let cache = match (&self.cache, self.no_cache) {
             (_, true) => Ok(Cache::none()),
             (Some(folder), _) => Cache::at(folder),

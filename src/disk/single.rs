@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::{Op, Writer, create, names, pass, remove_file, rename, sync_folder};
+use super::{Kind, Op, Writer, create, is_link, kind, names, pass, real, remove_file, rename, sync_folder};
 
 /// Prefix of temporary files.
 const BEGINS: &str = ".fishplate-";
@@ -14,11 +14,18 @@ const ENDS: &str = ".tmp";
 /// Number of temporary names tried; a name is taken only if a run with the same process number left one.
 const MOST_NAMES: usize = 100;
 
-/// Writes a file under a temporary name in the same folder, which must exist, and renames it. On return it is on the disk.
+/// Writes a file under a temporary name in the same folder, which must exist, and renames it. On return it is on the disk. A symbolic link
+/// stays: its target is written. A device or a pipe stays too: the bytes go into it.
 ///
 /// # Errors
 /// The system's error; the file is then unchanged.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if matches!(kind(path)?, Some(Kind::Other)) {
+        pass(Op::Create, path)?;
+        return fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
+    }
+    let target = if is_link(path)? { Some(real(path)?.ok_or(io::ErrorKind::NotFound)?) } else { None };
+    let path = target.as_deref().unwrap_or(path);
     let folder = folder_of(path);
     sweep(folder);
     put(path, folder, bytes, true)?;

@@ -70,10 +70,14 @@ pub fn choose(catalogue: &Catalogue, texts: &[String]) -> Result<Vec<Applied>, V
                 .iter_mut()
                 .find(|known| known.effect == applied.effect && known.channels == applied.channels && known.confined == applied.confined)
             {
-                Some(known) => {
-                    known.values.retain(|(name, _)| applied.value(name).is_none());
-                    known.values.extend(applied.values);
-                }
+                // Of several parameters of an effect, each has its own text.
+                Some(known) => match known.values.iter().find(|(name, _)| applied.value(name).is_some()) {
+                    Some((name, _)) => {
+                        let says = format!("`{}` of the effect `{}` is given twice", name, applied.effect);
+                        problems.push(Problem::error("duplicate-effect", says).at(&source.whole()).help("give one value"));
+                    }
+                    None => known.values.extend(applied.values),
+                },
                 None => chosen.push(applied),
             },
         }

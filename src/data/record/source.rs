@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::memory::Frame;
-use super::{Block, Known, Record, Run, Stored, Wanted, read_headings, read_record, read_stretch, stream_known};
+use super::{Block, Format, Known, Record, Run, Stored, Wanted, read_headings, read_record, read_stretch, stream_known};
 use crate::data::cells::Heading;
 use crate::data::folder::Place;
 use crate::problem::Problem;
@@ -25,6 +25,14 @@ impl RecordSource {
             Self::File(place) => &place.inside,
             Self::Object(stored) => stored.url(),
             Self::Memory(frame) => frame.name(),
+        }
+    }
+
+    /// Number of the first row in messages: the header of a text is row 1.
+    pub fn first_row(&self) -> usize {
+        match self {
+            Self::File(place) if Format::of(&place.path) == Format::Csv => 2,
+            Self::File(_) | Self::Object(_) | Self::Memory(_) => 1,
         }
     }
 

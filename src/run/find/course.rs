@@ -16,6 +16,8 @@ use crate::result::found::CoursePoint;
 const EVERY: f64 = 4.0;
 /// Steps of the search up to its largest shift, as at a section.
 const STEPS: f64 = 100.0;
+/// Most windows of a run; more lie further apart. Windows of 70 m reach 280 km so.
+const MOST: f64 = 1000.0;
 /// Shortest window in largest shifts: it must be longer than what it is moved by.
 const SHORTEST: f64 = 2.0;
 
@@ -62,7 +64,7 @@ pub fn course(
         return Course::default();
     }
     let length = longest.max(SHORTEST * farthest);
-    let mut tracker = Tracker::new(Windows { length, every: EVERY * length, farthest, step: farthest / STEPS });
+    let mut tracker = Tracker::new(Windows { length, every: (EVERY * length).max((end - start) / MOST), farthest, step: farthest / STEPS });
     let wanted = wanted(plan, graph);
     let read = |kind: RecordKind, (from, to): (f64, f64)| -> Option<Record> {
         let source = campaign.run_source(run, kind).ok()?;

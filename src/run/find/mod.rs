@@ -191,6 +191,11 @@ impl Windows {
         self.all.iter().filter_map(|(_, window)| window.end()).fold(f64::INFINITY, f64::min)
     }
 
+    /// Up to where each of them goes at least, as far as it is known.
+    fn furthest(&self) -> f64 {
+        self.all.iter().map(|(_, window)| window.last()).fold(f64::INFINITY, f64::min)
+    }
+
     /// Up to where all of them are read.
     fn read_to(&self) -> f64 {
         self.all.iter().map(|(_, window)| window.end().map_or_else(|| window.last(), |_| f64::INFINITY)).fold(f64::INFINITY, f64::min)
@@ -198,7 +203,6 @@ impl Windows {
 }
 
 /// The side that values are taken from: the measurement, where the protocol evaluates it.
-/// The side on whose records sections are looked for.
 pub fn own_side(plan: &Plan) -> Side {
     if plan.reads(Side::Measured) { Side::Measured } else { Side::Simulated }
 }
@@ -217,6 +221,9 @@ fn in_run(plan: &Plan, graph: &Graph, campaign: &Campaign, run: &Run, rules: &Ru
     'run: loop {
         let from = at * step;
         windows.fill(from + piece + reach.after)?;
+        if (windows.furthest() - start) / step > MOST_PLACES {
+            return Err(Problems(vec![too_many(plan, run, (start, windows.furthest()), step)]));
+        }
         windows.forget(from - reach.before);
         let signals = Signals::of(plan, graph, &windows, own_side(plan), rules.vehicle)?;
         let (last, read_to) = (windows.end(), windows.read_to());
@@ -266,6 +273,21 @@ fn in_run(plan: &Plan, graph: &Graph, campaign: &Campaign, run: &Run, rules: &Ru
         drift: None,
     };
     Ok((found, told))
+}
+
+/// Most places that are tried in a run: 10 000 km, one every metre. An axis that jumps, and a step that is too small, would else be looked
+/// through for hours.
+const MOST_PLACES: f64 = 1e7;
+
+fn too_many(plan: &Plan, run: &Run, (start, end): (f64, f64), step: f64) -> Problem {
+    let unit = &plan.axis.unit;
+    let [start, end, step] = [start, end, step].map(|x| unit.from_si(x));
+    let says = format!(
+        "the records of run `{}` go from {start} to {end} {unit}: with one place every {step} {unit} there are more than {MOST_PLACES:.0} to try",
+        run.name.value
+    );
+    let help = format!("write a longer `step`, and check `{}` of the records for a jump", plan.axis.column);
+    Problem::error("too-many-places", says).at(&run.name.span).help(help)
 }
 
 /// An end this close to a multiple of the step, in steps, is one: it differs by rounding only.

@@ -23,8 +23,8 @@ impl Window {
             columns: vec![Vec::new(); names.len()],
             names,
             shown: source.inside().to_string(),
+            first_row: source.first_row(),
             blocks: Some(Blocks::open(source, wanted, known)),
-            first_row: 2,
             first: None,
             last: f64::NEG_INFINITY,
         }

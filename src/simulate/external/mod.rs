@@ -187,6 +187,7 @@ impl<'a> External<'a> {
         let known = self.headings(section);
         let made = RecordSource::File(Place { path: path.to_path_buf(), shown: shown.clone(), inside: shown });
         let (signals, units) = read_made(&made, &known, &self.program.channels)?;
+        covers(&signals.axis, section)?;
         if let Ok(mut all) = self.units.lock() {
             all.retain(|(name, _)| name != section.name());
             all.push((section.name().to_string(), units));
@@ -263,6 +264,17 @@ impl<'a> External<'a> {
             Fault::Failed { status, said } => told("simulator-failed", &format!("failed: {status}"), said),
         }
     }
+}
+
+/// The record of a simulator must have the whole section, up to one sample.
+fn covers(axis: &[f64], section: &Section) -> Result<(), Problem> {
+    let ([first, second, ..], Some(last)) = (axis, axis.last()) else { return Ok(()) };
+    let slack = second - first;
+    if first - slack <= section.start && section.end <= last + slack || !(section.start.is_finite() && section.end.is_finite()) {
+        return Ok(());
+    }
+    let says = format!("it goes from {first:.3} to {last:.3}, and the section from {:.3} to {:.3}", section.start, section.end);
+    Err(Problem::error("simulator-output", says).help("the record must cover the section, on the same axis"))
 }
 
 impl Simulator for External<'_> {

@@ -46,7 +46,7 @@ impl Layout {
         let (metadata, described) = parsed.map_err(|why| damaged(shown, &why))?;
         let starts = starts(metadata.metadata(), shown)?;
         let headings = headings_of(metadata.schema(), &described, shown)?;
-        let fields = fields(&metadata);
+        let fields = fields(&metadata, &described);
         let kept = |field: &Arc<arrow_schema::Field>| Digits::read(|key| field.metadata().get(key).map(String::as_str));
         let digits = described.fields().iter().map(kept).collect();
         Ok(Self { metadata, fields, headings, digits, starts })
@@ -107,6 +107,7 @@ pub(in crate::data::record) fn not_numbers(kind: &DataType, name: &str, at: &Spa
         DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View => "text",
         DataType::Binary | DataType::LargeBinary | DataType::BinaryView | DataType::FixedSizeBinary(_) => "bytes",
         DataType::Boolean => "truth values",
+        DataType::Duration(_) => "durations, whose unit is not that of a column",
         DataType::Timestamp(..) | DataType::Date32 | DataType::Date64 | DataType::Time32(_) | DataType::Time64(_) => {
             "dates or times of day"
         }
@@ -137,12 +138,14 @@ fn starts(metadata: &ParquetMetaData, shown: &str) -> Result<Vec<usize>, Problem
     Ok(starts)
 }
 
-fn fields(metadata: &ArrowReaderMetadata) -> Vec<Field> {
+fn fields(metadata: &ArrowReaderMetadata, described: &Schema) -> Vec<Field> {
     let schema = metadata.parquet_schema();
     let field = |(position, field): (usize, &Arc<arrow_schema::Field>)| {
         let leaf = (0..schema.num_columns()).find(|leaf| schema.get_column_root_idx(*leaf) == position);
         let flat = schema.root_schema().get_fields().get(position).is_some_and(|root| root.is_primitive());
-        let kind = field.data_type().clone();
+        // Durations are whole numbers for Parquet; only the schema that Arrow adds says of what.
+        let told = described.fields().get(position).map(|field| field.data_type());
+        let kind = told.filter(|told| matches!(told, DataType::Duration(_))).unwrap_or(field.data_type()).clone();
         Field { leaf: leaf.filter(|leaf| flat && schema.column(*leaf).max_rep_level() == 0), kind }
     };
     metadata.schema().fields().iter().enumerate().map(field).collect()
