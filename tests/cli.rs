@@ -46,7 +46,7 @@ fn exit_codes_follow_the_verdict() {
     assert_eq!(code, 2, "a command line without a campaign");
     fs::write(out.path().join("file"), "in the way").expect("a file");
     let (code, _, said) = certify("examples/coach", &out.path().join("file").join("below"), &["--only", "results"]);
-    assert_eq!(code, 3, "{said}");
+    assert_eq!(code, 2, "{said}");
 }
 
 /// An assessment: one line for each estimate, all groups in results.json, values not under `difference`.
@@ -201,4 +201,39 @@ fn settings_of_the_command_line_are_checked() {
     assert!(said("percentile_rule=hasen").contains("did you mean `hazen`?"));
     assert!(said("lowpass_order=99").contains("out-of-range"));
     assert!(said("nothing").contains("--set name=value"));
+}
+
+/// A link stays and its target is written; what is no file, such as a pipe, gets the bytes and stays too.
+#[cfg(unix)]
+#[test]
+fn an_output_goes_through_links_and_into_pipes() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    fs::write(path("target"), "old").expect("written");
+    std::os::unix::fs::symlink("target", path("link")).expect("linked");
+    std::os::unix::fs::symlink("nothing", path("dangling")).expect("linked");
+    let (_, expected, _) = run(&["convert", "kraft", "--to", "yaml"]);
+    let to = |name: &str| run(&["convert", "kraft", "--to", "yaml", "-o", &path(name).display().to_string()]);
+    assert_eq!(to("link").0, 0);
+    assert!(path("link").is_symlink() && fs::read_to_string(path("target")).expect("readable") == expected);
+    let (code, _, said) = to("dangling");
+    assert!(code == 3 && path("dangling").is_symlink() && said.contains("write-failed"), "{said}");
+    let (code, printed, said) = run(&["convert", "kraft", "--to", "yaml", "-o", "/dev/stdout"]);
+    assert_eq!((code, printed), (0, expected), "{said}");
+}
+
+/// What cannot be an output is told before the work, and what cannot be printed is told at all.
+#[test]
+fn outputs_that_cannot_be_written() {
+    let folder = folder();
+    fs::write(folder.path().join("file"), "x").expect("written");
+    for out in ["file", "file/inside"] {
+        let (code, _, said) = certify("examples/coach", &folder.path().join(out), &["--only", "results"]);
+        assert!(code == 2 && said.contains("error[not-a-folder]"), "{said}");
+    }
+    if let Ok(full) = fs::OpenOptions::new().write(true).open("/dev/full") {
+        let program = Command::new(env!("CARGO_BIN_EXE_fishplate")).arg("protocols").stdout(full).output().expect("the program runs");
+        let said = String::from_utf8_lossy(&program.stderr).into_owned();
+        assert!(program.status.code() == Some(3) && said.contains("standard output cannot be written"), "{said}");
+    }
 }

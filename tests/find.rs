@@ -388,6 +388,12 @@ fn what_cannot_be_found_is_told_with_its_place() {
     };
     refused(&|_| {}, "none.fp", "no-search", "use found sections");
     refused(&yaml("    country: IT\n", ""), "runs.fp", "missing-run-data", "campaign.yaml:4:3");
+    refused(
+        &|folder| fs::write(folder.join("fine.fp"), PROTOCOL.replace("  step    1 m", "  step    0.00001 m")).expect("written"),
+        "fine.fp",
+        "too-many-places",
+        "write a longer `step`",
+    );
     refused(&yaml("country: IT", "country: Italy"), "runs.fp", "wrong-run-data", "campaign.yaml:8:14");
     refused(
         &yaml("country: IT", "county: IT"),

@@ -281,6 +281,7 @@ mod programs {
         fails(&write("sed 40s/,[^,]*$// $1 > $2"), &["S01.csv of twin:40:"]);
         fails(&write("sed \"1s/distance/position/\" $1 > $2"), &["unknown-channel", "no column `distance`"]);
         fails(&write("head -n 2 $1 > $2"), &["too-short"]);
+        fails(&write("head -n 40 $1 > $2"), &["simulator-output", "S01", "the record must cover the section"]);
     }
 
     /// Words are handed over as they are: no shell looks at them.

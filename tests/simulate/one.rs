@@ -75,6 +75,13 @@ fn effects_that_are_none() {
     wrong("friction=0.2 in places 3", &["unknown-word", "in zones 3, 4"]);
 }
 
+/// Two values of one parameter: the second does not silently replace the first.
+#[test]
+fn an_effect_that_is_given_twice() {
+    let place = Place::new();
+    refused(&place, &["--speed", "22", "--effect", "friction=0.3", "--effect", "friction=0.4"], 2, &["duplicate-effect", "given twice"]);
+}
+
 /// Several faults are told at once, each with its place in what was written.
 #[test]
 fn all_faults_at_once() {

@@ -330,3 +330,34 @@ mod stretches {
         assert!(file.stretch(200.0, 210.0, &["Y"]).is_ok());
     }
 }
+
+/// Written by Arrow C++ with a checksum for each page, uncompressed: a changed byte of a value would else be another number.
+#[test]
+fn checksums_of_pages_are_looked_at() {
+    let whole = include_bytes!("../../../../tests/cases/data/checksums.parquet");
+    let wanted = [Wanted::new("distance", Dimension::LENGTH), Wanted::new("ay", Dimension::ACCELERATION)];
+    let read = |bytes: &[u8]| with(bytes, "r.parquet", |path| read_record(path, "r.parquet", &wanted));
+    let record = read(whole).expect("sound");
+    assert_eq!(record.columns[0].values, (0..40).map(|row| 0.5 * f64::from(row)).collect::<Vec<_>>());
+    let value = 2.5_f64.to_le_bytes();
+    let at = whole.windows(8).position(|bytes| bytes == value).expect("the sixth distance");
+    let mut changed = whole.to_vec();
+    changed[at + 6] ^= 1;
+    let problems = read(&changed).expect_err("another number");
+    assert!(problems[0].code == "file-damaged" && problems[0].says.contains("CRC"), "{}", problems[0].says);
+}
+
+/// Arrow writes durations as whole numbers of their unit; those of a text have no unit but that of the heading.
+#[test]
+fn durations_are_no_numbers() {
+    use arrow_array::{ArrayRef, DurationMillisecondArray, Float64Array, RecordBatch};
+    let time: ArrayRef = std::sync::Arc::new(DurationMillisecondArray::from_iter_values((0..50).map(|row| 5 * row)));
+    let force: ArrayRef = std::sync::Arc::new(Float64Array::from_iter_values((0..50).map(f64::from)));
+    let batch = RecordBatch::try_from_iter([("time [s]", time), ("Y [kN]", force)]).expect("two columns");
+    let mut bytes = Vec::new();
+    let mut writer = ::parquet::arrow::ArrowWriter::try_new(&mut bytes, batch.schema(), None).expect("a writer");
+    writer.write(&batch).expect("written");
+    writer.close().expect("closed");
+    let problems = read_bytes(&bytes).expect_err("milliseconds");
+    assert!(problems[0].code == "not-a-number" && problems[0].says.contains("holds durations"), "{}", problems[0].says);
+}
