@@ -3,6 +3,7 @@
 //! | file | content |
 //! |---|---|
 //! | `mapping/` | the mapping: read, checked, compared with the needs of a protocol |
+//! | `check` | the campaign before its records are read: what `certify` would refuse |
 //! | `process/` | from a file to the record of a section |
 //! | `runs`, `drift` | whole runs; the drift of the distance along them |
 //! | `write` | the campaign, with an account of what was done |
@@ -11,6 +12,7 @@
 
 #![allow(clippy::cast_precision_loss)]
 
+pub mod check;
 pub mod draft;
 mod drift;
 pub mod exchanged;

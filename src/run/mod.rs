@@ -53,7 +53,7 @@ mod words;
 use indexmap::IndexMap;
 
 use crate::check::plan::{OnFault, Plan, Side};
-use crate::data::Campaigns;
+use crate::data::{Campaign, Campaigns};
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
 use crate::result::study::Reduction;
@@ -63,6 +63,7 @@ use crate::result::{
 };
 
 pub use basis::Basis;
+pub use consequence::consequence;
 pub use facts::{Facts, scalar};
 pub use judge::Judged;
 use pool::Pool;
@@ -265,6 +266,19 @@ impl Evaluated {
     pub fn offsets(&self) -> impl Iterator<Item = (&str, Option<&str>, Option<&Offset>)> {
         self.units.iter().zip(&self.values).map(|(unit, values)| (unit.name.as_str(), unit.zone.as_deref(), values.offset.as_ref()))
     }
+}
+
+/// Checks what a run reads before any record: the data of vehicles and sections, and wanted operation. Records need not exist.
+pub fn check_data(plan: &Plan, campaign: &Campaign, problems: &mut Problems) {
+    let campaigns = Campaigns::from(campaign);
+    campaigns.check(problems);
+    let facts = Facts::read(plan, campaigns, problems);
+    if find::applies(plan, campaign) {
+        find::check_facts(plan, campaign, problems);
+    } else {
+        sections::units(plan, campaigns, problems);
+    }
+    wanted::points(plan, campaigns, &facts, problems);
 }
 
 /// Data read before any record.

@@ -41,6 +41,15 @@ pub fn applies(plan: &Plan, campaign: &Campaign) -> bool {
     plan.sections.find.is_some() && campaign.sections.is_none() && !campaign.runs().is_empty()
 }
 
+/// Whether every run has the data that are neither found nor have a default.
+///
+/// Problems: `missing-run-data`.
+pub fn check_facts(plan: &Plan, campaign: &Campaign, problems: &mut Problems) {
+    if let Some(rules) = &plan.sections.find {
+        table::check_facts(plan, rules, campaign, problems);
+    }
+}
+
 /// Finds the sections of a campaign.
 ///
 /// # Errors
