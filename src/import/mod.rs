@@ -67,7 +67,7 @@ pub fn import(
             return Err(few(faults));
         }
         add_campaign(outputs, mapping, format, &sources, accounts).map_err(one)?;
-        return Ok(warnings);
+        return Ok(few(warnings));
     }
     let mut jobs: Vec<Job<'_>> = Vec::new();
     for side in &mapping.sides {
@@ -107,7 +107,7 @@ pub fn import(
         return Err(few(faults));
     }
     add_campaign(outputs, mapping, format, &sources, accounts.into_values().collect()).map_err(|problem| Problems(vec![problem]))?;
-    Ok(warnings)
+    Ok(few(warnings))
 }
 
 struct Done {
@@ -167,7 +167,9 @@ fn few(problems: Problems) -> Problems {
         }
     }
     if more > 0 {
-        told.push(Problem::error("more-problems", format!("{more} more of other sections, most of the same kind")));
+        let says = format!("{more} more of other sections, most of the same kind");
+        let error = told.any_error();
+        told.push(if error { Problem::error("more-problems", says) } else { Problem::warning("more-problems", says) });
     }
     told
 }

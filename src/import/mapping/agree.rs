@@ -201,9 +201,19 @@ fn units(map: &ChannelMap, need: &ChannelNeed, problems: &mut Problems) {
                 wanted.dimension.in_words(),
                 unit.dimension.in_words()
             );
-            problems.push(Problem::error("unit-mismatch", says).at(span).also(&map.name.span, wanted.dimension.in_words()));
+            let problem = Problem::error("unit-mismatch", says).at(span).also(&map.name.span, wanted.dimension.in_words());
+            problems.push(if is_gravity(&unit.text, &wanted) {
+                problem.help("`g` is the gram; the unit of gravity is `gn`")
+            } else {
+                problem
+            });
         }
     }
+}
+
+/// Whether the gram stands for the unit of gravity.
+pub fn is_gravity(text: &str, wanted: &Unit) -> bool {
+    text == "g" && Unit::parse("gn").is_ok_and(|gn| gn.dimension == wanted.dimension)
 }
 
 /// The unit in which a channel is written: as stated, else as the protocol has it.

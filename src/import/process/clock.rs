@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::find::Of;
+use super::find::{Of, nearest_or_first};
 use super::short;
 use crate::data::checks::{self, Steps};
 use crate::foreign::Table;
@@ -71,9 +71,11 @@ pub fn clock(of: &Of<'_>, table: &Table, alone: bool, facts: &[(String, String)]
         (None, Some(first)) => {
             let known = table.channels.iter().map(|channel| channel.name.as_str());
             let problem = Problem::error("unknown-channel", format!("`{}`{which} has no channel `{}`", of.shown, first.value));
-            let problem = problem.at(&first.span).suggest(&first.value, known);
-            return Err(match problem.help {
-                Some(_) => problem,
+            let problem = problem.at(&first.span);
+            let near = problem.clone().suggest(&first.value, known.clone());
+            return Err(match near.near {
+                Some(_) => near,
+                None if table.name.is_empty() => nearest_or_first(problem, &first.value, known),
                 None => problem.help("where the groups of a file call their time differently, list the names: `time: [Time, t_slow]`"),
             });
         }

@@ -47,7 +47,7 @@ fn gap(of: &Of<'_>, gaps: &Gaps, clock: &Clock, file: &str, done: &str, at: &Spa
         more => format!("; there are {more} more gaps"),
     };
     let says = format!(
-        "{}: the time of `{file}` has a gap of {} s from {} s to {} s, after row {}, and {} Hz before it; across a gap nothing is {done}{more}",
+        "{}: the time of `{file}` has a gap of {} s from {} s to {} s, after row {}, at {} Hz otherwise; nothing is {done} across a gap{more}",
         of.called(),
         short(gaps.to - gaps.from),
         short(gaps.from),
