@@ -3,10 +3,12 @@
 //! `tests/cases/import/bad` holds mappings with a fault each, and the expected text beside them (`.out`); `UPDATE_EXPECT=1` rewrites
 //! it. Numbers are compared with closed forms.
 
+mod early;
 mod example;
 mod memory;
 mod process;
 mod runs;
+mod times;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -91,7 +91,7 @@ fn side(out: &mut Text, group: &Group, kind: RecordKind, stated: bool, with: &Wi
                 let need = used.iter().find(|need| need.column == guess.channel);
                 match looks.iter().find(|look| look.name == *from) {
                     Some(look) if need.is_none_or(|need| need.unit != "-") => {
-                        let hint = need.map_or_else(|| "the unit".to_string(), |need| format!("{} in the protocol", need.unit));
+                        let hint = need.map_or_else(|| "that of the sensor".to_string(), |need| format!("{} in the protocol", need.unit));
                         out.channel(4, &guess.channel, look, &hint, &guess.reasons);
                     }
                     _ => out.line(4, &format!("{}: {}", yaml_text(&guess.channel), yaml_text(from)), &guess.reasons),

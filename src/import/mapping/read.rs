@@ -25,8 +25,9 @@ pub fn read(source: &Arc<Source>, folder: &Path, problems: &mut Problems) -> Opt
     let tree = loaded(source, problems)?;
     let tree = slips::decimal_commas(tree, problems);
     let mut reader = Reader { problems };
+    let closed = reader.problems.errors();
     open_places(&tree, reader.problems);
-    if reader.problems.errors() > before {
+    if reader.problems.errors() > closed {
         return None;
     }
     reader.keys(&tree, &TOP, "a mapping");

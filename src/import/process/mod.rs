@@ -108,6 +108,7 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
         return Err(unfit);
     }
     times::told(of, base_clock, &grid, &mut steps);
+    left_out(of, &tables, &mut steps);
     let (mut sampled, mut columns) = (Vec::new(), Vec::new());
     for (map, (source, unit)) in maps.iter().zip(&sources) {
         let table = source.first.table;
@@ -173,10 +174,8 @@ fn maps(of: &Of<'_>, tables: &[&Table]) -> Result<Vec<ChannelMap>, Vec<Problem>>
                 of.side.time.from.iter().any(|time| time.value == name)
                     || matches!(&of.side.distance, Some(super::mapping::Distance::Channel(map)) if map.terms.iter().any(|term| term.name.value == name))
             };
-            // A record has one time and one distance.
-            let stated = |name: &str| name == "time" || name == "distance" && of.side.distance.is_some();
             let channels = tables.iter().flat_map(|table| &table.channels);
-            let named = channels.filter(|channel| !axis(&channel.name) && !stated(&channel.name));
+            let named = channels.filter(|channel| !axis(&channel.name) && !is_second_axis(of, &channel.name));
             let maps: Vec<ChannelMap> = named
                 .map(|channel| {
                     let name = Spanned::new(channel.name.clone(), span.clone());
@@ -188,6 +187,26 @@ fn maps(of: &Of<'_>, tables: &[&Table]) -> Result<Vec<ChannelMap>, Vec<Problem>>
                 return Err(vec![Problem::error("no-channel", format!("`{}` has no channels", of.shown)).at(&span)]);
             }
             Ok(maps)
+        }
+    }
+}
+
+/// A record has one time and one distance: those that the mapping states.
+fn is_second_axis(of: &Of<'_>, name: &str) -> bool {
+    name == "time" || name == "distance" && of.side.distance.is_some()
+}
+
+/// Tells which channels are not kept although all keep their names.
+fn left_out(of: &Of<'_>, tables: &[&Table], steps: &mut Vec<String>) {
+    use super::mapping::Distance;
+    let source = |name: &str| match &of.side.distance {
+        Some(Distance::Channel(map)) => map.terms.iter().any(|term| term.name.value == name),
+        _ => false,
+    };
+    let is_axis = |name: &str| of.side.time.from.iter().any(|time| time.value == name) || source(name);
+    for name in ["time", "distance"].into_iter().filter(|name| of.side.channels.maps().is_none() && is_second_axis(of, name)) {
+        if !is_axis(name) && tables.iter().any(|table| table.channels.iter().any(|channel| channel.name == name)) {
+            steps.push(format!("the channel `{name}` of the file is left out: the mapping states another {name}"));
         }
     }
 }

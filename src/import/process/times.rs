@@ -59,7 +59,13 @@ fn gap(of: &Of<'_>, gaps: &Gaps, clock: &Clock, file: &str, done: &str, at: &Spa
         "run" => "split the file there, and import the parts before and after it as runs of their own",
         _ => "split the file there, and import the part that the section is in; or export the record without interruption",
     };
-    Problem::error("gap", says).at(at).help(help)
+    let problem = Problem::error("gap", says).at(at);
+    // No whole sample is missing in a step that is shorter than two.
+    if (gaps.to - gaps.from) * clock.rate < 2.0 { problem.help(stated(mean_rate(&clock.times), help)) } else { problem.help(help) }
+}
+
+fn mean_rate(times: &[f64]) -> f64 {
+    (times.len() - 1) as f64 / (times[times.len() - 1] - times[0])
 }
 
 fn uneven(of: &Of<'_>, clock: &Clock, file: &str, rate: f64, at: &Span) -> Problem {
