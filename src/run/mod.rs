@@ -275,10 +275,21 @@ pub fn check_data(plan: &Plan, campaign: &Campaign, problems: &mut Problems) {
     let facts = Facts::read(plan, campaigns, problems);
     if find::applies(plan, campaign) {
         find::check_facts(plan, campaign, problems);
-    } else {
-        sections::units(plan, campaigns, problems);
+        wanted::points(plan, campaigns, &facts, problems);
+        return;
     }
+    let mut units = sections::units(plan, campaigns, problems);
     wanted::points(plan, campaigns, &facts, problems);
+    if problems.any_error() {
+        return;
+    }
+    requirements::check_data(plan, &facts, &mut units);
+    let told = match stop_on_fault(plan, &units, &[]) {
+        Ok(()) if units.iter().any(|unit| unit.fault.is_none()) => return,
+        Ok(()) => nothing_usable(&units, vec![SectionValues::default(); units.len()]),
+        Err(told) => told,
+    };
+    told.0.into_iter().for_each(|problem| problems.push(problem));
 }
 
 /// Data read before any record.

@@ -20,6 +20,8 @@ pub struct Needs {
     pub channels: Vec<ChannelNeed>,
     /// The positions of each quantity, by which it is known whether one without a channel can be left out.
     pub positions: Vec<Positions>,
+    /// Columns of records that the search for sections in runs reads, beside those that are required anyway.
+    pub searched: Vec<ChannelNeed>,
     /// Columns of the table of sections; none where whole records are evaluated.
     pub sections: Vec<DatumNeed>,
     pub vehicle: Vec<DatumNeed>,
@@ -111,7 +113,9 @@ pub fn needs(plan: &Plan, graph: &Graph) -> Needs {
         let is_found = |index: &usize| !super::find::is_stated(plan, find, *index);
         (0..plan.columns.len()).filter(is_found).map(|index| plan.columns[index].key.clone()).collect()
     });
-    Needs { channels: channels(plan, graph), positions: positions(plan, graph), sections, vehicle, found, application: application(plan) }
+    let channels = channels(plan, graph);
+    let searched = searched(plan, graph, &channels);
+    Needs { channels, positions: positions(plan, graph), searched, sections, vehicle, found, application: application(plan) }
 }
 
 /// A column that the program itself reads.
@@ -190,6 +194,16 @@ fn datum_need(datum: &Datum, users: Users) -> DatumNeed {
         default,
         users,
     }
+}
+
+fn searched(plan: &Plan, graph: &Graph, known: &[ChannelNeed]) -> Vec<ChannelNeed> {
+    let need = |(record, column): (&'static str, String)| {
+        let other = known.iter().find(|need| need.record == record && need.column == column);
+        let users = Users { quantities: Vec::new(), rules: vec!["the search for sections".into()] };
+        let (channel, unit) = other.map_or_else(Default::default, |need| (need.channel.clone(), need.unit.clone()));
+        (!other.is_some_and(|need| need.required)).then_some(ChannelNeed { record, column, channel, unit, required: true, users })
+    };
+    super::find::columns(plan, graph).into_iter().filter_map(|(side, column)| need((side.in_words(), column))).collect()
 }
 
 fn positions(plan: &Plan, graph: &Graph) -> Vec<Positions> {

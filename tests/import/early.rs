@@ -38,6 +38,26 @@ fn tables_and_vehicle_are_checked() {
     with_file("vehicle.yaml", |text| text.replace(": passenger", ": coach"), &["`coach` is not one of passenger"]);
 }
 
+/// A section that cannot be used is one of the report; if none can, there is no report.
+#[test]
+fn a_table_without_a_usable_section() {
+    with_file("sections.csv", |text| text.replace("end [m]", "end [mm]"), &["no-usable-section", "its start is not before its end"]);
+}
+
+/// The needs are those with the parameters of the mapping.
+#[test]
+fn parameters_of_the_mapping_decide_what_is_needed() {
+    let out = tempfile::tempdir().expect("a folder");
+    let first = mapping().replace("\nmeasurement:", "\ncampaign: {parameters: {evaluated_wheelsets: \"1, 2\"}}\n\nmeasurement:");
+    let without: String =
+        first.lines().filter(|line| !line.contains("_3R: ") && !line.contains("_3L: ")).map(|line| format!("{line}\n")).collect();
+    let (problems, done) = imported(&without, "mapping.yaml", Path::new(FOLDER), &out.path().join("c"));
+    assert!(done && problems.0.is_empty(), "{}", problems.render(false));
+    let other = without.replace("1, 2", "1, 3");
+    let (problems, _) = imported(&other, "mapping.yaml", Path::new(FOLDER), &out.path().join("d"));
+    assert!(problems.render(false).contains("`Y_3L`"), "{}", problems.render(false));
+}
+
 #[test]
 fn further_keys_of_the_campaign_are_checked() {
     let with = |block: &str| mapping().replace("\nmeasurement:", &format!("\ncampaign: {block}\n\nmeasurement:"));
@@ -71,6 +91,14 @@ fn a_channel_that_was_not_measured() {
     refused(&text, FOLDER, &["error[channel-missing]", "is `Q_3R` meant?"]);
     refused(&mapping().replace("    az_I: WK1 z..\n    az_II: WK2 z..\n", ""), FOLDER, &["error[channel-missing]", "`az_I`, `az_II`"]);
     refused(&mapping().replace("  distance: Weg\n", ""), FOLDER, &["error[channel-missing]", "`distance`"]);
+}
+
+/// What the search for sections reads is needed as well.
+#[test]
+fn a_channel_of_the_search_must_be_there() {
+    let text = fs::read_to_string("examples/run/recorded/mapping.yaml").expect("the example");
+    let without = text.replacen("channels: as named", "channels: {Y_1L: Y_1L}", 1);
+    refused(&without, "examples/run/recorded", &["error[channel-missing]", "`speed`"]);
 }
 
 /// Where channels keep their names, only the file tells what is missing.

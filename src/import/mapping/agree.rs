@@ -21,7 +21,7 @@ pub fn record_of(kind: RecordKind) -> &'static str {
 pub fn agree(mapping: &Mapping, needs: &Needs, problems: &mut Problems) {
     let missing = |record: &str, column: &str| mapping.sides.iter().any(|side| record_of(side.kind) == record && lacks(side, column));
     for kind in [RecordKind::Measurement, RecordKind::Simulation] {
-        let of_side: Vec<&ChannelNeed> = needs.channels.iter().filter(|need| need.record == record_of(kind)).collect();
+        let of_side: Vec<&ChannelNeed> = read(mapping, needs).filter(|need| need.record == record_of(kind)).collect();
         match mapping.side(kind) {
             Some(side) => agree_side(side, &of_side, &|need| needs.blocks(need, &missing), problems),
             None if of_side.iter().any(|need| need.required) => {
@@ -36,6 +36,12 @@ pub fn agree(mapping: &Mapping, needs: &Needs, problems: &mut Problems) {
         None => agree_sections(mapping, needs, problems),
     }
     agree_vehicle(mapping, needs, problems);
+}
+
+/// The channels that are read; those of the search where the sections are looked for in runs.
+fn read<'a>(mapping: &Mapping, needs: &'a Needs) -> impl Iterator<Item = &'a ChannelNeed> {
+    let is_search = mapping.runs.as_ref().is_some_and(|runs| runs.table.is_none());
+    needs.searched.iter().filter(move |_| is_search).chain(&needs.channels)
 }
 
 /// Section data must be found in the runs or stated of each; otherwise there is a table of sections.
@@ -145,10 +151,10 @@ fn agree_side(side: &Side, needs: &[&ChannelNeed], blocks: &dyn Fn(&ChannelNeed)
 }
 
 /// Of channels that keep their names: those that the protocol needs and a file does not have. `names`: the channels of the file.
-pub fn as_named(side: &Side, needs: &Needs, names: &[&str], shown: &str) -> Vec<Problem> {
+pub fn as_named((mapping, side): (&Mapping, &Side), needs: &Needs, names: &[&str], shown: &str) -> Vec<Problem> {
     let record = record_of(side.kind);
     let lacks = |column: &str| !names.contains(&column) && !is_axis(side, column);
-    let missing = needs.channels.iter().filter(|need| need.required && need.record == record && lacks(&need.column));
+    let missing = read(mapping, needs).filter(|need| need.required && need.record == record && lacks(&need.column));
     let (needed, left_out): (Vec<&ChannelNeed>, Vec<&ChannelNeed>) =
         missing.partition(|need| needs.blocks(need, &|of, column| of == record && lacks(column)));
     let is = format!("not in `{shown}`, whose channels keep their names");

@@ -216,7 +216,7 @@ fn missing(of: &Of<'_>, maps: &[ChannelMap]) -> (Vec<Problem>, Vec<Problem>) {
     let (Channels::AsNamed, Some(needs)) = (&of.side.channels, of.needs) else { return (Vec::new(), Vec::new()) };
     let names: Vec<&str> = maps.iter().map(|map| map.name.value.as_str()).collect();
     let is_error = |problem: &Problem| problem.severity == Severity::Error;
-    agree::as_named(of.side, needs, &names, of.shown).into_iter().partition(is_error)
+    agree::as_named((of.mapping, of.side), needs, &names, of.shown).into_iter().partition(is_error)
 }
 
 fn values_for_match(of: &Of<'_>, map: &ChannelMap, tables: &[&Table]) -> Result<(usize, Vec<f64>, Unit), Problem> {
