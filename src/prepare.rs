@@ -8,10 +8,12 @@ use crate::check::{Override, Overrides, plan::SetBy};
 use crate::data::{Campaign, Campaigns};
 use crate::diagnose::settings::Settings;
 use crate::effects::{self, Catalogue};
+use crate::import::check::NotWritten;
+use crate::import::mapping::{Mapping, agree};
 use crate::library;
 use crate::problem::{Problem, Problems};
 use crate::result::found::FoundSections;
-use crate::run::find;
+use crate::run::{self, find, needs::needs};
 use crate::simulate::{Section, model_parameters, sections};
 use crate::source::{Source, Spanned};
 use crate::syntax::document::Text;
@@ -81,6 +83,29 @@ pub fn for_diagnosis(campaign: &Campaign, catalogue: &str, problems: &mut Proble
 pub fn load_catalogue(name: &str, problems: &mut Problems) -> Option<Catalogue> {
     let source = library::find_catalogue(name, None).map_err(|problem| problems.push(*problem)).ok()?;
     effects::read(&source, &library::parent_catalogue, &model_parameters(), problems)
+}
+
+/// The protocol of a mapping with the parameters that the mapping sets, if it names one. Mapping, protocol, tables and vehicle are checked
+/// against each other as an evaluation does it, before any record is read.
+pub fn for_import(mapping: &Mapping, problems: &mut Problems) -> Option<Option<Compiled>> {
+    let before = problems.errors();
+    let made = NotWritten::new(mapping, problems)?;
+    let Some(named) = &mapping.protocol else { return Some(None) };
+    let source = match library::shipped(&named.value) {
+        Some(source) => source,
+        None => library::find(&named.value, Some(&mapping.folder)).map_err(|problem| problems.push(problem.at(&named.span))).ok()?,
+    };
+    let family = family::read(&source, &library::parent, problems);
+    let overrides = overrides(&[], std::slice::from_ref(&made.campaign), problems)?;
+    let compiled = compile(family, &overrides, problems)?;
+    agree::agree(mapping, &needs(&compiled.plan, &compiled.graph), problems);
+    if problems.errors() == before {
+        made.checked(problems, |campaign, problems| {
+            facts_like_parameters(&compiled, campaign, problems);
+            run::check_data(&compiled.plan, campaign, problems);
+        });
+    }
+    (problems.errors() == before).then_some(Some(compiled))
 }
 
 /// Opens a campaign and compiles the protocol named on the command line, else the campaign's, else the first shipped one.

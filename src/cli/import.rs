@@ -12,8 +12,7 @@ use super::places::same;
 use super::protocols::load;
 use crate::certify::{Compiled, certify, compile};
 use crate::check::Overrides;
-use crate::check::family::{self, Family};
-use crate::check::plan::Side;
+use crate::check::plan::{Plan, Side};
 use crate::data::record::Format;
 use crate::data::text::read_text;
 use crate::data::write::Outputs;
@@ -23,10 +22,12 @@ use crate::import::draft::{With, draft, groups, relative_to};
 use crate::import::exchanged::exchanged;
 use crate::import::mapping::{self, Mapping};
 use crate::library;
+use crate::prepare::for_import;
 use crate::problem::{Problem, Problems, plain};
 use crate::report::findings;
+use crate::result::Finding;
 use crate::run::needs::needs;
-use crate::run::{Settings, find};
+use crate::run::{Settings, consequence, find};
 use crate::source::{Source, Spanned};
 
 #[derive(Debug, Args)]
@@ -153,23 +154,8 @@ fn checked(path: &Path, out: &Path, problems: &mut Problems) -> Option<(Mapping,
             problems.push(Problem::error("output-is-input", says).at(&pattern.span).help("give another folder"));
         }
     }
-    let Some(named) = &mapping.protocol else { return Some((mapping, None)) };
-    let before = problems.errors();
-    let compiled = protocol(named, folder, problems).and_then(|family| {
-        let compiled = compile(family, &Overrides::new(), problems)?;
-        mapping::agree::agree(&mapping, &needs(&compiled.plan, &compiled.graph), problems);
-        Some(compiled)
-    });
-    (problems.errors() == before).then_some((mapping, compiled))
-}
-
-/// The protocol of a mapping: a shipped one, or a file relative to the mapping.
-fn protocol(named: &Spanned<String>, folder: &Path, problems: &mut Problems) -> Option<Family> {
-    let source = match library::shipped(&named.value) {
-        Some(source) => source,
-        None => library::find(&named.value, Some(folder)).map_err(|problem| problems.push(problem.at(&named.span))).ok()?,
-    };
-    Some(family::read(&source, &library::parent, problems))
+    let compiled = for_import(&mapping, problems)?;
+    Some((mapping, compiled))
 }
 
 /// What is told about the campaign that was made: exchanged channels, and the findings of the protocol.
@@ -191,7 +177,7 @@ fn look(mapping: &Mapping, compiled: Option<&Compiled>, out: &Path, console: &Co
             for section in found.sections.iter().filter(|section| !section.used) {
                 console.say(&format!("section {} cannot be used: {}", section.section, section.reason.clone().unwrap_or_default()));
             }
-            let rows = findings::rows(&found.findings);
+            let rows = findings::rows(&as_stated(&compiled.plan, found.findings));
             rows.iter().for_each(|row| console.say(&format!("finding: {}", findings::line(row))));
             if rows.is_empty() {
                 console.say("no findings about the plausibility of the records");
@@ -202,4 +188,10 @@ fn look(mapping: &Mapping, compiled: Option<&Compiled>, out: &Path, console: &Co
             console.problems(&problems);
         }
     }
+}
+
+/// Findings with the consequence that `certify` gives them. They were sought with rules that only tell, so that none hides another.
+fn as_stated(plan: &Plan, findings: Vec<Finding>) -> Vec<Finding> {
+    let of = |finding: &Finding| plan.plausibility.iter().find(|rule| rule.name == finding.code).map(|rule| consequence(rule.otherwise));
+    findings.into_iter().map(|finding| Finding { consequence: of(&finding).unwrap_or(finding.consequence), ..finding }).collect()
 }

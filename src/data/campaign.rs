@@ -131,8 +131,32 @@ impl Campaign {
             return None;
         }
         let (source, tree) = opening.yaml(&place, None)?;
+        let mut campaign = Self::of_tree(opening, source, tree)?;
+        campaign.find_names(problems);
+        (problems.errors() == before).then_some(campaign)
+    }
+
+    /// A campaign that is not written yet: the tree of its `campaign.yaml`, whose parts may stand in other files, and its small files.
+    /// `names`: those of its records, of which none is read, for a campaign without a table of sections and without runs.
+    ///
+    /// Problems: as [`Campaign::open`].
+    pub fn not_written(tree: Node, memory: Memory, names: Vec<Cell>, problems: &mut Problems) -> Option<Self> {
+        let before = problems.errors();
+        let opening = Opening { folder: Folder::nowhere().with(memory), files: Vec::new(), problems };
+        let mut campaign = Self::of_tree(opening, Arc::clone(&tree.span.source), tree)?;
+        if campaign.sections.is_none() && campaign.runs.is_empty() {
+            campaign.names = names;
+        } else {
+            campaign.find_names(problems);
+        }
+        (problems.errors() == before).then_some(campaign)
+    }
+
+    /// Everything that `campaign.yaml` and its tables say; the names of the sections are not known yet.
+    fn of_tree(mut opening: Opening<'_>, source: Arc<Source>, tree: Node) -> Option<Self> {
+        let before = opening.problems.errors();
         if !matches!(tree.value, Value::Map(_)) {
-            problems.push(
+            opening.problems.push(
                 Problem::error("wrong-kind", format!("a campaign must be a map of keys and values, not {}", tree.kind_in_words()))
                     .at(&tree.span),
             );
@@ -161,8 +185,8 @@ impl Campaign {
             vehicles.push(VehicleState { state: None, data });
         }
         let report = identification::read(&tree, opening.problems);
-        let Opening { folder, files, .. } = opening;
-        let mut campaign = Self {
+        let Opening { folder, files, problems } = opening;
+        let campaign = Self {
             short_name: short_name.unwrap_or_else(|| {
                 let at = tree.get("name").map_or_else(|| tree.span.part(0..0), |node| node.span.clone());
                 Spanned::new(name.clone().unwrap_or_default(), at)
@@ -185,9 +209,6 @@ impl Campaign {
             record_folders,
             runs,
         };
-        if problems.errors() == before {
-            campaign.find_names(problems);
-        }
         (problems.errors() == before).then_some(campaign)
     }
 

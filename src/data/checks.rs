@@ -90,7 +90,9 @@ fn not_increasing(code: &'static str, record: &Record, column: &Column, row: usi
 /// The sampling rate, if the steps are constant.
 fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> Option<f64> {
     let times = &clock.values;
-    let (&[first, ..], &[.., last]) = (times.as_slice(), times.as_slice()) else { return None };
+    if times.is_empty() {
+        return None;
+    }
     if times.len() < 3 {
         problems.push(Problem::error(
             "too-short",
@@ -102,24 +104,17 @@ fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> 
         problems.push(not_increasing("time-not-increasing", record, clock, row));
         return None;
     }
-    let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let resolution = resolution(clock);
-    // The median is the usual step even with gaps. Rounded stamps change many steps by the resolution; if only few steps differ, rounding
-    // is not the reason.
-    let usual = median(&steps);
-    let unusual = steps.iter().filter(|step| (*step - usual).abs() > 1e-6 * usual).count();
-    let rounding = if unusual * 100 < steps.len() { 0.0 } else { resolution };
-    let longest = (GAP * usual).max(usual + 1.5 * rounding);
-    let gaps: Vec<usize> = (0..steps.len()).filter(|row| steps[*row] > longest).collect();
+    let Steps { usual, rate, gaps, uneven } = steps(times, clock.unit.factor);
+    let step = |row: usize| times[row + 1] - times[row];
     for row in gaps.iter().take(TOLD) {
         let says = format!(
             "`{}` has a gap of {} between rows {} and {} of `{}`, {:.0} sampling steps",
             clock.name,
-            number(clock, steps[*row]),
+            number(clock, step(*row)),
             record.row_shown(*row),
             record.row_shown(row + 1),
             record.shown,
-            steps[*row] / usual
+            step(*row) / usual
         );
         problems.push(placed(Problem::error("gap", says), record, row + 1, clock));
     }
@@ -129,18 +124,14 @@ fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> 
     if !gaps.is_empty() {
         return None;
     }
-    #[expect(clippy::cast_precision_loss, reason = "a record has far fewer than 2^52 samples")]
-    let rate = (times.len() - 1) as f64 / (last - first);
-    let mean = 1.0 / rate;
-    let allowed = (JITTER * mean).max(resolution * (1.0 + 1e-6));
-    if let Some(row) = steps.iter().position(|step| (step - mean).abs() > allowed) {
+    if let Some(row) = uneven {
         let says = format!(
             "the step of `{}` is {} at row {} of `{}`, {} on average",
             clock.name,
-            number(clock, steps[row]),
+            number(clock, step(row)),
             record.row_shown(row + 1),
             record.shown,
-            number(clock, mean)
+            number(clock, 1.0 / rate)
         );
         problems
             .push(placed(Problem::error("uneven-step", says), record, row + 1, clock).help("records must have a constant sampling rate"));
@@ -149,20 +140,52 @@ fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> 
     Some(whole(rate))
 }
 
+/// The steps of a clock.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Steps {
+    /// The median.
+    pub usual: f64,
+    /// (n - 1) / (last - first): the inverse of the mean.
+    pub rate: f64,
+    /// The rows after which time has a gap.
+    pub gaps: Vec<usize>,
+    /// The row after which the first step differs from the mean by more than a record may have.
+    pub uneven: Option<usize>,
+}
+
+/// Looks at the steps of times, two at least, that increase. `factor`: the unit in which they are written, in SI units; times are often
+/// rounded in it.
+pub fn steps(times: &[f64], factor: f64) -> Steps {
+    let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let resolution = resolution(times, factor);
+    // The median is the usual step even with gaps. Rounded stamps change many steps by the resolution; if only few steps differ, rounding
+    // is not the reason.
+    let usual = median(&steps);
+    let unusual = steps.iter().filter(|step| (*step - usual).abs() > 1e-6 * usual).count();
+    let rounding = if unusual * 100 < steps.len() { 0.0 } else { resolution };
+    let longest = (GAP * usual).max(usual + 1.5 * rounding);
+    let gaps = (0..steps.len()).filter(|row| steps[*row] > longest).collect();
+    #[expect(clippy::cast_precision_loss, reason = "a record has far fewer than 2^52 samples")]
+    let rate = steps.len() as f64 / (times[steps.len()] - times[0]);
+    let mean = 1.0 / rate;
+    let allowed = (JITTER * mean).max(resolution * (1.0 + 1e-6));
+    let uneven = steps.iter().position(|step| (step - mean).abs() > allowed);
+    Steps { usual, rate, gaps, uneven }
+}
+
 /// A sampling rate, as a whole number if it is close to one: time stamps are often rounded.
 pub fn whole(rate: f64) -> f64 {
     if (rate - rate.round()).abs() < WHOLE * rate { rate.round() } else { rate }
 }
 
-/// The power of ten of which all time stamps of the file are multiples, in SI units: the resolution of their rounding.
-fn resolution(clock: &Column) -> f64 {
+/// The power of ten of which all time stamps of a file are multiples, in SI units: the resolution of their rounding.
+fn resolution(times: &[f64], factor: f64) -> f64 {
     const MOST_DECIMALS: i32 = 9;
-    let factor = clock.unit.factor;
     (0..=MOST_DECIMALS)
         .map(|decimals| 10f64.powi(decimals))
         .find(|scale| {
             // A stamp of 1000 s has an error of 1e-13 s, one part in 10^4 of the smallest resolution tested.
-            clock.values.iter().all(|time| {
+            times.iter().all(|time| {
                 let scaled = time / factor * scale;
                 (scaled - scaled.round()).abs() < 1e-3
             })

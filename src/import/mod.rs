@@ -3,6 +3,7 @@
 //! | file | content |
 //! |---|---|
 //! | `mapping/` | the mapping: read, checked, compared with the needs of a protocol |
+//! | `check` | the campaign before its records are read: what `certify` would refuse |
 //! | `process/` | from a file to the record of a section |
 //! | `runs`, `drift` | whole runs; the drift of the distance along them |
 //! | `write` | the campaign, with an account of what was done |
@@ -11,6 +12,7 @@
 
 #![allow(clippy::cast_precision_loss)]
 
+pub mod check;
 pub mod draft;
 mod drift;
 pub mod exchanged;
@@ -65,7 +67,7 @@ pub fn import(
             return Err(few(faults));
         }
         add_campaign(outputs, mapping, format, &sources, accounts).map_err(one)?;
-        return Ok(warnings);
+        return Ok(few(warnings));
     }
     let mut jobs: Vec<Job<'_>> = Vec::new();
     for side in &mapping.sides {
@@ -105,7 +107,7 @@ pub fn import(
         return Err(few(faults));
     }
     add_campaign(outputs, mapping, format, &sources, accounts.into_values().collect()).map_err(|problem| Problems(vec![problem]))?;
-    Ok(warnings)
+    Ok(few(warnings))
 }
 
 struct Done {
@@ -165,7 +167,9 @@ fn few(problems: Problems) -> Problems {
         }
     }
     if more > 0 {
-        told.push(Problem::error("more-problems", format!("{more} more of other sections, most of the same kind")));
+        let says = format!("{more} more of other sections, most of the same kind");
+        let error = told.any_error();
+        told.push(if error { Problem::error("more-problems", says) } else { Problem::warning("more-problems", says) });
     }
     told
 }

@@ -101,6 +101,78 @@ pub fn account(made: &Made, file: &SourceFile) -> ImportedRecord {
     }
 }
 
+/// A file of the campaign that is copied as it is.
+#[derive(Debug)]
+pub struct Copied {
+    /// The path in the mapping, and where it stands there.
+    pub written: Spanned<String>,
+    /// The path inside the campaign.
+    pub inside: String,
+    pub bytes: Vec<u8>,
+}
+
+/// The small files that the mapping names: those that a check of the campaign reads.
+///
+/// # Errors
+/// A file cannot be read.
+pub fn small_files(mapping: &Mapping) -> Result<Vec<Copied>, Problem> {
+    let own = mapping.protocol.as_ref().filter(|protocol| crate::library::shipped(&protocol.value).is_none());
+    let vehicle = mapping.vehicle.as_ref().map(|(written, _)| written);
+    let all = own.into_iter().chain(vehicle).chain(table(mapping)).chain(&mapping.copies);
+    all.map(|written| copied(mapping, written, &written.value, file(&written.value))).collect()
+}
+
+fn copied(mapping: &Mapping, named: &Spanned<String>, written: &str, inside: String) -> Result<Copied, Problem> {
+    let (path, shown) = mapping.place(written);
+    let bytes = read_any(&path, &shown).map_err(|problem| if problem.at.is_some() { problem } else { problem.at(&named.span) })?;
+    Ok(Copied { written: Spanned::new(written.to_string(), named.span.clone()), inside, bytes })
+}
+
+/// The name of a file without its folders.
+fn file(written: &str) -> String {
+    written.rsplit(['/', '\\']).next().unwrap_or(written).to_string()
+}
+
+/// The table of sections, of whole records or of runs.
+fn table(mapping: &Mapping) -> Option<&Spanned<String>> {
+    let of_sections = mapping.sections.table.as_ref().map(|(written, _)| written);
+    of_sections.or(mapping.runs.as_ref().and_then(|runs| runs.table.as_ref()))
+}
+
+fn text_node(text: impl Into<String>, at: &Span) -> Node {
+    let text = text.into();
+    Node { raw: text.clone(), value: Value::Text(text), span: at.clone(), exact: false }
+}
+
+fn key(text: &str, at: &Span) -> Key {
+    Key { text: text.to_string(), span: at.clone(), exact: false }
+}
+
+/// `campaign.yaml`, each part with its place in the mapping, without the account of the import.
+pub fn campaign_tree(mapping: &Mapping, format: Format) -> Node {
+    let mut entries: Vec<(Key, Node)> = Vec::new();
+    let mut add = |name: &str, node: Node| entries.push((key(name, &node.span), node));
+    add("name", text_node(mapping.name.value.as_str(), &mapping.name.span));
+    if let Some(named) = &mapping.protocol {
+        let shipped = crate::library::shipped(&named.value).is_some();
+        add("protocol", text_node(if shipped { named.value.clone() } else { file(&named.value) }, &named.span));
+    }
+    if let Some((written, _)) = &mapping.vehicle {
+        add("vehicle", text_node(file(&written.value), &written.span));
+    }
+    if let Some(written) = table(mapping) {
+        add("sections", text_node(file(&written.value), &written.span));
+    }
+    if let Some(runs) = &mapping.runs {
+        add(RUNS, of_runs(mapping, runs, format));
+    } else {
+        mapping.sides.iter().for_each(|side| add(side.kind.key(), text_node(side.kind.key(), &side.span)));
+        mapping.track.iter().for_each(|track| add("track", text_node("track", &track.span)));
+    }
+    entries.extend(mapping.campaign.iter().cloned());
+    Node { value: Value::Map(entries), raw: String::new(), span: mapping.source.whole(), exact: false }
+}
+
 /// Adds all files but the records.
 ///
 /// # Errors
@@ -112,52 +184,22 @@ pub fn add_campaign(
     sources: &[SourceFile],
     records: Vec<ImportedRecord>,
 ) -> Result<(), Problem> {
-    let mut copied: Vec<OriginFile> = Vec::new();
-    let mut copy = |outputs: &mut Outputs, written: &str, inside: &str, at: &Span| -> Result<(), Problem> {
-        let (path, shown) = mapping.place(written);
-        let bytes = read_any(&path, &shown).map_err(|problem| if problem.at.is_some() { problem } else { problem.at(at) })?;
-        copied.push(OriginFile { path: written.to_string(), sha256: crate::data::hash::sha256(&bytes) });
-        outputs.add(inside, &bytes)
+    let mut of_copies: Vec<OriginFile> = Vec::new();
+    let mut copy = |outputs: &mut Outputs, file: &Copied| -> Result<(), Problem> {
+        of_copies.push(OriginFile { path: file.written.value.clone(), sha256: crate::data::hash::sha256(&file.bytes) });
+        outputs.add(&file.inside, &file.bytes)
     };
-    let mut lines: Vec<(&str, Entry<'_>)> = vec![("name", Entry::Text(&mapping.name.value))];
-    let file = |written: &str| written.rsplit(['/', '\\']).next().unwrap_or(written).to_string();
-    let (mut vehicle_file, mut sections_file) = (String::new(), String::new());
-    if let Some(protocol) = mapping.protocol.as_ref().filter(|protocol| crate::library::shipped(&protocol.value).is_none()) {
-        copy(outputs, &protocol.value, &file(&protocol.value), &protocol.span)?;
-    }
-    let protocol = mapping.protocol.as_ref().map(|protocol| match crate::library::shipped(&protocol.value) {
-        Some(_) => protocol.value.clone(),
-        None => file(&protocol.value),
-    });
-    if let Some((written, _)) = &mapping.vehicle {
-        vehicle_file = file(&written.value);
-        copy(outputs, &written.value, &vehicle_file, &written.span)?;
-    }
-    let table = mapping.sections.table.as_ref().map(|(written, _)| written);
-    if let Some(written) = table.or(mapping.runs.as_ref().and_then(|runs| runs.table.as_ref())) {
-        sections_file = file(&written.value);
-        copy(outputs, &written.value, &sections_file, &written.span)?;
-    }
-    for written in &mapping.copies {
-        copy(outputs, &written.value, &file(&written.value), &written.span)?;
+    for file in small_files(mapping)? {
+        copy(outputs, &file)?;
     }
     if let Some(pattern) = &mapping.track {
         for name in &mapping.sections.names {
             let written = mapping.sections.fill(&pattern.value, &name.value);
-            copy(outputs, &written, &track_path(pattern, &name.value), &pattern.span)?;
+            copy(outputs, &copied(mapping, pattern, &written, track_path(pattern, &name.value))?)?;
         }
     }
-    lines.extend(protocol.as_deref().map(|protocol| ("protocol", Entry::Text(protocol))));
-    lines.extend((!vehicle_file.is_empty()).then_some(("vehicle", Entry::Text(&vehicle_file))));
-    lines.extend((!sections_file.is_empty()).then_some(("sections", Entry::Text(&sections_file))));
-    let runs = mapping.runs.as_ref().map(|runs| of_runs(mapping, runs, format));
-    if let Some(runs) = &runs {
-        lines.push((RUNS, Entry::Node(runs)));
-    } else {
-        lines.extend(mapping.sides.iter().map(|side| (side.kind.key(), Entry::Text(side.kind.key()))));
-        lines.extend(mapping.track.as_ref().map(|_| ("track", Entry::Text("track"))));
-    }
-    lines.extend(mapping.campaign.iter().map(|(key, node)| (key.text.as_str(), Entry::Node(node))));
+    let tree = campaign_tree(mapping, format);
+    let mut lines: Vec<(&str, Entry<'_>)> = tree.entries().iter().map(|(key, node)| (key.text.as_str(), Entry::Node(node))).collect();
     lines.push((ORIGIN_KEY, Entry::Text(ORIGIN_FILE)));
     outputs.add("campaign.yaml", campaign_yaml(&lines).as_bytes())?;
     let sources = sources.iter().map(|source| OriginFile { path: source.path.clone(), sha256: source.sha256.clone() });
@@ -165,7 +207,7 @@ pub fn add_campaign(
         program: concat!("fishplate ", env!("CARGO_PKG_VERSION")).to_string(),
         command: "import".into(),
         campaign: mapping.name.value.clone(),
-        sources: sources.chain(copied).collect(),
+        sources: sources.chain(of_copies).collect(),
         imported: Some(Imported { mapping: mapping.source.text.clone(), channels: channels(mapping), records }),
         ..Origin::default()
     };
@@ -179,18 +221,16 @@ fn track_path(pattern: &Spanned<String>, name: &str) -> String {
 
 /// The block `runs`: the files of each run, and what the mapping says of it.
 fn of_runs(mapping: &Mapping, runs: &Runs, format: Format) -> Node {
-    let text = |text: String, at: &Span| Node { raw: text.clone(), value: Value::Text(text), span: at.clone(), exact: false };
-    let key = |text: &str, at: &Span| Key { text: text.to_string(), span: at.clone(), exact: false };
     let of_one = |(name, facts): (&Spanned<String>, &Vec<(Key, Node)>)| {
         let at = &name.span;
-        let record = |side: &Side| (key(side.kind.key(), at), text(record_path(side.kind, &name.value, format.ending()), at));
+        let record = |side: &Side| (key(side.kind.key(), at), text_node(record_path(side.kind, &name.value, format.ending()), at));
         let mut entries: Vec<(Key, Node)> = mapping.sides.iter().map(record).collect();
-        entries.extend(mapping.track.iter().map(|pattern| (key("track", at), text(track_path(pattern, &name.value), at))));
+        entries.extend(mapping.track.iter().map(|pattern| (key("track", at), text_node(track_path(pattern, &name.value), at))));
         entries.extend(facts.iter().cloned());
-        (key(&name.value, at), Node { value: Value::Map(entries), ..text(String::new(), at) })
+        (key(&name.value, at), Node { value: Value::Map(entries), ..text_node("", at) })
     };
     let entries = mapping.sections.names.iter().zip(&runs.facts).map(of_one).collect();
-    Node { value: Value::Map(entries), ..text(String::new(), &mapping.sections.span) }
+    Node { value: Value::Map(entries), ..text_node("", &mapping.sections.span) }
 }
 
 /// What the channels of each side were made of.

@@ -53,7 +53,7 @@ mod words;
 use indexmap::IndexMap;
 
 use crate::check::plan::{OnFault, Plan, Side};
-use crate::data::Campaigns;
+use crate::data::{Campaign, Campaigns};
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
 use crate::result::study::Reduction;
@@ -63,6 +63,7 @@ use crate::result::{
 };
 
 pub use basis::Basis;
+pub use consequence::consequence;
 pub use facts::{Facts, scalar};
 pub use judge::Judged;
 use pool::Pool;
@@ -265,6 +266,30 @@ impl Evaluated {
     pub fn offsets(&self) -> impl Iterator<Item = (&str, Option<&str>, Option<&Offset>)> {
         self.units.iter().zip(&self.values).map(|(unit, values)| (unit.name.as_str(), unit.zone.as_deref(), values.offset.as_ref()))
     }
+}
+
+/// Checks what a run reads before any record: the data of vehicles and sections, and wanted operation. Records need not exist.
+pub fn check_data(plan: &Plan, campaign: &Campaign, problems: &mut Problems) {
+    let campaigns = Campaigns::from(campaign);
+    campaigns.check(problems);
+    let facts = Facts::read(plan, campaigns, problems);
+    if find::applies(plan, campaign) {
+        find::check_facts(plan, campaign, problems);
+        wanted::points(plan, campaigns, &facts, problems);
+        return;
+    }
+    let mut units = sections::units(plan, campaigns, problems);
+    wanted::points(plan, campaigns, &facts, problems);
+    if problems.any_error() {
+        return;
+    }
+    requirements::check_data(plan, &facts, &mut units);
+    let told = match stop_on_fault(plan, &units, &[]) {
+        Ok(()) if units.iter().any(|unit| unit.fault.is_none()) => return,
+        Ok(()) => nothing_usable(&units, vec![SectionValues::default(); units.len()]),
+        Err(told) => told,
+    };
+    told.0.into_iter().for_each(|problem| problems.push(problem));
 }
 
 /// Data read before any record.

@@ -12,12 +12,16 @@ use crate::check::plan::{
 };
 use crate::data::campaign::POINT_KEY;
 use crate::data::sites;
-use crate::graph::{Graph, InputNode, NodeId, Operation};
+use crate::graph::{Graph, InputNode, NodeId, Operation, QuantityNodes};
 use crate::units::Unit;
 
 #[derive(Clone, Debug, Default)]
 pub struct Needs {
     pub channels: Vec<ChannelNeed>,
+    /// The positions of each quantity, by which it is known whether one without a channel can be left out.
+    pub positions: Vec<Positions>,
+    /// Columns of records that the search for sections in runs reads, beside those that are required anyway.
+    pub searched: Vec<ChannelNeed>,
     /// Columns of the table of sections; none where whole records are evaluated.
     pub sections: Vec<DatumNeed>,
     pub vehicle: Vec<DatumNeed>,
@@ -26,6 +30,30 @@ pub struct Needs {
     /// Columns of the table of wanted operation; none where the protocol has no domain.
     pub application: Vec<DatumNeed>,
 }
+
+/// The positions of a quantity.
+#[derive(Clone, Debug, Default)]
+pub struct Positions {
+    /// Whose records it reads: `simulated`, `measured`.
+    pub records: Vec<&'static str>,
+    /// The columns of each position.
+    pub columns: Vec<Vec<String>>,
+}
+
+impl Needs {
+    /// Whether nothing can be evaluated of an axis, a check or a quantity if columns are missing, of which the need is one. Otherwise only
+    /// positions are left out.
+    pub fn blocks(&self, need: &ChannelNeed, missing: &dyn Fn(&str, &str) -> bool) -> bool {
+        let uses = |of: &Positions| of.records.contains(&need.record) && of.columns.iter().any(|columns| columns.contains(&need.column));
+        let lacks =
+            |of: &Positions, columns: &[String]| columns.iter().any(|column| of.records.iter().any(|record| missing(record, column)));
+        need.users.rules.iter().any(|rule| !rule.starts_with(PLAUSIBILITY))
+            || self.positions.iter().any(|of| uses(of) && of.columns.iter().all(|columns| lacks(of, columns)))
+    }
+}
+
+/// Beginning of the user that is a plausibility rule: it looks at a channel only where it was recorded.
+const PLAUSIBILITY: &str = "plausibility ";
 
 /// Who needs something.
 #[derive(Clone, Debug, Default)]
@@ -85,7 +113,9 @@ pub fn needs(plan: &Plan, graph: &Graph) -> Needs {
         let is_found = |index: &usize| !super::find::is_stated(plan, find, *index);
         (0..plan.columns.len()).filter(is_found).map(|index| plan.columns[index].key.clone()).collect()
     });
-    Needs { channels: channels(plan, graph), sections, vehicle, found, application: application(plan) }
+    let channels = channels(plan, graph);
+    let searched = searched(plan, graph, &channels);
+    Needs { channels, positions: positions(plan, graph), searched, sections, vehicle, found, application: application(plan) }
 }
 
 /// A column that the program itself reads.
@@ -166,6 +196,32 @@ fn datum_need(datum: &Datum, users: Users) -> DatumNeed {
     }
 }
 
+fn searched(plan: &Plan, graph: &Graph, known: &[ChannelNeed]) -> Vec<ChannelNeed> {
+    let need = |(record, column): (&'static str, String)| {
+        let other = known.iter().find(|need| need.record == record && need.column == column);
+        let users = Users { quantities: Vec::new(), rules: vec!["the search for sections".into()] };
+        let (channel, unit) = other.map_or_else(Default::default, |need| (need.channel.clone(), need.unit.clone()));
+        (!other.is_some_and(|need| need.required)).then_some(ChannelNeed { record, column, channel, unit, required: true, users })
+    };
+    super::find::columns(plan, graph).into_iter().filter_map(|(side, column)| need((side.in_words(), column))).collect()
+}
+
+fn positions(plan: &Plan, graph: &Graph) -> Vec<Positions> {
+    let of = |(quantity, nodes): (&Quantity, &QuantityNodes)| Positions {
+        records: Side::ALL.into_iter().filter(|side| quantity.evaluation.reads(*side)).map(Side::in_words).collect(),
+        columns: nodes
+            .signals
+            .iter()
+            .map(|signal| {
+                let mut wanted = BTreeSet::new();
+                wanted_of(quantity, signal, &mut wanted);
+                reads(graph, wanted).into_iter().filter(|(_, of_track)| !of_track).map(|(column, _)| column).collect()
+            })
+            .collect(),
+    };
+    plan.quantities.iter().zip(&graph.quantities).map(of).collect()
+}
+
 /// By record and column: whether a number depends on it, and its users. In the order of the records and of the protocol.
 type Read = BTreeMap<(usize, usize), (bool, Users)>;
 
@@ -213,7 +269,7 @@ fn channels(plan: &Plan, graph: &Graph) -> Vec<ChannelNeed> {
     }
     for (rule, nodes) in plan.plausibility.iter().zip(&graph.plausibility) {
         let of = nodes.positions.iter().flat_map(|position| position.own.into_iter().chain(nodes_of(&position.inputs))).collect();
-        add(of, &all, &format!("plausibility {}", rule.name), false, [false; 2]);
+        add(of, &all, &format!("{PLAUSIBILITY}{}", rule.name), false, [false; 2]);
     }
     if let Some(find) = &plan.sections.find {
         let found = find.data.iter().map(|datum| format!("found {}", plan.columns[datum.column].key)).zip(&graph.find.data);

@@ -85,6 +85,53 @@ fn a_draft_is_a_mapping_with_open_places() {
     assert!(exit == 2 && said.contains("open-place") && !campaign.exists(), "{said}");
 }
 
+/// Text files without units: the axes are known by name, and every unit is an open place.
+#[test]
+fn a_draft_of_files_without_units() {
+    let out = tempfile::tempdir().expect("a folder");
+    let mut files = Vec::new();
+    for section in ["S06", "S13"] {
+        let bytes = fs::read(format!("examples/foreign/messung/Messung_{section}.csv")).expect("the source");
+        let text: String = bytes.iter().map(|byte| char::from(*byte)).collect();
+        let lines: Vec<&str> = text.lines().enumerate().filter(|(at, _)| *at != 1).map(|(_, line)| line).collect();
+        let path = out.path().join(format!("Messung_{section}.csv"));
+        fs::write(&path, lines.join("\n")).expect("written");
+        files.push(path.display().to_string());
+    }
+    let path = out.path().join("draft.yaml").display().to_string();
+    let (exit, _, said) = run(&["import", "--draft", &files[0], &files[1], "--out", &path]);
+    assert_eq!(exit, 0, "{said}");
+    let draft = fs::read_to_string(&path).expect("a draft");
+    for part in [
+        "time: {from: Zeit, unit: \"?\"}",
+        "distance: {from: Weg, unit: \"?\"}",
+        "Q_1R: {from: ST1 Q re, unit: \"?\"}",
+        "the file states no unit: kN in the protocol",
+        "Y_1L: \"?\"",
+        "with its unit: {from: ST1 Y li, unit: ...}",
+    ] {
+        assert!(draft.contains(part), "no `{part}` in\n{draft}");
+    }
+    let (exit, _, said) = run(&["import", &path, "--out", &out.path().join("campaign").display().to_string()]);
+    assert!(exit == 2 && said.contains("open-place") && !said.contains("unit-missing"), "{said}");
+}
+
+/// After the import, a finding has the consequence that it has in the report.
+#[test]
+fn findings_have_the_consequence_of_the_evaluation() {
+    let out = tempfile::tempdir().expect("a folder");
+    let folder = fs::canonicalize("examples/foreign").expect("the example");
+    let mut text = fs::read_to_string("examples/foreign/mapping.yaml").expect("the example").replace("Q_1R: ST1 Q re", "Q_1R: -ST1 Q re");
+    for name in ["sections.csv", "vehicle.yaml", "messung/", "simulation/"] {
+        text = text.replace(&format!(": {name}"), &format!(": {}/{name}", folder.display()));
+    }
+    let path = out.path().join("mapping.yaml");
+    fs::write(&path, text).expect("written");
+    let campaign = out.path().join("campaign").display().to_string();
+    let (exit, _, said) = run(&["import", &path.display().to_string(), "--out", &campaign]);
+    assert!(exit == 0 && said.contains("finding: Q_1R") && said.contains("section not used]"), "{said}");
+}
+
 #[test]
 fn wrong_uses_are_refused() {
     let (exit, _, said) = run(&["import", "examples/foreign/mapping.yaml", "--out", "examples/foreign"]);

@@ -3,49 +3,35 @@
 //! `tests/cases/import/bad` holds mappings with a fault each, and the expected text beside them (`.out`); `UPDATE_EXPECT=1` rewrites
 //! it. Numbers are compared with closed forms.
 
+mod early;
 mod example;
 mod memory;
 mod process;
 mod runs;
+mod times;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use fishplate::certify::compile;
-use fishplate::check::Overrides;
-use fishplate::check::family;
 use fishplate::data::record::Format;
 use fishplate::data::write::Outputs;
 use fishplate::disk::SetKind;
 use fishplate::import::{import, mapping};
-use fishplate::library;
+use fishplate::prepare::for_import;
 use fishplate::problem::Problems;
-use fishplate::run::needs::{Needs, needs};
+use fishplate::run::needs::needs;
 use fishplate::source::Source;
 
 /// Relative, so that messages are the same on every machine; tests run in the folder of the package.
 const CASES: &str = "tests/cases/import";
-
-pub fn needs_of(protocol: &str) -> Needs {
-    let source = library::shipped(protocol).expect("a shipped protocol");
-    let mut problems = Problems::default();
-    let family = family::read(&source, &library::parent, &mut problems);
-    let compiled = compile(family, &Overrides::new(), &mut problems).expect("a sound protocol");
-    needs(&compiled.plan, &compiled.graph)
-}
 
 /// Imports a mapping into a folder: its problems, and whether there is an error among them.
 pub fn imported(text: &str, name: &str, folder: &Path, out: &Path) -> (Problems, bool) {
     let mut problems = Problems::default();
     let found = mapping::read(&Source::new(name, text), folder, &mut problems);
     let Some(mapping) = found else { return (problems, false) };
-    let needs = mapping.protocol.as_ref().map(|protocol| needs_of(&protocol.value));
-    if let Some(needs) = &needs {
-        mapping::agree::agree(&mapping, needs, &mut problems);
-    }
-    if problems.any_error() {
-        return (problems, false);
-    }
+    let Some(compiled) = for_import(&mapping, &mut problems) else { return (problems, false) };
+    let needs = compiled.map(|compiled| needs(&compiled.plan, &compiled.graph));
     let mut outputs = Outputs::of(SetKind::Campaign, out).for_this_run();
     match import(&mapping, needs.as_ref(), Format::Csv, &mut outputs, &|_| {}) {
         Ok(warnings) => {

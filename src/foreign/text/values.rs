@@ -169,7 +169,8 @@ fn finish(text: &Text<'_>, columns: Vec<Column>, headings: Vec<Heading>, table: 
                 }
                 let ambiguous = || {
                     let says = format!("the dates of `{}` can be read with the day or with the month first", heading.name);
-                    let problem = Problem::error("date-order", says).help("say `dates: dmy` or `dates: mdy`");
+                    let problem = Problem::error("date-order", says)
+                        .help("state the order in the mapping: `format: {dates: dmy}` or `format: {dates: mdy}`");
                     match &heading.span {
                         Some(span) => problem.at(span),
                         None => problem,

@@ -51,6 +51,12 @@ pub fn axis<'a>(looks: &'a [Look], convention: &Convention, name: &str, dimensio
         };
         return (Some(one), format!("by name; {content}"));
     }
+    // A text without units: the name says what it may be, and the unit is left open.
+    let without = |look: &&&Look| look.unit_text.is_empty() && look.increases;
+    if let Some(one) = named.iter().find(without) {
+        let even = if one.even { " in even steps" } else { "" };
+        return (Some(one), format!("by name; increases{even}"));
+    }
     let content: Vec<&Look> = looks.iter().filter(|look| fits(&look)).filter(|look| look.increases).collect();
     match content[..] {
         [one] => (Some(one), format!("by content: the only {} that increases", words(dimension))),
@@ -62,7 +68,8 @@ pub fn axis<'a>(looks: &'a [Look], convention: &Convention, name: &str, dimensio
 pub fn speed<'a>(looks: &'a [Look], convention: &Convention) -> (Option<&'a Look>, String) {
     let speed = Dimension::LENGTH / Dimension::TIME;
     let all: Vec<&Look> = looks.iter().filter(|look| look.unit.as_ref().is_some_and(|unit| unit.dimension == speed)).collect();
-    match (all.iter().find(|look| is_name_of(convention, &look.name, "speed")), &all[..]) {
+    let without = || looks.iter().find(|look| look.unit_text.is_empty() && is_name_of(convention, &look.name, "speed"));
+    match (all.iter().copied().find(|look| is_name_of(convention, &look.name, "speed")).or_else(without), &all[..]) {
         (Some(one), _) => (Some(one), "by name".into()),
         (None, [one]) => (Some(one), "by content: the only speed".into()),
         _ => (None, String::new()),
@@ -246,6 +253,22 @@ mod tests {
         assert_eq!(from, [Some("st1 q RE"), None, Some("Q 1L"), Some("Y_1R"), None]);
         assert!(found[0].reasons.iter().any(|reason| reason.contains("common to 2 channels")), "{found:?}");
         assert!(found[1].reasons[0].contains("-ST1 Y li"), "{found:?}");
+    }
+
+    #[test]
+    fn axes_without_a_unit_are_known_by_name() {
+        let names = |list: &[&str]| list.iter().map(ToString::to_string).collect::<Vec<_>>();
+        let convention = Convention {
+            names: vec![("time".into(), names(&["Zeit", "t"])), ("distance".into(), names(&["Weg", "s"])), ("speed".into(), names(&["v"]))],
+            ..Convention::default()
+        };
+        let rising = |name: &str| Look { increases: true, even: true, ..look(name, "", 1.0) };
+        let looks = [look("v", "", 20.0), rising("Zeit"), rising("s"), rising("n")];
+        let of = |name: &str, dimension| axis(&looks, &convention, name, dimension).0.map(|look| look.name.as_str());
+        assert_eq!((of("time", Dimension::TIME), of("distance", Dimension::LENGTH)), (Some("Zeit"), Some("s")));
+        assert_eq!(speed(&looks, &convention).0.map(|look| look.name.as_str()), Some("v"));
+        // A channel that does not increase is no axis, whatever it is called.
+        assert_eq!(axis(&[look("t", "", 1.0)], &convention, "time", Dimension::TIME).0.map(|look| look.name.as_str()), None);
     }
 
     #[test]

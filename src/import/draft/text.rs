@@ -1,7 +1,7 @@
 //! The text of a draft.
 
 use super::guess::{self, Guess};
-use super::look::short;
+use super::look::{Look, short};
 use super::{Group, With};
 use crate::data::RecordKind;
 use crate::data::write::yaml_text;
@@ -72,7 +72,7 @@ fn side(out: &mut Text, group: &Group, kind: RecordKind, stated: bool, with: &Wi
     let (time, why) = guess::axis(looks, with.convention, "time", Dimension::TIME);
     match time {
         Some(look) => {
-            out.line(2, &format!("time: {}", yaml_text(&look.name)), &[why, look.in_words()]);
+            out.channel(2, "time", look, "s, ms or another unit of time", &[why, look.in_words()]);
             taken.push(&look.name);
         }
         None => match looks.first().and_then(|look| look.rate) {
@@ -88,13 +88,24 @@ fn side(out: &mut Text, group: &Group, kind: RecordKind, stated: bool, with: &Wi
         match &guess.from {
             Some(from) => {
                 taken.push(from);
-                out.line(4, &format!("{}: {}", yaml_text(&guess.channel), yaml_text(from)), &guess.reasons);
+                let need = used.iter().find(|need| need.column == guess.channel);
+                match looks.iter().find(|look| look.name == *from) {
+                    Some(look) if need.is_none_or(|need| need.unit != "-") => {
+                        let hint = need.map_or_else(|| "that of the sensor".to_string(), |need| format!("{} in the protocol", need.unit));
+                        out.channel(4, &guess.channel, look, &hint, &guess.reasons);
+                    }
+                    _ => out.line(4, &format!("{}: {}", yaml_text(&guess.channel), yaml_text(from)), &guess.reasons),
+                }
             }
             // What rules look at only where it is recorded may be absent.
             None if !needed && guess.candidates.is_empty() => {
                 out.line(4, &format!("# {} is not needed: {}", guess.channel, guess.reasons.join("; ")), &[])
             }
-            None => out.open(4, &guess.channel, &guess.reasons.join("; ")),
+            None => {
+                let without = |look: &&Look| guess.candidates.contains(&look.name) && look.unit_text.is_empty();
+                let unit = looks.iter().find(without).map(|look| format!("with its unit: {{from: {}, unit: ...}}", look.name));
+                out.open(4, &guess.channel, &guess.reasons.iter().cloned().chain(unit).collect::<Vec<_>>().join("; "));
+            }
         }
     }
     for look in looks.iter().filter(|look| !taken.contains(&look.name.as_str())) {
@@ -133,7 +144,7 @@ fn units(out: &mut Text, group: &Group, guesses: &[Guess], needs: &[&ChannelNeed
 fn distance<'a>(out: &mut Text, group: &'a Group, with: &With<'_>, taken: &mut Vec<&'a str>) {
     let (found, why) = guess::axis(&group.looks, with.convention, "distance", Dimension::LENGTH);
     if let Some(look) = found {
-        out.line(2, &format!("distance: {}", yaml_text(&look.name)), &[why, look.in_words()]);
+        out.channel(2, "distance", look, "m, km or another unit of length", &[why, look.in_words()]);
         taken.push(&look.name);
         return;
     }
@@ -142,6 +153,9 @@ fn distance<'a>(out: &mut Text, group: &'a Group, with: &With<'_>, taken: &mut V
         Some(look) => {
             out.line(2, "distance:", &[]);
             out.line(4, &format!("from speed: {}", yaml_text(&look.name)), &[why, look.in_words()]);
+            if look.unit_text.is_empty() {
+                out.open(4, "unit", "the file states none: m/s, km/h or another unit of speed");
+            }
             let facts: Vec<String> = group
                 .first
                 .tables
@@ -184,6 +198,20 @@ impl Text {
         } else {
             self.text += &format!("{line:COMMENTS$}  # {}\n", comments.join("; "));
         }
+    }
+
+    /// A channel of the file; its unit is open if the file states none.
+    fn channel(&mut self, indent: usize, key: &str, look: &Look, unit: &str, comments: &[String]) {
+        if !look.unit_text.is_empty() {
+            return self.line(indent, &format!("{}: {}", yaml_text(key), yaml_text(&look.name)), comments);
+        }
+        self.open += 1;
+        // Within braces, a comma or a brace ends a word.
+        let name = yaml_text(&look.name);
+        let name = if name.starts_with('"') || !name.contains([',', '[', ']', '{', '}']) { name } else { format!("\"{name}\"") };
+        let open = format!("the file states no unit: {unit}");
+        let comments: Vec<String> = std::iter::once(open).chain(comments.iter().cloned()).collect();
+        self.line(indent, &format!("{}: {{from: {name}, unit: \"?\"}}", yaml_text(key)), &comments);
     }
 
     fn open(&mut self, indent: usize, key: &str, why: &str) {

@@ -17,12 +17,13 @@ pub fn record_of(kind: RecordKind) -> &'static str {
     }
 }
 
-/// Problems: `channel-missing`, `unit-mismatch`, `column-missing`, `datum-missing`; warnings: `side-missing`, `unknown-channel`.
+/// Problems: `channel-missing`, `unit-mismatch`, `column-missing`, `datum-missing`; warnings: `side-missing`, `position-left-out`.
 pub fn agree(mapping: &Mapping, needs: &Needs, problems: &mut Problems) {
+    let missing = |record: &str, column: &str| mapping.sides.iter().any(|side| record_of(side.kind) == record && lacks(side, column));
     for kind in [RecordKind::Measurement, RecordKind::Simulation] {
-        let of_side: Vec<&ChannelNeed> = needs.channels.iter().filter(|need| need.record == record_of(kind)).collect();
+        let of_side: Vec<&ChannelNeed> = read(mapping, needs).filter(|need| need.record == record_of(kind)).collect();
         match mapping.side(kind) {
-            Some(side) => agree_side(side, &of_side, problems),
+            Some(side) => agree_side(side, &of_side, &|need| needs.blocks(need, &missing), problems),
             None if of_side.iter().any(|need| need.required) => {
                 let says = format!("the protocol also reads the {}, which this mapping does not import", kind.key());
                 problems.push(Problem::warning("side-missing", says).at(&mapping.top()));
@@ -35,6 +36,12 @@ pub fn agree(mapping: &Mapping, needs: &Needs, problems: &mut Problems) {
         None => agree_sections(mapping, needs, problems),
     }
     agree_vehicle(mapping, needs, problems);
+}
+
+/// The channels that are read; those of the search where the sections are looked for in runs.
+fn read<'a>(mapping: &Mapping, needs: &'a Needs) -> impl Iterator<Item = &'a ChannelNeed> {
+    let is_search = mapping.runs.as_ref().is_some_and(|runs| runs.table.is_none());
+    needs.searched.iter().filter(move |_| is_search).chain(&needs.channels)
 }
 
 /// Section data must be found in the runs or stated of each; otherwise there is a table of sections.
@@ -104,33 +111,34 @@ fn agree_vehicle(mapping: &Mapping, needs: &Needs, problems: &mut Problems) {
     }
 }
 
-fn agree_side(side: &Side, needs: &[&ChannelNeed], problems: &mut Problems) {
+/// Whether a side does not map a column. Of channels that keep their names this is known only of the file.
+fn lacks(side: &Side, column: &str) -> bool {
+    side.channels.maps().is_some_and(|maps| !maps.iter().any(|map| map.name.value == column) && !is_axis(side, column))
+}
+
+fn is_axis(side: &Side, column: &str) -> bool {
+    column == "time" || column == "distance" && side.distance.is_some()
+}
+
+fn agree_side(side: &Side, needs: &[&ChannelNeed], blocks: &dyn Fn(&ChannelNeed) -> bool, problems: &mut Problems) {
     let named = |name: &str| needs.iter().find(|need| need.column == name);
-    let axes: Vec<(&str, bool)> = vec![("time", true), ("distance", side.distance.is_some())];
     let Channels::Maps(maps) = &side.channels else { return };
-    let is_mapped = |name: &str| maps.iter().any(|map| map.name.value == name) || axes.iter().any(|(axis, there)| *axis == name && *there);
     let strangers: Vec<&Spanned<String>> = maps.iter().map(|map| &map.name).filter(|name| named(&name.value).is_none()).collect();
-    let missing: Vec<&&ChannelNeed> = needs.iter().filter(|need| need.required && !is_mapped(&need.column)).collect();
-    if let [first, ..] = missing[..] {
-        let list: Vec<String> = missing.iter().map(|need| format!("`{}`", need.column)).collect();
-        let says = match &list[..] {
-            [one] => format!("the protocol needs {one} of the {}, and it is not mapped", side.kind.key()),
-            _ => format!("the protocol needs {} channels of the {} that are not mapped: {}", list.len(), side.kind.key(), list.join(", ")),
-        };
-        let users = &first.users;
-        let user = users.quantities.iter().chain(&users.rules).next();
-        let mut problem = Problem::error("channel-missing", says).at(&side.span);
-        let near = missing.iter().find_map(|need| {
-            let slip = nearest(&need.column, strangers.iter().map(|name| name.value.as_str()))?;
-            strangers.iter().find(|name| name.value == slip).map(|name| (need, *name))
+    let missing: Vec<&ChannelNeed> = needs.iter().copied().filter(|need| need.required && lacks(side, &need.column)).collect();
+    // A slip is one, even if the position could be left out.
+    let near = missing.iter().find_map(|need| {
+        let slip = nearest(&need.column, strangers.iter().map(|name| name.value.as_str()))?;
+        strangers.iter().find(|name| name.value == slip).map(|name| (*need, *name))
+    });
+    let (needed, left_out): (Vec<&ChannelNeed>, Vec<&ChannelNeed>) =
+        missing.into_iter().partition(|need| near.is_some_and(|(slip, _)| slip.column == need.column) || blocks(need));
+    if let Some(problem) = not_there(side, &needed, "not mapped") {
+        problems.push(match near {
+            Some((need, slip)) => Problem { help: None, ..problem }.also(&slip.span, format!("is `{}` meant?", need.column)),
+            None => problem,
         });
-        if let Some((need, slip)) = near {
-            problem = problem.also(&slip.span, format!("is `{}` meant?", need.column));
-        } else if let Some(user) = user {
-            problem = problem.help(format!("`{}` is for {user}; `fishplate explain PROTOCOL --stage needs` lists all needs", first.column));
-        }
-        problems.push(problem);
     }
+    left_out_of(side, &left_out, "not mapped").into_iter().for_each(|problem| problems.push(problem));
     let others = maps.iter().chain(side.distance.iter().filter_map(|distance| match distance {
         Distance::Channel(map) => Some(map),
         Distance::Speed { .. } | Distance::Trigger { .. } => None,
@@ -140,6 +148,51 @@ fn agree_side(side: &Side, needs: &[&ChannelNeed], problems: &mut Problems) {
             units(map, need, problems);
         }
     }
+}
+
+/// Of channels that keep their names: those that the protocol needs and a file does not have. `names`: the channels of the file.
+pub fn as_named((mapping, side): (&Mapping, &Side), needs: &Needs, names: &[&str], shown: &str) -> Vec<Problem> {
+    let record = record_of(side.kind);
+    let lacks = |column: &str| !names.contains(&column) && !is_axis(side, column);
+    let missing = read(mapping, needs).filter(|need| need.required && need.record == record && lacks(&need.column));
+    let (needed, left_out): (Vec<&ChannelNeed>, Vec<&ChannelNeed>) =
+        missing.partition(|need| needs.blocks(need, &|of, column| of == record && lacks(column)));
+    let is = format!("not in `{shown}`, whose channels keep their names");
+    let error = not_there(side, &needed, &is).map(|problem| {
+        let near = needed.iter().find_map(|need| Some((need, nearest(&need.column, names.iter().copied())?)));
+        match near {
+            Some((need, near)) => problem.help(format!("is `{near}` meant? Write `channels:` with `{}: {near}`", need.column)),
+            None => problem.help("say what they are in the file: `channels: {...}` with a line for each, in place of `as named`"),
+        }
+    });
+    error.into_iter().chain(left_out_of(side, &left_out, &is)).collect()
+}
+
+/// Channels without which an axis, a check or a quantity cannot be evaluated.
+fn not_there(side: &Side, missing: &[&ChannelNeed], is: &str) -> Option<Problem> {
+    let first = missing.first()?;
+    let list: Vec<String> = missing.iter().map(|need| format!("`{}`", need.column)).collect();
+    let says = match &list[..] {
+        [one] => format!("the protocol needs {one} of the {}, and it is {is}", side.kind.key()),
+        _ => format!("the protocol needs {} channels of the {} that are {is}: {}", list.len(), side.kind.key(), list.join(", ")),
+    };
+    let problem = Problem::error("channel-missing", says).at(&side.span);
+    let user = first.users.quantities.iter().chain(&first.users.rules).next();
+    Some(match user {
+        Some(user) => problem.help(format!("`{}` is for {user}; `fishplate explain PROTOCOL --stage needs` lists all needs", first.column)),
+        None => problem,
+    })
+}
+
+/// Channels without which only positions are left out.
+fn left_out_of(side: &Side, missing: &[&ChannelNeed], is: &str) -> Option<Problem> {
+    let mut users: Vec<&str> = missing.iter().flat_map(|need| &need.users.quantities).map(String::as_str).collect();
+    users.sort_unstable();
+    users.dedup();
+    let list = missing.iter().map(|need| format!("`{}`", need.column)).collect::<Vec<_>>().join(", ");
+    let (are, their) = if missing.len() > 1 { ("are", "their positions are") } else { ("is", "its position is") };
+    let says = format!("{list} of the {} {are} {is}; {their} left out of {}", side.kind.key(), users.join(", "));
+    (!missing.is_empty()).then(|| Problem::warning("position-left-out", says).at(&side.span))
 }
 
 /// Units that the mapping states must be of the dimension of the channel.
@@ -154,9 +207,19 @@ fn units(map: &ChannelMap, need: &ChannelNeed, problems: &mut Problems) {
                 wanted.dimension.in_words(),
                 unit.dimension.in_words()
             );
-            problems.push(Problem::error("unit-mismatch", says).at(span).also(&map.name.span, wanted.dimension.in_words()));
+            let problem = Problem::error("unit-mismatch", says).at(span).also(&map.name.span, wanted.dimension.in_words());
+            problems.push(if is_gravity(&unit.text, &wanted) {
+                problem.help("`g` is the gram; the unit of gravity is `gn`")
+            } else {
+                problem
+            });
         }
     }
+}
+
+/// Whether the gram stands for the unit of gravity.
+pub fn is_gravity(text: &str, wanted: &Unit) -> bool {
+    text == "g" && Unit::parse("gn").is_ok_and(|gn| gn.dimension == wanted.dimension)
 }
 
 /// The unit in which a channel is written: as stated, else as the protocol has it.

@@ -127,6 +127,12 @@ pub(super) fn channel_map(reader: &mut Reader<'_>, key: &Key, node: &Node) -> Op
 /// An offset must state its unit: it is added in the campaign, where the unit may be another than in the file.
 fn offset(reader: &mut Reader<'_>, node: &Node) -> Option<Spanned<(f64, Unit)>> {
     let written = reader.text(node, "offset")?;
+    if written.value.contains(',')
+        && let Err(number::Refused { says, help: Some(help) }) = number::read(&written.value, &Unit::one())
+    {
+        reader.problems.push(Problem::error("wrong-number", format!("`offset`: {says}")).at(&written.span).help(help));
+        return None;
+    }
     let at = written.value.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c))).unwrap_or(written.value.len());
     let unit = written.value[at..].trim();
     if unit.is_empty() {

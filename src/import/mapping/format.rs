@@ -6,7 +6,8 @@ use crate::problem::Problem;
 use crate::source::Spanned;
 use crate::yaml::Node;
 
-const KEYS: [&str; 9] = ["form", "separator", "decimal", "encoding", "header lines", "line of names", "line of units", "comment", "dates"];
+pub(super) const KEYS: [&str; 9] =
+    ["form", "separator", "decimal", "encoding", "header lines", "line of names", "line of units", "comment", "dates"];
 /// Separators that are written as words.
 const WORDS: [(&str, Separator); 5] = [
     ("comma", Separator::Mark(',')),

@@ -10,6 +10,7 @@ mod reader;
 mod runs;
 mod sections;
 mod side;
+mod slips;
 mod stated;
 
 use std::path::PathBuf;

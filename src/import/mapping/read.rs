@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::reader::{Reader, at, metre};
-use super::{Mapping, Sections, convention, runs, sections, side};
+use super::{Mapping, Sections, convention, runs, sections, side, slips};
 use crate::data::RecordKind;
 use crate::data::text::read_text;
 use crate::problem::{Problem, Problems};
@@ -22,10 +22,12 @@ const OWN: [&str; 9] = ["name", "protocol", "sections", "runs", "vehicle", "trac
 /// `unit-missing`, `unit-mismatch`, `mapped-twice`, `unknown-section`, `unknown-placeholder`, `unknown-column`, `out-of-range`.
 pub fn read(source: &Arc<Source>, folder: &Path, problems: &mut Problems) -> Option<Mapping> {
     let before = problems.errors();
-    let tree = yaml::load(source, problems)?;
+    let tree = loaded(source, problems)?;
+    let tree = slips::decimal_commas(tree, problems);
     let mut reader = Reader { problems };
+    let closed = reader.problems.errors();
     open_places(&tree, reader.problems);
-    if reader.problems.errors() > before {
+    if reader.problems.errors() > closed {
         return None;
     }
     reader.keys(&tree, &TOP, "a mapping");
@@ -87,6 +89,20 @@ pub fn read(source: &Arc<Source>, folder: &Path, problems: &mut Problems) -> Opt
     };
     turned(&mapping, problems);
     (problems.errors() == before).then_some(mapping)
+}
+
+/// The tree of the text. Of a value that begins with a brace and was not quoted, the help says so.
+fn loaded(source: &Arc<Source>, problems: &mut Problems) -> Option<Node> {
+    let mut found = Problems::default();
+    let tree = yaml::load(source, &mut found);
+    for problem in found.0 {
+        let quotes = problem.at.as_ref().and_then(|at| slips::unquoted(source, at));
+        problems.push(match quotes {
+            Some(help) => problem.help(help),
+            None => problem,
+        });
+    }
+    tree
 }
 
 /// A section that is turned needs to know what is exchanged, and both channels of each exchange.

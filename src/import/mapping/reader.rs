@@ -1,9 +1,10 @@
 //! Reads the values of a mapping's keys, and reports what they cannot be.
 
+use super::slips;
 use crate::problem::{Problem, Problems};
 use crate::source::{Span, Spanned};
 use crate::units::{Unit, number};
-use crate::yaml::{Node, Value};
+use crate::yaml::{Key, Node, Value};
 
 pub(super) fn at(problem: Problem, span: &Span) -> Problem {
     if problem.at.is_some() { problem } else { problem.at(span) }
@@ -32,14 +33,22 @@ impl Reader<'_> {
 
     /// Whether the node is a map; unknown keys are reported.
     pub fn keys(&mut self, node: &Node, known: &[&str], what: &str) -> bool {
+        self.keys_or(node, known, what, |_, _| None)
+    }
+
+    /// As [`Self::keys`], with what is to be said of keys that stand elsewhere.
+    pub fn keys_or(&mut self, node: &Node, known: &[&str], what: &str, elsewhere: impl Fn(&Key, &Node) -> Option<String>) -> bool {
         if !matches!(node.value, Value::Map(_)) {
             self.fault("wrong-kind", format!("{what} must be a map of keys and values, not {}", node.kind_in_words()), &node.span);
             return false;
         }
-        for (key, _) in node.entries() {
+        for (key, value) in node.entries() {
             if !known.contains(&key.text.as_str()) {
                 let problem = Problem::error("unknown-key", format!("{what} has no key `{}`", key.text)).at(&key.span);
-                self.problems.push(problem.suggest(&key.text, known.iter().copied()));
+                self.problems.push(match elsewhere(key, value) {
+                    Some(help) => problem.help(help),
+                    None => problem.suggest(&key.text, known.iter().copied()),
+                });
             }
         }
         true
@@ -49,7 +58,10 @@ impl Reader<'_> {
         match node.scalar_text().map(str::trim) {
             Some(text) if !text.is_empty() => Some(Spanned::new(text.to_string(), node.span.clone())),
             _ => {
-                self.fault("wrong-kind", format!("`{key}` must be text, not {}", node.kind_in_words()), &node.span);
+                let problem = Problem::error("wrong-kind", format!("`{key}` must be text, not {}", node.kind_in_words())).at(&node.span);
+                // `{section}` alone is a map for YAML.
+                let braces = matches!(node.entries(), [(_, value)] if matches!(value.value, Value::Null));
+                self.problems.push(if braces { problem.help(slips::quoted(key, node.span.text())) } else { problem });
                 None
             }
         }

@@ -70,7 +70,11 @@ impl Turned {
 }
 
 pub(super) fn read(reader: &mut Reader<'_>, kind: RecordKind, key: &Key, node: &Node, sections: &Sections) -> Option<Side> {
-    if !reader.keys(node, &KEYS, &format!("`{}`", kind.key())) {
+    let of_format = |key: &Key, value: &Node| {
+        let known = format::KEYS.contains(&key.text.as_str());
+        known.then(|| format!("`{0}` stands in `format`: `format: {{{0}: {1}}}`", key.text, value.raw))
+    };
+    if !reader.keys_or(node, &KEYS, &format!("`{}`", kind.key()), of_format) {
         return None;
     }
     let files = reader.need_text(node, "files", &format!("the path of the records, with `{{{}}}`", sections.word));

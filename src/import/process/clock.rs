@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
-use super::find::Of;
+use super::find::{Of, nearest_or_first};
+use super::short;
+use crate::data::checks::{self, Steps};
 use crate::foreign::Table;
 use crate::metrics::{resample, sinc};
 use crate::problem::Problem;
@@ -14,12 +16,35 @@ pub const SAME_RATE: f64 = 1e-3;
 /// deviate by a tenth.
 const EVEN: f64 = 0.2;
 
-/// The times of a table in s, increasing, and its mean rate.
+/// The times of a table in s, increasing, and its rate.
 #[derive(Clone, Debug)]
 pub struct Clock {
     pub times: Vec<f64>,
+    /// The mean rate; with gaps that of the usual step.
     pub rate: f64,
+    /// Whether a filter applies.
     pub even: bool,
+    /// Whether the steps differ by more than a record of a campaign may have.
+    pub uneven: bool,
+    pub gaps: Option<Gaps>,
+}
+
+/// Where time has gaps, as the file has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gaps {
+    /// Row of the file before the first gap, and the times in s before and after it.
+    pub row: usize,
+    pub from: f64,
+    pub to: f64,
+    pub count: usize,
+}
+
+impl Clock {
+    /// Times of events, which have no steps: two at least.
+    pub fn of_events(times: Vec<f64>) -> Self {
+        let rate = (times.len() - 1) as f64 / (times[times.len() - 1] - times[0]);
+        Self { times, rate, even: false, uneven: true, gaps: None }
+    }
 }
 
 /// The times of a table, with the shift and the drift of the mapping.
@@ -28,6 +53,7 @@ pub fn clock(of: &Of<'_>, table: &Table, alone: bool, facts: &[(String, String)]
     let named = |name: &str| table.channels.iter().find(|channel| channel.name == name);
     let which = if table.name.is_empty() { String::new() } else { format!(", table `{}`", table.name) };
     let found = time.from.iter().find_map(|name| named(&name.value).map(|channel| (name, channel)));
+    let mut factor = 1.0;
     let mut times = match (found, time.from.first()) {
         (Some((name, channel)), _) => {
             let text = channel.unit.as_deref().map(str::trim).filter(|text| !text.is_empty());
@@ -39,14 +65,17 @@ pub fn clock(of: &Of<'_>, table: &Table, alone: bool, facts: &[(String, String)]
                     Problem::error("unit-missing", format!("`{}`{which}: the time `{}` has {unit}", of.shown, name.value)).at(&name.span);
                 return Err(problem.help(format!("write its unit: `time: {{from: {}, unit: s}}`", name.value)));
             };
+            factor = unit.factor;
             channel.values.iter().map(|value| unit.to_si(*value)).collect::<Vec<f64>>()
         }
         (None, Some(first)) => {
             let known = table.channels.iter().map(|channel| channel.name.as_str());
             let problem = Problem::error("unknown-channel", format!("`{}`{which} has no channel `{}`", of.shown, first.value));
-            let problem = problem.at(&first.span).suggest(&first.value, known);
-            return Err(match problem.help {
-                Some(_) => problem,
+            let problem = problem.at(&first.span);
+            let near = problem.clone().suggest(&first.value, known.clone());
+            return Err(match near.near {
+                Some(_) => near,
+                None if table.name.is_empty() => nearest_or_first(problem, &first.value, known),
                 None => problem.help("where the groups of a file call their time differently, list the names: `time: [Time, t_slow]`"),
             });
         }
@@ -62,13 +91,16 @@ pub fn clock(of: &Of<'_>, table: &Table, alone: bool, facts: &[(String, String)]
             (0..table.rows).map(|row| row as f64 / rate).collect()
         }
     };
+    increasing(of, table, &times, &which)?;
+    // Before a shift, which would hide that the stamps are rounded.
+    let Steps { usual, gaps, uneven, .. } = checks::steps(&times, factor);
+    let gaps = gaps.first().map(|&at| Gaps { row: table.first_row + at, from: times[at], to: times[at + 1], count: gaps.len() });
     let shift = time.shift.as_ref().map(|shift| shift.of(of.section, &of.mapping.sections, facts)).transpose()?.flatten().unwrap_or(0.0);
     times.iter_mut().for_each(|at| *at = *at / (1.0 + time.drift) + shift);
-    increasing(of, table, &times, &which)?;
     let (first, last) = (times[0], times[times.len() - 1]);
-    let rate = (times.len() - 1) as f64 / (last - first);
+    let rate = if gaps.is_some() { (1.0 + time.drift) / usual } else { (times.len() - 1) as f64 / (last - first) };
     let even = times.iter().enumerate().all(|(at, time)| (time - (first + at as f64 / rate)).abs() * rate <= EVEN);
-    Ok(Clock { times, rate, even })
+    Ok(Clock { times, rate, even, uneven: uneven.is_some() || gaps.is_some(), gaps })
 }
 
 fn increasing(of: &Of<'_>, table: &Table, times: &[f64], which: &str) -> Result<(), Problem> {
@@ -80,7 +112,28 @@ fn increasing(of: &Of<'_>, table: &Table, times: &[f64], which: &str) -> Result<
     let is = if times[at].is_finite() { "does not increase" } else { "has no value" };
     let problem =
         Problem::error("time-not-increasing", format!("`{}`{which}: the time {is} in row {row}", of.shown)).at(&of.side.time.span);
-    Err(problem.help("export a record without interruption, or repair its time"))
+    Err(match rounded(times) {
+        Some(rate) => problem.help(format!(
+            "the stamps are rounded, so that several samples have the same; state the rate of the recorder: `time: {{rate: {rate} Hz}}`"
+        )),
+        None => problem.help("export a record without interruption, or repair its time"),
+    })
+}
+
+/// The rate of a record whose stamps are rounded so coarsely that samples have the same one, in Hz: of every ten samples one at least.
+fn rounded(times: &[f64]) -> Option<f64> {
+    const SAMPLES_FOR_EACH: usize = 10;
+    let stamps: Vec<f64> = times.iter().copied().filter(|time| time.is_finite()).collect();
+    let steps: Vec<f64> = stamps.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let same = steps.iter().filter(|step| **step == 0.0).count();
+    if steps.iter().any(|step| *step < 0.0) || same * SAMPLES_FOR_EACH < stamps.len() {
+        return None;
+    }
+    // Whole stretches of equal stamps: the first and the last may be cut.
+    let starts: Vec<usize> = (0..steps.len()).filter(|at| steps[*at] > 0.0).map(|at| at + 1).collect();
+    let (first, last) = (*starts.first()?, *starts.last()?);
+    let rate = (last - first) as f64 / (stamps[last] - stamps[first]);
+    (rate.is_finite() && rate > 0.0).then(|| checks::whole(short(rate).parse().unwrap_or(rate)))
 }
 
 /// The points in time of a record.
@@ -92,11 +145,15 @@ pub struct Grid {
     pub rows: Option<Range<usize>>,
 }
 
-/// The grid inside a span: the samples of the base table, or even steps of a wanted rate.
+fn same_rate(one: f64, other: f64) -> bool {
+    (one / other - 1.0).abs() <= SAME_RATE
+}
+
+/// The grid inside a span: the samples of the base table, or even steps of a wanted rate, also where its samples are uneven.
 pub fn grid(base: &Clock, wanted: Option<f64>, (start, end): (f64, f64)) -> Option<Grid> {
     /// Rounding of times, in s.
     const ROUNDING: f64 = 1e-9;
-    match wanted.filter(|rate| (rate / base.rate - 1.0).abs() > SAME_RATE) {
+    match wanted.filter(|rate| base.uneven || !same_rate(*rate, base.rate)) {
         None => {
             let from = base.times.partition_point(|time| *time < start - ROUNDING);
             let to = base.times.partition_point(|time| *time <= end + ROUNDING);
@@ -124,7 +181,19 @@ pub enum How {
     Linear,
 }
 
-/// A signal at the points of the grid.
+/// How the channels of a table come to the points of the grid.
+///
+/// A slow channel is interpolated linearly; one of the same rate as well if only its steps are uneven.
+pub fn way(clock: &Clock, is_base: bool, grid: &Grid) -> How {
+    let uneven = || grid.rows.is_none() && clock.uneven && same_rate(clock.rate, grid.rate);
+    match &grid.rows {
+        Some(_) if is_base => How::AsRecorded,
+        _ if clock.rate < grid.rate * (1.0 - SAME_RATE) || uneven() => How::Linear,
+        _ => How::Filtered,
+    }
+}
+
+/// A signal at the points of the grid. An axis is always interpolated linearly, and then increases.
 ///
 /// # Errors
 /// A reason, to follow the name of the channel.
@@ -132,8 +201,7 @@ pub fn on_grid(values: &[f64], clock: &Clock, is_base: bool, grid: &Grid, axis: 
     if let Some(rows) = grid.rows.as_ref().filter(|_| is_base) {
         return Ok((values[rows.clone()].to_vec(), How::AsRecorded));
     }
-    // A slow channel is interpolated linearly; an axis as well, which then increases.
-    if axis || clock.rate < grid.rate * (1.0 - SAME_RATE) {
+    if axis || way(clock, is_base, grid) == How::Linear {
         let (first, last) = (clock.times[0], clock.times[clock.times.len() - 1]);
         let points: Vec<f64> = grid.times.iter().map(|time| time.clamp(first, last)).collect();
         return resample::interpolate(&clock.times, values, &points).map(|values| (values, How::Linear)).map_err(|error| error.to_string());
@@ -156,7 +224,7 @@ mod tests {
     use super::*;
 
     fn clock(rate: f64, samples: usize) -> Clock {
-        Clock { times: (0..samples).map(|at| at as f64 / rate).collect(), rate, even: true }
+        Clock { times: (0..samples).map(|at| at as f64 / rate).collect(), rate, even: true, uneven: false, gaps: None }
     }
 
     #[test]
@@ -185,5 +253,27 @@ mod tests {
         // The same rate within a thousandth is kept as recorded.
         assert_eq!(grid(&base, Some(600.1), (0.0, 2.0)).and_then(|grid| grid.rows), Some(0..1201));
         assert!(grid(&base, Some(1e12), (0.0, 2.0)).is_none() && grid(&base, None, (5.0, 6.0)).is_none());
+    }
+
+    #[test]
+    fn uneven_samples_of_the_wanted_rate_come_to_even_steps() {
+        let mut base = clock(200.0, 401);
+        base.times.iter_mut().enumerate().for_each(|(at, time)| *time += 1e-3 * (at as f64).sin());
+        base.uneven = true;
+        assert!(grid(&base, None, (0.0, 2.0)).is_some_and(|grid| grid.rows.is_some()));
+        let even = grid(&base, Some(200.0), (0.1, 1.9)).expect("a grid");
+        assert_eq!((even.times.len(), even.rows.clone(), way(&base, true, &even)), (361, None, How::Linear));
+        let line: Vec<f64> = base.times.iter().map(|time| 3.0 * time).collect();
+        let (found, _) = on_grid(&line, &base, true, &even, false).expect("inside");
+        assert!(found.iter().zip(&even.times).all(|(value, time)| (value - 3.0 * time).abs() < 1e-12));
+    }
+
+    #[test]
+    fn rounded_stamps_tell_the_rate() {
+        let stamps = |rate: f64, to: f64| (0..2000).map(|at| (f64::from(at) / rate / to + 1e-9).floor() * to).collect::<Vec<f64>>();
+        assert_eq!((rounded(&stamps(200.0, 1.0)), rounded(&stamps(300.0, 0.01))), (Some(200.0), Some(300.0)));
+        let mut twice = stamps(200.0, 0.005);
+        twice[7] = twice[6];
+        assert_eq!((rounded(&twice), rounded(&[1.0; 20])), (None, None));
     }
 }

@@ -81,8 +81,7 @@ pub fn curve(
                 times.len(),
                 channel.in_words()
             );
-            let rate = (times.len() - 1) as f64 / (times[times.len() - 1] - times[0]);
-            Ok(Curve { clock: Clock { times, rate, even: false }, values, table: None, says })
+            Ok(Curve { clock: Clock::of_events(times), values, table: None, says })
         }
     }
 }

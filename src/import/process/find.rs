@@ -75,7 +75,7 @@ impl<'a> Of<'a> {
         checked(&unit, wanted, || {
             let says = format!("`{}`: {}", self.shown, mismatch(&map.name.value, &unit, wanted));
             let problem = Problem::error("unit-mismatch", says).at(&name.span);
-            let gravity = wanted.filter(|wanted| text == "g" && Unit::parse("gn").is_ok_and(|gn| gn.dimension == wanted.dimension));
+            let gravity = wanted.filter(|wanted| agree::is_gravity(text, wanted));
             match gravity {
                 Some(_) => problem.help("`g` is the gram; of accelerations in units of gravity, write `units: {g: gn}`"),
                 None => problem.help("check the name of the channel; if the file states a wrong unit, write the right one: `unit: ...`"),
@@ -110,9 +110,8 @@ pub fn find<'a>(of: &Of<'_>, tables: &[&'a Table], name: &Spanned<String>, table
             }
             let known =
                 tables.iter().filter(|table| within(table)).flat_map(|table| table.channels.iter().map(|channel| channel.name.as_str()));
-            Err(Problem::error("unknown-channel", format!("`{}` has no channel `{}`", of.shown, name.value))
-                .at(&name.span)
-                .suggest(&name.value, known))
+            let problem = Problem::error("unknown-channel", format!("`{}` has no channel `{}`", of.shown, name.value)).at(&name.span);
+            Err(nearest_or_first(problem, &name.value, known))
         }
         [first, second, ..] => {
             let says = format!("`{}` has `{}` several times", of.shown, name.value);
@@ -125,6 +124,19 @@ pub fn find<'a>(of: &Of<'_>, tables: &[&'a Table], name: &Spanned<String>, table
             })
         }
     }
+}
+
+/// Names the channel that may be meant, else the first ones of the file.
+pub fn nearest_or_first<'a>(problem: Problem, name: &str, known: impl Iterator<Item = &'a str>) -> Problem {
+    /// Channels that are named.
+    const SHOWN: usize = 12;
+    let known: Vec<&str> = known.collect();
+    let problem = problem.suggest(name, known.iter().copied());
+    if problem.help.is_some() || known.is_empty() {
+        return problem;
+    }
+    let more = known.len().saturating_sub(SHOWN);
+    problem.help(format!("its first channels are {}, and there are {more} more", known[..known.len() - more].join(", ")))
 }
 
 fn checked(unit: &Unit, wanted: Option<&Unit>, problem: impl FnOnce() -> Problem) -> Result<Unit, Problem> {

@@ -5,12 +5,14 @@
 //! | `find` | channels in the file, and their units |
 //! | `clock` | time of a table, the grid of a record, resampling |
 //! | `distance` | distance from a channel, a speed or a trigger; match with the track file |
+//! | `times` | gaps and uneven steps of time; the account of rates |
 //! | `store` | values of columns, in memory or in a file |
 
 mod clock;
 mod distance;
 mod find;
 mod store;
+mod times;
 
 pub use find::Of;
 pub use store::{BLOCK, Store, Values};
@@ -18,7 +20,7 @@ pub use store::{BLOCK, Store, Values};
 use super::mapping::{ChannelMap, Channels, Term, agree};
 use crate::data::RecordKind;
 use crate::foreign::Table;
-use crate::problem::Problem;
+use crate::problem::{Problem, Severity};
 use crate::source::Spanned;
 use crate::units::{Dimension, Unit};
 use clock::{Clock, Grid, How, clock, grid, on_grid};
@@ -59,6 +61,10 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
     let tables = of.tables().map_err(one)?;
     let facts: Vec<(String, String)> = tables.iter().flat_map(|table| &table.facts).chain(&of.file.facts).cloned().collect();
     let maps = maps(of, &tables)?;
+    let (lacks, lacked) = missing(of, &maps);
+    if !lacks.is_empty() {
+        return Err(lacks);
+    }
     // Where every channel is; its values are made one after the other below, so that only those of one channel are in memory twice.
     let mut faults = Vec::new();
     let mut sources: Vec<(Source<'_>, Unit)> = Vec::new();
@@ -97,7 +103,12 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
         let says = format!("{}: the channels of `{}` have no time in common ({} s to {} s)", of.called(), of.shown, span.0, span.1);
         return Err(vec![Problem::error("no-common-time", says).at(&of.side.time.span)]);
     };
-    told_times(of, base_clock, &grid, &mut steps);
+    let unfit = times::faults(of, &tables, &clocks, (base, &grid), &|table| used().any(|used| used == table));
+    if !unfit.is_empty() {
+        return Err(unfit);
+    }
+    times::told(of, base_clock, &grid, &mut steps);
+    left_out(of, &tables, &mut steps);
     let (mut sampled, mut columns) = (Vec::new(), Vec::new());
     for (map, (source, unit)) in maps.iter().zip(&sources) {
         let table = source.first.table;
@@ -115,7 +126,7 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
     if !faults.is_empty() {
         return Err(few(faults));
     }
-    told_resampling(&maps, &sampled, &clocks, &grid, &tables, &mut steps);
+    times::told_tables(&maps, &sampled, &clocks, (base, &grid), &tables, &mut steps);
     turn(of, &mut columns, &mut steps);
     let mut at = None;
     if let Some(curve) = curve {
@@ -132,7 +143,9 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
         along_track(of, &mut values, &matched, &clocks, (base, &grid), &facts, &mut steps)?;
         at = Some(values);
     }
-    finish(of, grid, at, columns, steps)
+    let mut made = finish(of, grid, at, columns, steps)?;
+    made.warnings.splice(0..0, lacked);
+    Ok(made)
 }
 
 /// A channel that the protocol does not know is written in the unit that other channels of its dimension have by the protocol.
@@ -161,7 +174,8 @@ fn maps(of: &Of<'_>, tables: &[&Table]) -> Result<Vec<ChannelMap>, Vec<Problem>>
                 of.side.time.from.iter().any(|time| time.value == name)
                     || matches!(&of.side.distance, Some(super::mapping::Distance::Channel(map)) if map.terms.iter().any(|term| term.name.value == name))
             };
-            let named = tables.iter().flat_map(|table| &table.channels).filter(|channel| !axis(&channel.name));
+            let channels = tables.iter().flat_map(|table| &table.channels);
+            let named = channels.filter(|channel| !axis(&channel.name) && !is_second_axis(of, &channel.name));
             let maps: Vec<ChannelMap> = named
                 .map(|channel| {
                     let name = Spanned::new(channel.name.clone(), span.clone());
@@ -175,6 +189,34 @@ fn maps(of: &Of<'_>, tables: &[&Table]) -> Result<Vec<ChannelMap>, Vec<Problem>>
             Ok(maps)
         }
     }
+}
+
+/// A record has one time and one distance: those that the mapping states.
+fn is_second_axis(of: &Of<'_>, name: &str) -> bool {
+    name == "time" || name == "distance" && of.side.distance.is_some()
+}
+
+/// Tells which channels are not kept although all keep their names.
+fn left_out(of: &Of<'_>, tables: &[&Table], steps: &mut Vec<String>) {
+    use super::mapping::Distance;
+    let source = |name: &str| match &of.side.distance {
+        Some(Distance::Channel(map)) => map.terms.iter().any(|term| term.name.value == name),
+        _ => false,
+    };
+    let is_axis = |name: &str| of.side.time.from.iter().any(|time| time.value == name) || source(name);
+    for name in ["time", "distance"].into_iter().filter(|name| of.side.channels.maps().is_none() && is_second_axis(of, name)) {
+        if !is_axis(name) && tables.iter().any(|table| table.channels.iter().any(|channel| channel.name == name)) {
+            steps.push(format!("the channel `{name}` of the file is left out: the mapping states another {name}"));
+        }
+    }
+}
+
+/// Channels that the protocol needs and a file does not have, where all channels keep their names: errors and warnings.
+fn missing(of: &Of<'_>, maps: &[ChannelMap]) -> (Vec<Problem>, Vec<Problem>) {
+    let (Channels::AsNamed, Some(needs)) = (&of.side.channels, of.needs) else { return (Vec::new(), Vec::new()) };
+    let names: Vec<&str> = maps.iter().map(|map| map.name.value.as_str()).collect();
+    let is_error = |problem: &Problem| problem.severity == Severity::Error;
+    agree::as_named((of.mapping, of.side), needs, &names, of.shown).into_iter().partition(is_error)
 }
 
 fn values_for_match(of: &Of<'_>, map: &ChannelMap, tables: &[&Table]) -> Result<(usize, Vec<f64>, Unit), Problem> {
@@ -216,60 +258,6 @@ fn span(clocks: &[Option<Clock>], used: impl Iterator<Item = usize>, curve: Opti
     let ends = |clock: &Clock| (clock.times[0], clock.times[clock.times.len() - 1]);
     let all = used.filter_map(|table| clocks.get(table)?.as_ref()).chain(curve).map(ends);
     all.fold((f64::MIN, f64::MAX), |(start, end), (first, last)| (start.max(first), end.min(last)))
-}
-
-fn told_times(of: &Of<'_>, base: &Clock, grid: &Grid, steps: &mut Vec<String>) {
-    if of.side.time.drift != 0.0 {
-        steps.push(format!("time divided by 1 + {:.6} (drift of the clock)", of.side.time.drift));
-    }
-    if let Some(shift) = &of.side.time.shift {
-        steps.push(format!("time shifted ({})", shift.from_where()));
-    }
-    match &grid.rows {
-        Some(rows) => {
-            let (before, after) = (rows.start, base.times.len() - rows.end);
-            let dropped = if before + after == 0 {
-                String::new()
-            } else {
-                format!(", without {before} rows at the start and {after} at the end that other channels do not cover")
-            };
-            steps.push(format!("{} rows at {} Hz{dropped}", grid.times.len(), short(grid.rate)));
-        }
-        None => steps.push(format!(
-            "resampled from {} Hz to {} Hz, {} rows (windowed sinc, -6 dB at {} Hz)",
-            short(base.rate),
-            short(grid.rate),
-            grid.times.len(),
-            short(crate::metrics::sinc::CUTOFF * grid.rate.min(base.rate))
-        )),
-    }
-}
-
-/// Channels of other tables than the base.
-fn told_resampling(
-    maps: &[ChannelMap],
-    sampled: &[(How, usize)],
-    clocks: &[Option<Clock>],
-    grid: &Grid,
-    tables: &[&Table],
-    steps: &mut Vec<String>,
-) {
-    if grid.rows.is_none() && sampled.iter().all(|(how, _)| *how == How::Filtered) {
-        return;
-    }
-    for (number, table) in tables.iter().enumerate() {
-        for how in [How::Linear, How::Filtered] {
-            let names: Vec<&str> = maps
-                .iter()
-                .zip(sampled)
-                .filter(|(_, (its, of))| *its == how && *of == number)
-                .map(|(map, _)| map.name.value.as_str())
-                .collect();
-            let (false, Some(clock)) = (names.is_empty(), &clocks[number]) else { continue };
-            let way = if how == How::Linear { "interpolated linearly" } else { "filtered and interpolated (windowed sinc)" };
-            steps.push(format!("{} {way} from {} Hz (table `{}`)", names.join(", "), short(clock.rate), table.name));
-        }
-    }
 }
 
 /// Exchanges channels and signs in a section that was run with the other end leading.
@@ -335,6 +323,7 @@ fn along_track(
 /// Cuts the record, checks that its axes increase and that all values are there.
 fn finish(of: &Of<'_>, grid: Grid, at: Option<Vec<f64>>, channels: Vec<Column>, mut steps: Vec<String>) -> Result<Made, Vec<Problem>> {
     let unit = |text: &str, dimension: Dimension| Unit { text: text.into(), factor: 1.0, dimension };
+    let as_recorded = grid.rows.is_some();
     let (mut times, mut at, mut channels) = (grid.times, at, channels);
     let extent = of.mapping.sections.extent(of.section).filter(|_| at.is_some());
     let mut warnings = Vec::new();
@@ -348,6 +337,7 @@ fn finish(of: &Of<'_>, grid: Grid, at: Option<Vec<f64>>, channels: Vec<Column>, 
         *values = values[first..=last].to_vec();
         channels.iter_mut().for_each(|column| column.values.cut(first..last + 1));
     }
+    warnings.extend(times::warning(of, &times).filter(|_| as_recorded));
     let time_of = |row: usize| short(times[row]);
     let mut faults = Vec::new();
     let mut columns = vec![Column { name: "time".into(), unit: unit("s", Dimension::TIME), values: Values::Held(times.clone()) }];
@@ -397,7 +387,7 @@ fn finish(of: &Of<'_>, grid: Grid, at: Option<Vec<f64>>, channels: Vec<Column>, 
             faults.push(Problem::error("axis-not-increasing", says).at(&of.side.span).help(help));
         } else if let Some((start, end)) = extent.filter(|(start, end)| *start < values[0] || *end > values[values.len() - 1]) {
             let mut problem = outside(of, (start, end), &values);
-            problem.severity = crate::problem::Severity::Warning;
+            problem.severity = Severity::Warning;
             warnings.push(problem);
         }
         let ends = (values.first().copied().unwrap_or(0.0), values.last().copied().unwrap_or(0.0));
