@@ -175,7 +175,7 @@ fn look(mapping: &Mapping, compiled: Option<&Compiled>, out: &Path, console: &Co
     match certify(&compiled.only_telling(), &campaign, Settings { traces: 0 }, &|_| {}) {
         Ok(found) => {
             for section in found.sections.iter().filter(|section| !section.used) {
-                console.say(&format!("section {} cannot be used: {}", section.section, section.reason.clone().unwrap_or_default()));
+                console.say(&format!("section {} is not used: {}", section.section, section.reason.clone().unwrap_or_default()));
             }
             let rows = findings::rows(&as_stated(&compiled.plan, found.findings));
             rows.iter().for_each(|row| console.say(&format!("finding: {}", findings::line(row))));

@@ -132,3 +132,16 @@ fn a_record_has_one_time() {
     let account = fs::read_to_string(folder.path().join("out/origin.yaml")).expect("an account");
     assert!(account.contains("the channel `time` of the file is left out"), "{account}");
 }
+
+/// A rate that is wrong by orders of magnitude is told before it fills the memory.
+#[test]
+fn rates_that_are_none_of_the_records() {
+    let folder = tempfile::tempdir().expect("a folder");
+    record(folder.path(), &even(200.0), 3);
+    for (rate, says) in [("1e7 Hz", "more than 20 times that of"), ("1e9 Hz", "more than 20 times"), ("1e-9 Hz", "leaves no two samples")] {
+        let (problems, done) = import(folder.path(), &format!("{AXES}\n  rate: {rate}"));
+        let text = problems.render(false);
+        assert!(!done && text.contains("error[out-of-range]") && text.contains(says), "{rate}: {text}");
+    }
+    assert!(import(folder.path(), &format!("{AXES}\n  rate: 3900 Hz")).1);
+}

@@ -99,6 +99,11 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
     let mut steps = Vec::new();
     let span = span(&clocks, used_or_matched(), curve.as_ref().map(|curve| &curve.clock));
     let rate = of.side.rate.as_ref().map(|rate| rate.value);
+    if let Some(rate) = &of.side.rate
+        && let Some(problem) = times::impossible(of, rate, base_clock, span)
+    {
+        return Err(vec![problem]);
+    }
     let Some(grid) = grid(base_clock, rate, span) else {
         let says = format!("{}: the channels of `{}` have no time in common ({} s to {} s)", of.called(), of.shown, span.0, span.1);
         return Err(vec![Problem::error("no-common-time", says).at(&of.side.time.span)]);

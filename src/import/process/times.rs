@@ -7,7 +7,32 @@ use crate::data::checks::{self, Steps};
 use crate::foreign::Table;
 use crate::import::mapping::{ChannelMap, Distance};
 use crate::problem::Problem;
-use crate::source::Span;
+use crate::source::{Span, Spanned};
+
+/// Most samples that are made for each one of the file. Interpolation adds nothing to a record but its size.
+const MOST_FINER: f64 = 20.0;
+
+/// A rate that is no rate of these records: so high that they would fill the memory, or so low that no two samples are left.
+///
+/// Problems: `out-of-range`.
+pub fn impossible(of: &Of<'_>, rate: &Spanned<f64>, base: &Clock, (start, end): (f64, f64)) -> Option<Problem> {
+    let asked = short(rate.value);
+    let (says, help) = if rate.value > MOST_FINER * base.rate {
+        let says = format!(
+            "{}: a rate of {asked} Hz is more than {MOST_FINER} times that of `{}`, {} Hz",
+            of.called(),
+            of.shown,
+            short(base.rate)
+        );
+        (says, "a rate above that of the file adds nothing to the records")
+    } else if end > start && (end - start) * rate.value < 1.0 {
+        let says = format!("{}: a rate of {asked} Hz leaves no two samples of the {} s of `{}`", of.called(), short(end - start), of.shown);
+        (says, "write the rate of the records, such as `200 Hz`")
+    } else {
+        return None;
+    };
+    Some(Problem::error("out-of-range", says).at(&rate.span).help(help))
+}
 
 /// Times that do not allow what is asked for: a value in a gap would be invented, and a filter needs even steps.
 ///
