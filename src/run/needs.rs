@@ -55,6 +55,9 @@ impl Needs {
 /// Beginning of the user that is a plausibility rule: it looks at a channel only where it was recorded.
 const PLAUSIBILITY: &str = "plausibility ";
 
+/// The user that is the search for sections in runs.
+pub const SEARCH: &str = "the search for sections";
+
 /// Who needs something.
 #[derive(Clone, Debug, Default)]
 pub struct Users {
@@ -199,7 +202,7 @@ fn datum_need(datum: &Datum, users: Users) -> DatumNeed {
 fn searched(plan: &Plan, graph: &Graph, known: &[ChannelNeed]) -> Vec<ChannelNeed> {
     let need = |(record, column): (&'static str, String)| {
         let other = known.iter().find(|need| need.record == record && need.column == column);
-        let users = Users { quantities: Vec::new(), rules: vec!["the search for sections".into()] };
+        let users = Users { quantities: Vec::new(), rules: vec![SEARCH.into()] };
         let (channel, unit) = other.map_or_else(Default::default, |need| (need.channel.clone(), need.unit.clone()));
         (!other.is_some_and(|need| need.required)).then_some(ChannelNeed { record, column, channel, unit, required: true, users })
     };

@@ -4,7 +4,7 @@ use super::{ChannelMap, Channels, Distance, Mapping, Runs, Side};
 use crate::data::RecordKind;
 use crate::data::cells::name_and_unit;
 use crate::problem::{Problem, Problems, nearest};
-use crate::run::needs::{ChannelNeed, DatumNeed, Needs};
+use crate::run::needs::{ChannelNeed, DatumNeed, Needs, SEARCH};
 use crate::source::Spanned;
 use crate::units::Unit;
 
@@ -179,6 +179,7 @@ fn not_there(side: &Side, missing: &[&ChannelNeed], is: &str) -> Option<Problem>
     let problem = Problem::error("channel-missing", says).at(&side.span);
     let user = first.users.quantities.iter().chain(&first.users.rules).next();
     Some(match user {
+        Some(user) if user == SEARCH => problem.help(format!("`{}` is for {user} in the runs", first.column)),
         Some(user) => problem.help(format!("`{}` is for {user}; `fishplate explain PROTOCOL --stage needs` lists all needs", first.column)),
         None => problem,
     })
