@@ -182,17 +182,18 @@ impl<'a> Compared<'a> {
                 continue;
             }
             let from = first + 1 - LANES;
-            let mut found = [self.alone; LANES];
-            for block in 0..BLOCKS {
+            let lanes: [_; BLOCKS] = std::array::from_fn(|block| {
                 let part = part(block, points);
                 let y = &wide[from + part.start..from + part.end + LANES - 1];
-                for (lane, [y, yy, xy]) in sums_of_lanes(&self.simulated[part], y).into_iter().enumerate() {
-                    // Later points belong to smaller shifts.
-                    let sums = &mut found[LANES - 1 - lane][block];
-                    (sums.y, sums.yy, sums.xy) = (y, yy, xy);
-                }
+                sums_of_lanes(&self.simulated[part], y)
+            });
+            // Later points belong to smaller shifts.
+            for lane in (0..LANES).rev() {
+                self.at.push(std::array::from_fn(|block| {
+                    let [y, yy, xy] = lanes[block][lane];
+                    Sums { y, yy, xy, ..self.alone[block] }
+                }));
             }
-            self.at.extend(found);
             at += LANES;
         }
     }
