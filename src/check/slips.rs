@@ -6,6 +6,8 @@ use crate::problem::Problem;
 
 /// Names shorter than this differ by one character without a slip: `Y_1`, `ay`.
 const SHORTEST: usize = 5;
+/// Blocks whose names are symbols, which differ by a letter: `Y_qst`, `B_qst`.
+const SYMBOLS: [&str; 3] = ["quantity", "signal", "channel"];
 
 impl Checker<'_> {
     /// A new block of the variant whose name differs from that of a block of the parent by one character, other than a digit.
@@ -16,7 +18,7 @@ impl Checker<'_> {
             let siblings = || self.parent_names.iter().filter(|(of, _)| of == kind).map(|(_, name)| name.as_str());
             // A part that is missing may be told of it with the same help.
             let told = self.problems.0.iter().any(|problem| problem.at.as_ref() == Some(block.span()));
-            if told || name.len() < SHORTEST || siblings().any(|known| known == name) {
+            if told || SYMBOLS.contains(&kind.as_str()) || name.len() < SHORTEST || siblings().any(|known| known == name) {
                 continue;
             }
             let without_digits = |name: &str| name.chars().filter(|c| !c.is_ascii_digit()).collect::<String>();
