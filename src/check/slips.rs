@@ -4,8 +4,8 @@ use super::Checker;
 use super::family::Family;
 use crate::problem::Problem;
 
-/// Names shorter than this differ by one character without a slip: `Y_1`, `ay`.
-const SHORTEST: usize = 5;
+/// Names shorter than this differ by one character without a slip: `live`, `alive`.
+const SHORTEST: usize = 8;
 /// Blocks whose names are symbols, which differ by a letter: `Y_qst`, `B_qst`.
 const SYMBOLS: [&str; 3] = ["quantity", "signal", "channel"];
 
