@@ -10,17 +10,12 @@ mod result;
 mod table;
 mod work;
 
-use mimalloc::MiMalloc;
 use pyo3::prelude::*;
 
 use fishplate::check::{self, Overrides};
 use fishplate::library;
 use fishplate::prepare::Protocol;
 use fishplate::problem::Problems;
-
-/// As in the program; Python's own memory is not concerned.
-#[global_allocator]
-static ALLOCATOR: MiMalloc = MiMalloc;
 
 /// Whether the wheel has the typesetter: without it there is no PDF.
 const TYPESETS: bool = cfg!(feature = "typeset");
