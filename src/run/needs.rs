@@ -21,8 +21,6 @@ pub struct Needs {
     pub channels: Vec<ChannelNeed>,
     /// The positions of each quantity, by which it is known whether one without a channel can be left out.
     pub positions: Vec<Positions>,
-    /// Columns of records that the search for sections in runs reads, beside those that are required anyway.
-    pub searched: Vec<ChannelNeed>,
     /// Columns of the table of sections; none where whole records are evaluated.
     pub sections: Vec<DatumNeed>,
     pub vehicle: Vec<DatumNeed>,
@@ -39,6 +37,14 @@ pub struct Positions {
     pub records: Vec<&'static str>,
     /// The columns of each position.
     pub columns: Vec<Vec<String>>,
+}
+
+impl ChannelNeed {
+    /// Whether a number depends on it only where sections are looked for in runs.
+    pub fn of_search_alone(&self) -> bool {
+        let others = self.users.rules.iter().filter(|rule| *rule != SEARCH && !rule.starts_with(PLAUSIBILITY));
+        self.users.quantities.is_empty() && others.count() == 0
+    }
 }
 
 impl Needs {
@@ -118,8 +124,7 @@ pub fn needs(plan: &Plan, graph: &Graph) -> Needs {
         (0..plan.columns.len()).filter(is_found).map(|index| plan.columns[index].key.clone()).collect()
     });
     let channels = channels(plan, graph);
-    let searched = searched(plan, graph, &channels);
-    Needs { channels, positions: positions(plan, graph), searched, sections, vehicle, found, application: application(plan) }
+    Needs { channels, positions: positions(plan, graph), sections, vehicle, found, application: application(plan) }
 }
 
 /// A column that the program itself reads.
@@ -200,16 +205,6 @@ fn datum_need(datum: &Datum, users: Users) -> DatumNeed {
     }
 }
 
-fn searched(plan: &Plan, graph: &Graph, known: &[ChannelNeed]) -> Vec<ChannelNeed> {
-    let need = |(record, column): (&'static str, String)| {
-        let other = known.iter().find(|need| need.record == record && need.column == column);
-        let users = Users { quantities: Vec::new(), rules: vec![SEARCH.into()] };
-        let (channel, unit) = other.map_or_else(Default::default, |need| (need.channel.clone(), need.unit.clone()));
-        (!other.is_some_and(|need| need.required)).then_some(ChannelNeed { record, column, channel, unit, required: true, users })
-    };
-    super::find::columns(plan, graph).into_iter().filter_map(|(side, column)| need((side.in_words(), column))).collect()
-}
-
 fn positions(plan: &Plan, graph: &Graph) -> Vec<Positions> {
     let of = |(quantity, nodes): (&Quantity, &QuantityNodes)| Positions {
         records: Side::ALL.into_iter().filter(|side| quantity.evaluation.reads(*side)).map(Side::in_words).collect(),
@@ -275,18 +270,16 @@ fn channels(plan: &Plan, graph: &Graph) -> Vec<ChannelNeed> {
         let of = nodes.positions.iter().flat_map(|position| position.own.into_iter().chain(nodes_of(&position.inputs))).collect();
         add(of, &all, &format!("{PLAUSIBILITY}{}", rule.name), false, [false; 2]);
     }
-    if let Some(find) = &plan.sections.find {
-        let found = find.data.iter().map(|datum| format!("found {}", plan.columns[datum.column].key)).zip(&graph.find.data);
-        let conditions = find.conditions.iter().map(|condition| format!("find {}", condition.name)).zip(&graph.find.conditions);
+    if plan.sections.find.is_some() {
         let own = sides(&|side| side == super::find::own_side(plan));
-        for (user, inputs) in found.chain(conditions).chain([("prefer".to_string(), &graph.find.prefer)]) {
+        for inputs in graph.find.data.iter().chain(&graph.find.conditions).chain([&graph.find.prefer]) {
             for input in inputs {
                 let of = match input.side {
                     InputSide::Own => own.clone(),
                     InputSide::Measured => sides(&|side| side == Side::Measured),
                     InputSide::Simulated => sides(&|side| side == Side::Simulated),
                 };
-                add(BTreeSet::from([input.node]), &of, &user, false, [true; 2]);
+                add(BTreeSet::from([input.node]), &of, SEARCH, false, [true; 2]);
             }
         }
     }

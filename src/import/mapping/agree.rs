@@ -21,10 +21,10 @@ pub fn record_of(kind: RecordKind) -> &'static str {
 pub fn agree(mapping: &Mapping, needs: &Needs, problems: &mut Problems) {
     let missing = |record: &str, column: &str| mapping.sides.iter().any(|side| record_of(side.kind) == record && lacks(side, column));
     for kind in [RecordKind::Measurement, RecordKind::Simulation] {
-        let of_side: Vec<&ChannelNeed> = read(mapping, needs).filter(|need| need.record == record_of(kind)).collect();
+        let of_side: Vec<&ChannelNeed> = needs.channels.iter().filter(|need| need.record == record_of(kind)).collect();
         match mapping.side(kind) {
-            Some(side) => agree_side(side, &of_side, &|need| needs.blocks(need, &missing), problems),
-            None if of_side.iter().any(|need| need.required) => {
+            Some(side) => agree_side((mapping, side), &of_side, &|need| needs.blocks(need, &missing), problems),
+            None if of_side.iter().any(|need| is_required(mapping, need)) => {
                 let says = format!("the protocol also reads the {}, which this mapping does not import", kind.key());
                 problems.push(Problem::warning("side-missing", says).at(&mapping.top()));
             }
@@ -38,10 +38,10 @@ pub fn agree(mapping: &Mapping, needs: &Needs, problems: &mut Problems) {
     agree_vehicle(mapping, needs, problems);
 }
 
-/// The channels that are read; those of the search where the sections are looked for in runs.
-fn read<'a>(mapping: &Mapping, needs: &'a Needs) -> impl Iterator<Item = &'a ChannelNeed> {
+/// Whether a number depends on a channel; on those of the search only where the sections are looked for in runs.
+fn is_required(mapping: &Mapping, need: &ChannelNeed) -> bool {
     let is_search = mapping.runs.as_ref().is_some_and(|runs| runs.table.is_none());
-    needs.searched.iter().filter(move |_| is_search).chain(&needs.channels)
+    need.required && (is_search || !need.of_search_alone())
 }
 
 /// Section data must be found in the runs or stated of each; otherwise there is a table of sections.
@@ -120,11 +120,11 @@ fn is_axis(side: &Side, column: &str) -> bool {
     column == "time" || column == "distance" && side.distance.is_some()
 }
 
-fn agree_side(side: &Side, needs: &[&ChannelNeed], blocks: &dyn Fn(&ChannelNeed) -> bool, problems: &mut Problems) {
+fn agree_side((mapping, side): (&Mapping, &Side), needs: &[&ChannelNeed], blocks: &dyn Fn(&ChannelNeed) -> bool, problems: &mut Problems) {
     let named = |name: &str| needs.iter().find(|need| need.column == name);
     let Channels::Maps(maps) = &side.channels else { return };
     let strangers: Vec<&Spanned<String>> = maps.iter().map(|map| &map.name).filter(|name| named(&name.value).is_none()).collect();
-    let missing: Vec<&ChannelNeed> = needs.iter().copied().filter(|need| need.required && lacks(side, &need.column)).collect();
+    let missing: Vec<&ChannelNeed> = needs.iter().copied().filter(|need| is_required(mapping, need) && lacks(side, &need.column)).collect();
     // A slip is one, even if the position could be left out.
     let near = missing.iter().find_map(|need| {
         let slip = nearest(&need.column, strangers.iter().map(|name| name.value.as_str()))?;
@@ -154,7 +154,7 @@ fn agree_side(side: &Side, needs: &[&ChannelNeed], blocks: &dyn Fn(&ChannelNeed)
 pub fn as_named((mapping, side): (&Mapping, &Side), needs: &Needs, names: &[&str], shown: &str) -> Vec<Problem> {
     let record = record_of(side.kind);
     let lacks = |column: &str| !names.contains(&column) && !is_axis(side, column);
-    let missing = read(mapping, needs).filter(|need| need.required && need.record == record && lacks(&need.column));
+    let missing = needs.channels.iter().filter(|need| is_required(mapping, need) && need.record == record && lacks(&need.column));
     let (needed, left_out): (Vec<&ChannelNeed>, Vec<&ChannelNeed>) =
         missing.partition(|need| needs.blocks(need, &|of, column| of == record && lacks(column)));
     let is = format!("not in `{shown}`, whose channels keep their names");
@@ -179,7 +179,7 @@ fn not_there(side: &Side, missing: &[&ChannelNeed], is: &str) -> Option<Problem>
     let problem = Problem::error("channel-missing", says).at(&side.span);
     let user = first.users.quantities.iter().chain(&first.users.rules).next();
     Some(match user {
-        Some(user) if user == SEARCH => problem.help(format!("`{}` is for {user} in the runs", first.column)),
+        Some(_) if first.of_search_alone() => problem.help(format!("`{}` is for {SEARCH} in the runs", first.column)),
         Some(user) => problem.help(format!("`{}` is for {user}; `fishplate explain PROTOCOL --stage needs` lists all needs", first.column)),
         None => problem,
     })

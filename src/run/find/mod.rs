@@ -41,18 +41,6 @@ pub fn applies(plan: &Plan, campaign: &Campaign) -> bool {
     plan.sections.find.is_some() && campaign.sections.is_none() && !campaign.runs().is_empty()
 }
 
-/// The columns of the records of each side that the search reads.
-pub fn columns(plan: &Plan, graph: &Graph) -> Vec<(Side, String)> {
-    let of_side = |side: Side| {
-        let columns = signals::columns(graph, Source::Side(side), own_side(plan)).into_iter();
-        columns.filter_map(move |id| match &graph.nodes[id].operation {
-            Operation::Read { column } => Some((side, column.clone())),
-            _ => None,
-        })
-    };
-    Side::ALL.into_iter().flat_map(of_side).collect()
-}
-
 /// Whether every run has the data that are neither found nor have a default.
 ///
 /// Problems: `missing-run-data`.
