@@ -76,12 +76,22 @@ impl Checker<'_> {
     fn found_length(&mut self, field: &Field) -> Option<Expr> {
         let phrase = from_pest::expression(&field.value, self.problems)?;
         let expr = self.expr(&phrase, &field.value, &mut Scope::section())?;
-        let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
-        if self.number_type(&expr)? == axis {
+        self.length_of_section(expr, field)
+    }
+
+    /// An expression for the length of a section, if it has the dimension of the axis.
+    pub(super) fn length_of_section(&mut self, expr: Expr, field: &Field) -> Option<Expr> {
+        let axis = self.axis_dimension();
+        let found = self.number_type(&expr)?;
+        if found == axis {
             return Some(expr);
         }
         let says = format!("the length of a section is {}, this is {}", axis.in_words(), in_words(&expr.ty));
-        self.problems.push(Problem::error("unit-mismatch", says).at(&field.value.span));
+        let problem = Problem::error("unit-mismatch", says).at(&field.value.span);
+        self.problems.push(match (&self.axis, found) {
+            (Some(axis), Dimension::ONE) => problem.help(format!("write its unit, such as {}", axis.unit)),
+            _ => problem,
+        });
         None
     }
 
@@ -103,7 +113,7 @@ impl Checker<'_> {
     /// An expression over values of signals. `words` may stand for themselves.
     fn of_signals(&mut self, field: &Field, words: &[String]) -> Option<OfSignals> {
         let phrase = from_pest::expression(&field.value, self.problems)?;
-        let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
+        let axis = self.axis_dimension();
         let mut scope = Scope { words: words.to_vec(), ..Scope::reducing(None, axis) };
         let expr = self.expr(&phrase, &field.value, &mut scope)?;
         for input in &scope.inputs {
@@ -218,7 +228,7 @@ impl Checker<'_> {
     /// A constant along the axis: a step, a margin.
     pub(super) fn along_axis(&mut self, field: &Field, above_zero: bool) -> Option<f64> {
         let (value, dimension) = self.constant(&field.value)?;
-        let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
+        let axis = self.axis_dimension();
         let says = if dimension != axis {
             format!("`{}` is {}, this is {}", field.key.text, axis.in_words(), dimension.in_words())
         } else if value < 0.0 || (above_zero && value == 0.0) {

@@ -98,10 +98,7 @@ impl Checker<'_> {
         let (first, _) = positions.first()?;
         Some(Compared {
             evaluation: Evaluation::Metric { metric, over, over_axis, pairing: Pairing::SIDES },
-            dimension: (metric.0.gives)(
-                after(chain, first.signal.dimension),
-                self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension),
-            ),
+            dimension: (metric.0.gives)(after(chain, first.signal.dimension), self.axis_dimension()),
             processing: words.clone(),
             comparison: words,
             best: Some((metric.0.best, field.value.span.clone())),

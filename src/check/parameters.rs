@@ -116,15 +116,12 @@ impl Checker<'_> {
         let Some((text, set)) = set else { return Some((Scalar::Number(value), Type::Number(dimension))) };
         let (value, found) = set?;
         if found != dimension {
-            self.problems.push(
-                Problem::error(
-                    "unit-mismatch",
-                    format!("parameter `{name}` is {}, the given value is {}", dimension.in_words(), found.in_words()),
-                )
-                .at(&text.span)
-                .label(found.in_words())
-                .also(&default.span, "its default"),
-            );
+            let says = format!("parameter `{name}` is {}, the given value is {}", dimension.in_words(), found.in_words());
+            let problem = Problem::error("unit-mismatch", says).at(&text.span).label(found.in_words()).also(&default.span, "its default");
+            self.problems.push(match found {
+                Dimension::ONE => problem.help(format!("write its unit, as its default does: `{}`", default.text.trim())),
+                _ => problem,
+            });
             return None;
         }
         if let Some(range) = block.field("range") {

@@ -99,7 +99,7 @@ impl Checker<'_> {
 
     fn requirement(&mut self, field: &Field, signals: &[(String, Signal)], chain: &[Step], own_unit: Option<&Unit>) -> Option<Requirement> {
         let phrase = from_pest::expression(&field.value, self.problems)?;
-        let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
+        let axis = self.axis_dimension();
         let own = signals.first().map(|(_, signal)| after(chain, signal.dimension));
         let mut scope = Scope { factor: after(chain, Dimension::ONE), ..Scope::comparing(own, axis) };
         let (holds, compared) = self.compared(&phrase, &field.value, &mut scope)?;

@@ -342,7 +342,7 @@ impl Checker<'_> {
         chain: &[Step],
         scope: fn(Option<Dimension>, Dimension) -> Scope,
     ) -> Option<(Valued, Dimension)> {
-        let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
+        let axis = self.axis_dimension();
         let (first, at) = positions.first()?;
         let dimension = after(chain, first.signal.dimension);
         let factor = after(chain, Dimension::ONE);

@@ -44,18 +44,7 @@ impl Checker<'_> {
                 let expr = self.expr(&phrase, &field.value, &mut scope);
                 self.assumed.clear();
                 let expr = expr?;
-                let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
-                if self.number_type(&expr)? != axis {
-                    self.problems.push(
-                        Problem::error(
-                            "unit-mismatch",
-                            format!("the length of a section is {}, this is {}", axis.in_words(), super::scalars::in_words(&expr.ty)),
-                        )
-                        .at(&field.value.span),
-                    );
-                    return None;
-                }
-                Some(expr)
+                Some(self.length_of_section(expr, field)?)
             }
         };
         let minimum_sections = self.count(block, "minimum sections", 0)?;
@@ -70,10 +59,15 @@ impl Checker<'_> {
         })
     }
 
+    /// The dimension of the axis; that of the usual one if the protocol has none, which is reported elsewhere.
+    pub(super) fn axis_dimension(&self) -> Dimension {
+        self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension)
+    }
+
     pub(super) fn section_check(&mut self, block: &Block) -> Option<Check> {
         let field = self.required(block, "require")?;
         let phrase = from_pest::expression(&field.value, self.problems)?;
-        let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
+        let axis = self.axis_dimension();
         let mut scope = Scope::reducing(None, axis);
         let require = self.expr(&phrase, &field.value, &mut scope)?;
         self.flag_type(&require)?;

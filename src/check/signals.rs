@@ -135,7 +135,7 @@ impl Checker<'_> {
             }
         };
         let signal = self.signal(of, text, at);
-        let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
+        let axis = self.axis_dimension();
         if let (true, Some(distance)) = (shifted, second) {
             let distance = self.expr(distance, text, &mut Scope::section())?;
             let found = self.number_type(&distance)?;
@@ -172,7 +172,7 @@ impl Checker<'_> {
     fn level(&mut self, reducer: &Phrase, of: &Phrase, text: &Text, span: Span, at: &Assignment) -> Option<Signal> {
         let reducer = self.reducer(reducer, text, true)?;
         let of = self.signal(of, text, at)?;
-        let axis = self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension);
+        let axis = self.axis_dimension();
         let (dimension, track) = (reducer.gives(of.dimension, axis), of.track);
         Some(Signal { dimension, track, kind: SignalKind::Level(reducer, Box::new(of)), span })
     }

@@ -181,9 +181,9 @@ impl Study {
                     problems.push(Problem::error("farthest", format!("`--farthest {farthest}` must be above zero")));
                     return None;
                 }
-                let offsets = numbers(offsets)
-                    .map_err(|says| problems.push(Problem::error("offsets", format!("`--offsets {offsets}`: {says}"))))
-                    .ok()?;
+                let wrong = |says| Problem::error("offsets", format!("`--offsets {offsets}`: {says}"));
+                let help = "offsets are in the unit of the protocol's axis: `--offsets=-5,5`, or `--offsets=-5..5 step 1`";
+                let offsets = numbers(offsets).map_err(|says| problems.push(wrong(says).help(help))).ok()?;
                 Some(Asked::Sync(Synchronisation { offsets, farthest: *farthest, correct: *correct }))
             }
             Self::Parameters { vary, .. } => {

@@ -47,7 +47,10 @@ fn with_unit(text: &str) -> Result<(f64, &str), String> {
 pub fn numbers(text: &str) -> Result<Vec<f64>, String> {
     let number = |value: &String| match value.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
-        _ => Err(format!("`{value}` is not a number")),
+        _ => Err(match with_unit(value) {
+            Ok((number, unit)) if !unit.is_empty() => format!("`{value}` has a unit; write `{number}`"),
+            _ => format!("`{value}` is not a number"),
+        }),
     };
     values(text)?.iter().map(number).collect()
 }
@@ -71,5 +74,6 @@ mod tests {
             assert!(values(wrong).is_err(), "{wrong}");
         }
         assert!(numbers("1, x").is_err());
+        assert_eq!(numbers("-5 m, 5 m"), Err("`-5 m` has a unit; write `-5`".into()));
     }
 }

@@ -124,8 +124,8 @@ impl Campaign {
             opening.problems.push(Problem::error("unfinished-set", says).help("repeat that run, with the same `--out`"));
             return None;
         }
-        // Disk errors are reported when the file is read.
-        if on_disk && matches!(disk::is_file(&place.path), Ok(false)) {
+        // Anything else that is not a plain file is reported when it is read.
+        if on_disk && matches!(disk::kind(&place.path), Ok(None)) {
             let says = format!("there is no file `{}`", place.shown);
             opening.problems.push(Problem::error("file-missing", says).help("a campaign is a folder with a file `campaign.yaml`"));
             return None;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::campaign::{CAMPAIGN_FILE, RUN_COLUMN, RUNS, Run};
+use super::campaign::{CAMPAIGN_FILE, Part, RUN_COLUMN, RUNS, Run};
 use super::hash::sha256;
 use super::origin::{ORIGIN_FILE, ORIGIN_KEY};
 use super::record::{Format, Record, Wanted};
@@ -21,8 +21,6 @@ const KEY: &str = "records_cut";
 const TABLE: &str = "cut.csv";
 /// The table of sections.
 const SECTIONS: &str = "sections.csv";
-/// What is kept before and after a section, in its lengths: as much as the evaluation of a section in a run reads.
-const BESIDE: f64 = 2.0;
 /// Significant digits of the numbers: those that a run has are kept, and the rounding of units is not.
 const DIGITS: usize = 12;
 
@@ -73,11 +71,12 @@ fn stretch(campaign: &Campaign, table: &Table, run: &Run, kind: RecordKind, name
         RecordKind::Measurement => campaign.offset(name).map_err(one)?.map_or(0.0, |(_, offset)| offset),
         RecordKind::Simulation | RecordKind::Track => 0.0,
     };
-    let beside = BESIDE * (end - start);
+    // As much as the evaluation of a section in a run reads.
+    let Part { from, to, .. } = Part::around(axis, (start, end), None);
     let headings = source.headings()?;
     let of = |name: String| Wanted { name, dimension: None, required: true };
     let wanted: Vec<Wanted> = headings.into_iter().map(|heading| of(heading.name)).collect();
-    let range = start - beside - moved..end + beside - moved;
+    let range = from - moved..to - moved;
     let record = source.stretch(&wanted, axis, range, run.known(kind))?;
     Ok((record, source.inside().to_string()))
 }

@@ -123,7 +123,7 @@ enum Want {
 /// # Errors
 /// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`; `format-unknown`, `format-not-read`, `format-mislabelled`,
 /// `format-damaged`, `too-many-values`; of a text also `encoding`, `dialect`, `no-numbers`, `line-too-long`, `ragged-row`,
-/// `not-a-number`, `not-finite`, `decimal-comma`, `thousands`, `date-order`, `header-line`, `more-problems`.
+/// `not-a-number`, `not-finite`, `not-a-date`, `decimal-comma`, `thousands`, `date-order`, `header-line`, `more-problems`.
 pub fn read(path: &Path, shown: &str, options: &Options) -> Result<File, Vec<Problem>> {
     read_as(path, shown, options, Want::Values)
 }

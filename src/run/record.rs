@@ -155,23 +155,13 @@ pub fn open(work: &Work<'_>, unit: &Unit, which: WhichRecord, needed: &BTreeSet<
     if let Some(opened) = sharing.and_then(|sharing| sharing.store.open(work, unit, which, &wanted)) {
         return opened;
     }
-    let part = unit.extent.map(|extent| part_of_run(&axis.column, extent, work.plan.sections.margin));
+    let part = unit.extent.map(|extent| Part::around(&axis.column, extent, work.plan.sections.margin));
     let read = match sharing {
         Some(sharing) => sharing.store.read(which, &wanted),
         None => work.campaign(unit).read(which, &unit.cell, &wanted, part.as_ref()),
     };
     let (record, read) = read.map_err(|problems| Fault { says: said(work.campaign(unit), &problems), problems })?;
     opened(work, unit, which, record, read)
-}
-
-/// How much of a run is read on each side of a section, in lengths of the section, if there is so much: a section of 70 m at 70 km/h then has
-/// 7 s on each side, in which filters from 0.4 Hz on settle.
-const BESIDE: f64 = 2.0;
-
-/// The part of a run that is read for a section: with a margin on both sides, for filters and for shifts.
-pub fn part_of_run(axis: &str, (start, end): Extent, margin: Option<f64>) -> Part {
-    let margin = margin.unwrap_or(0.0).max(BESIDE * (end - start));
-    Part { axis: axis.to_string(), from: start - margin, to: end + margin }
 }
 
 /// A record that was read, checked for the section.

@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use indexmap::IndexMap;
 
 use super::facts::Known;
-use super::record::{Fault, Opened, Work, chosen, opened, part_of_run};
+use super::record::{Fault, Opened, Work, chosen, opened};
 use super::signal::{Extent, Signal};
 use super::trial::Trial;
 use super::unit::Unit;
@@ -238,7 +238,7 @@ impl<'a> Store<'a> {
 
     /// The part of a run that is read, without the margin of a protocol: protocols may ask for different ones.
     fn part(&self) -> Option<Part> {
-        self.place.as_ref().map(|(axis, extent)| part_of_run(axis, *extent, None))
+        self.place.as_ref().map(|(axis, extent)| Part::around(axis, *extent, None))
     }
 
     fn rows(&self, record: &Record) -> std::ops::Range<usize> {

@@ -1,6 +1,7 @@
 //! Values and limits of a campaign for a study, by stratum, section and quantity.
 
 use crate::catalog::Statistic;
+use crate::result::usable_sections;
 use crate::run::pool::{Estimator, Pool, Pooled, PooledLimit, PooledMinimum, PooledQuantity, Rule};
 
 /// Tolerance for rounding where a value equals its limit, which counts as met. Relative to the limit.
@@ -128,11 +129,11 @@ impl Case {
         }
         for stratum in &strata {
             if stratum.members.len() < stratum.take {
-                let (has, needs) = (stratum.members.len(), stratum.take);
+                let (has, needs) = (usable_sections(stratum.members.len(), stratum.members.len()), stratum.take);
                 let why: Vec<String> =
                     stratum.not_used.iter().take(3).map(|(at, why)| format!("{} is not used: {why}", pool.sections[*at].name)).collect();
                 let why = if why.is_empty() { String::new() } else { format!(" ({})", why.join("; ")) };
-                return Err(format!("zone {} has {has} usable sections, and a selection takes {needs}{why}", stratum.zone));
+                return Err(format!("zone {} has {has}, and a selection takes {needs}{why}", stratum.zone));
             }
         }
         let mut case = Self {

@@ -93,6 +93,8 @@ fn faults_have_their_place() {
         (b"t;y\n0;1\n1;2;3\n2;3\n", "ragged-row", "x.txt:3:5"),
         (b"t;y\n0;1\n1\n2;3\n", "ragged-row", "x.txt:3:1"),
         (b"t;y\n0;1\n1;inf\n2;3\n", "not-finite", "x.txt:3:3"),
+        (b"t;y\n2026-11-05 10:00:00;1\n2026-13-05 10:00:01;2\n", "not-a-date", "x.txt:3:1"),
+        (b"y;d;c\n1;05.11.2026;10:00:00\n2;32.11.2026;10:00:01\n", "not-a-date", "x.txt:3:3"),
         (b"nothing here\n", "no-numbers", "x.txt:1:1"),
         (b"\n\n\n", "no-numbers", ""),
         (b"t;y\n0;1\n\x00\x01\x02", "format-unknown", ""),

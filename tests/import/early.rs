@@ -101,6 +101,20 @@ fn a_channel_of_the_search_must_be_there() {
     refused(&without, "examples/run/recorded", &["error[channel-missing]", "`speed`"]);
 }
 
+/// With a table of sections, nothing is searched.
+#[test]
+fn a_table_of_sections_needs_no_channel_of_the_search() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let table = folder.path().join("sections.csv");
+    fs::write(&table, "section,run,start [m],end [m]\nA,north,1000,1500\n").expect("written");
+    let text = fs::read_to_string("examples/run/recorded/mapping.yaml").expect("the example");
+    let text = text.replacen("channels: as named", "channels: {Y_1L: Y_1L}", 1);
+    let text = text.replace("vehicle:", &format!("sections: {}\nvehicle:", table.display()));
+    let (problems, done) = imported(&text, "mapping.yaml", Path::new("examples/run/recorded"), &folder.path().join("c"));
+    let said = problems.render(false);
+    assert!(!done && said.contains("error[channel-missing]") && said.contains("`Y_1R`") && !said.contains("`speed`"), "{said}");
+}
+
 /// Where channels keep their names, only the file tells what is missing.
 #[test]
 fn channels_as_named_must_be_those_of_the_protocol() {

@@ -58,7 +58,8 @@ impl Campaign {
             return Ok(names);
         }
         self.none_in_memory(&inside, span)?;
-        let entries = disk::names(&place.path).map_err(|error| no_folder(&error, &place.shown).at(span))?;
+        let nearest = |problem: Problem| problem.suggest(&place.inside, Self::folders_beside(&place).iter().map(String::as_str));
+        let entries = disk::names(&place.path).map_err(|error| nearest(no_folder(&error, &place.shown).at(span)))?;
         let mut names: Vec<String> = entries
             .iter()
             .filter_map(|name| Some(Format::stem(name.to_str()?)?.to_string()))
@@ -205,7 +206,8 @@ impl Campaign {
             }
         };
         if !disk::is_folder(&folder.path).map_err(|error| unreadable(&folder.inside, error))? {
-            return Err(Problem::error("folder-missing", format!("there is no folder `{}`", folder.inside)).at(span));
+            let problem = Problem::error("folder-missing", format!("there is no folder `{}`", folder.inside)).at(span);
+            return Err(problem.suggest(&folder.inside, Self::folders_beside(&folder).iter().map(String::as_str)));
         }
         let others = found.strangers.get_or_init(|| self.strangers(&folder.path));
         let in_other_format = |name: &String| {
@@ -241,6 +243,14 @@ impl Campaign {
         }
         let problem = Problem::error("file-missing", format!("there is no record `{name}` in memory")).at(at);
         Err(problem.suggest(name, self.folder.memory().records.keys().map(String::as_str)))
+    }
+
+    /// The folders beside one that does not exist, by their paths inside the campaign.
+    fn folders_beside(missing: &Place) -> Vec<String> {
+        let Some(beside) = missing.path.parent() else { return Vec::new() };
+        let inside = missing.inside.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
+        let names = disk::names(beside).unwrap_or_default().into_iter().filter_map(|name| name.into_string().ok());
+        names.filter(|name| disk::is_folder(&beside.join(name)).unwrap_or(false)).map(|name| format!("{inside}{name}")).collect()
     }
 
     /// Files of a folder but the records of sections: the record of another section is not what was meant.

@@ -175,6 +175,18 @@ pub struct Part {
     pub to: f64,
 }
 
+impl Part {
+    /// How much of a run is read on each side of a section, in lengths of the section, if there is so much: a section of 70 m at 70 km/h
+    /// then has 7 s on each side, in which filters from 0.4 Hz on settle.
+    const BESIDE: f64 = 2.0;
+
+    /// A section with what is read beside it, for filters and for shifts; more if a larger margin is asked for.
+    pub fn around(axis: &str, (start, end): (f64, f64), margin: Option<f64>) -> Self {
+        let margin = margin.unwrap_or(0.0).max(Self::BESIDE * (end - start));
+        Self { axis: axis.to_string(), from: start - margin, to: end + margin }
+    }
+}
+
 impl Campaign {
     pub fn runs(&self) -> &[Run] {
         &self.runs

@@ -8,6 +8,7 @@ use super::header::Heading;
 use super::stamps::{self, DAY, NANOSECONDS, Stamp};
 use super::{Text, at, numbers};
 use crate::problem::Problem;
+use crate::source::Span;
 
 /// Problems shown of a file; one in a wrong dialect has one in every row.
 const SHOWN: usize = 5;
@@ -50,7 +51,12 @@ pub(super) fn read(
     if !problems.is_empty() {
         return Err(problems);
     }
-    finish(text, columns, headings, table).map_err(|problem| vec![problem])
+    let place = |column: usize, row: usize| {
+        let line = *rows.iter().filter(|line| super::is_row(text, **line)).nth(row)?;
+        let cell = self::row(text, line, dialect).ok()?.get(column)?.clone();
+        Some((shortened(&line.text[cell.clone()]), at(text.shown, line, cell)))
+    };
+    finish(text, columns, headings, &place, table).map_err(|problem| vec![problem])
 }
 
 /// The cells of a row, as many as there are columns.
@@ -144,8 +150,14 @@ fn shortened(word: &str) -> String {
     if word.chars().count() <= MOST { word.to_string() } else { word.chars().take(MOST).chain(['…']).collect() }
 }
 
-/// Columns of numbers and times as channels.
-fn finish(text: &Text<'_>, columns: Vec<Column>, headings: Vec<Heading>, table: &mut Table) -> Result<(), Problem> {
+/// Columns of numbers and times as channels. `cell`: the text and the place of a cell, by its column and row.
+fn finish(
+    text: &Text<'_>,
+    columns: Vec<Column>,
+    headings: Vec<Heading>,
+    cell: &dyn Fn(usize, usize) -> Option<(String, Span)>,
+    table: &mut Table,
+) -> Result<(), Problem> {
     // A date in one column and the time of the day in another belong together.
     let has_clock = columns.iter().any(|column| matches!(column, Column::Stamps(found) if only_clock(found)));
     let day = columns.iter().position(|column| matches!(column, Column::Stamps(found) if has_clock && only_dates(found)));
@@ -162,7 +174,9 @@ fn finish(text: &Text<'_>, columns: Vec<Column>, headings: Vec<Heading>, table: 
                 continue;
             }
             Column::Stamps(mut stamps) => {
-                if let Some(days) = days.as_ref().filter(|_| only_clock(&stamps)) {
+                let dated = days.as_ref().filter(|_| only_clock(&stamps));
+                let of_dates = day.filter(|_| dated.is_some()).unwrap_or(index);
+                if let Some(days) = dated {
                     for (stamp, day) in stamps.iter_mut().zip(days) {
                         *stamp = stamp.zip(*day).map(|(stamp, day)| Stamp { date: day.date, clock: stamp.clock });
                     }
@@ -177,6 +191,12 @@ fn finish(text: &Text<'_>, columns: Vec<Column>, headings: Vec<Heading>, table: 
                     }
                 };
                 let values = seconds(text, &stamps).ok_or_else(ambiguous)?;
+                // Without a date of the calendar, a stamp has no value.
+                let wrong = stamps.iter().zip(&values).position(|(stamp, value)| stamp.is_some() && value.is_nan());
+                if let Some((written, span)) = wrong.and_then(|row| cell(of_dates, row)) {
+                    let says = format!("`{}`: `{written}` has no date of the calendar", heading.name);
+                    return Err(Problem::error("not-a-date", says).at(&span));
+                }
                 (values, Some("s".to_string()), Some("seconds from the first time stamp".to_string()))
             }
             Column::Text(first) => {

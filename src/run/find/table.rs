@@ -10,8 +10,8 @@ use crate::problem::{Problem, Problems, nearest};
 use crate::run::facts::trimmed;
 use crate::run::sections::of_run;
 
-/// What found sections are called in messages, and the file that `sections` writes.
-pub const NAME: &str = "sections.csv";
+/// What the table of found sections is called in messages: it is in no file.
+const NAME: &str = "found sections";
 /// Data of a run that say on which line it was: sections of the same line at the same place are of one site.
 const LINE: &str = "line";
 

@@ -66,6 +66,9 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
     if rule == Rule::limit && ["+", "-", "*", "/"].contains(&found) && before.split_whitespace().count() == 1 {
         return problem.help("write an estimate of several statistics in parentheses: `limit (mean + 3 * std) 60 kN`");
     }
+    if rule == Rule::limit && before.split_whitespace().count() == 2 && found.starts_with(|c: char| c.is_ascii_digit()) {
+        return problem.help("a statistic is one word, such as `mean`, `std` (standard deviation) or `p95`: `limit std 5 kN`");
+    }
     match expected.as_slice() {
         [] => problem,
         [..] if expected.len() <= 6 => problem.help(format!("expected {}", one_of(&expected))),

@@ -1,13 +1,12 @@
 //! Records on a server: the same values as from files, few bytes, and what goes wrong is told with the URL.
 
-mod common {
-    pub mod program;
-}
+#[path = "../common/program.rs"]
+mod program;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use common::program::{Ran, program, ran};
+use program::{Ran, program, ran};
 use tempfile::TempDir;
 
 /// A campaign with two runs, and its table of sections, which was found on the disk.
