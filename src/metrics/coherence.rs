@@ -2,7 +2,6 @@
 
 use std::f64::consts::TAU;
 
-use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 
 use super::pair::Undefined;
@@ -30,7 +29,7 @@ pub fn in_band(simulated: &[f64], measured: &[f64], rate: f64, (low, high): (f64
         return Err(Undefined::because(format!("no line of the spectrum lies in the band: the lines are {apart} apart")));
     }
     let hann: Vec<f64> = (0..WINDOW).map(|k| 0.5 - 0.5 * (TAU * k as f64 / WINDOW as f64).cos()).collect();
-    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(WINDOW);
+    let transform = super::fourier::forward(WINDOW);
     let spectrum = |part: &[f64]| -> Result<Vec<Complex<f64>>, Undefined> {
         let mean = part.iter().sum::<f64>() / WINDOW as f64;
         let mut windowed: Vec<f64> = part.iter().zip(&hann).map(|(value, weight)| (value - mean) * weight).collect();

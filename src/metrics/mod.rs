@@ -21,6 +21,7 @@
 //! | [`random_effects`] | estimates with variances | the variance between them |
 //! | [`synchronise`] | signals of two records | the shift between them |
 //! | [`drift`] | signals of two long records | the shift along them |
+//! | [`fourier`] | a length | the plan of a Fourier transform |
 //! | [`coherence`] | simulated and measured signal | the linear dependence as a function of frequency |
 //! | [`along`] | signal over an axis | derivative, integral, shifted signal |
 //! | [`rank`] | pairs of values | rank correlation |
@@ -33,6 +34,7 @@ pub mod coherence;
 pub mod disturb;
 pub mod drift;
 pub mod filter;
+pub mod fourier;
 pub mod hull;
 pub mod hysteresis;
 mod incomplete_beta;

@@ -4,11 +4,11 @@
 //! is counted by dynamic programming, and a convolution joins the zones. The rounding error of a selection is bounded by the remainders
 //! of its sections, so that every quartile lies between two bounds, which are reported.
 
-use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 
 use super::case::{Case, Kind, Measure};
 use super::halves::Form;
+use crate::metrics::fourier;
 use crate::result::study::Spread;
 
 /// Largest and smallest number of grid cells.
@@ -125,8 +125,7 @@ impl Additive {
             self.strata.iter().map(|(take, parts)| ends(parts, *take, true).iter().map(|(part, _)| part - parts[0].0).sum::<f64>()).sum();
         // Rounding adds at most half a cell per section taken.
         let step = if span > 0.0 { span / (cells - taken - 1) as f64 } else { 1.0 };
-        let mut planner = RealFftPlanner::<f64>::new();
-        let forward = planner.plan_fft_forward(cells);
+        let forward = fourier::forward(cells);
         let (mut all, mut first, mut rest) = (vec![Complex::new(1.0, 0.0); cells / 2 + 1], 0.0, (0.0, 0.0));
         for (take, parts) in &self.strata {
             let places: Vec<usize> = parts.iter().map(|(part, _)| ((part - parts[0].0) / step).round() as usize).collect();
@@ -148,7 +147,7 @@ impl Additive {
             all.iter_mut().zip(spectrum).for_each(|(all, of)| *all *= of);
         }
         let mut shares = vec![0.0; cells];
-        planner.plan_fft_inverse(cells).process(&mut all, &mut shares).ok()?;
+        fourier::inverse(cells).process(&mut all, &mut shares).ok()?;
         shares.iter_mut().for_each(|share| *share /= cells as f64);
         Some(Counted { shares, first, step, rest })
     }

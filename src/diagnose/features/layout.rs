@@ -3,9 +3,8 @@
 //! Features of a channel depend on that channel alone, and on the simulated one for gains and lags. An operation on one channel
 //! therefore changes the features of that channel only.
 
-use realfft::RealFftPlanner;
-
 use crate::diagnose::levels::features::{INVERTED, SPIKES};
+use crate::metrics::fourier;
 use crate::units::Unit;
 
 /// Band edges and channels.
@@ -143,7 +142,7 @@ impl Spectrum {
             input[i] = (value - mean - slope * (i as f64 - middle)) * taper;
             power += taper * taper;
         }
-        let transform = RealFftPlanner::<f64>::new().plan_fft_forward(padded);
+        let transform = fourier::forward(padded);
         let mut output = transform.make_output_vec();
         // The lengths are those of the plan: the call cannot fail.
         let _ = transform.process(&mut input, &mut output);
@@ -179,7 +178,7 @@ impl Spectrum {
         if self.padded != reference.padded {
             return None;
         }
-        let inverse = RealFftPlanner::<f64>::new().plan_fft_inverse(self.padded);
+        let inverse = fourier::inverse(self.padded);
         let mut cross = inverse.make_input_vec();
         let mut own = 0.0;
         for i in reference.range(low, high) {

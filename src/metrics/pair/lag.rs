@@ -1,9 +1,9 @@
 //! The shift by which two signals agree best, as ISO/TS 18571 and CORA look for it.
 
-use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 
 use super::Undefined;
+use crate::metrics::fourier;
 use crate::metrics::sum::{RunningSums, sum_of};
 
 /// A larger shift has to agree better by more than this. Differences below are rounding, and of equal ones the smaller shift counts.
@@ -74,8 +74,7 @@ pub(super) fn overlap<'a>(simulated: &'a [f64], measured: &'a [f64], shift: isiz
 fn products(simulated: &[f64], measured: &[f64], most: usize) -> Result<Vec<f64>, Undefined> {
     // Zeros behind the signals, so that what is moved out at one end does not come in at the other.
     let length = (simulated.len() + most).next_power_of_two().max(2);
-    let mut planner = RealFftPlanner::<f64>::new();
-    let forward = planner.plan_fft_forward(length);
+    let forward = fourier::forward(length);
     let failed = |error: realfft::FftError| Undefined::because(error.to_string());
     let spectrum = |signal: &[f64]| -> Result<Vec<Complex<f64>>, Undefined> {
         let mut padded = signal.to_vec();
@@ -86,7 +85,7 @@ fn products(simulated: &[f64], measured: &[f64], most: usize) -> Result<Vec<f64>
     };
     let of_measured = spectrum(measured)?;
     let mut of_both: Vec<Complex<f64>> = spectrum(simulated)?.iter().zip(&of_measured).map(|(s, m)| s * m.conj()).collect();
-    let backward = planner.plan_fft_inverse(length);
+    let backward = fourier::inverse(length);
     let mut found = backward.make_output_vec();
     backward.process(&mut of_both, &mut found).map_err(failed)?;
     let at = |lag: isize| found[lag.rem_euclid(length as isize) as usize] / length as f64;
