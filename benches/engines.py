@@ -55,7 +55,7 @@ def peak():
         except OSError:
             continue
         lines = dict(line.split(":", 1) for line in status.splitlines() if ":" in line)
-        if process != os.getpid() and "python" in lines["Name"] and "VmHWM" in lines:
+        if process != os.getpid() and ("python" in lines["Name"] or "ray::" in lines["Name"]) and "VmHWM" in lines:
             found.append(int(lines["VmHWM"].split()[0]))
     return max(found) / 1024
 
