@@ -1,14 +1,16 @@
 //! `blind`: diagnoses every campaign first, then reads the truths and scores the answers.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use clap::Args;
 use rayon::prelude::*;
 
-use super::diagnose::{Asked, diagnosed, json};
+use super::diagnose::{Asked, json};
 use super::output::{Console, Exit};
-use super::places::{REPORT, check_folder};
+use super::places::{REPORT, check_folder, same};
+use super::protocols::load;
 use super::simulate::load_catalogue;
 use crate::data::Campaign;
 use crate::data::campaign::CAMPAIGN_FILE;
@@ -56,6 +58,7 @@ impl Blinded {
         let mut campaigns = Vec::new();
         self.folders.iter().for_each(|folder| find(folder, &mut campaigns, 0));
         campaigns.sort();
+        campaigns.dedup_by(|one, other| same(one, other));
         if campaigns.is_empty() {
             return console.fail(Problem::error("no-campaigns", "these folders contain no campaign"), Exit::Wrong);
         }
@@ -63,20 +66,29 @@ impl Blinded {
         // A fault of the catalogue is reported once, not for every campaign.
         let usable = |catalogue: &Catalogue, problems: &mut Problems| Settings::read(catalogue, problems).is_some();
         let catalogue = load_catalogue(&self.catalogue, &mut problems);
-        let Some(catalogue) = catalogue.filter(|catalogue| usable(catalogue, &mut problems)) else {
+        let catalogue = catalogue.filter(|catalogue| usable(catalogue, &mut problems));
+        // So is one of the protocol.
+        if let Some(named) = &self.protocol {
+            load(named, &mut problems);
+        }
+        let Some(catalogue) = catalogue.filter(|_| !problems.any_error()) else {
             console.problems(&problems);
             return Exit::Wrong;
         };
+        let diagnosed = AtomicUsize::new(0);
         let out = Mutex::new(Outputs::new(&self.out));
         // In parallel, since one diagnosis does not use all cores all the time.
         let one = |(at, folder): (usize, &PathBuf)| {
             console.say(&format!("{} of {}: {}", at + 1, campaigns.len(), folder.display()));
-            self.one(folder, &catalogue, &out, console)
+            self.one(folder, &catalogue, &out, &diagnosed, console)
         };
         let scored = match campaigns.par_iter().enumerate().with_max_len(1).map(one).collect::<Result<Vec<Case>, Problem>>() {
             Ok(cases) => blind(cases),
             Err(problem) => return console.fail(problem, Exit::Unfinished),
         };
+        if diagnosed.load(Ordering::Relaxed) == 0 {
+            return console.fail(Problem::error("no-diagnosis", "none of the campaigns could be diagnosed"), Exit::Wrong);
+        }
         let text = serde_json::to_string_pretty(&scored).unwrap_or_default() + "\n";
         let page = match html::chapters_html("Diagnoses against withheld truths", &report::chapters(&scored)) {
             Ok(page) => page,
@@ -99,7 +111,14 @@ impl Blinded {
     }
 
     /// The diagnosis is written and closed before the truth is opened.
-    fn one(&self, folder: &Path, catalogue: &Catalogue, out: &Mutex<Outputs>, console: &Console) -> Result<Case, Problem> {
+    fn one(
+        &self,
+        folder: &Path,
+        catalogue: &Catalogue,
+        out: &Mutex<Outputs>,
+        diagnosed: &AtomicUsize,
+        console: &Console,
+    ) -> Result<Case, Problem> {
         let mut problems = Problems::default();
         let asked = Asked {
             folder,
@@ -112,12 +131,13 @@ impl Blinded {
         };
         let name = folder.file_name().map_or_else(|| "campaign".to_string(), |name| name.to_string_lossy().into_owned());
         let places = |campaign: &Campaign| check_folder(&self.out, REPORT, campaign);
-        let found = diagnosed(&asked, &places, &|_| {}, &mut problems);
+        let found = super::diagnose::diagnosed(&asked, &places, &|_| {}, &mut problems);
         console.problems(&problems);
         let Some((files, outcome)) = found else {
             let fault = problems.0.first().map_or("no diagnosis".to_string(), |problem| problem.says.clone());
             return Ok(without(&name, fault));
         };
+        diagnosed.fetch_add(1, Ordering::Relaxed);
         let diagnosis = json(&outcome.diagnosis);
         let mut outputs = out.lock().unwrap_or_else(PoisonError::into_inner);
         outputs.add(&format!("{name}/diagnosis.json"), diagnosis.as_bytes())?;

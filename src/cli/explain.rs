@@ -1,12 +1,13 @@
 //! `explain`: a protocol at any stage of its processing, or the functions of the language.
 
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
 use super::output::{Console, Exit};
+use super::places::check_file;
 use super::protocols::load;
 use crate::catalog::entries;
 use crate::check::{
@@ -60,6 +61,11 @@ enum Format {
 
 impl Explain {
     pub fn run(self, console: &Console) -> Exit {
+        if let (Some(protocol), Some(output)) = (&self.protocol, &self.output)
+            && let Err(problem) = check_file(output, &[Path::new(protocol)])
+        {
+            return console.fail(problem, Exit::Wrong);
+        }
         let text = match &self.protocol {
             None if matches!(self.format, Format::Text | Format::Json) => registry(self.format == Format::Json),
             None => return console.fail(Problem::error("format", "without a protocol the format is text or json"), Exit::Wrong),

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::output::{Console, Exit};
+use super::places::check_file;
 use crate::check::{self, Overrides};
 use crate::disk::SetKind;
 use crate::library;
@@ -79,6 +80,9 @@ fn canonical(source: &Arc<Source>, problems: &mut Problems, yaml: bool) -> Strin
 }
 
 pub fn convert(name: &str, yaml: bool, output: Option<&Path>, console: &Console) -> Exit {
+    if let Some(Err(problem)) = output.map(|output| check_file(output, &[Path::new(name)])) {
+        return console.fail(problem, Exit::Wrong);
+    }
     let source = match library::find(name, None) {
         Ok(source) => source,
         Err(problem) => return console.fail(*problem, Exit::Wrong),

@@ -38,7 +38,8 @@ pub fn variance(values: &[f64], divisor: Divisor) -> Option<f64> {
     let squares = sum_of(values, |value| (value - mean) * (value - mean));
     // Corrects for the rounding error of the mean.
     let off = sum_of(values, |value| value - mean);
-    finite((squares - off * off / n).max(0.0) / degrees)
+    // Unlike `max`, `clamp` keeps what is not a number: the squares of large values overflow.
+    finite((squares - off * off / n).clamp(0.0, f64::INFINITY) / degrees)
 }
 
 /// Standard deviation.

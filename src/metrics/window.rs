@@ -168,7 +168,7 @@ impl Sliding {
         match self.kind {
             Kind::Mean => average,
             // For a window of zeros, rounding may give a small negative number.
-            Kind::Rms => average.max(0.0).sqrt(),
+            Kind::Rms => average.clamp(0.0, f64::INFINITY).sqrt(),
         }
     }
 }

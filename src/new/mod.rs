@@ -178,18 +178,19 @@ fn canonical(text: &str) -> String {
 }
 
 fn compared(name: &str, allowed: &allowances::Allowance, unit: &Unit, names: &mut Names) -> Compared {
+    let id = names.free(&identifier(name));
     Compared {
         name: name.into(),
         quoted: yaml_text(name),
         title: plain_text(name),
-        id: names.free(&identifier(name)),
-        group: identifier(name),
+        group: id.clone(),
         unit: unit.text.clone(),
         number_unit: after_number(unit),
         limit: two_digits(LIMIT * allowed.rms).to_string(),
         noise: allowed.noise.to_string(),
-        noise_name: format!("{} noise", identifier(name)),
-        gain_name: format!("{} gain", identifier(name)),
+        noise_name: format!("{id} noise"),
+        gain_name: format!("{id} gain"),
+        id,
         level_sd: allowed.level.to_string(),
         band_sd: allowed.band.to_string(),
         gain_sd: allowed.gain.to_string(),

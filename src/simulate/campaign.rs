@@ -9,7 +9,7 @@ use super::section::Section;
 use crate::data::campaign::ReadFile;
 use crate::data::checks;
 use crate::data::record::{Format, Frame, Record, RecordSource, Wanted};
-use crate::data::write::{OutColumn, record};
+use crate::data::write::{Digits, OutColumn, record};
 use crate::data::{Campaign, RecordKind};
 use crate::effects::{Channel, Signals};
 use crate::problem::Problem;
@@ -128,8 +128,24 @@ pub fn frame(name: &str, signals: &Signals, units: &dyn Fn(&str) -> Unit) -> Res
     Frame::new(name, &schema, vec![batch])
 }
 
+/// Decimals of the time in s at a sampling rate in Hz: three, or more where the step needs them.
+fn decimals_of(rate: f64) -> usize {
+    const MOST: usize = 9;
+    let whole = |decimals: &usize| {
+        let step = 10_f64.powi(*decimals as i32) / rate;
+        (step - step.round()).abs() < 1e-9 * step
+    };
+    (3..MOST).find(whole).unwrap_or(MOST)
+}
+
+/// Zeros after the decimal point of the largest value.
+fn leading_zeros(values: &[f64]) -> usize {
+    let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    if largest > 0.0 && largest < 0.1 { (-largest.log10()).floor().min(Digits::MOST as f64 / 2.0) as usize } else { 0 }
+}
+
 /// A record as a file: time from 0 and distance, or the time alone if it is the axis; forces in kN to 0.01, accelerations in m/s^2 to
-/// 0.0001, all other channels to six decimals.
+/// 0.0001, all other channels to six decimals; a channel that stays below 0.1 with more, so that no digits are lost.
 ///
 /// # Errors
 /// A value is not finite, which is a fault of the simulator; detected before any file is written.
@@ -144,9 +160,9 @@ pub fn record_file(format: Format, signals: &Signals, units: &dyn Fn(&str) -> Un
         .map(|(channel, unit)| channel.values.iter().map(|value| unit.to_si(*value)).collect())
         .collect();
     let mut columns = match signals.over_time {
-        true => vec![OutColumn { name: TIME, unit: &seconds, values: &signals.axis, decimals: 6 }],
+        true => vec![OutColumn { name: TIME, unit: &seconds, values: &signals.axis, decimals: 6.max(decimals_of(signals.rate)) }],
         false => vec![
-            OutColumn { name: TIME, unit: &seconds, values: &time, decimals: 3 },
+            OutColumn { name: TIME, unit: &seconds, values: &time, decimals: decimals_of(signals.rate) },
             OutColumn { name: AXIS, unit: &metres, values: &signals.axis, decimals: 3 },
         ],
     };
@@ -155,8 +171,25 @@ pub fn record_file(format: Format, signals: &Signals, units: &dyn Fn(&str) -> Un
             "kN" => 2,
             "m/s^2" => 4,
             _ => 6,
-        };
+        } + leading_zeros(&channel.values);
         columns.push(OutColumn { name: &channel.name, unit, values, decimals });
     }
     record(format, &columns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Small signals keep their digits; the step of the time is exact at any rate that divides a power of ten.
+    #[test]
+    fn decimals_follow_the_values() {
+        assert_eq!([0.0, 0.1, 25.0, 0.099, 0.01, 5e-3, 1.98e-8].map(|value| leading_zeros(&[0.0, -value])), [0, 0, 0, 1, 2, 2, 7]);
+        assert_eq!([200.0, 1000.0, 400.0, 256.0, 300.0].map(decimals_of), [3, 3, 4, 8, 9]);
+        let channel = Channel { name: "force".into(), values: vec![0.0, 1.986_693_31e-8, -4e-9] };
+        let signals = Signals { axis: vec![0.0, 0.0025, 0.005], rate: 400.0, over_time: true, channels: vec![channel] };
+        let written = record_file(Format::Csv, &signals, &|_| Unit::parse("N").expect("a unit")).expect("written");
+        let text = String::from_utf8(written).expect("text");
+        assert_eq!(text.lines().nth(2), Some("0.002500,0.0000000198669"), "{text}");
+    }
 }

@@ -6,6 +6,15 @@ use fishplate::metrics::{
 
 use crate::{close, json, number, numbers, record};
 
+/// Squares beyond the largest double: there is no deviation, rather than none.
+#[test]
+fn a_deviation_that_overflows_is_not_defined() {
+    for values in [[1e200, 0.0, 1.0], [1e155, -1e155, 1.0], [1e308, -1e308, 1e308]] {
+        assert_eq!(standard_deviation(&values, Divisor::Sample), None, "{values:?}");
+    }
+    close(standard_deviation(&[1e150, 2e150, 3e150], Divisor::Sample).expect("defined"), 1e150, 1e-15);
+}
+
 /// scipy.stats t and chi2, 2 to 100001 values.
 #[test]
 fn intervals_agree_with_scipy() {

@@ -1,6 +1,6 @@
 //! Files that a campaign is read from, but its records.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::{CAMPAIGN_FILE, Campaign, RecordKind, Run};
 use crate::data::folder::Place;
@@ -37,8 +37,20 @@ impl Campaign {
             let files = RecordKind::ALL.map(|kind| self.run_source(run, kind)?.file(&run.name.span));
             files.into_iter().filter_map(Result::ok).collect::<Vec<_>>()
         };
-        let files = named.chain(self.vehicle_files().unwrap_or_default()).chain(self.runs.iter().flat_map(of_run));
-        Inputs { folder: self.folder.real().to_path_buf(), folders: folders.collect(), files: files.map(|place| real(&place)).collect() }
+        let of_runs: Vec<Place> = self.runs.iter().flat_map(of_run).collect();
+        let folder = self.folder.real().to_path_buf();
+        let beside = |place: &Place| real(place).parent().map(Path::to_path_buf).filter(|beside| *beside != folder);
+        let mut folders: Vec<PathBuf> = folders.chain(of_runs.iter().filter_map(beside)).collect();
+        folders.dedup();
+        let files = named.chain(self.vehicle_files().unwrap_or_default()).chain(of_runs);
+        Inputs { files: files.map(|place| real(&place)).collect(), folder, folders }
+    }
+
+    /// The protocol that the campaign brings along; a shipped one is a name.
+    fn protocol_file(&self) -> Option<Place> {
+        let protocol = self.protocol.as_ref().filter(|_| self.folder.on_disk())?;
+        let place = self.folder.place(&protocol.value, &protocol.span).ok()?;
+        disk::is_file(&place.path).is_ok_and(|there| there).then_some(place)
     }
 
     /// Every file that the campaign is read from but its records, with its path inside.
@@ -47,7 +59,7 @@ impl Campaign {
     /// A name leads outside.
     pub fn plain_files(&self) -> Result<Vec<String>, Problem> {
         let mut inside: Vec<String> = self.files.iter().map(|file| file.path.clone()).collect();
-        for place in self.vehicle_files()? {
+        for place in self.vehicle_files()?.into_iter().chain(self.protocol_file()) {
             if !inside.contains(&place.inside) {
                 inside.push(place.inside);
             }
@@ -72,18 +84,10 @@ impl Campaign {
                 }
             }
         }
-        for place in self.vehicle_files()? {
+        for place in self.vehicle_files()?.into_iter().chain(self.protocol_file()) {
             if !inside.contains(&place.inside) {
                 inside.push(place.inside);
             }
-        }
-        // The protocol that the campaign brings along; a shipped one is a name.
-        if let Some(protocol) = self.protocol.as_ref().filter(|_| self.folder.on_disk())
-            && let Ok(place) = self.folder.place(&protocol.value, &protocol.span)
-            && disk::is_file(&place.path).is_ok_and(|there| there)
-            && !inside.contains(&place.inside)
-        {
-            inside.push(place.inside);
         }
         let read = |inside: String| {
             let place = self.folder.place(&inside, &self.tree.span.part(0..0))?;

@@ -91,7 +91,8 @@ impl Opening<'_> {
         let place = self.folder.place(&written.value, &written.span);
         let place = self.keep(place)?;
         let (_, vehicle) = self.yaml(&place, Some(&written.span))?;
-        if matches!(vehicle.value, Value::Map(_)) {
+        // A file of comments only is a vehicle without data; what needs some says so.
+        if matches!(vehicle.value, Value::Map(_) | Value::Null) {
             return Some(vehicle);
         }
         let says = format!("a vehicle is a map of keys and values; this is {}", vehicle.kind_in_words());

@@ -33,6 +33,7 @@ pub fn opening(found: &SelectionStudy, words: &VerdictWords) -> Opening {
         share if share <= 0.0 => Some(false),
         _ => None,
     };
+    let of = all_of(found);
     let looked = if found.share.exact {
         format!("All {} selections were evaluated.", number::large(found.combinations))
     } else {
@@ -45,7 +46,7 @@ pub fn opening(found: &SelectionStudy, words: &VerdictWords) -> Opening {
     Opening {
         headline: Finding::new(holds, &share(&found.share), &share(&found.share), &share(&found.share)),
         sentence: format!(
-            "of the selections have the verdict '{}'. The verdict on all usable sections together is '{}'. The verdict {same}. {looked}",
+            "of the selections have the verdict '{}'. The verdict on all {of} together is '{}'. The verdict {same}. {looked}",
             words.good,
             words.word(found.verdict)
         ),
@@ -66,7 +67,7 @@ pub fn chapters(found: &SelectionStudy, words: &VerdictWords) -> Vec<Chapter> {
     items.extend(found.methods.iter().map(Item::text));
     let mut chapters = vec![
         Chapter { id: "selections".into(), title: "Selections".into(), items },
-        Chapter { id: "spread".into(), title: "Scatter over the selections".into(), items: spread(&found.quantities) },
+        Chapter { id: "spread".into(), title: "Scatter over the selections".into(), items: spread(&found.quantities, all_of(found)) },
         Chapter { id: "failing".into(), title: "Criteria not met".into(), items: failing(found) },
         Chapter {
             id: "sections".into(),
@@ -123,7 +124,7 @@ pub fn boxes(quantities: &[QuantitySpread], name: &str, at: &str) -> Vec<Item> {
 }
 
 /// The box plots and their numbers.
-fn spread(quantities: &[QuantitySpread]) -> Vec<Item> {
+fn spread(quantities: &[QuantitySpread], of: &str) -> Vec<Item> {
     let statistics = || quantities.iter().flat_map(|quantity| quantity.statistics.iter().map(move |statistic| (quantity, statistic)));
     // Columns with the same content in every row are omitted.
     let scopes = statistics().any(|(_, statistic)| statistic.scope != "all");
@@ -146,10 +147,7 @@ fn spread(quantities: &[QuantitySpread]) -> Vec<Item> {
     head.extend(["All", "Min", "25 %", "Median", "75 %", "Max", "Outliers"].map(Head::number));
     head.push(Head::number("Not met"));
     let table = Table {
-        caption: format!(
-            "Statistics divided by their limits over the selections; “All” refers to all usable sections together{}",
-            known(&spreads)
-        ),
+        caption: format!("Statistics divided by their limits over the selections; “All” refers to all {} together{}", of, known(&spreads)),
         head,
         rows,
     };
@@ -174,6 +172,11 @@ fn numbers(spread: &Spread) -> Vec<String> {
 }
 
 /// Accuracy of the numbers of a table.
+/// What "all" selections are taken from.
+fn all_of(found: &SelectionStudy) -> &'static str {
+    if found.reduction.is_some() { "sections kept by the reduction" } else { "usable sections" }
+}
+
 fn known(spreads: &[Spread]) -> String {
     let estimated = spreads.iter().any(|spread| !spread.exact && spread.within.is_none());
     let within = spreads.iter().filter_map(|spread| spread.within).fold(0.0, f64::max);
