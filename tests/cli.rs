@@ -166,6 +166,14 @@ fn every_stage_can_be_printed() {
         assert!(printed.contains(holds), "{stage} {format}");
     }
     assert_eq!(run(&["explain", "en14363-2016-annex-t", "--stage", "plan", "--format", "svg"]).0, 2);
+    let own = folder();
+    let file = own.path().join("own.fp").display().to_string();
+    let text = "protocol own \"Own\"\n  extends kraft\n";
+    fs::write(&file, text).expect("written");
+    for words in [&["explain", &file, "-o", &file][..], &["convert", &file, "--to", "yaml", "-o", &file]] {
+        let (code, _, said) = run(words);
+        assert!(code == 2 && said.contains("error[output-is-input]") && fs::read_to_string(&file).is_ok_and(|now| now == text), "{said}");
+    }
     let (code, printed, _) = run(&["explain"]);
     assert_eq!(code, 0);
     assert!(printed.contains("sprague-geers") && printed.contains("sliding mean"), "{printed}");

@@ -358,6 +358,23 @@ fn ranges_are_from_all_records() {
     assert_ne!(both, ranges("small", &[&small]));
 }
 
+/// Columns whose names become the same word, and of which none is a force: the vehicle file has no data then.
+#[test]
+fn what_is_made_of_any_columns_can_be_evaluated() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut text = String::from("time [s],a-b [m],a_b [m]\n");
+    for n in 0..4000 {
+        let t = f64::from(n) / RATE;
+        let _ = writeln!(text, "{t},{:.5},{:.5}", (2.0 * t).sin(), (3.1 * t).cos());
+    }
+    let (file, made, out) = (folder.path().join("ab.csv"), folder.path().join("made"), folder.path().join("out"));
+    fs::write(&file, text).expect("written");
+    let done = ran(program().arg("new").arg(&made).arg("--from").arg(&file).arg(&file));
+    assert_eq!(done.code, 0, "{}", done.stderr);
+    let done = ran(program().arg("certify").arg(&made).args(["--only", "results", "--out"]).arg(&out));
+    assert!(done.code < 2, "{}", done.stderr);
+}
+
 #[test]
 fn records_that_do_not_fit_are_refused_with_their_place() {
     let folder = tempfile::tempdir().expect("a temporary folder");

@@ -150,6 +150,19 @@ fn bad_records_leave_their_section_out() {
 }
 
 #[test]
+fn a_protocol_of_the_campaign_goes_along() {
+    let campaign = copy(&example("coach-good"));
+    let file = campaign.path().join("campaign.yaml");
+    let text = fs::read_to_string(&file).expect("a campaign");
+    let kept: String = text.lines().filter(|line| !line.starts_with("protocol:")).map(|line| format!("{line}\n")).collect();
+    fs::write(&file, format!("protocol: own.fp\n{kept}")).expect("written");
+    fs::write(campaign.path().join("own.fp"), "protocol own \"Own\"\n  extends en14363-2016-annex-t\n").expect("written");
+    let (there, _) = converted(campaign.path(), "parquet");
+    assert!(there.path().join("own.fp").is_file());
+    assert!(!certify(there.path(), &["--only", "results"]).results()["quantities"].is_null());
+}
+
+#[test]
 fn a_record_that_cannot_be_converted_leaves_nothing() {
     let campaign = copy(&example("coach-good"));
     let path = campaign.path().join("simulation/S02.csv");

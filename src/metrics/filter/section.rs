@@ -9,6 +9,9 @@ pub(super) struct Section {
     pub a2: f64,
 }
 
+/// Relative error of a gain by rounding beyond which a filter is refused: far below what a record is known to.
+const LARGEST_ERROR: f64 = 1e-4;
+
 /// The steady state of a section for a constant input of 1, and its output.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Steady {
@@ -30,8 +33,10 @@ impl Section {
         along(self.b1, self.b2) / along(self.a1, self.a2)
     }
 
-    /// Whether both poles are inside the unit circle (Jury criterion), in double precision.
+    /// Whether both poles are inside the unit circle (Jury criterion), and far enough from it: near it, `1 + a1 + a2` is the difference
+    /// of nearly equal numbers, and the gain has its relative rounding error.
     pub(super) fn is_stable(&self) -> bool {
-        self.a2.abs() < 1.0 && 1.0 + self.a1 + self.a2 > 0.0 && 1.0 - self.a1 + self.a2 > 0.0
+        const LEAST: f64 = f64::EPSILON / LARGEST_ERROR;
+        self.a2.abs() < 1.0 && 1.0 + self.a1 + self.a2 > LEAST && 1.0 - self.a1 + self.a2 > 0.0
     }
 }

@@ -5,9 +5,9 @@ use std::fmt::Write;
 use serde_json::{Map, Value, json};
 
 use super::super::made::{first, lacks, unit_in};
-use super::External;
 use super::cache::Key;
 use super::python::{Columns, Failed, Workers};
+use super::{External, covers};
 use crate::data::RecordKind;
 use crate::data::record::{Wanted, listed_headings, read_headings, read_record};
 use crate::effects::{Action, Catalogue, Channel, Signals};
@@ -134,6 +134,9 @@ impl External<'_> {
                 Some(heading) => heading.unit(own.as_ref().map(|unit| unit.dimension))?,
                 None => own.unwrap_or_else(Unit::one),
             };
+            if columns.iter().any(|(known, ..)| *known == name) {
+                return Err(wrong(format!("{shown} has `{name}` twice")));
+            }
             columns.push((name, unit, values));
         }
         // Axes that the function does not give are those of its inputs.
@@ -162,6 +165,7 @@ impl External<'_> {
         if time.len() < 2 || span <= 0.0 {
             return Err(wrong(format!("{shown} has too few samples: {}", time.len())));
         }
+        covers(&axis, section)?;
         if let Some(at) = axis.windows(2).position(|pair| pair[1] <= pair[0]) {
             return Err(Problem::error("not-increasing", format!("{shown}: the axis does not increase at sample {}", at + 1)));
         }
