@@ -91,9 +91,11 @@ impl Checker<'_> {
                 .collect::<Option<Vec<_>>>()?,
         };
         self.samples_are_kept(Taken::Compared(metric), chain, &field.value.span)?;
-        let over_axis = over_name
-            .zip(over.first())
-            .map(|(name, signal)| Axis { unit: self.own_unit(&name, after(chain, signal.dimension)), column: name });
+        let over_axis = over_name.zip(over.first()).map(|(name, signal)| Axis {
+            unit: self.own_unit(&name, after(chain, signal.dimension)),
+            column: name,
+            span: field.value.span.clone(),
+        });
         let words = self.with_values(&normalised(&field.value.text));
         let (first, _) = positions.first()?;
         Some(Compared {

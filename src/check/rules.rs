@@ -24,7 +24,7 @@ impl Checker<'_> {
             );
             return None;
         }
-        Some(Axis { column: name.node, unit })
+        Some(Axis { column: name.node, unit, span: field.value.span.clone() })
     }
 
     pub(super) fn zone(&mut self, block: &Block) -> Option<Zone> {

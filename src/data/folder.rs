@@ -41,6 +41,13 @@ pub struct Place {
     pub inside: String,
 }
 
+impl Place {
+    /// The path of a file in this folder, inside the campaign; the folder may be that of the campaign itself.
+    pub fn below(&self, name: &str) -> String {
+        if self.inside.is_empty() { name.to_string() } else { format!("{}/{name}", self.inside) }
+    }
+}
+
 impl Folder {
     pub fn open(folder: &Path) -> Result<Self, Problem> {
         let unreadable =

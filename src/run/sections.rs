@@ -113,7 +113,7 @@ fn of_campaign(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec
         default: None,
         range: None,
         may_be_absent: false,
-        span: plan.columns.first().map_or_else(|| crate::source::Source::new("", "").whole(), |datum| datum.span.clone()),
+        span: plan.axis.span.clone(),
     };
     let (start, end) = (extent_datum("start"), extent_datum("end"));
     let mut missing = false;

@@ -94,6 +94,8 @@ impl Plan {
 pub struct Axis {
     pub column: String,
     pub unit: Unit,
+    /// Where the protocol names it.
+    pub span: Span,
 }
 
 #[derive(Clone, Debug)]

@@ -184,7 +184,7 @@ impl Campaign {
             return found.object(&section.value).map(RecordSource::Object);
         }
         let (folder, span) = self.record_folder(which)?;
-        let name = format!("{}/{}", folder.inside, section.value);
+        let name = folder.below(&section.value);
         if let Some(frame) = self.folder.memory().records.get(&name) {
             return Ok(RecordSource::Memory(Arc::clone(frame)));
         }
@@ -192,7 +192,7 @@ impl Campaign {
         let unreadable =
             |inside: &str, error| Problem::error("file-unreadable", format!("`{inside}` cannot be read: {error}")).at(&section.span);
         let [csv, parquet] = Format::ALL.map(|format| {
-            let place = self.folder.place(&format!("{}/{}.{}", folder.inside, section.value, format.ending()), &section.span)?;
+            let place = self.folder.place(&format!("{name}.{}", format.ending()), &section.span)?;
             let there = disk::is_file(&place.path).map_err(|error| unreadable(&place.inside, error))?;
             Ok((place, there))
         });

@@ -203,7 +203,7 @@ impl External<'_> {
             if said.is_empty() { problem } else { problem.also(&Source::new(name.as_str(), said).whole(), what) }
         };
         match failed {
-            Failed::NotStarted(error) => problem("simulator-failed", format!("could not be started: {error}")),
+            Failed::NotStarted(error) => problem("simulator-failed", self.program.not_started(error)),
             Failed::TimedOut => {
                 let seconds = self.program.timeout.as_secs_f64();
                 problem("simulator-timeout", format!("was terminated after {seconds} s, its time-out"))

@@ -256,7 +256,7 @@ impl<'a> External<'a> {
             if said.is_empty() { problem } else { problem.also(&Source::new(self.program.name.as_str(), said).whole(), "its last output") }
         };
         match fault {
-            Fault::NotStarted(error) => told("simulator-failed", &format!("could not be started: {error}"), ""),
+            Fault::NotStarted(error) => told("simulator-failed", &self.program.not_started(error), ""),
             Fault::TimedOut { said } => {
                 let seconds = self.program.timeout.as_secs_f64();
                 told("simulator-timeout", &format!("was terminated after {seconds} s, its time-out"), said)

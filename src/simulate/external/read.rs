@@ -133,6 +133,14 @@ pub fn read_program(source: &Arc<Source>, folder: &Path, problems: &mut Problems
 }
 
 impl Program {
+    /// Why a call did not begin.
+    pub(super) fn not_started(&self, error: &std::io::Error) -> String {
+        match self.launch.as_slice() {
+            [] => format!("could not be started: {error}"),
+            launch => format!("could not be started by `{}`: {error}", launch.join(" ")),
+        }
+    }
+
     /// The file of the program if the command gives its path, else its name, which the system searches.
     #[must_use]
     pub fn executable(&self) -> PathBuf {
@@ -199,7 +207,11 @@ impl Reader<'_> {
         match node.scalar_text().map(str::trim).filter(|text| !text.is_empty()) {
             Some(text) => Some(text.to_string()),
             None => {
-                self.fault("wrong-kind", format!("`{key}` must be text, not {}", node.kind_in_words()), &node.span);
+                let says = match node.scalar_text() {
+                    Some(_) => format!("`{key}` is empty"),
+                    None => format!("`{key}` must be text, not {}", node.kind_in_words()),
+                };
+                self.fault("wrong-kind", says, &node.span);
                 None
             }
         }
@@ -215,7 +227,10 @@ impl Reader<'_> {
 
     fn words(&mut self, node: &Node, allowed: &[Hole]) -> Vec<Word> {
         if node.items().is_empty() {
-            let says = format!("expected a list of words, not {}", node.kind_in_words());
+            let says = match node.value {
+                Value::List(_) => "the list of words is empty".to_string(),
+                _ => format!("expected a list of words, not {}", node.kind_in_words()),
+            };
             let help = "the command is not split by a shell: write `[program, --option, \"{out}\"]`";
             self.problems.push(Problem::error("wrong-kind", says).at(&node.span).help(help));
         }
