@@ -239,9 +239,29 @@ fn outputs_that_cannot_be_written() {
         let (code, _, said) = certify("examples/coach", &folder.path().join(out), &["--only", "results"]);
         assert!(code == 2 && said.contains("error[not-a-folder]"), "{said}");
     }
+    // The files of runs are read as well.
+    let run = folder.path().join("run");
+    assert!(Command::new("cp").arg("-r").arg("examples/run").arg(&run).status().expect("started").success());
+    let (code, _, said) = certify(&run.display().to_string(), &run.join("records"), &["--only", "results"]);
+    assert!(code == 2 && said.contains("error[output-is-input]") && !run.join("records/results.json").exists(), "{said}");
     if let Ok(full) = fs::OpenOptions::new().write(true).open("/dev/full") {
         let program = Command::new(env!("CARGO_BIN_EXE_fishplate")).arg("protocols").stdout(full).output().expect("the program runs");
         let said = String::from_utf8_lossy(&program.stderr).into_owned();
         assert!(program.status.code() == Some(3) && said.contains("standard output cannot be written"), "{said}");
+    }
+}
+
+/// Without a diagnosis there are no scores, and nothing is written.
+#[test]
+fn blind_without_a_diagnosis_is_an_error() {
+    let folder = folder();
+    let campaign = folder.path().join("broken");
+    fs::create_dir(&campaign).expect("made");
+    fs::write(campaign.join("campaign.yaml"), "name: [\n").expect("written");
+    let (from, out) = (campaign.display().to_string(), folder.path().join("out"));
+    let blind = |more: &[&str]| run(&[&["blind", &from, "--out", &out.display().to_string()], more].concat());
+    for (more, says) in [(&["--protocol", "nope"][..], "error[no-such-protocol]"), (&[], "error[no-diagnosis]")] {
+        let (code, _, said) = blind(more);
+        assert!(code == 2 && said.contains(says) && !out.exists(), "{said}");
     }
 }
