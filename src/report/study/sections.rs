@@ -171,12 +171,12 @@ fn numbers(spread: &Spread) -> Vec<String> {
     row
 }
 
-/// Accuracy of the numbers of a table.
 /// What "all" selections are taken from.
 fn all_of(found: &SelectionStudy) -> &'static str {
     if found.reduction.is_some() { "sections kept by the reduction" } else { "usable sections" }
 }
 
+/// Accuracy of the numbers of a table.
 fn known(spreads: &[Spread]) -> String {
     let estimated = spreads.iter().any(|spread| !spread.exact && spread.within.is_none());
     let within = spreads.iter().filter_map(|spread| spread.within).fold(0.0, f64::max);
