@@ -6,7 +6,8 @@ CAMPAIGN: runs as Parquet with a table of sections, such as `archive_cost.py` le
 counted: each engine has made a small job before. `--repeat` evaluates the campaigns so many times, one after the other, and tells the sum:
 a long job of a short archive. Times are processor times of all processes together, and wall times, the least of all
 rounds; processor times tell more on a machine that does other work. The peak memory is the largest of a Python worker. The time of `judge`,
-which the caller needs by itself after all parts, is part of each time but the peer's, and is told.
+which the caller needs by itself after all parts, is part of each time but the peer's, and is told. Beside the peer, the same is also timed
+by the protocol without its plausibility rules, which the peer does not have: this is the same work.
 """
 
 import argparse
@@ -15,6 +16,7 @@ import importlib.util
 import os
 import pathlib
 import sys
+import tempfile
 import time
 
 import fishplate
@@ -60,6 +62,15 @@ def peak():
     return max(found) / 1024
 
 
+def bare_protocol(campaign, folder):
+    """The protocol of a campaign without its plausibility rules: the peer has none."""
+    lines = pathlib.Path(campaign, "campaign.yaml").read_text().splitlines()
+    name = next(line.split(":", 1)[1].strip() for line in lines if line.startswith("protocol:"))
+    path = pathlib.Path(folder, "bare.fp")
+    path.write_text(f'protocol bare "Without plausibility rules"\n  extends  {name}\n\nremove\n  plausibility  every\n')
+    return str(path)
+
+
 def timed(work, rounds, repeat):
     work(True)
     times = []
@@ -91,15 +102,15 @@ def main():
         share = "" if plain is times else f", {more}"
         print(f"{name}: {times[0]:.1f} s of processor time, {times[1]:.1f} s wall, {peak():.0f} MB in a worker{share}", flush=True)
 
-    def job(folder):
-        return _engines.Job.of(folder, None, {}, shards=shards, workers=given.workers, plots=0, keep=None)
+    def job(folder, protocol=None):
+        return _engines.Job.of(folder, protocol, {}, shards=shards, workers=given.workers, plots=0, keep=None)
 
     if "processes" in only:
         context = __import__("multiprocessing").get_context("spawn")
         with concurrent.futures.ProcessPoolExecutor(given.workers, mp_context=context) as pool:
 
-            def processes(first):
-                made = job(small if first else given.campaigns)
+            def processes(first, protocol=None):
+                made = job(small if first else given.campaigns, None if first else protocol)
                 made.made = dict(enumerate(pool.map(_engines.part, range(shards), [made.work] * shards)))
                 begin = time.process_time()
                 made.result(0)
@@ -108,6 +119,11 @@ def main():
             judging = []
             tell("processes", timed(processes, rounds, given.repeat))
             print(f"    of it `judge`, by the caller: {judging[0]:.1f} s of processor time", flush=True)
+            if "peer" in only:
+                with tempfile.TemporaryDirectory() as scratch:
+                    bare = bare_protocol(given.campaigns[0], scratch)
+                    tell("the same without plausibility rules", timed(lambda first: processes(first, bare), rounds, given.repeat))
+                    print(f"    of it `judge`, by the caller: {judging[0]:.1f} s of processor time", flush=True)
     if {"dask", "peer"} & set(only):
         import dask
         import distributed

@@ -74,7 +74,8 @@ fn a_hole_on_the_disk_and_zeros() {
 
 #[test]
 fn a_hole_below_a_good_header() {
-    let reason = of_record((1 << 10) + SMALL, |file, header| {
+    // The allocator sets addresses aside before it uses them.
+    let reason = of_record((2 << 10) + SMALL, |file, header| {
         writeln!(file, "{header}").expect("written");
         file.set_len(1 << 30).expect("set");
     });

@@ -7,6 +7,12 @@ mod common {
 
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
+
+use arrow_array::cast::AsArray;
+use arrow_array::types::Float64Type;
+use arrow_array::{Float64Array, RecordBatch};
+use parquet::arrow::ArrowWriter;
 
 use common::program::fishplate;
 
@@ -147,7 +153,8 @@ fn a_table_of_found_sections_can_be_used() {
     }
 }
 
-/// Sections with records of their own give the numbers of the sections in the runs.
+/// Sections with records of their own give the numbers of the sections in the runs, but for the band-pass from 0.4 Hz on, which has not
+/// wholly settled in the two lengths beside a section: in the run it has more.
 #[test]
 fn sections_are_cut_out_of_runs() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -165,19 +172,111 @@ fn sections_are_cut_out_of_runs() {
             account.contains(&format!("measurement/S12.{format}")) && account.contains("south,records/south-measured.parquet"),
             "{account}"
         );
-        let numbers = |campaign: &str, name: &str| -> Vec<f64> {
+        let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+        let numbers = |campaign: &str, name: &str| -> Vec<(String, f64)> {
             let out = folder.path().join(name);
             done(&["certify", campaign, "--only", "results", "--out", &out.display().to_string()], &[0]);
             let text = fs::read_to_string(out.join("results.json")).expect("results");
             let results: serde_json::Value = serde_json::from_str(&text).expect("JSON");
             let quantities = results["quantities"].as_array().expect("a list");
-            quantities.iter().flat_map(|quantity| [&quantity["mean"], &quantity["std"]]).filter_map(serde_json::Value::as_f64).collect()
+            let values = quantities.iter().flat_map(|quantity| quantity["values"].as_array().expect("values"));
+            values.flat_map(|value| ["simulated", "measured"].map(|side| (value["signal"].to_string(), number(&value[side])))).collect()
         };
         let (in_runs, cut) = (numbers("examples/run", "a"), numbers(&shown, "b"));
         assert_eq!(in_runs.len(), cut.len());
-        for (one, other) in in_runs.iter().zip(&cut) {
-            assert!((one - other).abs() <= 1e-6 * one.abs().max(1e-3), "{one} {other}");
+        let mut largest: f64 = 0.0;
+        for ((signal, one), (_, other)) in in_runs.iter().zip(&cut) {
+            let differ = (one - other).abs() / one.abs().max(1e-3);
+            assert!(differ < if signal.starts_with("\"a") { 0.01 } else { 1e-6 }, "{signal} {one} {other}");
+            largest = largest.max(differ);
         }
+        assert!(largest > 1e-4, "sections of a run share stretches: {largest}");
+    }
+}
+
+/// Takes one force from a record, at the first sample beyond a distance in m.
+fn without_number(record: &Path, beyond: f64) {
+    let file = fs::File::open(record).expect("a record");
+    let builder = parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder::try_new(file).expect("Parquet");
+    let schema = Arc::clone(builder.schema());
+    let batches: Vec<RecordBatch> = builder.build().expect("a reader").map(|batch| batch.expect("rows")).collect();
+    let place = |name: &str| schema.fields().iter().position(|field| field.name().starts_with(name)).expect("a column");
+    let numbers = |batch: &RecordBatch, at: usize| batch.column(at).as_primitive::<Float64Type>().values().to_vec();
+    let mut writer = ArrowWriter::try_new(fs::File::create(record).expect("a file"), Arc::clone(&schema), None).expect("a writer");
+    let mut taken = false;
+    for batch in batches {
+        let mut columns = batch.columns().to_vec();
+        let row = numbers(&batch, place("distance")).iter().position(|at| *at > beyond).filter(|_| !taken);
+        if let Some(row) = row {
+            let mut forces = numbers(&batch, place("Y_1R"));
+            forces[row] = f64::NAN;
+            columns[place("Y_1R")] = Arc::new(Float64Array::from(forces));
+            taken = true;
+        }
+        writer.write(&RecordBatch::try_new(Arc::clone(&schema), columns).expect("columns")).expect("written");
+    }
+    writer.close().expect("closed");
+}
+
+/// A fault in a stretch concerns the sections that would read it by themselves, not others that share the stretch.
+#[test]
+fn a_fault_concerns_the_sections_that_read_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let copy = folder.path().join("copy");
+    let shown = copy.display().to_string();
+    done(&["convert-records", "examples/run", "--to", "parquet", "--out", &shown], &[0]);
+    done(&["sections", "examples/run", "--out", &copy.join("sections.csv").display().to_string()], &[0]);
+    let yaml = fs::read_to_string(copy.join("campaign.yaml")).expect("a campaign");
+    fs::write(copy.join("campaign.yaml"), yaml + "sections: sections.csv\n").expect("written");
+    let results = |name: &str, codes: &[i32]| -> serde_json::Value {
+        let out = folder.path().join(name);
+        done(&["certify", &shown, "--only", "results", "--out", &out.display().to_string()], codes);
+        serde_json::from_str(&fs::read_to_string(out.join("results.json")).expect("results")).expect("JSON")
+    };
+    let before = results("before", &[0]);
+    // The second section of the south needs its samples and two lengths of 100 m on each side. The first shares its stretch, and ends its own
+    // need 100 m earlier.
+    let sections = before["sections"].as_array().expect("a list");
+    let second =
+        sections.iter().filter(|section| section["start"].as_f64().is_some_and(|start| start > 7000.0)).nth(1).expect("in the south");
+    let (name, end) = (second["section"].as_str().expect("a name"), second["end"].as_f64().expect("an end"));
+    without_number(&copy.join("records/south-measured.parquet"), end + 150.0);
+    let after = results("after", &[0, 1, 2]);
+    let of = |results: &serde_json::Value| -> Vec<(String, String, f64)> {
+        let values = results["quantities"].as_array().expect("a list").iter().flat_map(|quantity| {
+            let of_value = |value: &serde_json::Value| {
+                let place = format!("{} {}", quantity["id"], value["signal"]);
+                (value["section"].as_str().expect("a name").to_string(), place, value["measured"].as_f64().expect("a number"))
+            };
+            quantity["values"].as_array().expect("values").iter().map(of_value).collect::<Vec<_>>()
+        });
+        values.filter(|(section, ..)| section != name).collect()
+    };
+    // Whoever asks for a value of the section that shares the stretch has it from the same samples: a trace, which reads fewer channels, and parts.
+    let first = sections.iter().rfind(|section| section["end"].as_f64() < second["end"].as_f64()).expect("before it");
+    for (quantity, signal) in [("ay_rms", "ay_I"), ("az_max", "az_II"), ("Y_max", "Y_1R")] {
+        let at = folder.path().join("after/results.json").display().to_string();
+        let said = done(&["trace", &at, quantity, first["section"].as_str().expect("a name"), signal, "--campaign", &shown], &[0]);
+        assert!(said.contains("as in the report") && !said.contains("NOT"), "{said}");
+    }
+    let part = |number: usize| folder.path().join(format!("{number}.parquet")).display().to_string();
+    for number in 0..5 {
+        done(&["reduce", &shown, "--shard", &format!("{number}/5"), "--out", &part(number)], &[0, 1]);
+    }
+    let parts: Vec<String> = (0..5).map(part).collect();
+    let judged = folder.path().join("judged").display().to_string();
+    let words: Vec<&str> = ["judge", "--only", "results", "--out", &judged].into_iter().chain(parts.iter().map(String::as_str)).collect();
+    done(&words, &[0, 1, 2]);
+    let judged = fs::read(folder.path().join("judged/results.json")).expect("results");
+    assert!(judged == fs::read(folder.path().join("after/results.json")).expect("results"), "parts and the whole differ");
+
+    let reason = |section: &serde_json::Value| section["reason"].as_str().map(str::to_string);
+    let told = after["sections"].as_array().expect("a list").iter().find(|section| section["section"] == name).and_then(reason);
+    assert!(told.as_deref().is_some_and(|told| told.contains("`Y_1R`")), "{told:?}");
+    let (before, after) = (of(&before), of(&after));
+    assert_eq!(before.len(), after.len(), "only {name} has the fault");
+    for ((section, place, one), (.., other)) in before.iter().zip(&after) {
+        assert!((one - other).abs() < 0.01 * one.abs().max(1e-3), "{section} {place} {one} {other}");
     }
 }
 

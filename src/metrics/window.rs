@@ -1,6 +1,7 @@
 //! Mean and rms over a window that slides along an axis, in length or time.
 
 use std::fmt;
+use std::ops::Range;
 
 use super::{resample::not_increasing, rounded, sum::RunningSums};
 
@@ -70,15 +71,18 @@ impl Sliding {
     /// to the section is sufficient.
     ///
     /// # Errors
-    /// As [`Self::starts`]; an axis that does not increase strictly or differs in length from the signal; a record that does not
+    /// As [`Self::starts`]; an axis that does not increase strictly near the section, or differs in length from the signal; a record that does not
     /// reach the ends of the section; a window without samples; a value that is not finite.
     pub fn over(&self, axis: &[f64], signal: &[f64], start: f64, end: f64) -> Result<Vec<f64>, SlidingError> {
         let starts = self.starts(start, end)?;
         if axis.len() != signal.len() {
             return Err(SlidingError::Lengths { axis: axis.len(), signal: signal.len() });
         }
+        let near = self.near(axis, start, end);
+        let whole = axis;
+        let (axis, signal, before) = (&axis[near.clone()], &signal[near.clone()], near.start);
         if let Some(sample) = not_increasing(axis) {
-            return Err(SlidingError::Axis { sample });
+            return Err(SlidingError::Axis { sample: before + sample });
         }
         let [first, second, ..] = *axis else { return Err(SlidingError::TooFewSamples { samples: axis.len() }) };
         let (before_last, last) = (axis[axis.len() - 2], axis[axis.len() - 1]);
@@ -87,7 +91,7 @@ impl Sliding {
             Ends::Integral => (0.0, 0.0),
         };
         if first > start + ahead + ON_THE_EDGE || last < end - behind - ON_THE_EDGE {
-            return Err(SlidingError::Record { first, last, start, end });
+            return Err(SlidingError::Record { first: whole[0], last: whole[whole.len() - 1], start, end });
         }
         let fitted = Self { width: self.width_in(start, end), ..*self };
         let averages = match self.ends {
@@ -98,6 +102,13 @@ impl Sliding {
             Some((_, &from)) => Err(SlidingError::NotFinite { from }),
             None => Ok(averages),
         }
+    }
+
+    /// The samples that windows of the section may use, with two more on each side where there are so many; all if these are fewer than two.
+    fn near(&self, axis: &[f64], start: f64, end: f64) -> Range<usize> {
+        let from = axis.partition_point(|&x| x < start - ON_THE_EDGE).saturating_sub(2);
+        let to = axis.partition_point(|&x| x <= end + ON_THE_EDGE + LAST_STEP * self.step).saturating_add(2).min(axis.len());
+        if from + 2 <= to { from..to } else { 0..axis.len() }
     }
 
     /// The width of the windows of a section: its length where it is shorter and is taken all the same, with the sample at its end.

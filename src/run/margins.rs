@@ -49,16 +49,18 @@ fn lowest_frequency(step: &StepSpec) -> Option<f64> {
     }
 }
 
-pub fn note_margins(work: &Work<'_>, unit: &Unit, needed: &BTreeSet<NodeId>, opened: &Opened, values: &mut SectionValues) {
-    let Some((before, after)) = opened.margins else { return };
-    if unit.extent.is_none() || before.min(after) >= SLOW_FILTER_MARGIN {
-        return;
-    }
-    let slow = needed.iter().any(|&id| match &work.graph.nodes[id].operation {
+/// Whether one of the nodes is a slow filter.
+pub fn slow(work: &Work<'_>, needed: &BTreeSet<NodeId>) -> bool {
+    needed.iter().any(|&id| match &work.graph.nodes[id].operation {
         Operation::Step(step) => lowest_frequency(step).is_some_and(|frequency| frequency < SLOW_FILTER),
         _ => false,
-    });
-    if slow {
+    })
+}
+
+/// Notes the margin of a record that a slow filter ran over, if it is too short.
+pub fn note_margins(unit: &Unit, slow: bool, opened: &Opened, values: &mut SectionValues) {
+    let Some((before, after)) = opened.margins else { return };
+    if slow && unit.extent.is_some() && before.min(after) < SLOW_FILTER_MARGIN {
         values.short_margin = Some(before.min(after));
     }
 }

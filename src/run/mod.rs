@@ -39,6 +39,7 @@ mod sides;
 mod signal;
 pub mod single;
 mod spreads;
+mod stretches;
 mod synchronisation;
 mod table;
 mod together;
@@ -300,6 +301,7 @@ struct Prepared<'a> {
     basis: Basis,
     present: Vec<Vec<Vec<bool>>>,
     recorded: Vec<Vec<Vec<bool>>>,
+    soundness: record::Soundness,
 }
 
 impl<'a> Prepared<'a> {
@@ -335,7 +337,16 @@ impl<'a> Prepared<'a> {
         }
         requirements::check_data(plan, &facts, &mut units);
         stop_on_fault(plan, &units, &[])?;
-        Ok(Self { plan, graph, campaigns, basis: Basis { facts, units, wanted, notes }, present, recorded })
+        stretches::share(plan, campaigns, &mut units);
+        Ok(Self {
+            plan,
+            graph,
+            campaigns,
+            basis: Basis { facts, units, wanted, notes },
+            present,
+            recorded,
+            soundness: record::Soundness::default(),
+        })
     }
 
     fn work(&self) -> record::Work<'_> {
@@ -348,6 +359,8 @@ impl<'a> Prepared<'a> {
             present: &self.present,
             recorded: &self.recorded,
             shared: None,
+            soundness: &self.soundness,
+            stretches: None,
         }
     }
 

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use super::facts::Known;
-use super::margins::note_margins;
-use super::record::{Fault, Found, Opened, Work, needed, open};
+use super::margins::{note_margins, slow};
+use super::record::{Fault, Found, Opened, Work, with_record};
 use super::section_values::SectionValues;
 use super::unit::Unit;
 use crate::data::WhichRecord;
@@ -19,13 +19,13 @@ pub fn one_record(
     known: &Known<'_>,
     values: &mut SectionValues,
 ) -> Result<(Vec<(NodeId, Found)>, Opened), Fault> {
-    let needed = needed(work.graph, wanted, known).map_err(Fault::new)?;
-    let opened = open(work, unit, which, &needed)?;
-    values.files.push(opened.file.clone());
     let keys = work.sharing(unit).map(|sharing| sharing.keys);
-    let found = opened
-        .evaluate(work.graph, &needed, wanted, known, work.plan.sections.percentiles, keys)
-        .map_err(|says| Fault::new(format!("{}: {says}", opened.file.path)))?;
-    note_margins(work, unit, &needed, &opened, values);
+    let evaluate = |opened: &Opened, needed: &BTreeSet<NodeId>| {
+        opened.evaluate(work.graph, needed, wanted, known, work.plan.sections.percentiles, keys).map(|found| (found, slow(work, needed)))
+    };
+    let (found, opened) = with_record(work, unit, which, wanted, known, evaluate)?;
+    values.files.push(opened.file.clone());
+    let (found, slow) = found?;
+    note_margins(unit, slow, &opened, values);
     Ok((found, opened))
 }

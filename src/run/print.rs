@@ -20,7 +20,7 @@ pub struct Print {
     pub record: String,
     /// Sorted, without duplicates. A file of values has them in binary form.
     #[serde(skip)]
-    pub marks: Vec<u64>,
+    pub marks: Vec<u32>,
 }
 
 impl Print {
@@ -36,7 +36,7 @@ impl Print {
 const TOGETHER: usize = 256;
 
 /// Marks of a signal: hashes of runs of samples. Constant runs are equal everywhere and give no mark; another rule reports them.
-fn marks(samples: &[f64]) -> Vec<u64> {
+fn marks(samples: &[f64]) -> Vec<u32> {
     let mut found = Vec::with_capacity(2 * samples.len() / ONE_IN as usize);
     let mut hashes = [0; TOGETHER + RUN];
     for start in (0..samples.len().saturating_sub(RUN - 1)).step_by(TOGETHER) {
@@ -52,7 +52,7 @@ fn marks(samples: &[f64]) -> Vec<u64> {
         }
         for (run, samples) in hashes.iter().zip(part.windows(RUN)) {
             if run.is_multiple_of(ONE_IN) && samples.iter().any(|value| *value != samples[0]) {
-                found.push(mixed(*run));
+                found.push(shortened(mixed(*run)));
             }
         }
     }
@@ -68,6 +68,11 @@ fn hash_of(value: f64) -> u64 {
     let bits = value.to_bits();
     let hash = (bits ^ bits >> 32).wrapping_mul(SPREAD);
     hash ^ hash >> 32
+}
+
+/// Half of the bits: two signals with a thousand marks each agree in one by chance once in 4000 pairs, and copies share several.
+pub(super) fn shortened(hash: u64) -> u32 {
+    (hash >> 32) as u32
 }
 
 /// Mixes the bits (finaliser of SplitMix64, Steele et al. 2014).

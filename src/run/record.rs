@@ -2,9 +2,12 @@
 
 mod held;
 mod state;
+mod stretch;
 
 pub use held::Held;
 use state::State;
+use stretch::Stretched;
+pub use stretch::{Soundness, Stretches};
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -14,7 +17,7 @@ use super::shared::{Keys, Memo, Sharing};
 use super::signal::{Along, Extent, Rate, Samples};
 use super::unit::Unit;
 use crate::check::evaluate::flag;
-use crate::check::plan::{Plan, Side};
+use crate::check::plan::{Axis, Plan, Side};
 use crate::data::campaign::{Part, ReadFile};
 use crate::data::checks::{Section, check_axis, whole};
 use crate::data::record::Wanted;
@@ -40,6 +43,10 @@ pub struct Work<'a> {
     pub recorded: &'a [Vec<Vec<bool>>],
     /// What is shared with other protocols, of the section that is worked on.
     pub shared: Option<Sharing<'a>>,
+    /// Which stretches are sound.
+    pub soundness: &'a Soundness,
+    /// The records of the stretch that the section that is worked on shares with its neighbours.
+    pub stretches: Option<&'a Stretches>,
 }
 
 impl<'a> Work<'a> {
@@ -71,6 +78,11 @@ impl Fault {
         Self { says: says.into(), problems: Vec::new() }
     }
 
+    /// What is wrong with a record of a campaign.
+    fn of(campaign: &Campaign, problems: Vec<Problem>) -> Self {
+        Self { says: said(campaign, &problems), problems }
+    }
+
     /// The faults of both records of a section.
     pub fn and(mut self, other: Self) -> Self {
         self.says = if self.says == other.says { self.says } else { format!("{}; {}", self.says, other.says) };
@@ -91,6 +103,10 @@ pub struct Opened {
     pub margins: Option<(f64, f64)>,
     /// What protocols that share the record have computed of it.
     pub memo: Option<Arc<Memo>>,
+    /// Of a stretch that sections share: the part of it that this section would read by itself.
+    own: Option<Extent>,
+    /// What sections that share the stretch have computed of it.
+    stretch: Option<Arc<Stretched>>,
 }
 
 /// Value of a requested node.
@@ -136,60 +152,124 @@ pub fn chosen(conditions: &[crate::check::plan::Expr], inputs: &[NodeId], known:
     ))
 }
 
-/// Reads and checks a record of one section.
-pub fn open(work: &Work<'_>, unit: &Unit, which: WhichRecord, needed: &BTreeSet<NodeId>) -> Result<Opened, Fault> {
+/// Reads and checks a record of one section, and evaluates the nodes that are wanted with `evaluate`.
+///
+/// # Errors
+/// The record cannot be read or does not cover the section. What `evaluate` says stands beside the record.
+pub fn with_record<T>(
+    work: &Work<'_>,
+    unit: &Unit,
+    which: WhichRecord,
+    wanted: &BTreeSet<NodeId>,
+    known: &Known<'_>,
+    evaluate: impl FnOnce(&Opened, &BTreeSet<NodeId>) -> Result<T, String>,
+) -> Result<(Result<T, Fault>, Opened), Fault> {
+    let needed = needed(work.graph, wanted, known).map_err(Fault::new)?;
+    let opened = open(work, unit, which, &columns(work, which, &needed, true))?;
+    let found = evaluate(&opened, &needed).map_err(|says| Fault::new(format!("{}: {says}", opened.file.path)));
+    Ok((found, opened))
+}
+
+/// The columns of a record that nodes need; `required`: whether the record must have them all.
+fn columns(work: &Work<'_>, which: WhichRecord, needed: &BTreeSet<NodeId>, required: bool) -> Vec<Wanted> {
     let axis = &work.plan.axis;
     let mut wanted = vec![Wanted::new(axis.column.as_str(), axis.unit.dimension)];
-    let time = work.plan.time.as_ref().filter(|time| which.kind != RecordKind::Track && time.column != axis.column);
-    if let Some(time) = time {
+    if let Some(time) = clock(work.plan, which) {
         wanted.push(Wanted::new(time.column.as_str(), time.unit.dimension));
     }
     for &id in needed {
-        if let Operation::Read { column } = &work.graph.nodes[id].operation
+        let node = &work.graph.nodes[id];
+        if let Operation::Read { column } = &node.operation
+            && node.track == (which.kind == RecordKind::Track)
             && !wanted.iter().any(|known| known.name == *column)
         {
-            wanted.push(Wanted::new(column.as_str(), work.graph.nodes[id].dimension));
+            wanted.push(Wanted { required, ..Wanted::new(column.as_str(), node.dimension) });
         }
     }
-    let sharing = work.sharing(unit);
-    if let Some(opened) = sharing.and_then(|sharing| sharing.store.open(work, unit, which, &wanted)) {
+    wanted
+}
+
+/// The time of a record that runs along something else.
+fn clock(plan: &Plan, which: WhichRecord) -> Option<&Axis> {
+    plan.time.as_ref().filter(|time| which.kind != RecordKind::Track && time.column != plan.axis.column)
+}
+
+fn open(work: &Work<'_>, unit: &Unit, which: WhichRecord, wanted: &[Wanted]) -> Result<Opened, Fault> {
+    let Some(sharing) = work.sharing(unit) else {
+        let has = |stretched: &Arc<Stretched>| wanted.iter().all(|wanted| stretched.has(&wanted.name));
+        if let Some(opened) =
+            stretch::shared(work, unit, which, wanted)?.filter(has).and_then(|stretched| stretched.section(work, unit, which))
+        {
+            return Ok(opened);
+        }
+        let read = work.campaign(unit).read(which, &unit.cell, wanted, part(work.plan, unit).as_ref());
+        let (record, read) = read.map_err(|problems| Fault::of(work.campaign(unit), problems))?;
+        return opened(work, unit, which, record, read);
+    };
+    let part = match unit.stretch {
+        Some(stretch) if stretch::is_sound(work, unit, which)? => Some(stretch.part(work.plan)),
+        _ => part(work.plan, unit),
+    };
+    if let Some(opened) = sharing.store.open(work, unit, which, wanted, part.as_ref()) {
         return opened;
     }
-    let part = unit.extent.map(|extent| Part::around(&axis.column, extent, work.plan.sections.margin));
-    let read = match sharing {
-        Some(sharing) => sharing.store.read(which, &wanted),
-        None => work.campaign(unit).read(which, &unit.cell, &wanted, part.as_ref()),
-    };
-    let (record, read) = read.map_err(|problems| Fault { says: said(work.campaign(unit), &problems), problems })?;
+    let (record, read) = sharing.store.read(which, wanted, part.as_ref()).map_err(|problems| Fault::of(work.campaign(unit), problems))?;
     opened(work, unit, which, record, read)
+}
+
+/// The part of a run that a section reads by itself.
+pub fn part(plan: &Plan, unit: &Unit) -> Option<Part> {
+    unit.extent.map(|extent| Part::around(&plan.axis.column, extent, plan.sections.margin))
 }
 
 /// A record that was read, checked for the section.
 pub fn opened(work: &Work<'_>, unit: &Unit, which: WhichRecord, record: Record, read: ReadFile) -> Result<Opened, Fault> {
-    let fault = |problems: Vec<Problem>| Fault { says: said(work.campaign(unit), &problems), problems };
     let axis = &work.plan.axis;
-    let time = work.plan.time.as_ref().filter(|time| which.kind != RecordKind::Track && time.column != axis.column);
-    let clock = time.map_or(axis.column.as_str(), |time| time.column.as_str());
     let section = unit.extent.map(|(start, end)| Section { start, end, at: unit.span.clone() });
-    let checked = check_axis(&record, clock, &axis.column, section.as_ref()).map_err(fault)?;
+    let time = clock(work.plan, which).map_or(axis.column.as_str(), |time| time.column.as_str());
+    let checked = check_axis(&record, time, &axis.column, section.as_ref());
+    let checked = checked.map_err(|problems| Fault::of(work.campaign(unit), problems))?;
+    let sampled = Sampled::new(work.plan, which, record, checked.sampling_rate);
+    let along_axis = &sampled.along.axis;
+    let extent = unit.extent.unwrap_or_else(|| (along_axis.first().copied().unwrap_or(0.0), along_axis.last().copied().unwrap_or(0.0)));
+    let margins = sampled.in_time.then_some((checked.before, checked.after));
+    let own = unit.stretch.and_then(|_| part(work.plan, unit)).map(|part| (part.from, part.to));
+    let (file, Sampled { columns, along, .. }) = (file_of(work, unit, which, &read), sampled);
+    Ok(Opened { columns, along, extent, file, margins, memo: None, own, stretch: None })
+}
+
+fn file_of(work: &Work<'_>, unit: &Unit, which: WhichRecord, read: &ReadFile) -> FileHash {
     let name = work.campaign(unit).record_name(which).map(ToString::to_string);
     let of = RecordOf { kind: which.kind.key().into(), section: unit.name.clone(), name };
     let path = qualified(unit.campaign_name.as_deref(), &read.path);
-    let file = FileHash { path, sha256: read.sha256, bytes: read.bytes, record: Some(of) };
-    let first_row = record.row_shown(0);
-    let columns: Vec<_> = record.columns.into_iter().map(|column| (column.name, Arc::new(column.values))).collect();
-    let values = |name: &str| columns.iter().find(|(known, _)| known == name).map(|(_, values)| Arc::clone(values));
-    let along_axis = values(&axis.column).unwrap_or_default();
-    let extent = unit.extent.unwrap_or_else(|| (along_axis.first().copied().unwrap_or(0.0), along_axis.last().copied().unwrap_or(0.0)));
-    let in_time = time.is_some() || axis.unit.dimension == Dimension::TIME;
-    let along = Arc::new(Along {
-        axis: along_axis,
-        time: time.and_then(|time| values(&time.column)),
-        rate: if in_time { Rate::PerTime(checked.sampling_rate) } else { Rate::PerLength(checked.sampling_rate) },
-        first_row: Some(first_row),
-    });
-    let margins = in_time.then_some((checked.before, checked.after));
-    Ok(Opened { columns: Arc::new(columns), along, extent, file, margins, memo: None })
+    FileHash { path, sha256: read.sha256.clone(), bytes: read.bytes, record: Some(of) }
+}
+
+/// The samples of a record.
+#[derive(Debug)]
+struct Sampled {
+    columns: Arc<Vec<(String, Arc<Vec<f64>>)>>,
+    along: Arc<Along>,
+    /// Whether the record has a time.
+    in_time: bool,
+}
+
+impl Sampled {
+    /// Of a record whose axes are sound.
+    fn new(plan: &Plan, which: WhichRecord, record: Record, rate: f64) -> Self {
+        let first_row = record.row_shown(0);
+        let columns: Vec<_> = record.columns.into_iter().map(|column| (column.name, Arc::new(column.values))).collect();
+        let values = |name: &str| columns.iter().find(|(known, _)| known == name).map(|(_, values)| Arc::clone(values));
+        let time = clock(plan, which);
+        let in_time = time.is_some() || plan.axis.unit.dimension == Dimension::TIME;
+        let along = Arc::new(Along {
+            axis: values(&plan.axis.column).unwrap_or_default(),
+            time: time.and_then(|time| values(&time.column)),
+            rate: if in_time { Rate::PerTime(rate) } else { Rate::PerLength(rate) },
+            first_row: Some(first_row),
+        });
+        Self { columns: Arc::new(columns), along, in_time }
+    }
 }
 
 /// Several problems in one line, each with its place unless the text already names it, and with its help.
@@ -242,7 +322,15 @@ impl Opened {
         let extent = (axis.first().copied().unwrap_or(0.0), axis.last().copied().unwrap_or(0.0));
         let file = FileHash { path: String::new(), sha256: String::new(), bytes: 0, record: None };
         let along = Arc::new(Along { axis, time, rate, first_row: Some(first_row) });
-        Self { columns: Arc::new(columns), along, extent, file, margins: None, memo: None }
+        Self { columns: Arc::new(columns), along, extent, file, margins: None, memo: None, own: None, stretch: None }
+    }
+
+    /// A signal, no longer than what the section would read by itself.
+    pub fn around_section(&self, samples: Samples) -> Samples {
+        match self.own.map(|own| samples.cut(own)) {
+            Some(Ok(cut)) => cut,
+            _ => samples,
+        }
     }
 
     /// First and last row of the file inside the section, and of all that was read and is filtered; the header is row 1.
@@ -266,7 +354,8 @@ impl Opened {
         state.memo = self.memo.as_deref().zip(keys);
         let left = state.recall(needed, wanted);
         let levels = state.count(left.as_ref().unwrap_or(needed));
-        state.run(&levels, wanted, |_| true)?;
+        let done = state.on_stretch(needed, wanted, &levels)?;
+        state.run(&levels, wanted, |id| !done[id])?;
         Ok(state.found)
     }
 
@@ -281,13 +370,10 @@ impl Opened {
     ) -> Result<Held<'a>, String> {
         let mut state = State::new(self, graph, known, method);
         let levels = state.count(needed);
-        let mut placed = vec![false; graph.nodes.len()];
-        for &id in needed {
-            let node = &graph.nodes[id];
-            let here = matches!(node.operation, Operation::Cut | Operation::Window(_) | Operation::Reduce(_));
-            placed[id] = here || node.inputs.iter().any(|&input| placed[input]);
-        }
-        state.run(&levels, wanted, |id| !placed[id])?;
+        let here = |operation: &Operation| matches!(operation, Operation::Cut | Operation::Window(_) | Operation::Reduce(_));
+        let placed = stretch::leading(graph, needed, here);
+        let done = state.on_stretch(needed, wanted, &levels)?;
+        state.run(&levels, wanted, |id| !placed[id] && !done[id])?;
         Ok(Held { state, levels, placed, wanted })
     }
 }

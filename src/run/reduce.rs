@@ -6,10 +6,12 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::basis::Basis;
+use super::record::{Stretches, Work};
 use super::section;
 use super::section_values::SectionValues;
 use super::synchronisation::Shifts;
 use super::traces::{self, Kept};
+use super::unit::Unit;
 use super::{Prepared, Progress};
 use crate::check::plan::Plan;
 use crate::data::Campaigns;
@@ -86,20 +88,22 @@ impl Prepared<'_> {
 
     /// The same with one value for each shift.
     pub(super) fn shifted(&self, shard: Shard, shifts: &Shifts<'_>, progress: Progress<'_>) -> Vec<(usize, Vec<SectionValues>)> {
-        let work = self.work();
-        shard
-            .range(self.basis.units.len())
-            .into_par_iter()
-            // Sections differ in length. Distributed one by one, they keep all workers busy.
-            .with_max_len(1)
-            .map(|number| {
-                let unit = &self.basis.units[number];
+        let units: Vec<(usize, &Unit)> = shard.range(self.basis.units.len()).map(|number| (number, &self.basis.units[number])).collect();
+        let stretch = |(_, unit): &(usize, &Unit)| unit.stretch.map(|stretch| stretch.number);
+        // A stretch is read by one worker. Sections by themselves differ in length: distributed one by one, they keep all workers busy.
+        let groups: Vec<&[(usize, &Unit)]> = units.chunk_by(|a, b| stretch(a).is_some() && stretch(a) == stretch(b)).collect();
+        let of_group = |group: &[(usize, &Unit)]| {
+            let stretches = Stretches::default();
+            let work = Work { stretches: Some(&stretches), ..self.work() };
+            let one = |(number, unit): &(usize, &Unit)| {
                 let faulty = || vec![SectionValues::default(); shifts.offsets.len()];
                 let values = if unit.fault.is_some() { faulty() } else { section::of_section(&work, unit, shifts) };
                 progress(&unit.name);
-                (number, values)
-            })
-            .collect()
+                (*number, values)
+            };
+            group.iter().map(one).collect::<Vec<_>>()
+        };
+        groups.into_par_iter().with_max_len(1).flat_map_iter(of_group).collect()
     }
 }
 

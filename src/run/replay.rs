@@ -172,6 +172,7 @@ fn units(plan: &Plan, recorded: &Recorded) -> Result<Vec<Unit>, String> {
             site_name: section.site.clone(),
             original: None,
             extent: (!plan.sections.whole_records).then(|| (axis.to_si(section.start), axis.to_si(section.end))),
+            stretch: None,
             covered: None,
             columns: plan.columns.iter().zip(&section.columns).map(column).collect(),
             checks: Vec::new(),

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use super::checks::{record_checks, track_checks};
 use super::common::Meetings;
 use super::facts::Known;
-use super::margins::note_margins;
+use super::margins::{note_margins, slow};
 use super::one_record::one_record;
 use super::plausibility::{self, Questions};
-use super::record::{Fault, Found, Opened, Work, needed, open};
+use super::record::{Fault, Found, Opened, Work, with_record};
 use super::section_values::SectionValues;
 use super::sides::{Evaluated, Original, RecordOfSide, Sides};
 use super::synchronisation::{self, Shifts};
@@ -60,7 +60,7 @@ fn fill(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>, common: &mut SectionV
     let questions = Questions::of(work, unit, &known);
     let track = track_checks(work, unit, &questions, &known, common)?;
     let active = active(work, unit, &known)?;
-    // A record is reduced to numbers before the next one is opened, so that one record is in memory at a time.
+    // A record is reduced to numbers before the next one is opened, so that one record is in memory at a time, and of a run one stretch of each.
     let simulated = records(work, unit, Side::Simulated, &wanted(work, &questions, &active, shifts, Side::Simulated), &known, common);
     let wanted = wanted(work, &questions, &active, shifts, Side::Measured);
     let measured = match &simulated {
@@ -159,21 +159,23 @@ fn shifted(
     simulated: &[RecordOfSide],
     common: &mut SectionValues,
 ) -> Result<Vec<Result<Vec<RecordOfSide>, String>>, Fault> {
-    let needed = needed(work.graph, wanted, known).map_err(Fault::new)?;
     let which = RecordKind::Measurement.into();
-    let opened = open(work, unit, which, &needed)?;
+    let evaluate = |opened: &Opened, needed: &BTreeSet<NodeId>| {
+        let held = opened.hold(work.graph, needed, wanted, known, work.plan.sections.percentiles)?;
+        let first = shifts.farthest.zip(simulated.first());
+        let offset = first.and_then(|(farthest, simulated)| synchronisation::estimate(work.graph, unit, farthest, &simulated.found, &held));
+        let own = offset.as_ref().filter(|_| shifts.correct).map_or(0.0, |offset| offset.shift);
+        let placed = |says: String| format!("{}: {says}", opened.file.path);
+        let at = |offset: &f64| held.at(own + offset).map(|found| vec![of_side(work, unit, which, found)]).map_err(placed);
+        Ok((shifts.offsets.iter().map(at).collect(), offset, slow(work, needed)))
+    };
+    let (found, opened) = with_record(work, unit, which, wanted, known, evaluate)?;
     common.files.push(opened.file.clone());
     common.extent = Some(opened.extent);
-    note_margins(work, unit, &needed, &opened, common);
-    let placed = |says: String| format!("{}: {says}", opened.file.path);
-    let held = opened.hold(work.graph, &needed, wanted, known, work.plan.sections.percentiles).map_err(|says| Fault::new(placed(says)))?;
-    common.offset = shifts
-        .farthest
-        .zip(simulated.first())
-        .and_then(|(farthest, simulated)| synchronisation::estimate(work.graph, unit, farthest, &simulated.found, &held));
-    let own = if shifts.correct { common.offset.as_ref().map_or(0.0, |offset| offset.shift) } else { 0.0 };
-    let at = |offset: &f64| held.at(own + offset).map(|found| vec![of_side(work, unit, which, found)]).map_err(placed);
-    Ok(shifts.offsets.iter().map(at).collect())
+    let (all, offset, slow) = found?;
+    common.offset = offset;
+    note_margins(unit, slow, &opened, common);
+    Ok(all)
 }
 
 /// A row that cannot be computed affects its quantity only; the section is used for the others.

@@ -7,6 +7,7 @@ use super::facts::{Known, Vehicle};
 use super::groups::{Grouped, Part, parts};
 use super::judge::{Rows, members, rows};
 use super::limits::{Judging, applying};
+use super::record;
 use super::section;
 use super::section_values::SectionValues;
 use super::shared::{Columns, Counts, Keys, Numbers, Sharing, Store};
@@ -102,27 +103,37 @@ impl Together<'_> {
         let cell = &self.campaign.names[at];
         let place = self.prepared.iter().flatten().find_map(|prepared| {
             let extent = prepared.basis.units.get(at).and_then(|unit| unit.extent)?;
-            Some((prepared.plan.axis.column.clone(), extent))
+            let unit = &prepared.basis.units[at];
+            let part = unit.stretch.map(|stretch| stretch.part(prepared.plan)).or_else(|| record::part(prepared.plan, unit));
+            Some((prepared.plan.axis.column.clone(), extent, part))
         });
         let store = Store::new(self.campaign, cell, self.columns, place);
         let mut numbers = Numbers::default();
         let mut keys = |prepared: &Prepared<'_>| numbers.keys(&prepared.work(), &prepared.basis.units[at]);
         let as_recorded: Vec<Option<Keys>> = self.prepared.iter().map(|prepared| prepared.as_ref().ok().map(&mut keys)).collect();
         let bare: Vec<Option<Keys>> = self.tried.iter().map(|prepared| prepared.as_ref().map(&mut keys)).collect();
-        let one = |store: &Store<'_>, prepared: Option<&Prepared<'_>>, keys: &Option<Keys>| {
+        let one = |store: &Store<'_>, prepared: Option<&Prepared<'_>>, (of, keys): (usize, &Option<Keys>)| {
             let (prepared, keys) = prepared.zip(keys.as_ref())?;
+            // In a trial, a section is evaluated on the stretch on which it is as recorded.
+            let soundness = &self.prepared[of].as_ref().ok()?.soundness;
             let unit = &prepared.basis.units[at];
             if unit.fault.is_some() {
                 return Some(SectionValues::default());
             }
-            let work = super::record::Work { shared: Some(Sharing { store, keys }), ..prepared.work() };
+            let work = record::Work { shared: Some(Sharing { store, keys }), soundness, ..prepared.work() };
             section::of_section(&work, unit, &Shifts::NONE).pop()
         };
-        let values = self.prepared.iter().zip(&as_recorded).map(|(prepared, keys)| one(&store, prepared.as_ref().ok(), keys)).collect();
+        let values = self
+            .prepared
+            .iter()
+            .zip(as_recorded.iter().enumerate())
+            .map(|(prepared, keys)| one(&store, prepared.as_ref().ok(), keys))
+            .collect();
         let counts = store.counts();
         let in_trial = |trial: &Trial| {
             let store = store.with(*trial);
-            let values = self.tried.iter().zip(&bare).map(|(prepared, keys)| one(&store, prepared.as_ref(), keys)).collect();
+            let values =
+                self.tried.iter().zip(bare.iter().enumerate()).map(|(prepared, keys)| one(&store, prepared.as_ref(), keys)).collect();
             progress(&cell.value);
             values
         };

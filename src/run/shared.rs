@@ -198,6 +198,8 @@ pub struct Store<'a> {
     columns: &'a Columns,
     /// The axis and where the section lies on it, where the campaign says so.
     place: Option<(String, Extent)>,
+    /// The part of a run that is read.
+    part: Option<Part>,
     trial: Trial,
     /// The records as recorded.
     base: Option<&'a Store<'a>>,
@@ -215,8 +217,10 @@ struct Shared {
 }
 
 impl<'a> Store<'a> {
-    pub fn new(campaign: &'a Campaign, cell: &'a Cell, columns: &'a Columns, place: Option<(String, Extent)>) -> Self {
-        Self { campaign, cell, columns, place, trial: Trial::AsRecorded, base: None, records: Mutex::default() }
+    /// `place`: the axis, where the section lies on it, and what is read of a run, as one of the protocols asks.
+    pub fn new(campaign: &'a Campaign, cell: &'a Cell, columns: &'a Columns, place: Option<(String, Extent, Option<Part>)>) -> Self {
+        let (place, part) = place.map_or((None, None), |(axis, extent, part)| (Some((axis, extent)), part));
+        Self { campaign, cell, columns, place, part, trial: Trial::AsRecorded, base: None, records: Mutex::default() }
     }
 
     /// The same section with its records changed; records that stay keep what was computed of them.
@@ -226,6 +230,7 @@ impl<'a> Store<'a> {
             cell: self.cell,
             columns: self.columns,
             place: self.place.clone(),
+            part: self.part.clone(),
             trial,
             base: Some(self),
             records: Mutex::default(),
@@ -234,11 +239,6 @@ impl<'a> Store<'a> {
 
     pub fn is_of(&self, unit: &Unit) -> bool {
         unit.cell.value == self.cell.value
-    }
-
-    /// The part of a run that is read, without the margin of a protocol: protocols may ask for different ones.
-    fn part(&self) -> Option<Part> {
-        self.place.as_ref().map(|(axis, extent)| Part::around(axis, *extent, None))
     }
 
     fn rows(&self, record: &Record) -> std::ops::Range<usize> {
@@ -264,7 +264,7 @@ impl<'a> Store<'a> {
         let mut records = locked(&self.records);
         let shared = records.entry(which).or_insert_with(|| {
             let record = match self.base {
-                None => Ok(self.campaign.read(which, self.cell, &self.columns.of(which.kind), self.part().as_ref()).ok()),
+                None => Ok(self.campaign.read(which, self.cell, &self.columns.of(which.kind), self.part.as_ref()).ok()),
                 Some(base) => match &base.shared(which).record {
                     Ok(Some((record, file))) => self.changed(record.clone()).map(|record| Some((record, file.clone()))),
                     other => other.clone(),
@@ -275,9 +275,19 @@ impl<'a> Store<'a> {
         Arc::clone(shared)
     }
 
-    /// A record as a protocol asks for it. `None` where it cannot be had in common: the protocol then reads it by itself, and says what is
-    /// wrong with it.
-    pub fn open(&self, work: &Work<'_>, unit: &Unit, which: WhichRecord, wanted: &[Wanted]) -> Option<Result<Opened, Fault>> {
+    /// A record as a protocol asks for it. `None` where it cannot be had in common, as where protocols read different parts of a run: the
+    /// protocol then reads it by itself, and says what is wrong with it.
+    pub fn open(
+        &self,
+        work: &Work<'_>,
+        unit: &Unit,
+        which: WhichRecord,
+        wanted: &[Wanted],
+        part: Option<&Part>,
+    ) -> Option<Result<Opened, Fault>> {
+        if part != self.part.as_ref() {
+            return None;
+        }
         let shared = self.shared(which);
         shared.asked.fetch_add(1, Ordering::Relaxed);
         let (record, file) = match &shared.record {
@@ -303,9 +313,9 @@ impl<'a> Store<'a> {
     }
 
     /// A record read by one protocol alone, in this trial.
-    pub fn read(&self, which: WhichRecord, wanted: &[Wanted]) -> Result<(Record, ReadFile), Vec<Problem>> {
+    pub fn read(&self, which: WhichRecord, wanted: &[Wanted], part: Option<&Part>) -> Result<(Record, ReadFile), Vec<Problem>> {
         let kind = self.trial.kind(which.kind);
-        let (record, file) = self.campaign.read(WhichRecord { kind, ..which }, self.cell, wanted, self.part().as_ref())?;
+        let (record, file) = self.campaign.read(WhichRecord { kind, ..which }, self.cell, wanted, part)?;
         let record = if self.trial.changes(which.kind) {
             self.changed(record).map_err(|says| vec![Problem::error("not-disturbed", says)])?
         } else {

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::record::{Found, Work, needed, open};
+use super::record::{Found, Opened, Work, with_record};
 use super::requirements;
 use super::section_values::SectionValues;
 use super::signal::{Extent, Samples};
@@ -151,9 +151,15 @@ type Evaluate<'a> = &'a dyn Fn(&Section, WhichRecord, &BTreeSet<NodeId>) -> Sign
 
 fn evaluated(work: &Work<'_>, unit: &Section, which: WhichRecord, wanted: &BTreeSet<NodeId>) -> Signal {
     let known = unit.known(work.facts);
-    let needed = needed(work.graph, wanted, &known)?;
-    let opened = open(work, unit, which, &needed).map_err(|fault| fault.says)?;
-    Ok((opened.evaluate(work.graph, &needed, wanted, &known, work.plan.sections.percentiles, None)?, opened.extent))
+    let evaluate = |opened: &Opened, needed: &BTreeSet<NodeId>| {
+        opened.evaluate(work.graph, needed, wanted, &known, work.plan.sections.percentiles, None)
+    };
+    let (found, opened) = with_record(work, unit, which, wanted, &known, evaluate).map_err(|fault| fault.says)?;
+    let around = |found: Found| match found {
+        Found::Samples(samples) => Found::Samples(opened.around_section(samples)),
+        other => other,
+    };
+    Ok((found.map_err(|fault| fault.says)?.into_iter().map(|(node, found)| (node, around(found))).collect(), opened.extent))
 }
 
 /// The signals of several plots of a section: each record is read once.

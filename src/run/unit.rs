@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::signal::Extent;
-use crate::check::plan::Scalar;
+use crate::check::plan::{Plan, Scalar};
+use crate::data::campaign::Part;
 use crate::data::table::Cell;
 use crate::result::CheckResult;
 use crate::source::Span;
@@ -29,6 +30,9 @@ pub struct Unit {
     pub original: Option<usize>,
     /// `None` for a whole record.
     pub extent: Option<Extent>,
+    /// Of a section of a run: what is read for it and its neighbours.
+    #[serde(skip)]
+    pub stretch: Option<Stretch>,
     /// The range that a report states: that of the section, or of the measured record.
     pub covered: Option<Extent>,
     /// One for each [`crate::check::plan::Plan::columns`].
@@ -40,6 +44,20 @@ pub struct Unit {
     pub faulty: bool,
     /// Row of the table of sections.
     pub span: Option<Span>,
+}
+
+/// A part of a run that is read for the sections inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    pub number: usize,
+    pub extent: Extent,
+}
+
+impl Stretch {
+    /// What is read.
+    pub fn part(&self, plan: &Plan) -> Part {
+        Part { axis: plan.axis.column.clone(), from: self.extent.0, to: self.extent.1 }
+    }
 }
 
 impl Unit {

@@ -29,7 +29,7 @@ pub use write::write;
 /// Version of the program, which writes files of values for itself only: other versions may compute other numbers.
 pub const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 /// The form of the files.
-pub const FORM: u32 = 1;
+pub const FORM: u32 = 2;
 
 /// What all parts of a campaign have in common.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -130,7 +130,7 @@ fn json<T: DeserializeOwned>(text: &str) -> Result<T, String> {
 
 /// Puts the marks of signals to their prints.
 fn marks(bytes: &[u8], sections: &mut [Numbered]) -> Result<(), String> {
-    let numbers: Vec<u64> = bytes.chunks_exact(8).map(|eight| u64::from_le_bytes(eight.try_into().unwrap_or_default())).collect();
+    let numbers: Vec<u32> = bytes.as_chunks().0.iter().map(|four| u32::from_le_bytes(*four)).collect();
     let mut left = numbers.as_slice();
     for print in sections.iter_mut().flat_map(|(_, of_section)| &mut of_section.prints) {
         let ends = || "the marks of its signals end too early".to_string();

@@ -13,7 +13,7 @@ use crate::data::hash::{Hasher, sha256};
 const MARK: &str = "SHA-256 with this hash as zeros: ";
 /// Digits of a hash.
 const DIGITS: usize = 64;
-/// Maximum size of unpacked contents in bytes: the marks of 10 000 km take 1 GB.
+/// Maximum size of unpacked contents in bytes: the marks of 10 000 km take 0.5 GB.
 const LARGEST: u64 = 4 << 30;
 
 /// What stands in a file until its hash is known.
@@ -54,9 +54,18 @@ fn place(bytes: &[u8]) -> Option<usize> {
     (at + DIGITS <= bytes.len()).then_some(at)
 }
 
-/// Compressed, as text. The fast level: most contents are marks of signals, which are nearly as long at any level.
+/// Compressed, as text.
 pub fn packed(bytes: &[u8]) -> String {
-    let mut compressed = DeflateEncoder::new(Vec::new(), flate2::Compression::fast());
+    deflated(bytes, flate2::Compression::fast())
+}
+
+/// In the same form, for contents that compression does not make shorter.
+pub fn stored(bytes: &[u8]) -> String {
+    deflated(bytes, flate2::Compression::none())
+}
+
+fn deflated(bytes: &[u8], level: flate2::Compression) -> String {
+    let mut compressed = DeflateEncoder::new(Vec::new(), level);
     // Writing to memory cannot fail.
     let _ = compressed.write_all(bytes);
     STANDARD.encode(compressed.finish().unwrap_or_default())
@@ -97,6 +106,7 @@ mod tests {
     fn packed_contents_are_unpacked() {
         for bytes in [&b""[..], b"abc", &[7; 100_000]] {
             assert_eq!(unpacked(&packed(bytes)).as_deref(), Ok(bytes));
+            assert_eq!(unpacked(&stored(bytes)).as_deref(), Ok(bytes));
         }
         assert!(unpacked("!").is_err() && unpacked("AAAA").is_err());
     }

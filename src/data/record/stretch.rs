@@ -71,6 +71,11 @@ impl Stretch {
         Self { range, axis, columns: columns.iter().map(empty).collect(), first_row: 0, next: 0, again: None }
     }
 
+    /// Makes room for so many rows, so that no column is moved while it grows.
+    pub fn reserve(&mut self, rows: usize) {
+        self.columns.iter_mut().for_each(|column| column.values.reserve_exact(rows));
+    }
+
     /// Adds the rows inside of a block, given by its columns.
     pub fn add(&mut self, columns: &[&[f64]], first_row: usize) {
         let axis = columns[self.axis];

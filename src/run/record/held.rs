@@ -33,8 +33,10 @@ impl Held<'_> {
             return Ok((start, end));
         }
         let axis = &self.state.opened.along.axis;
-        let from = axis.first().map_or(start, |x| (x + shift).max(start));
-        let to = axis.last().map_or(end, |x| (x + shift).min(end));
+        // Of a stretch that sections share, no more than the section would read by itself.
+        let (first, last) = self.state.opened.own.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+        let from = axis.first().map_or(start, |x| (x.max(first) + shift).max(start));
+        let to = axis.last().map_or(end, |x| (x.min(last) + shift).min(end));
         let missing = (end - start) - (to - from);
         if missing > MOST_MISSING * (end - start) {
             return Err(format!("shifted by {shift} along the axis, the record ends {missing:.3} short of the section"));

@@ -195,7 +195,7 @@ impl State<'_> {
         matches!(self.graph.nodes[id].operation, Operation::Step(_) | Operation::Window(_) | Operation::OverAxis(_))
     }
 
-    fn samples(&self, id: NodeId) -> Result<Samples, String> {
+    pub(super) fn samples(&self, id: NodeId) -> Result<Samples, String> {
         match self.signal(id)? {
             Signal::Samples(samples) => Ok(samples.clone()),
             // A constant becomes a signal of equal samples where a signal is needed.

@@ -59,32 +59,37 @@ pub(crate) fn stretch(
     let mut columns = opened.find(wanted)?;
     let place = axis_of(&columns, axis, shown)?;
     let mut faults = Faults::new(shown);
-    let mut stretch = Stretch::new(range.clone(), place, &columns);
+    let mut parts = Vec::new();
     for group in 0..opened.layout.groups() {
         if opened.without(group, &columns[place], range) {
             continue;
         }
         for rows in blocks(opened.layout.rows_of(group)) {
-            let (first, part) = match opened.inside(group, &rows, &columns[place], range, known, &mut faults) {
-                Ok(Some(part)) if faults.is_empty() => (rows.start + part.start, part),
-                Ok(None) if faults.is_empty() => continue,
+            match opened.inside(group, &rows, &columns[place], range, known, &mut faults) {
+                Ok(Some(part)) if faults.is_empty() => parts.push((group, rows, part)),
+                Ok(None) if faults.is_empty() => {}
                 Ok(_) => return Err(faults.into_vec()),
                 Err(problem) => return Err(vec![problem]),
-            };
-            if let Some(numbers) = opened.numbers(group, &rows, &columns, known) {
-                stretch.add(&numbers.iter().map(|column| &column[part.clone()]).collect::<Vec<_>>(), first);
-                continue;
             }
-            // Not all numbers of the block are sound: those outside the range do not concern the stretch.
-            let part = first..first + part.len();
-            let done = opened.rows_in(group, part, &mut columns, &mut faults, &mut |columns, first_row| {
-                stretch.add(&values(columns), first_row);
-                columns.iter_mut().for_each(|column| column.values.clear());
-            });
-            done.map_err(|problem| vec![problem])?;
-            if !faults.is_empty() {
-                return Err(faults.into_vec());
-            }
+        }
+    }
+    let mut stretch = Stretch::new(range.clone(), place, &columns);
+    stretch.reserve(parts.iter().map(|(_, _, part)| part.len()).sum());
+    for (group, rows, part) in parts {
+        let first = rows.start + part.start;
+        if let Some(numbers) = opened.numbers(group, &rows, &columns, known) {
+            stretch.add(&numbers.iter().map(|column| &column[part.clone()]).collect::<Vec<_>>(), first);
+            continue;
+        }
+        // Not all numbers of the block are sound: those outside the range do not concern the stretch.
+        let part = first..first + part.len();
+        let done = opened.rows_in(group, part, &mut columns, &mut faults, &mut |columns, first_row| {
+            stretch.add(&values(columns), first_row);
+            columns.iter_mut().for_each(|column| column.values.clear());
+        });
+        done.map_err(|problem| vec![problem])?;
+        if !faults.is_empty() {
+            return Err(faults.into_vec());
         }
     }
     let channels = opened.layout.headings().iter().map(|heading| heading.name.clone()).collect();
