@@ -15,9 +15,12 @@ use crate::run::shared::{Kept, Memo};
 use crate::run::signal::{Cutter, Signal};
 use crate::run::unit::Unit;
 
+/// A record of the stretch with this number.
+type RecordOfStretch = (usize, WhichRecord);
+
 /// The records of the stretches that a worker reads; `None` for one that is not sound.
 #[derive(Debug, Default)]
-pub struct Stretches(Mutex<BTreeMap<(usize, WhichRecord), Option<Arc<Stretched>>>>);
+pub struct Stretches(Mutex<BTreeMap<RecordOfStretch, Option<Arc<Stretched>>>>);
 
 impl Stretches {
     /// A record of a stretch, read unless it is there.
@@ -26,7 +29,7 @@ impl Stretches {
     /// Of `read`.
     fn get(
         &self,
-        key: (usize, WhichRecord),
+        key: RecordOfStretch,
         read: impl FnOnce() -> Result<Option<Arc<Stretched>>, Fault>,
     ) -> Result<Option<Arc<Stretched>>, Fault> {
         // The sections of a stretch are evaluated one after the other: no one waits for this lock.
@@ -43,14 +46,14 @@ impl Stretches {
 /// Which records of stretches are sound: all that a protocol reads of them and that no section changes has finite values. A section is evaluated
 /// on its stretch if that is sound, and else on what it reads by itself, whatever is asked of it: its values do not depend on what else is asked.
 #[derive(Debug, Default)]
-pub struct Soundness(Mutex<BTreeMap<(usize, WhichRecord), bool>>);
+pub struct Soundness(Mutex<BTreeMap<RecordOfStretch, bool>>);
 
 impl Soundness {
-    fn known(&self, key: (usize, WhichRecord)) -> Option<bool> {
+    fn known(&self, key: RecordOfStretch) -> Option<bool> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&key).copied()
     }
 
-    fn keep(&self, key: (usize, WhichRecord), sound: bool) {
+    fn keep(&self, key: RecordOfStretch, sound: bool) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(key, sound);
     }
 }
