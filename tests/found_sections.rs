@@ -129,16 +129,21 @@ fn runs_as_text_give_the_same_numbers() {
     assert_eq!(first.1, Some(12));
 }
 
-/// What is written as a table and used as such gives what is found and used at once.
-#[test]
-fn a_table_of_found_sections_can_be_used() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let copy = folder.path().join("copy");
+/// A copy of the example with the table of the sections that are found in it.
+fn with_table(copy: &Path) -> String {
     let shown = copy.display().to_string();
     done(&["convert-records", "examples/run", "--to", "parquet", "--out", &shown], &[0]);
     done(&["sections", "examples/run", "--out", &copy.join("sections.csv").display().to_string()], &[0]);
     let yaml = fs::read_to_string(copy.join("campaign.yaml")).expect("a campaign");
     fs::write(copy.join("campaign.yaml"), yaml + "sections: sections.csv\n").expect("written");
+    shown
+}
+
+/// What is written as a table and used as such gives what is found and used at once.
+#[test]
+fn a_table_of_found_sections_can_be_used() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let shown = with_table(&folder.path().join("copy"));
     let quantities = |campaign: &str, name: &str| {
         let out = folder.path().join(name);
         done(&["certify", campaign, "--only", "results", "--out", &out.display().to_string()], &[0]);
@@ -223,11 +228,7 @@ fn without_number(record: &Path, beyond: f64) {
 fn a_fault_concerns_the_sections_that_read_it() {
     let folder = tempfile::tempdir().expect("a folder");
     let copy = folder.path().join("copy");
-    let shown = copy.display().to_string();
-    done(&["convert-records", "examples/run", "--to", "parquet", "--out", &shown], &[0]);
-    done(&["sections", "examples/run", "--out", &copy.join("sections.csv").display().to_string()], &[0]);
-    let yaml = fs::read_to_string(copy.join("campaign.yaml")).expect("a campaign");
-    fs::write(copy.join("campaign.yaml"), yaml + "sections: sections.csv\n").expect("written");
+    let shown = with_table(&copy);
     let results = |name: &str, codes: &[i32]| -> serde_json::Value {
         let out = folder.path().join(name);
         done(&["certify", &shown, "--only", "results", "--out", &out.display().to_string()], codes);
