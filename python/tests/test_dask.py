@@ -122,18 +122,21 @@ def test_a_record_that_cannot_be_read(client, tmp_path):
         fishplate.dask.certify(client, folder)
 
 
-def test_a_record_that_always_ends_its_worker(client, whole):
+def test_a_record_that_always_ends_its_worker():
     def patch():
         import os
+        import time
 
         from fishplate import _engines
 
         fast = _engines.part
-        _engines.fast = fast
 
         def part(number, *given):
             if number == 3:
+                time.sleep(0.3)
                 os._exit(1)
+            if number in (2, 4):
+                time.sleep(1)
             return fast(number, *given)
 
         _engines.part = part
@@ -144,17 +147,18 @@ def test_a_record_that_always_ends_its_worker(client, whole):
         def setup(self, worker):
             patch()
 
-    client.register_plugin(Everywhere(), name="ends")
-    try:
-        with pytest.warns(fishplate.Warning, match="part 3 of 13 could not be made: KilledWorker"):
+    # Two threads on one worker: a part beside the third is lost with it each time, and made in the end.
+    with (
+        distributed.LocalCluster(n_workers=1, threads_per_worker=2, dashboard_address=":0") as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        client.register_plugin(Everywhere(), name="ends")
+        with pytest.warns(fishplate.Warning) as told:
             found = fishplate.dask.certify(client, COACH, shards=13)
-    finally:
-        client.unregister_worker_plugin("ends")
-        client.restart()
-        client.wait_for_workers(2)
+    (only,) = (str(each.message) for each in told)
+    assert only.startswith("part 3 of 13 could not be made: KilledWorker"), only
     missing = fishplate.Campaign(COACH).sections[3]
-    assert found.verdict == "not assessable" and any(reason.endswith(f"are missing: {missing}") for reason in found.reasons), found.reasons
-    assert fishplate.dask.certify(client, COACH, shards=13).json() == whole.json()
+    assert found.verdict == "not assessable" and f"values of 1 of 13 sections are missing: {missing}" in found.reasons, found.reasons
 
 
 def test_a_worker_of_another_version_is_refused(client):

@@ -39,6 +39,7 @@ def certify(
 
     A part whose worker is lost is made again. One that cannot be made is told in a warning, and its sections as missing.
     """
+    distributed: Any = import_module("distributed")
     workers = len(client.scheduler_info(n_workers=-1)["workers"])
     job = _engines.Job.of(campaign, protocol, parameters, shards=shards, workers=workers, plots=plots, keep=keep)
     here = _records.gathered(job.pieces) if job.pieces is not None else {}
@@ -47,13 +48,21 @@ def certify(
     def records(number: int) -> list[Any]:
         return [here.get(number, {}), *(client.submit(_engines.picked, cut, number, pure=False) for cut in there)]
 
-    futures = {
-        client.submit(_engines.of_pieces, number, job.work, *records(number), pure=False, retries=_engines.RETRIES, priority=-number): number
-        for number in job.open
-    }
+    def submit(number: int) -> Any:
+        return client.submit(
+            _engines.of_pieces, number, job.work, *records(number), pure=False, retries=_engines.RETRIES, priority=-number
+        )
+
+    futures = {submit(number): number for number in job.open}
     try:
-        for future in import_module("distributed").as_completed(list(futures)):
+        for future in distributed.as_completed(list(futures)):
             job.attempt(futures[future], future.result)
+        # When a worker is lost several times, Dask gives up all tasks that it had been given, not only the one that ended it.
+        # One after another, each part depends on itself alone.
+        for number in sorted(number for number, error in job.failed.items() if isinstance(error, distributed.KilledWorker)):
+            alone = submit(number)
+            futures[alone] = number
+            job.attempt(number, alone.result)
         return job.result(plots)
     finally:
         client.cancel(list(futures))
