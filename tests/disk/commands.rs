@@ -201,7 +201,7 @@ fn study() {
     if alone("commands::study") {
         let before = ["certify", "IN", "-q", "-j", "1", "--out", "OUT", "--only", "results"];
         let now = ["study", "sections", "IN", "-q", "-j", "1", "--out", "OUT"];
-        every_point("study", &Case { before: &before, now: &now, most: 25, inputs: campaign::write_tiny, set: true });
+        every_point("study", &Case { before: &before, now: &now, most: 12, inputs: campaign::write_tiny, set: true });
     }
 }
 
@@ -210,7 +210,7 @@ fn simulate() {
     if alone("commands::simulate") {
         let before = ["simulate", "IN", "-q", "-j", "1", "--out", "OUT"];
         let now = ["simulate", "IN", "-q", "-j", "1", "--out", "OUT", "--effect", "friction=0.5"];
-        every_point("simulate", &Case { before: &before, now: &now, most: 25, inputs: with_model, set: true });
+        every_point("simulate", &Case { before: &before, now: &now, most: 12, inputs: with_model, set: true });
     }
 }
 
@@ -218,7 +218,7 @@ fn simulate() {
 fn diagnose_and_write_what_it_improved() {
     if alone("commands::diagnose_and_write_what_it_improved") {
         let now = ["diagnose", "IN", "-q", "-j", "1", "--out", "OUT/report", "--write-improved", "OUT/improved"];
-        every_point("diagnose", &Case { before: &[], now: &now, most: 12, inputs: small, set: true });
+        every_point("diagnose", &Case { before: &[], now: &now, most: 6, inputs: small, set: true });
     }
 }
 
