@@ -209,6 +209,8 @@ fn settings_of_the_command_line_are_checked() {
     assert!(said("percentile_rule=hasen").contains("did you mean `hazen`?"));
     assert!(said("lowpass_order=99").contains("out-of-range"));
     assert!(said("nothing").contains("--set name=value"));
+    let count = said("sections_per_zone=2.5");
+    assert!(count.contains("must be a whole number, this is sections_per_zone = 2.5") && count.contains("set here"), "{count}");
 }
 
 /// A link stays and its target is written; what is no file, such as a pipe, gets the bytes and stays too.

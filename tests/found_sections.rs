@@ -449,3 +449,33 @@ fn the_sections_found_in_runs_are_simulated() {
     assert!(made == records("again"), "the records differ from those of the cut sections");
     done(&["certify", &at("simulated"), "--only", "results", "--out", &at("report")], &[0, 1]);
 }
+
+/// Neighbouring sections share a stretch of a run. `compare` evaluates each for two protocols together, and many times.
+#[test]
+fn compare_has_the_numbers_of_certify() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let json = |path: &str| -> serde_json::Value {
+        serde_json::from_str(&fs::read_to_string(folder.path().join(path)).expect("written")).expect("JSON")
+    };
+    let out = |name: &str| folder.path().join(name).display().to_string();
+    let text =
+        "protocol bare \"Without plausibility rules\"\n  extends  en14363-2016-annex-t-found-sections\n\nremove\n  plausibility  every\n";
+    let bare = out("bare.fp");
+    fs::write(&bare, text).expect("written");
+    let named = "en14363-2016-annex-t-found-sections";
+    done(&["compare", "examples/run", "--protocol", named, "--protocol", &bare, "--out", &out("both")], &[0, 1]);
+    let both = json("both/comparison.json");
+    for (protocol, file) in [(named, named), ("bare", &bare)] {
+        let alone = format!("{protocol}-alone");
+        done(&["certify", "examples/run", "--protocol", file, "--only", "results", "--out", &out(&alone)], &[0, 1]);
+        let alone = json(&format!("{alone}/results.json"));
+        let mut compared = 0;
+        for ratio in both["ratios"].as_array().expect("a list").iter().filter(|ratio| ratio["protocol"] == protocol) {
+            let quantity = alone["quantities"].as_array().expect("a list").iter().find(|known| known["id"] == ratio["quantity"]);
+            let number = if ratio["metric"] == "mean" { "mean" } else { "std" };
+            assert_eq!(quantity.map(|quantity| &quantity[number]), Some(&ratio["value"]), "{ratio}");
+            compared += 1;
+        }
+        assert_eq!(compared, 24);
+    }
+}

@@ -88,8 +88,7 @@ impl Checker<'_> {
             return Some(value as usize);
         }
         let words = normalised(field.value.text.get(count.range.clone()).unwrap_or_default());
-        let problem = Problem::error("not-a-count", format!("`{}` must be a whole number, this is {words}", field.key.text));
-        self.problems.push(problem.at(&field.value.span));
+        self.no_count(&field.key.text, &words, (value, dimension), &field.value.span);
         None
     }
 }

@@ -421,13 +421,23 @@ impl Checker<'_> {
         let Some(field) = block.field(key) else { return Some(default) };
         let (value, dimension) = self.constant(&field.value)?;
         if dimension != Dimension::ONE || value.fract() != 0.0 || !(0.0..=1e6).contains(&value) {
-            self.problems.push(
-                Problem::error("not-a-count", format!("`{key}` must be a whole number, this is {}", normalised(&field.value.text)))
-                    .at(&field.value.span),
-            );
+            self.no_count(key, &normalised(&field.value.text), (value, dimension), &field.value.span);
             return None;
         }
         Some(value as usize)
+    }
+
+    /// `words` are no whole number: their value, and where their parameters were set, are told.
+    pub(super) fn no_count(&mut self, key: &str, words: &str, (value, dimension): (f64, Dimension), at: &Span) {
+        let evident = dimension != Dimension::ONE || words.parse() == Ok(value);
+        let value = if evident { String::new() } else { format!(" = {value}") };
+        let mut problem = Problem::error("not-a-count", format!("`{key}` must be a whole number, this is {words}{value}")).at(at);
+        for word in words.split(|c: char| !c.is_alphanumeric() && c != '_') {
+            if let Some(given) = self.overrides.get(word) {
+                problem = problem.also(&given.text.span, "set here");
+            }
+        }
+        self.problems.push(problem);
     }
 }
 

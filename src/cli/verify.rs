@@ -14,7 +14,7 @@ use crate::problem::Problems;
 use crate::provenance::carried::{self, Carried};
 use crate::provenance::signature;
 use crate::provenance::trace::{Asked, trace};
-use crate::provenance::verify::{Again, Check, Outcome, against, alone};
+use crate::provenance::verify::{Again, Check, Outcome, against, alone, of_as_many};
 use crate::report::visible::visible;
 
 #[derive(Debug, Args)]
@@ -66,6 +66,11 @@ impl Verify {
                 return Exit::Wrong;
             }
         };
+        if !self.campaigns.is_empty()
+            && let Err(problem) = of_as_many(&carried, &self.campaigns)
+        {
+            return console.fail(problem, Exit::Wrong);
+        }
         let key = self.public_key.as_deref().map(signature::public_key).transpose();
         let signed = key.and_then(|key| signature::check(&carried.path, self.signature.as_deref(), key.as_ref()));
         let signed = match signed {

@@ -18,7 +18,7 @@ const SHARED: f64 = 0.5;
 /// Rows belong to one site if the column `site` says so, if one is the other's `repeat of`, or if a column `track` names the same track for
 /// both and they overlap by half. `site` has priority.
 ///
-/// Problems: `unknown-section` if `repeat of` names no other row.
+/// Problems: `unknown-section` if `repeat of` names no other row, `repeat-circle` if rows repeat each other.
 pub fn sites(table: &Table, problems: &mut Problems) -> Vec<usize> {
     let rows = table.rows.len();
     let site = Column::of(table, SITE);
@@ -41,6 +41,7 @@ pub fn sites(table: &Table, problems: &mut Problems) -> Vec<usize> {
             _ => problems.push(no_repeat(table, row, cell)),
         }
     }
+    circles(table, problems);
     for (a, b) in overlaps(table) {
         if !apart(a, b) {
             sets.join(a, b);
@@ -59,6 +60,34 @@ pub fn originals(table: &Table) -> Vec<Option<usize>> {
     let repeat = Column::of(table, REPEAT_OF);
     let of = |row| table.row_named(&repeat.cell(row)?.value).filter(|other| *other != row);
     (0..table.rows.len()).map(of).collect()
+}
+
+/// A problem for each circle of rows, at the first of them: one of its sections must have been measured first.
+fn circles(table: &Table, problems: &mut Problems) {
+    let originals = originals(table);
+    let (names, repeat): (Vec<&Cell>, _) = (table.names().collect(), Column::of(table, REPEAT_OF));
+    // The walk that came to a row: 0 for none.
+    let mut walked = vec![0; originals.len()];
+    for row in 0..originals.len() {
+        let (mut at, walk) = (row, row + 1);
+        while walked[at] == 0 {
+            walked[at] = walk;
+            let Some(next) = originals[at] else { break };
+            at = next;
+        }
+        if walked[at] != walk || originals[at].is_none() {
+            continue;
+        }
+        let mut circle = vec![at];
+        circle.extend(std::iter::successors(originals[at], |next| originals[*next]).take_while(|next| *next != at));
+        let first = circle.iter().position(|row| Some(row) == circle.iter().min()).unwrap_or(0);
+        circle.rotate_left(first);
+        circle.push(circle[0]);
+        let names = circle.iter().map(|row| format!("`{}`", names[*row].value)).collect::<Vec<_>>().join(" repeats ");
+        let problem = Problem::error("repeat-circle", format!("sections repeat each other: {names}"));
+        let problem = repeat.cell(circle[0]).map_or(problem.clone(), |cell| problem.at(&cell.span));
+        problems.push(problem.help(format!("leave `{REPEAT_OF}` empty for the section that was measured first")));
+    }
 }
 
 fn no_repeat(table: &Table, row: usize, cell: &Cell) -> Problem {
@@ -141,6 +170,21 @@ mod tests {
         let table = Table::parse(Source::new("sections.csv", text), String::new(), Some("section"), &mut problems).expect("a table");
         let found = sites(&table, &mut problems);
         (found, problems)
+    }
+
+    #[test]
+    fn a_repeat_of_a_repeat_is_no_circle() {
+        let table = |of: [&str; 5]| {
+            let rows = ["A", "B", "C", "D", "E"].iter().zip(of).map(|(name, of)| format!("{name},{of}\n")).collect::<String>();
+            super::tests::of(&format!("section,repeat of\n{rows}")).1.0
+        };
+        assert_eq!(table(["", "A", "B", "B", ""]), []);
+        let says = |of| table(of).into_iter().map(|problem| (problem.code, problem.says)).collect::<Vec<_>>();
+        // C leads into a circle and is no part of it.
+        let circle = |names: &str| ("repeat-circle".into(), format!("sections repeat each other: {names}"));
+        assert_eq!(says(["B", "A", "B", "E", "D"]), [circle("`A` repeats `B` repeats `A`"), circle("`D` repeats `E` repeats `D`")]);
+        assert_eq!(says(["C", "A", "B", "A", ""]), [circle("`A` repeats `C` repeats `B` repeats `A`")]);
+        assert_eq!(says(["C", "D", "D", "C", ""]), [circle("`C` repeats `D` repeats `C`")]);
     }
 
     #[test]

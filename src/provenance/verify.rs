@@ -162,19 +162,27 @@ pub struct Again<'a> {
     pub progress: Progress<'a>,
 }
 
-/// Checks of inputs, numbers and pages against the campaign.
-pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>) -> Vec<Check> {
+/// Whether as many campaigns are given as the report is of.
+///
+/// # Errors
+/// There are more, or fewer.
+pub fn of_as_many(carried: &Carried, campaigns: &[PathBuf]) -> Result<(), Problem> {
     let members = &carried.results.campaign.members;
-    if again.campaigns.len() != members.len().max(1) {
-        let says = match members.len() {
-            0 => format!("the report is of one campaign, and {} are given", again.campaigns.len()),
-            many => {
-                let names: Vec<&str> = members.iter().map(|member| member.short_name.as_str()).collect();
-                format!("the report is of {many} campaigns, give all of them: {}", names.join("; "))
-            }
-        };
-        return vec![Check::not_possible("input files", says)];
+    if campaigns.len() == members.len().max(1) {
+        return Ok(());
     }
+    let says = match members.len() {
+        0 => format!("the report is of one campaign, not of {}", campaigns.len()),
+        many => {
+            let names: Vec<&str> = members.iter().map(|member| member.short_name.as_str()).collect();
+            format!("the report is of {many} campaigns, not of {}; give all of them: {}", campaigns.len(), names.join("; "))
+        }
+    };
+    Err(Problem::error("number-of-campaigns", says))
+}
+
+/// Checks of inputs, numbers and pages against the campaign, or all of a pool.
+pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>) -> Vec<Check> {
     let opened = open(carried, again.campaigns);
     let mut lost = Vec::new();
     for file in &carried.results.campaign.files {
