@@ -17,6 +17,10 @@ use fishplate::library;
 use fishplate::prepare::Protocol;
 use fishplate::problem::Problems;
 
+/// The allocator of the program: see `src/main.rs`. The memory of Python, NumPy and others is not touched.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 /// Whether the wheel has the typesetter: without it there is no PDF.
 const TYPESETS: bool = cfg!(feature = "typeset");
 

@@ -22,6 +22,8 @@ pub struct Table {
     pub rows: Vec<Vec<Cell>>,
     /// The column with the names of the rows, if they have names.
     key: Option<usize>,
+    /// The first row of each name.
+    named: HashMap<String, usize>,
 }
 
 /// The text of a cell without quotes and surrounding blanks, and its place.
@@ -71,8 +73,9 @@ impl Table {
         if rows.is_empty() && faults.is_empty() {
             faults.push(|| Problem::error("no-rows", "the table has a header and no rows").at(&columns[0].span));
         }
-        let table = Self { source, sha256, columns, rows, key };
+        let mut table = Self { source, sha256, columns, rows, key, named: HashMap::new() };
         table.check_names(&mut faults);
+        table.named = table.by_name();
         let good = faults.is_empty();
         faults.add_to(problems);
         good.then_some(table)
@@ -88,7 +91,17 @@ impl Table {
         self.check_names(&mut faults);
         let good = faults.is_empty();
         faults.add_to(problems);
+        self.named = self.by_name();
         good.then_some(self)
+    }
+
+    /// Each section asks for its row more than once.
+    fn by_name(&self) -> HashMap<String, usize> {
+        let mut named = HashMap::with_capacity(self.rows.len());
+        for (row, name) in self.names().enumerate() {
+            named.entry(name.value.clone()).or_insert(row);
+        }
+        named
     }
 
     fn check_names(&self, faults: &mut Faults<'_>) {
@@ -115,7 +128,7 @@ impl Table {
     }
 
     pub fn row_named(&self, name: &str) -> Option<usize> {
-        self.names().position(|cell| cell.value == name)
+        self.named.get(name).copied()
     }
 
     /// The index of a column by its name without unit.

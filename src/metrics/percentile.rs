@@ -174,25 +174,36 @@ fn near_an_end(values: &[f64], percent: f64, method: Method) -> Option<f64> {
     let from_top = values.len() - below;
     let most = NEAR.min(values.len() / 8);
     if below + 1 + both <= most {
-        let low = smallest(values.iter().copied(), below + 1 + both);
+        let low = smallest(values, |value| value, below + 1 + both);
         Some(blend(low[below], low[below + both], weight))
     } else if from_top <= most {
-        let high = smallest(values.iter().map(|value| -value), from_top);
+        let high = smallest(values, |value| -value, from_top);
         Some(blend(-high[from_top - 1], -high[from_top - 1 - both], weight))
     } else {
         None
     }
 }
 
-/// The `count` smallest values, sorted; there must be at least as many.
-fn smallest(values: impl Iterator<Item = f64>, count: usize) -> Vec<f64> {
+/// Values compared at once with the largest that is kept: most blocks have none below it.
+const BLOCK: usize = 16;
+
+/// The `count` smallest of the values behind `of`, sorted; there must be at least as many, and one at least.
+fn smallest(values: &[f64], of: impl Fn(f64) -> f64, count: usize) -> Vec<f64> {
+    let (first, others) = values.split_at(count);
     let mut kept: Vec<f64> = Vec::with_capacity(count + 1);
-    for value in values {
-        if kept.len() == count && kept.last().is_some_and(|last| value >= *last) {
+    kept.extend(first.iter().map(|value| of(*value)));
+    kept.sort_unstable_by(f64::total_cmp);
+    for block in others.chunks(BLOCK) {
+        let last = kept[count - 1];
+        if !block.iter().fold(false, |any, value| any | (of(*value) < last)) {
             continue;
         }
-        kept.insert(kept.partition_point(|known| *known <= value), value);
-        kept.truncate(count);
+        for value in block.iter().map(|value| of(*value)) {
+            if value < kept[count - 1] {
+                kept.insert(kept.partition_point(|known| *known <= value), value);
+                kept.truncate(count);
+            }
+        }
     }
     kept
 }

@@ -46,7 +46,7 @@ pub fn join(files: Vec<File>, problems: &mut Problems) -> Option<Joined> {
             problems.push(problem);
             continue;
         }
-        if let Err(why) = into_sections(&compiled.plan, head.basis.units(), &file.columns, &mut file.sections) {
+        if let Err(why) = into_sections(&compiled.plan, head.basis.units(), &file.table, &mut file.sections) {
             problems.push(unreadable(&file.shown, &why));
             continue;
         }

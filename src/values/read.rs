@@ -1,17 +1,14 @@
 //! Reads a file of values: first its seal, then which program wrote it, then its contents.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use arrow_array::RecordBatch;
-use arrow_array::cast::AsArray;
-use arrow_array::types::{Float64Type, UInt64Type};
-use arrow_schema::DataType;
 use bytes::Bytes;
+use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use serde::de::DeserializeOwned;
 
-use super::rows::{Cells, Column};
+use super::rows::OWN;
 use super::seal::{self, Broken};
 use super::{FORM, Head, PROGRAM, write};
 use crate::data::record::guarded;
@@ -32,7 +29,8 @@ pub struct File {
     /// Of its contents.
     pub hash: String,
     pub head: Head,
-    pub(super) columns: Vec<Column>,
+    /// The table, batch by batch.
+    pub(super) table: Vec<RecordBatch>,
     pub(super) sections: Vec<Numbered>,
     pub(super) traces: Vec<Kept>,
 }
@@ -69,14 +67,14 @@ pub fn read(shown: &str, bytes: Vec<u8>) -> Result<File, Problem> {
         }
     };
     let contents = guarded(|| Ok(contents(bytes))).unwrap_or_else(|why| Err(Why::Unreadable(why.to_string())));
-    let (head, columns, sections, traces) = contents.map_err(|why| match why {
+    let (head, table, sections, traces) = contents.map_err(|why| match why {
         Why::Version(other) => {
             let says = format!("`{shown}` was written by fishplate {other}, this is {PROGRAM}");
             Problem::error("values-version", says).help("values are judged by the version that computed them: make it again")
         }
         Why::Unreadable(why) => Problem::error("values-unreadable", format!("`{shown}` is not a file of values: {why}")).help(AGAIN),
     })?;
-    Ok(File { shown: shown.to_string(), hash, head, columns, sections, traces })
+    Ok(File { shown: shown.to_string(), hash, head, table, sections, traces })
 }
 
 enum Why {
@@ -90,7 +88,7 @@ impl From<String> for Why {
     }
 }
 
-type Contents = (Head, Vec<Column>, Vec<Numbered>, Vec<Kept>);
+type Contents = (Head, Vec<RecordBatch>, Vec<Numbered>, Vec<Kept>);
 
 fn contents(bytes: Vec<u8>) -> Result<Contents, Why> {
     let builder = ParquetRecordBatchReaderBuilder::try_new(Bytes::from(bytes)).map_err(|error| error.to_string())?;
@@ -115,13 +113,9 @@ fn contents(bytes: Vec<u8>) -> Result<Contents, Why> {
         return Err("the signals of a plot differ in length".to_string().into());
     }
     marks(&seal::unpacked(text(write::MARKS)?)?, &mut sections)?;
-    // A part without any section has no rows, but its columns.
-    let mut columns: Vec<Column> = Vec::new();
-    add(&mut columns, &RecordBatch::new_empty(Arc::clone(builder.schema())))?;
-    for batch in builder.build().map_err(|error| error.to_string())? {
-        add(&mut columns, &batch.map_err(|error| error.to_string())?)?;
-    }
-    Ok((head, columns, sections, traces))
+    let own = ProjectionMask::columns(builder.parquet_schema(), OWN);
+    let table = builder.with_projection(own).build().and_then(|reader| reader.map(|batch| Ok(batch?)).collect());
+    Ok((head, table.map_err(|error| error.to_string())?, sections, traces))
 }
 
 fn json<T: DeserializeOwned>(text: &str) -> Result<T, String> {
@@ -138,30 +132,6 @@ fn marks(bytes: &[u8], sections: &mut [Numbered]) -> Result<(), String> {
         let count = usize::try_from(*count).ok().filter(|count| *count <= rest.len()).ok_or_else(ends)?;
         print.marks = rest[..count].to_vec();
         left = &rest[count..];
-    }
-    Ok(())
-}
-
-fn add(columns: &mut Vec<Column>, batch: &RecordBatch) -> Result<(), String> {
-    let first = columns.is_empty();
-    for (at, field) in batch.schema().fields().iter().enumerate() {
-        let array = batch.column(at);
-        let cells = match field.data_type() {
-            DataType::Utf8 => Cells::Texts(array.as_string::<i32>().iter().map(|text| text.map(str::to_string)).collect()),
-            DataType::Float64 => Cells::Numbers(array.as_primitive::<Float64Type>().iter().collect()),
-            DataType::UInt64 => Cells::Counts(array.as_primitive::<UInt64Type>().iter().map(Option::unwrap_or_default).collect()),
-            other => return Err(format!("its column `{}` is of the type {other}", field.name())),
-        };
-        if first {
-            columns.push(Column { name: field.name().clone(), cells });
-            continue;
-        }
-        match (columns.get_mut(at).map(|column| &mut column.cells), cells) {
-            (Some(Cells::Texts(all)), Cells::Texts(more)) => all.extend(more),
-            (Some(Cells::Numbers(all)), Cells::Numbers(more)) => all.extend(more),
-            (Some(Cells::Counts(all)), Cells::Counts(more)) => all.extend(more),
-            _ => return Err("its columns change".into()),
-        }
     }
     Ok(())
 }

@@ -1,16 +1,12 @@
 //! The bytes of a file of values: a Parquet table, with all else in the metadata of the file.
 
-use std::sync::Arc;
-
-use arrow_array::{ArrayRef, Float64Array, RecordBatch, StringArray, UInt64Array};
-use arrow_schema::{DataType, Field, Schema};
 use parquet::arrow::ArrowWriter;
 use parquet::basic::{Compression, ZstdLevel};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use serde_json::json;
 
-use super::rows::{Cells, Column, columns};
+use super::rows::table;
 use super::{FORM, Values, seal};
 use crate::check::plan::Plan;
 use crate::problem::Problem;
@@ -32,19 +28,7 @@ const LEVEL: i32 = 3;
 /// `write-failed`.
 pub fn write(plan: &Plan, values: &Values) -> Result<Vec<u8>, Problem> {
     let failed = |error: &dyn std::fmt::Display| Problem::error("write-failed", format!("values cannot be written as Parquet: {error}"));
-    let mut fields = Vec::new();
-    let mut arrays: Vec<ArrayRef> = Vec::new();
-    for Column { name, cells } in columns(plan, values) {
-        let (kind, array): (_, ArrayRef) = match cells {
-            Cells::Texts(texts) => (DataType::Utf8, Arc::new(StringArray::from(texts))),
-            Cells::Numbers(numbers) => (DataType::Float64, Arc::new(Float64Array::from(numbers))),
-            Cells::Counts(counts) => (DataType::UInt64, Arc::new(UInt64Array::from(counts))),
-        };
-        fields.push(Field::new(name, kind, true));
-        arrays.push(array);
-    }
-    let schema = Arc::new(Schema::new(fields));
-    let batch = RecordBatch::try_new(Arc::clone(&schema), arrays).map_err(|error| failed(&error))?;
+    let table = table(plan, values).map_err(|error| failed(&error))?;
     let properties = WriterProperties::builder()
         // Without a version, so that a new one of the library does not change the bytes.
         .set_created_by("fishplate".to_string())
@@ -52,8 +36,8 @@ pub fn write(plan: &Plan, values: &Values) -> Result<Vec<u8>, Problem> {
         .set_statistics_enabled(EnabledStatistics::Chunk)
         .build();
     let mut bytes = Vec::new();
-    let mut writer = ArrowWriter::try_new(&mut bytes, schema, Some(properties)).map_err(|error| failed(&error))?;
-    writer.write(&batch).map_err(|error| failed(&error))?;
+    let mut writer = ArrowWriter::try_new(&mut bytes, table.schema(), Some(properties)).map_err(|error| failed(&error))?;
+    writer.write(&table).map_err(|error| failed(&error))?;
     for (key, value) in metadata(values).map_err(|error| failed(&error))? {
         writer.append_key_value_metadata(KeyValue::new(key.to_string(), value));
     }
