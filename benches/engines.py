@@ -93,7 +93,8 @@ def main():
     given = parser.parse_args()
     only, rounds, shards = given.only.split(","), given.rounds, given.shards
     small = [str(HERE.parent / "examples" / "coach")]
-    told = {}
+    # Times with `judge`, and processor times without.
+    told, parts = {}, {}
 
     def tell(name, times):
         told[name] = times
@@ -114,16 +115,22 @@ def main():
                 made.made = dict(enumerate(pool.map(_engines.part, range(shards), [made.work] * shards)))
                 begin = time.process_time()
                 made.result(0)
-                judging[:] = [time.process_time() - begin]
+                judging.append(time.process_time() - begin)
+
+            def told_with_judge(name, work):
+                judging.clear()
+                times = timed(work, rounds, given.repeat)
+                tell(name, times)
+                judge = min(judging[1:]) * given.repeat
+                parts[name] = times[0] - judge
+                print(f"    of it `judge`, by the caller: {judge:.1f} s of processor time", flush=True)
 
             judging = []
-            tell("processes", timed(processes, rounds, given.repeat))
-            print(f"    of it `judge`, by the caller: {judging[0]:.1f} s of processor time", flush=True)
+            told_with_judge("processes", processes)
             if "peer" in only:
                 with tempfile.TemporaryDirectory() as scratch:
                     bare = bare_protocol(given.campaigns[0], scratch)
-                    tell("the same without plausibility rules", timed(lambda first: processes(first, bare), rounds, given.repeat))
-                    print(f"    of it `judge`, by the caller: {judging[0]:.1f} s of processor time", flush=True)
+                    told_with_judge("the same without plausibility rules", lambda first: processes(first, bare))
     if {"dask", "peer"} & set(only):
         import dask
         import distributed
@@ -146,6 +153,8 @@ def main():
             os.environ["PYTHONPATH"] = os.pathsep.join([str(HERE / "peer"), os.environ.get("PYTHONPATH", "")])
             with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
                 tell("peer under dask", timed(lambda first: [peer.run(client, folder) for folder in given.campaigns], rounds, given.repeat))
+            for name, spent in parts.items():
+                print(f"    {told['peer under dask'][0] / spent:.1f} times the processor time of {name}, `judge` left out", flush=True)
     if "spark" in only:
         from pyspark.sql import SparkSession
 
