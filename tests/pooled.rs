@@ -215,6 +215,8 @@ fn a_report_of_a_pool_is_verified_and_traced() {
     assert!(one.code == 2 && one.stderr.contains("the report is of 2 campaigns, not of 1; give all of them: A; B"), "{}", one.stderr);
     let thrice = fishplate(&["verify", &report, &first, &second, &first]);
     assert!(thrice.code == 2 && thrice.stderr.contains("the report is of 2 campaigns, not of 3"), "{}", thrice.stderr);
+    let one = fishplate(&["trace", &report, "Q_mean", "B/S02", "Q_1R", "--campaign", &first]);
+    assert!(one.code == 2 && one.stderr.contains("the report is of 2 campaigns, not of 1"), "{}", one.stderr);
     let trace = |of: &[&str]| fishplate(&[&["trace", &report, "Q_mean", "B/S02", "Q_1R"], of].concat());
     let traced: Ran = trace(&["--campaign", &first, "--campaign", &second]);
     assert_eq!(traced.code, 0, "{}{}", traced.stdout, traced.stderr);

@@ -194,6 +194,11 @@ impl Trace {
             Ok(opened) => opened,
             Err(problems) => return wrong(problems),
         };
+        if !self.campaigns.is_empty()
+            && let Err(problem) = of_as_many(&carried, &self.campaigns)
+        {
+            return wrong(Problems(vec![problem]));
+        }
         let mut problems = Problems::default();
         let compiled = match carried.sources(given.as_ref()) {
             Ok(sources) => carried.compiled(&sources, &mut problems),

@@ -7,6 +7,8 @@ use crate::problem::{Problem, Problems};
 pub const SITE: &str = "site";
 pub const REPEAT_OF: &str = "repeat of";
 pub const TRACK: &str = "track";
+/// Largest number of sections of a circle that are named.
+const NAMED: usize = 5;
 const START: &str = "start";
 const END: &str = "end";
 /// Two sections of one track are one site if they share at least this part of the shorter one. Successive sections may share a few metres;
@@ -80,12 +82,17 @@ fn circles(table: &Table, problems: &mut Problems) {
         }
         let mut circle = vec![at];
         circle.extend(std::iter::successors(originals[at], |next| originals[*next]).take_while(|next| *next != at));
-        let first = circle.iter().position(|row| Some(row) == circle.iter().min()).unwrap_or(0);
+        let first = circle.iter().enumerate().min_by_key(|(_, row)| **row).map_or(0, |(first, _)| first);
         circle.rotate_left(first);
-        circle.push(circle[0]);
-        let names = circle.iter().map(|row| format!("`{}`", names[*row].value)).collect::<Vec<_>>().join(" repeats ");
-        let problem = Problem::error("repeat-circle", format!("sections repeat each other: {names}"));
-        let problem = repeat.cell(circle[0]).map_or(problem.clone(), |cell| problem.at(&cell.span));
+        let mut told: Vec<String> = circle.iter().take(NAMED).map(|row| format!("`{}`", names[*row].value)).collect();
+        if circle.len() > NAMED {
+            told.push(format!("... ({} sections)", circle.len()));
+        }
+        told.push(format!("`{}`", names[circle[0]].value));
+        let mut problem = Problem::error("repeat-circle", format!("sections repeat each other: {}", told.join(" repeats ")));
+        if let Some(cell) = repeat.cell(circle[0]) {
+            problem = problem.at(&cell.span);
+        }
         problems.push(problem.help(format!("leave `{REPEAT_OF}` empty for the section that was measured first")));
     }
 }
@@ -181,10 +188,21 @@ mod tests {
         assert_eq!(table(["", "A", "B", "B", ""]), []);
         let says = |of| table(of).into_iter().map(|problem| (problem.code, problem.says)).collect::<Vec<_>>();
         // C leads into a circle and is no part of it.
-        let circle = |names: &str| ("repeat-circle".into(), format!("sections repeat each other: {names}"));
+        let circle = |names: &str| ("repeat-circle", format!("sections repeat each other: {names}"));
         assert_eq!(says(["B", "A", "B", "E", "D"]), [circle("`A` repeats `B` repeats `A`"), circle("`D` repeats `E` repeats `D`")]);
         assert_eq!(says(["C", "A", "B", "A", ""]), [circle("`A` repeats `C` repeats `B` repeats `A`")]);
         assert_eq!(says(["C", "D", "D", "C", ""]), [circle("`C` repeats `D` repeats `C`")]);
+        // A leads into it at D, and B stands first in the table.
+        assert_eq!(says(["D", "D", "", "B", ""]), [circle("`B` repeats `D` repeats `B`")]);
+        let all = (0..9).map(|row| format!("S{row},S{}\n", (row + 1) % 9)).collect::<String>();
+        let found = of(&format!("section,repeat of\n{all}")).1.0;
+        let says = found.first().map(|problem| problem.says.as_str());
+        assert_eq!(
+            says,
+            Some(
+                "sections repeat each other: `S0` repeats `S1` repeats `S2` repeats `S3` repeats `S4` repeats ... (9 sections) repeats `S0`"
+            )
+        );
     }
 
     #[test]

@@ -95,7 +95,7 @@ impl Table {
         good.then_some(self)
     }
 
-    /// Each section asks for its row more than once.
+    /// The first row of each name. A map, because each section asks for its row more than once.
     fn by_name(&self) -> HashMap<String, usize> {
         let mut named = HashMap::with_capacity(self.rows.len());
         for (row, name) in self.names().enumerate() {

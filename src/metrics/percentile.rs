@@ -3,6 +3,7 @@
 //! Source: Hyndman and Fan, "Sample quantiles in statistical packages", The American Statistician 50 (1996) 361-365. Names,
 //! edge cases and the last digit follow `numpy.percentile`.
 
+use std::cmp::Ordering;
 use std::fmt;
 
 /// Rule for the value between two order statistics.
@@ -192,7 +193,8 @@ fn smallest(values: &[f64], of: impl Fn(f64) -> f64, count: usize) -> Vec<f64> {
     let (first, others) = values.split_at(count);
     let mut kept: Vec<f64> = Vec::with_capacity(count + 1);
     kept.extend(first.iter().map(|value| of(*value)));
-    kept.sort_unstable_by(f64::total_cmp);
+    // Zeros of both signs are equal, as in the comparisons below.
+    kept.sort_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
     for block in others.chunks(BLOCK) {
         let last = kept[count - 1];
         if !block.iter().fold(false, |any, value| any | (of(*value) < last)) {

@@ -181,7 +181,7 @@ pub fn of_as_many(carried: &Carried, campaigns: &[PathBuf]) -> Result<(), Proble
     Err(Problem::error("number-of-campaigns", says))
 }
 
-/// Checks of inputs, numbers and pages against the campaign, or all of a pool.
+/// Checks of inputs, numbers and pages against the campaign, or all of a pool: as many as [`of_as_many`] wants.
 pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>) -> Vec<Check> {
     let opened = open(carried, again.campaigns);
     let mut lost = Vec::new();

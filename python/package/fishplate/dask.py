@@ -7,14 +7,18 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Callable
+from functools import partial
 from importlib import import_module
 from os import PathLike
 from typing import Any
 
 from . import Result, Task, _engines, _launch, _records, _runs
 
-#: Bytes that workers keep for their next record before they give back memory.
+#: Seconds without any worker after which none is expected to come back. One that is started again takes some seconds.
+GONE = 60.0
+#: Bytes that the C libraries of a worker, such as that of zstd, keep for their next record before they give back memory.
 TRIM = 128 << 20
 
 
@@ -57,15 +61,28 @@ def certify(
     try:
         for future in distributed.as_completed(list(futures)):
             job.attempt(futures[future], future.result)
-        # When a worker is lost several times, Dask gives up all tasks that it had been given, not only the one that ended it.
-        # One after another, each part depends on itself alone.
-        for number in sorted(number for number, error in job.failed.items() if isinstance(error, distributed.KilledWorker)):
+        # A task that ends its workers takes with it those that they had been given besides: Dask gives up all of them. One after the
+        # other, each part depends on itself alone. A single one has ended its workers by itself.
+        killed = sorted(number for number, error in job.failed.items() if isinstance(error, distributed.KilledWorker))
+        for number in killed if len(killed) > 1 else []:
             alone = submit(number)
             futures[alone] = number
-            job.attempt(number, alone.result)
+            job.attempt(number, partial(_result, client, alone))
         return job.result(plots)
     finally:
         client.cancel(list(futures))
+
+
+def _result(client: Any, future: Any) -> Any:
+    """The result of a task, unless no worker is left that could make it."""
+    last = time.monotonic()
+    while not future.done():
+        time.sleep(0.1)
+        if client.scheduler_info(n_workers=-1)["workers"]:
+            last = time.monotonic()
+        elif time.monotonic() - last > GONE:
+            raise RuntimeError("no worker is left")
+    return future.result()
 
 
 def _cut(client: Any, frame: Any, path: str, places: dict[str, list[int]]) -> list[Any]:
@@ -100,7 +117,7 @@ def _cluster(address: str | None, work: Callable[..., Result]) -> Result:
         with distributed.Client(address) as client:
             return work(certify, client)
     options = dict(n_workers=os.cpu_count(), threads_per_worker=1, dashboard_address=None)
-    # Dask lets its workers give back memory after each 64 kB. Records are larger: the system then clears their memory anew each time.
+    # Dask lets C libraries give back memory after each 64 kB. The system then clears it anew for the next record.
     import_module("dask").config.set({"distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": TRIM})
     with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
         return work(certify, client)
