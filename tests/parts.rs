@@ -88,6 +88,30 @@ fn found_sections_in_parts() {
     same_bytes(&["examples/run"], &[]);
 }
 
+/// Machines may see a campaign under different paths.
+#[test]
+fn parts_of_a_campaign_in_two_places() {
+    let (campaign, folder) = (copy(Path::new("examples/coach")), folder());
+    let places = ["examples/coach".to_string(), text(campaign.path()), "examples/../examples/coach".to_string()];
+    let mut values = Vec::new();
+    for (number, place) in places.iter().enumerate() {
+        let out = text(&folder.path().join(format!("of-{number}.parquet")));
+        let ran = fishplate(&["reduce", place, "--shard", &format!("{number}/3"), "--out", &out]);
+        assert_eq!(ran.code, 0, "{}", ran.stderr);
+        values.push(out);
+    }
+    // One of the parts once more, from elsewhere.
+    let again = text(&folder.path().join("again.parquet"));
+    assert_eq!(fishplate(&["reduce", &places[1], "--shard", "0/3", "--out", &again]).code, 0);
+    values.push(again);
+    let whole = folder.path().join("whole");
+    let certified = fishplate(&["certify", "examples/coach", "--only", "results", "--out", &text(&whole)]);
+    let (ran, out) = judged(folder.path(), &values, &["--only", "results"]);
+    assert_eq!(ran.code, certified.code, "{}", ran.stderr);
+    let results = |of: &Path| fs::read(of.join("results.json")).expect("results");
+    assert!(results(&out) == results(&whole));
+}
+
 #[test]
 fn an_assessment_in_parts() {
     same_bytes(&["examples/coach"], &["--protocol", "en14363-on-track-assessment", "--set", "sections_per_zone=2"]);

@@ -212,7 +212,7 @@ fn a_report_of_a_pool_is_verified_and_traced() {
     assert_eq!(verified.code, 0, "{}", verified.stdout);
     assert!(verified.stdout.contains("byte for byte"), "{}", verified.stdout);
     let one = fishplate(&["verify", &report, &first]);
-    assert!(one.code == 2 && one.stderr.contains("the report is of 2 campaigns, not of 1; give all of them: A; B"), "{}", one.stderr);
+    assert!(one.code == 2 && one.stderr.contains("the report is of 2 campaigns, not of 1; give these: A; B"), "{}", one.stderr);
     let thrice = fishplate(&["verify", &report, &first, &second, &first]);
     assert!(thrice.code == 2 && thrice.stderr.contains("the report is of 2 campaigns, not of 3"), "{}", thrice.stderr);
     let one = fishplate(&["trace", &report, "Q_mean", "B/S02", "Q_1R", "--campaign", &first]);

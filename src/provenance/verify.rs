@@ -175,7 +175,7 @@ pub fn of_as_many(carried: &Carried, campaigns: &[PathBuf]) -> Result<(), Proble
         0 => format!("the report is of one campaign, not of {}", campaigns.len()),
         many => {
             let names: Vec<&str> = members.iter().map(|member| member.short_name.as_str()).collect();
-            format!("the report is of {many} campaigns, not of {}; give all of them: {}", campaigns.len(), names.join("; "))
+            format!("the report is of {many} campaigns, not of {}; give these: {}", campaigns.len(), names.join("; "))
         }
     };
     Err(Problem::error("number-of-campaigns", says))

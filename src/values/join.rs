@@ -1,5 +1,7 @@
 //! Files of values of one campaign together: each section once, whatever the order and number of the files.
 
+use serde_json::Value;
+
 use super::rows::into_sections;
 use super::{File, Head};
 use crate::certify::{Compiled, certification};
@@ -102,9 +104,8 @@ fn unreadable(shown: &str, why: &str) -> Problem {
 }
 
 fn same(a: &SectionValues, b: &SectionValues) -> bool {
-    let rest = |of: &SectionValues| serde_json::to_string(of).ok();
     let marks = |of: &SectionValues| of.prints.iter().map(|print| print.marks.clone()).collect::<Vec<_>>();
-    a.rows == b.rows && rest(a) == rest(b) && marks(a) == marks(b)
+    a.rows == b.rows && alike(a, b) && marks(a) == marks(b)
 }
 
 /// Why a file is not of the same campaign and protocol as the first one.
@@ -130,7 +131,7 @@ fn differs((head, shown): (&Head, &str), file: &File) -> Option<Problem> {
         format!("`{shown}` is of the campaign {}, `{other}` of {}", names(head), names(own))
     } else if let Some(path) = changed_file(head, own) {
         format!("the campaign was changed between `{shown}` and `{other}`: {path} differs")
-    } else if json(&head.basis) != json(&own.basis) || json(&head.about) != json(&own.about) || json(&head.found) != json(&own.found) {
+    } else if !(alike(&head.basis, &own.basis) && alike(&head.about, &own.about) && alike(&head.found, &own.found)) {
         format!("the records of the campaign were changed between `{shown}` and `{other}`: their sections or columns differ")
     } else {
         return None;
@@ -139,8 +140,31 @@ fn differs((head, shown): (&Head, &str), file: &File) -> Option<Problem> {
     Some(Problem::error("values-differ", says).help(help))
 }
 
-fn json<T: serde::Serialize>(part: &T) -> Option<String> {
-    serde_json::to_string(part).ok()
+/// Whether both are the same, wherever the campaign was: machines may see it under different paths.
+fn alike<T: serde::Serialize>(a: &T, b: &T) -> bool {
+    let json = |of: &T| serde_json::to_string(of).ok();
+    let elsewhere = |of: &T| serde_json::to_value(of).ok().map(without_folders);
+    json(a) == json(b) || elsewhere(a) == elsewhere(b)
+}
+
+/// Without the folders in the names of the sources of places, which are objects as [`crate::source::Span`] is stored.
+fn without_folders(mut of: Value) -> Value {
+    match &mut of {
+        Value::Array(all) => all.iter_mut().for_each(|each| *each = without_folders(each.take())),
+        Value::Object(all) => {
+            let is_place = all.contains_key("first_line");
+            for (key, each) in all.iter_mut() {
+                *each = match each {
+                    Value::String(name) if is_place && key == "name" => {
+                        Value::String(name.rsplit(['/', '\\']).next().unwrap_or_default().to_string())
+                    }
+                    _ => without_folders(each.take()),
+                };
+            }
+        }
+        _ => {}
+    }
+    of
 }
 
 fn changed_file(head: &Head, own: &Head) -> Option<String> {

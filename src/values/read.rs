@@ -68,8 +68,8 @@ pub fn read(shown: &str, bytes: Vec<u8>) -> Result<File, Problem> {
     };
     let contents = guarded(|| Ok(contents(bytes))).unwrap_or_else(|why| Err(Why::Unreadable(why.to_string())));
     let (head, table, sections, traces) = contents.map_err(|why| match why {
-        Why::Version(other) => {
-            let says = format!("`{shown}` was written by fishplate {other}, this is {PROGRAM}");
+        Why::Version(other, form) => {
+            let says = format!("`{shown}` was written by fishplate {other}, this is {PROGRAM}{form}");
             Problem::error("values-version", says).help("values are judged by the version that computed them: make it again")
         }
         Why::Unreadable(why) => Problem::error("values-unreadable", format!("`{shown}` is not a file of values: {why}")).help(AGAIN),
@@ -78,7 +78,8 @@ pub fn read(shown: &str, bytes: Vec<u8>) -> Result<File, Problem> {
 }
 
 enum Why {
-    Version(String),
+    /// Of the file, and what is added to that of this program.
+    Version(String, String),
     Unreadable(String),
 }
 
@@ -100,7 +101,8 @@ fn contents(bytes: Vec<u8>) -> Result<Contents, Why> {
     let about: serde_json::Value = serde_json::from_str(text(write::ABOUT)?).map_err(|error| error.to_string())?;
     let program = about["program"].as_str().unwrap_or("of an unknown version");
     if program != PROGRAM || about["form"] != FORM {
-        return Err(Why::Version(program.to_string()));
+        let form = |form: &serde_json::Value| if program == PROGRAM { format!(" with values of form {form}") } else { String::new() };
+        return Err(Why::Version(format!("{program}{}", form(&about["form"])), form(&FORM.into())));
     }
     let head: Head = json(text(write::HEAD)?)?;
     let mut sections: Vec<Numbered> = json(text(write::SECTIONS)?)?;
