@@ -211,6 +211,25 @@ fn settings_of_the_command_line_are_checked() {
     assert!(said("nothing").contains("--set name=value"));
     let count = said("sections_per_zone=2.5");
     assert!(count.contains("must be a whole number, this is sections_per_zone = 2.5") && count.contains("set here"), "{count}");
+    let order = said("lowpass_order=2.5");
+    assert!(order.contains("the order must be a whole number from 1 to 20, this is 2.5") && order.contains("set here"), "{order}");
+    // What follows from a value outside its range is not told.
+    let outside = said("sections_per_zone=-1");
+    assert!(outside.contains("`-1` is outside the range") && !outside.contains("not-a-count"), "{outside}");
+}
+
+#[test]
+fn a_file_is_not_written_onto_a_folder() {
+    let out = folder();
+    let path = out.path().display().to_string();
+    let refused = |arguments: &[&str]| {
+        let (code, _, said) = run(arguments);
+        assert!(code == 2 && said.contains("error[not-a-file]") && said.contains("is a folder"), "{arguments:?}: {said}");
+    };
+    refused(&["reduce", "examples/coach", "--out", &path]);
+    refused(&["sections", "examples/run", "--out", &path]);
+    refused(&["import", "--draft", "examples/coach/simulation/S01.csv", "--out", &path]);
+    assert_eq!(fs::read_dir(out.path()).expect("the folder").count(), 0);
 }
 
 /// A link stays and its target is written; what is no file, such as a pipe, gets the bytes and stays too.

@@ -170,7 +170,10 @@ pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Prob
             ));
         }
     }
-    problems.0[before..].iter_mut().for_each(|problem| name_after_number(problem, &names));
+    for problem in &mut problems.0[before..] {
+        name_after_number(problem, &names);
+        set_outside(problem, overrides);
+    }
     in_reading_order(problems, before);
     if problems.any_error() { None } else { plan }
 }
@@ -187,6 +190,17 @@ fn name_after_number(problem: &mut Problem, names: &Names) {
     if is_name && problem.near.take().is_some() {
         problem.help = Some(format!("a product is written with its sign: `... * {word}`"));
     }
+}
+
+/// Problems of a value; others do not depend on what a parameter is set to.
+const OF_VALUES: [&str; 2] = ["not-a-count", "out-of-range"];
+
+/// Where the text of a wrong value names a parameter set from outside the protocol, the place where it was set.
+fn set_outside(problem: &mut Problem, overrides: &Overrides) {
+    let Some(at) = problem.at.as_ref().filter(|_| OF_VALUES.contains(&problem.code)) else { return };
+    let named: BTreeSet<&str> = at.text().split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+    let given = overrides.iter().filter(|(name, given)| named.contains(name.as_str()) && given.text.span != *at);
+    problem.also.extend(given.map(|(_, given)| (given.text.span.clone(), "set here".to_owned())));
 }
 
 /// Sorts the problems from the given index on by their places, text by text.

@@ -109,11 +109,12 @@ impl Checker<'_> {
     fn number(&mut self, name: &str, block: &Block, default: &Text, given: Option<&Text>) -> Option<(Scalar, Type)> {
         let found = self.constant(default);
         let set = given.map(|given| (given, self.constant(given)));
-        let (value, dimension) = found?;
+        let (default_value, dimension) = found?;
         if let Some(range) = block.field("range") {
-            self.within_range(name, value, dimension, default, range);
+            self.within_range(name, default_value, dimension, default, range);
         }
-        let Some((text, set)) = set else { return Some((Scalar::Number(value), Type::Number(dimension))) };
+        let as_default = Some((Scalar::Number(default_value), Type::Number(dimension)));
+        let Some((text, set)) = set else { return as_default };
         let (value, found) = set?;
         if found != dimension {
             let says = format!("parameter `{name}` is {}, the given value is {}", dimension.in_words(), found.in_words());
@@ -124,15 +125,18 @@ impl Checker<'_> {
             });
             return None;
         }
-        if let Some(range) = block.field("range") {
-            self.within_range(name, value, dimension, text, range);
+        match block.field("range") {
+            // The rules are checked on with the default: what would follow from a wrong value is not told.
+            Some(range) if !self.within_range(name, value, dimension, text, range) => as_default,
+            _ => Some((Scalar::Number(value), Type::Number(dimension))),
         }
-        Some((Scalar::Number(value), Type::Number(dimension)))
     }
 
-    pub(super) fn within_range(&mut self, name: &str, value: f64, dimension: Dimension, source: &Text, range: &Field) {
-        let Some(ends) = self.range_ends(name, dimension, range, Some(source)) else { return };
-        if !(ends[0]..=ends[1]).contains(&value) {
+    /// Whether a value is inside a range; a problem if it is not, or if the range itself is wrong.
+    pub(super) fn within_range(&mut self, name: &str, value: f64, dimension: Dimension, source: &Text, range: &Field) -> bool {
+        let Some(ends) = self.range_ends(name, dimension, range, Some(source)) else { return false };
+        let inside = (ends[0]..=ends[1]).contains(&value);
+        if !inside {
             self.problems.push(
                 Problem::error("out-of-range", format!("`{}` is outside the range of `{name}`", normalised(&source.text)))
                     .at(&source.span)
@@ -140,6 +144,7 @@ impl Checker<'_> {
                     .help(format!("allowed: {}", normalised(&range.value.text))),
             );
         }
+        inside
     }
 
     /// Both ends of a range in SI. They must have the dimension of the value that the range is of.

@@ -1,6 +1,5 @@
 //! Checks quantities: positions, filter, value, difference or metric, limits.
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::Checker;
@@ -428,17 +427,12 @@ impl Checker<'_> {
         Some(value as usize)
     }
 
-    /// `words` are no whole number: their value is told, and where those of the parameters named in them were set that are not from the
-    /// protocol.
+    /// `words` are no whole number: their value is told.
     pub(super) fn no_count(&mut self, key: &str, words: &str, (value, dimension): (f64, Dimension), at: &Span) {
         let evident = dimension != Dimension::ONE || words.parse() == Ok(value);
         let value = if evident { String::new() } else { format!(" = {value}") };
-        let mut problem = Problem::error("not-a-count", format!("`{key}` must be a whole number, this is {words}{value}")).at(at);
-        let named: BTreeSet<&str> = words.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
-        for given in named.into_iter().filter_map(|word| self.overrides.get(word)) {
-            problem = problem.also(&given.text.span, "set here");
-        }
-        self.problems.push(problem);
+        let says = format!("`{key}` must be a whole number, this is {words}{value}");
+        self.problems.push(Problem::error("not-a-count", says).at(at));
     }
 }
 

@@ -8,7 +8,7 @@ use clap::Args;
 use super::convert_records::Records;
 use super::inputs::{progress_bar, start_jobs};
 use super::output::{Console, Exit};
-use super::places::same;
+use super::places::{check_file, same};
 use super::protocols::load;
 use crate::certify::{Compiled, certify, compile};
 use crate::check::Overrides;
@@ -107,13 +107,10 @@ impl Import {
         let convention = mapping::find_convention(&named, Path::new(""), &mut problems);
         console.problems(&problems);
         let (Some(compiled), Some(convention)) = (compiled, convention) else { return Exit::Wrong };
-        if let Some(out) = &self.out
-            && let Some(input) = self.inputs.iter().find(|input| same(input, out))
-        {
-            let problem = Problem::error("output-is-input", format!("`{}` is an input and cannot be overwritten", input.display()));
+        let paths: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
+        if let Some(Err(problem)) = self.out.as_ref().map(|out| check_file(out, &paths)) {
             return console.fail(problem, Exit::Wrong);
         }
-        let paths: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
         let mut groups = match groups(&paths) {
             Ok(groups) => groups,
             Err(problems) => {

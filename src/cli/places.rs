@@ -49,11 +49,26 @@ pub fn check_folder(out: &Path, names: &[&str], campaign: &Campaign) -> Result<(
     Ok(())
 }
 
-/// Refuses an output file that is one of the inputs.
+/// Refuses an output file that is one of the inputs, or a folder.
+///
+/// # Errors
+/// `output-is-input`, `not-a-file`, before the computation.
+pub fn check_file(out: &Path, inputs: &[&Path]) -> Result<(), Problem> {
+    check_not_input(out, inputs)?;
+    match disk::is_folder(out) {
+        Ok(true) => {
+            let says = format!("`{}` is a folder, and the output is a file", out.display());
+            Err(Problem::error("not-a-file", says).help("name a file in it"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Refuses an output that is one of the inputs.
 ///
 /// # Errors
 /// `output-is-input`.
-pub fn check_file(out: &Path, inputs: &[&Path]) -> Result<(), Problem> {
+pub fn check_not_input(out: &Path, inputs: &[&Path]) -> Result<(), Problem> {
     match inputs.iter().find(|input| same(out, input)) {
         Some(_) => Err(Problem::error("output-is-input", format!("`{}` is an input and cannot be overwritten", out.display()))),
         None => Ok(()),

@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::inputs::{Pool, prepare_all, progress_bar, start_jobs};
 use super::output::{Console, Exit};
-use super::places::{check_file, check_folder, check_out};
+use super::places::{check_file, check_folder, check_not_input, check_out};
 use super::report::Report;
 use crate::data::Campaigns;
 use crate::disk;
@@ -50,7 +50,7 @@ impl Reduce {
         let name = self.out.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         let folder = self.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         for campaign in prepared.iter().flat_map(|pool| &pool.campaigns) {
-            if let Err(problem) = check_folder(folder, &[name], campaign) {
+            if let Err(problem) = check_file(&self.out, &[]).and_then(|()| check_folder(folder, &[name], campaign)) {
                 problems.push(problem);
             }
         }
@@ -114,7 +114,7 @@ impl Judge {
         let mut problems = Problems::default();
         let inputs: Vec<&Path> = self.values.iter().map(PathBuf::as_path).collect();
         for name in super::places::REPORT {
-            if let Err(problem) = check_file(&self.report.out.join(name), &inputs) {
+            if let Err(problem) = check_not_input(&self.report.out.join(name), &inputs) {
                 problems.push(problem);
             }
         }

@@ -1,5 +1,7 @@
 //! Sections of the same site: the same stretch of track measured more than once. Sites are independent, sections of one site are not.
 
+use std::collections::HashMap;
+
 use super::table::{Cell, Table};
 use crate::problem::{Problem, Problems};
 
@@ -25,10 +27,10 @@ pub fn sites(table: &Table, problems: &mut Problems) -> Vec<usize> {
     let rows = table.rows.len();
     let site = Column::of(table, SITE);
     let mut sets = Sets((0..rows).collect());
-    for later in 0..rows {
-        if let Some(first) = site.text(later).and_then(|name| (0..later).find(|row| site.text(*row) == Some(name))) {
-            sets.join(first, later);
-        }
+    let mut firsts: HashMap<&str, usize> = HashMap::new();
+    for (row, name) in (0..rows).filter_map(|row| Some((row, site.text(row)?))) {
+        let first = *firsts.entry(name).or_insert(row);
+        sets.join(first, row);
     }
     let apart = |a: usize, b: usize| matches!((site.text(a), site.text(b)), (Some(a), Some(b)) if a != b);
     let repeat = Column::of(table, REPEAT_OF);

@@ -33,7 +33,7 @@ impl Table {
     /// Reads a table. With a key, the column of that name, or else the first column, has the names of the rows.
     ///
     /// Problems: those of [`read_text`]; `semicolon-separated`, `tab-separated`, `stray-quote`, `duplicate-column`; per row `blank-line`,
-    /// `ragged-row`, `decimal-comma`, `name-missing`, `duplicate-name`; `no-rows`.
+    /// `header-repeated`, `ragged-row`, `decimal-comma`, `name-missing`, `duplicate-name`; `no-rows`.
     pub fn read(path: &Path, shown: &str, key: Option<&str>, problems: &mut Problems) -> Option<Self> {
         match read_text(path, shown) {
             Ok((source, sha256)) => Self::parse(source, sha256, key, problems),
@@ -62,14 +62,15 @@ impl Table {
         let mut faults = Faults::new(&name);
         let mut lines = lines(&source);
         let mut found = Vec::new();
-        let columns = lines.next().and_then(|line| cells::headings(&line, &mut found));
+        let header = lines.next();
+        let columns = header.as_ref().and_then(|line| cells::headings(line, &mut found));
         found.into_iter().for_each(|problem| faults.push(|| problem));
-        let Some(columns) = columns else {
+        let (Some(header), Some(columns)) = (header, columns) else {
             faults.add_to(problems);
             return None;
         };
         let key = key.map(|key| columns.iter().position(|column| column.name == key).unwrap_or(0));
-        let rows: Vec<Vec<Cell>> = lines.filter_map(|line| row(&line, &columns, &mut faults)).collect();
+        let rows: Vec<Vec<Cell>> = lines.filter_map(|line| row(&line, (&header, &columns), &mut faults)).collect();
         if rows.is_empty() && faults.is_empty() {
             faults.push(|| Problem::error("no-rows", "the table has a header and no rows").at(&columns[0].span));
         }
@@ -185,9 +186,17 @@ fn lines(source: &Arc<Source>) -> impl Iterator<Item = Span> {
     })
 }
 
-fn row(line: &Span, columns: &[Heading], faults: &mut Faults<'_>) -> Option<Vec<Cell>> {
+fn row(line: &Span, (header, columns): (&Span, &[Heading]), faults: &mut Faults<'_>) -> Option<Vec<Cell>> {
     if line.text().trim().is_empty() {
         faults.push(|| Problem::error("blank-line", "blank line between the rows").at(line));
+        return None;
+    }
+    // Two tables that were put together.
+    if columns.len() > 1 && line.text().trim_end() == header.text().trim_end() {
+        faults.push(|| {
+            let problem = Problem::error("header-repeated", "the header stands between the rows again").at(line);
+            problem.also(header, "the header").help("remove this line")
+        });
         return None;
     }
     match cells::split(line.text()) {
@@ -227,6 +236,15 @@ mod tests {
         assert_eq!(table.numbers(4, None).map_err(|problems| problems[0].code), Err("unit-missing"));
         assert_eq!(table.need_column("strat").map_err(|problem| problem.help), Err(Some("did you mean `start`?".into())));
         assert_eq!(table.row_named("S02"), Some(1));
+    }
+
+    #[test]
+    fn a_header_among_the_rows() {
+        let (table, problems) = parse("section,zone [-]\r\nS01,1\r\nsection,zone [-]\r\nS02,2\r\n");
+        let places: Vec<_> = problems.0.iter().map(|problem| (problem.code, problem.at.as_ref().map(ToString::to_string))).collect();
+        assert_eq!((table.is_none(), places), (true, vec![("header-repeated", Some("t:3:1".to_string()))]));
+        // A section may be called as the column is.
+        assert!(parse("section,zone [-]\nsection,1\n").0.is_some() && parse("section\nsection\n").0.is_some());
     }
 
     #[test]

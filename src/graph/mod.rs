@@ -13,6 +13,7 @@ pub use build::from_plan;
 pub use draw::svg;
 pub use print::{dot, json, text};
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use crate::catalog::{Function, Metric, Reducer};
@@ -33,6 +34,24 @@ pub struct Graph {
     pub plausibility: Vec<PlausibilityNodes>,
     /// One for each verdict of the plan, the overall verdict first.
     pub verdicts: Vec<NodeId>,
+}
+
+impl Graph {
+    /// The columns that nodes are computed from, whichever of their cases apply, and whether each is of the track record. One that several
+    /// nodes read is there several times.
+    pub fn columns_of(&self, nodes: impl IntoIterator<Item = NodeId>) -> Vec<(String, bool)> {
+        let (mut seen, mut open) = (BTreeSet::new(), nodes.into_iter().collect::<Vec<_>>());
+        while let Some(id) = open.pop() {
+            if seen.insert(id) {
+                open.extend(&self.nodes[id].inputs);
+            }
+        }
+        let of = |id: NodeId| match &self.nodes[id].operation {
+            Operation::Read { column } => Some((column.clone(), self.nodes[id].track)),
+            _ => None,
+        };
+        seen.into_iter().filter_map(of).collect()
+    }
 }
 
 /// Values of signals by which sections are found; empty where they are not.

@@ -2,7 +2,10 @@
 //!
 //! Götz and Polach (section 4.1) choose nine sections per zone so that the highest standard deviation of a validation quantity over all
 //! sections remains almost the same. They do not describe the method. Here members are removed one at a time, always the one whose
-//! removal changes the scatter least; then members are exchanged as long as the result improves.
+//! removal changes the scatter least; then members are exchanged as long as the result improves. While very many are too many, a small part
+//! of them is removed at a time.
+
+use rayon::prelude::*;
 
 /// Weight of the scatter of single measures against the highest.
 const OTHERS: f64 = 0.1;
@@ -11,8 +14,9 @@ const MOST_EXCHANGES: usize = 200;
 /// An exchange that improves less is none, but rounding.
 const IMPROVES: f64 = 1e-12;
 
-/// Costs that follow from sums are this close to those that are summed anew: rounding of a variance from sums of squares.
-const NEAR: f64 = 1e-7;
+/// Of the members that are still too many, one in so many is removed at a time, at least one. The work then grows with the number of
+/// members, and not with its square. Fewer than twice this number are removed one by one.
+const PART: usize = 100;
 
 /// A measure of scatter: a standard deviation or root mean square, which follows from sums of each member.
 #[derive(Clone, Debug)]
@@ -70,45 +74,26 @@ impl Cost<'_> {
         self.of(self.measures.iter().map(|measure| measure.over(&members)))
     }
 
-    /// The first of the changes with the least cost, and this cost. A change takes a member out and may put another in. Its cost follows
-    /// from sums over all members; only the changes that come near the least cost are summed anew.
-    fn best(&self, kept: &[Vec<usize>], changes: &[Change]) -> Option<(f64, Vec<Vec<usize>>)> {
+    /// The cost after each of the changes, from sums over all members.
+    fn after(&self, kept: &[Vec<usize>], changes: &[Change]) -> Vec<f64> {
         let members = kept.concat();
         let totals: Vec<[f64; 3]> = self.measures.iter().map(|measure| measure.total(&members)).collect();
-        let near = |change: &Change| {
+        let cost = |change: &Change| {
             self.of(self.measures.iter().zip(&totals).map(|(measure, total)| {
                 let (out, put) = (measure.sums[kept[change.group][change.place]], change.put.map_or([0.0; 3], |put| measure.sums[put]));
                 measure.of([0, 1, 2].map(|at| total[at] - out[at] + put[at]))
             }))
         };
-        let costs: Vec<f64> = changes.iter().map(near).collect();
-        let least = costs.iter().copied().fold(f64::INFINITY, f64::min);
-        let close = changes.iter().zip(&costs).filter(|(_, cost)| **cost <= least + NEAR);
-        let anew = close.map(|(change, _)| {
-            let changed = change.made(kept);
-            (self.over(&changed), changed)
-        });
-        anew.min_by(|a, b| a.0.total_cmp(&b.0))
+        changes.par_iter().map(cost).collect()
     }
 }
 
+/// A change takes a member out and may put another in.
+#[derive(Clone, Copy)]
 struct Change {
     group: usize,
     place: usize,
     put: Option<usize>,
-}
-
-impl Change {
-    fn made(&self, kept: &[Vec<usize>]) -> Vec<Vec<usize>> {
-        let mut changed = kept.to_vec();
-        match self.put {
-            Some(put) => changed[self.group][self.place] = put,
-            None => {
-                changed[self.group].remove(self.place);
-            }
-        }
-        changed
-    }
 }
 
 /// The members of each group that are kept, at most `keep` of each, in the order given.
@@ -116,10 +101,7 @@ pub fn reduced(groups: &[Vec<usize>], keep: &[usize], measures: &[Measure]) -> V
     let all = groups.concat();
     let cost = Cost { measures, all: measures.iter().map(|measure| measure.over(&all)).collect() };
     let mut kept: Vec<Vec<usize>> = groups.to_vec();
-    loop {
-        let more = (0..kept.len()).filter(|&group| kept[group].len() > keep[group]);
-        let changes = more.flat_map(|group| (0..kept[group].len()).map(move |place| Change { group, place, put: None }));
-        let Some((_, without)) = cost.best(&kept, &changes.collect::<Vec<_>>()) else { break };
+    while let Some(without) = without_some(&cost, &kept, keep) {
         kept = without;
     }
     let mut now = cost.over(&kept);
@@ -131,11 +113,42 @@ pub fn reduced(groups: &[Vec<usize>], keep: &[usize], measures: &[Measure]) -> V
                 changes.extend(others.iter().map(|&other| Change { group, place, put: Some(other) }));
             }
         }
-        let Some((least, changed)) = cost.best(&kept, &changes).filter(|(least, _)| *least < now - IMPROVES) else { break };
-        (now, kept) = (least, changed);
+        let costs = cost.after(&kept, &changes);
+        // The costs of others differ from the least by more than rounding, or improve as little.
+        let least = changes.iter().zip(costs).min_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((&Change { group, place, put: Some(put) }, _)) = least else { break };
+        let out = std::mem::replace(&mut kept[group][place], put);
+        let changed = cost.over(&kept);
+        if changed >= now - IMPROVES {
+            kept[group][place] = out;
+            break;
+        }
+        now = changed;
     }
     kept.iter_mut().for_each(|members| members.sort_unstable());
     kept
+}
+
+/// The groups without the members whose removal costs least: one in [`PART`] of those that are too many, at least one. `None` if no group
+/// has too many.
+fn without_some(cost: &Cost<'_>, kept: &[Vec<usize>], keep: &[usize]) -> Option<Vec<Vec<usize>>> {
+    let mut excess: Vec<usize> = kept.iter().zip(keep).map(|(members, keep)| members.len().saturating_sub(*keep)).collect();
+    let all: usize = excess.iter().sum();
+    let mut left = if all == 0 { return None } else { (all / PART).max(1) };
+    let more = (0..kept.len()).filter(|&group| excess[group] > 0);
+    let changes: Vec<Change> = more.flat_map(|group| (0..kept[group].len()).map(move |place| Change { group, place, put: None })).collect();
+    let costs = cost.after(kept, &changes);
+    let mut order: Vec<usize> = (0..changes.len()).collect();
+    order.sort_by(|&a, &b| costs[a].total_cmp(&costs[b]));
+    let mut goes: Vec<Vec<bool>> = kept.iter().map(|members| vec![false; members.len()]).collect();
+    for Change { group, place, .. } in order.into_iter().map(|at| changes[at]) {
+        if left > 0 && excess[group] > 0 {
+            (goes[group][place], excess[group], left) = (true, excess[group] - 1, left - 1);
+        }
+    }
+    let stay =
+        |(members, goes): (&Vec<usize>, &Vec<bool>)| members.iter().zip(goes).filter(|(_, goes)| !**goes).map(|(at, _)| *at).collect();
+    Some(kept.iter().zip(&goes).map(stay).collect())
 }
 
 #[cfg(test)]
@@ -155,28 +168,61 @@ mod tests {
         assert_eq!(reduced(&[vec![2, 0]], &[5], &[measure]), [[0, 2]]);
     }
 
-    /// The same choice as when each change is summed anew.
+    /// No other removal costs less, when each is summed anew.
     #[test]
-    fn costs_from_sums_choose_the_same_members() {
+    fn what_goes_costs_least() {
         let mut random = fastrand::Rng::with_seed(5);
         for count in [7, 20, 40] {
-            let values: Vec<f64> = (0..count).map(|at| if at % 5 == 0 { 1.0 } else { random.f64() - 0.5 }).collect();
-            let sums: Vec<[f64; 3]> = values.iter().map(|value| [1.0, *value, value * value]).collect();
-            let measures = [Measure { ddof: Some(1.0), scale: 0.5, sums: sums.clone() }, Measure { ddof: None, scale: 2.0, sums }];
+            let measures = measures(count, &mut random);
             let groups = [(0..count / 2).collect::<Vec<_>>(), (count / 2..count).collect()];
-            let all = groups.concat();
-            let cost = Cost { measures: &measures, all: measures.iter().map(|measure| measure.over(&all)).collect() };
+            let cost = cost(&measures);
             let mut kept = groups.to_vec();
-            while kept.iter().any(|members| members.len() > 3) {
-                let more = (0..2).filter(|&group| kept[group].len() > 3);
-                let changes = more.flat_map(|group| (0..kept[group].len()).map(move |place| Change { group, place, put: None }));
-                let (_, best) = cost.best(&kept, &changes.collect::<Vec<_>>()).expect("one can go");
-                let more = (0..2).filter(|&group| kept[group].len() > 3);
-                let anew = more.flat_map(|group| (0..kept[group].len()).map(move |place| Change { group, place, put: None }));
-                let anew = anew.map(|change| change.made(&kept)).min_by(|a, b| cost.over(a).total_cmp(&cost.over(b)));
-                assert_eq!(Some(&best), anew.as_ref());
-                kept = best;
+            while let Some(next) = without_some(&cost, &kept, &[3, 3]) {
+                let places = (0..2).filter(|&group| kept[group].len() > 3);
+                let places = places.flat_map(|group| (0..kept[group].len()).map(move |place| (group, place)));
+                let least = places
+                    .map(|(group, place)| {
+                        let mut changed = kept.clone();
+                        changed[group].remove(place);
+                        cost.over(&changed)
+                    })
+                    .min_by(f64::total_cmp)
+                    .expect("one can go");
+                assert!((cost.over(&next) - least).abs() < 1e-12, "{} {least}", cost.over(&next));
+                assert_eq!(next.concat().len() + 1, kept.concat().len());
+                kept = next;
             }
         }
+    }
+
+    fn measures(count: usize, random: &mut fastrand::Rng) -> [Measure; 2] {
+        let values = (0..count).map(|at| if at % 5 == 0 { 1.0 } else { random.f64() - 0.5 });
+        let sums: Vec<[f64; 3]> = values.map(|value| [1.0, value, value * value]).collect();
+        [Measure { ddof: Some(1.0), scale: 0.5, sums: sums.clone() }, Measure { ddof: None, scale: 2.0, sums }]
+    }
+
+    fn cost(measures: &[Measure]) -> Cost<'_> {
+        let all: Vec<usize> = (0..measures[0].sums.len()).collect();
+        Cost { measures, all: measures.iter().map(|measure| measure.over(&all)).collect() }
+    }
+
+    /// Also where many are removed at a time, the scatter stays. 2000 members of four groups, nine of each are kept. Before the exchanges the
+    /// scatter of both measures is within 5 % of that of all (a bound set after a look at the results; removed one at a time, such samples
+    /// come to 2 to 8 %, computed with NumPy). After the exchanges the cost is below 1e-3. Far fewer rounds than members are needed.
+    #[test]
+    fn many_at_a_time_keep_the_scatter() {
+        let count = 2000;
+        let measures = measures(count, &mut fastrand::Rng::with_seed(9));
+        let groups: Vec<Vec<usize>> = (0..4).map(|group| (group..count).step_by(4).collect()).collect();
+        let cost = cost(&measures);
+        let (mut kept, mut rounds) = (groups.clone(), 0);
+        while let Some(without) = without_some(&cost, &kept, &[9; 4]) {
+            (kept, rounds) = (without, rounds + 1);
+        }
+        assert!(rounds < 500 && kept.iter().all(|members| members.len() == 9), "{rounds}");
+        for (measure, all) in measures.iter().zip(&cost.all) {
+            assert!((measure.over(&kept.concat()) / all - 1.0).abs() < 0.05);
+        }
+        assert!(cost.over(&reduced(&groups, &[9; 4], &measures)) < 1e-3);
     }
 }

@@ -151,7 +151,8 @@ fn listed(words: &[String]) -> String {
 
 /// Columns that a node needs in some section.
 fn reads(graph: &Graph, node: NodeId, facts: &Facts, units: &[&Unit]) -> BTreeSet<String> {
-    let (mut read, most) = (BTreeSet::new(), leading_columns(graph, node));
+    let mut read = BTreeSet::new();
+    let most = graph.columns_of([node]).into_iter().map(|(column, _)| column).collect::<BTreeSet<_>>().len();
     for unit in units {
         // Most nodes need the same columns in all sections.
         if read.len() == most {
@@ -165,18 +166,4 @@ fn reads(graph: &Graph, node: NodeId, facts: &Facts, units: &[&Unit]) -> BTreeSe
         }
     }
     read
-}
-
-/// Number of columns that lead to a node, whichever of its cases applies.
-fn leading_columns(graph: &Graph, node: NodeId) -> usize {
-    let (mut seen, mut open, mut columns) = (BTreeSet::new(), vec![node], BTreeSet::new());
-    while let Some(id) = open.pop() {
-        if seen.insert(id) {
-            open.extend(&graph.nodes[id].inputs);
-            if let Operation::Read { column } = &graph.nodes[id].operation {
-                columns.insert(column);
-            }
-        }
-    }
-    columns.len()
 }

@@ -1,5 +1,7 @@
 //! Reduction of the sections to those that keep the scatter, as a step of the protocol.
 
+use std::collections::HashSet;
+
 use super::facts::Facts;
 use super::pool::{Pool, Pooled, PooledLimit, PooledQuantity, pool};
 use super::section_values::SectionValues;
@@ -13,7 +15,8 @@ use crate::result::study::Reduction;
 pub fn keep(plan: &Plan, facts: &Facts, units: &mut [Unit], values: &[SectionValues], before: Option<&Reduction>) -> Option<Reduction> {
     let keep = plan.sections.keep.as_ref()?;
     let reduction = before.cloned().unwrap_or_else(|| of(keep, &pool(plan, facts, units, values), units));
-    for unit in units.iter_mut().filter(|unit| reduction.left_out.contains(&unit.name)) {
+    let left_out: HashSet<&String> = reduction.left_out.iter().collect();
+    for unit in units.iter_mut().filter(|unit| left_out.contains(&unit.name)) {
         unit.refuse(format!("left out by the reduction to {}, which keeps the scatter", keep.words), false);
     }
     Some(reduction)
@@ -42,9 +45,10 @@ fn of(keep: &Keep, pool: &Pool, units: &[Unit]) -> Reduction {
     let kept = reduced(&members, &most, &measures);
     let name = |at: &usize| units[*at].name.clone();
     let (all, after) = (scatter(&members.concat()), scatter(&kept.concat()));
+    let stay: HashSet<usize> = kept.iter().flatten().copied().collect();
     Reduction {
         most: keep.most,
-        left_out: members.concat().iter().filter(|at| !kept.iter().flatten().any(|kept| kept == *at)).map(name).collect(),
+        left_out: members.concat().iter().filter(|at| !stay.contains(at)).map(name).collect(),
         kept: groups.into_iter().zip(&kept).map(|((group, _), kept)| (group, kept.iter().map(name).collect())).collect(),
         scatter: symbols.into_iter().zip(all.iter().zip(&after)).map(|(symbol, (all, after))| (symbol.clone(), *all, *after)).collect(),
     }

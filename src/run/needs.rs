@@ -9,11 +9,11 @@ use parts::{See, input, of_signals, quantity, report, signal};
 use super::facts::trimmed;
 use super::section::wanted_of;
 use super::sections::STATE;
-use super::wanted::columns as columns_of;
+use super::wanted::columns as wanted_columns;
 use crate::check::plan::{Datum, DatumKind, Expr, Independent, InputSide, Kind, Plan, Quantity, Scalar, Side, Test};
 use crate::data::campaign::POINT_KEY;
 use crate::data::sites;
-use crate::graph::{Graph, InputNode, NodeId, Operation, QuantityNodes};
+use crate::graph::{Graph, InputNode, NodeId, QuantityNodes};
 use crate::units::Unit;
 
 #[derive(Clone, Debug, Default)]
@@ -169,7 +169,7 @@ fn of_every_table(plan: &Plan) -> Vec<DatumNeed> {
 fn application(plan: &Plan) -> Vec<DatumNeed> {
     let Some(first) = plan.domains.first() else { return Vec::new() };
     let users = |index: usize| {
-        let of = plan.domains.iter().filter(|domain| columns_of(domain).contains(&index));
+        let of = plan.domains.iter().filter(|domain| wanted_columns(domain).contains(&index));
         Users { quantities: Vec::new(), rules: of.map(|domain| format!("domain {}", domain.name)).collect() }
     };
     let mut point = given(POINT_KEY, "Name of the point of wanted operation", None, &format!("domain {}", first.name));
@@ -214,7 +214,7 @@ fn positions(plan: &Plan, graph: &Graph) -> Vec<Positions> {
             .map(|signal| {
                 let mut wanted = BTreeSet::new();
                 wanted_of(quantity, signal, &mut wanted);
-                reads(graph, wanted).into_iter().filter(|(_, of_track)| !of_track).map(|(column, _)| column).collect()
+                graph.columns_of(wanted).into_iter().filter(|(_, of_track)| !of_track).map(|(column, _)| column).collect()
             })
             .collect(),
     };
@@ -246,7 +246,7 @@ fn channels(plan: &Plan, graph: &Graph) -> Vec<ChannelNeed> {
             .for_each(|&at| drop(read.insert((side, at), (true, Users { quantities: Vec::new(), rules: vec!["records".into()] }))));
     }
     let mut add = |nodes: BTreeSet<NodeId>, records: &[usize], user: &str, is_quantity: bool, [required, of_track_too]: [bool; 2]| {
-        for (column, of_track) in reads(graph, nodes) {
+        for (column, of_track) in graph.columns_of(nodes) {
             let at = number(&mut names, &column);
             let of: &[usize] = if of_track { &[Side::ALL.len()] } else { records };
             for &record in of {
@@ -297,21 +297,6 @@ fn channels(plan: &Plan, graph: &Graph) -> Vec<ChannelNeed> {
             ChannelNeed { record: Side::ALL.get(record).map_or(TRACK, |side| side.in_words()), column, channel, unit, required, users }
         })
         .collect()
-}
-
-/// The columns that nodes are computed from, and whether each is of the track record.
-fn reads(graph: &Graph, wanted: BTreeSet<NodeId>) -> Vec<(String, bool)> {
-    let (mut seen, mut open) = (BTreeSet::new(), wanted.into_iter().collect::<Vec<_>>());
-    while let Some(id) = open.pop() {
-        if seen.insert(id) {
-            open.extend(&graph.nodes[id].inputs);
-        }
-    }
-    let of = |id: NodeId| match &graph.nodes[id].operation {
-        Operation::Read { column } => Some((column.clone(), graph.nodes[id].track)),
-        _ => None,
-    };
-    seen.into_iter().filter_map(of).collect()
 }
 
 fn push(list: &mut Vec<String>, name: &str) {

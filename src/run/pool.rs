@@ -1,7 +1,7 @@
 //! Everything a verdict depends on, for studies of the selection of sections: the values of every section and every limit with its
 //! bound, in the unit of the quantity.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::sync::Arc;
 
 use super::estimates::Group;
@@ -93,15 +93,14 @@ pub struct Estimator {
 }
 
 impl Estimator {
-    fn new(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &[Unit]) -> Self {
+    fn new(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &Units<'_>) -> Self {
         let Judging { plan, facts, quantity, members, table, .. } = *judging;
         let inside = part.members(facts, members).unwrap_or_default();
-        let number = |unit: &Unit| units.iter().position(|known| known.name == unit.name).unwrap_or_default();
-        let numbered = |member: &Member<'_>| (number(member.unit), member.unit.clone(), member.row.clone());
-        let rows = inside.iter().map(numbered).collect();
+        let numbered = |member: &Member<'_>| Some((units.number(member.unit)?, member.unit.clone(), member.row.clone()));
+        let rows = inside.iter().filter_map(numbered).collect();
         let others = match limit.estimate.others().is_empty() {
             true => Vec::new(),
-            false => table.iter().map(|rows| rows.clone().map(|rows| rows.iter().map(numbered).collect())).collect(),
+            false => table.iter().map(|rows| rows.clone().map(|rows| rows.iter().filter_map(numbered).collect())).collect(),
         };
         let bound = judging.common_bound(limit, part, &inside).unwrap_or(f64::NAN);
         Self {
@@ -266,6 +265,22 @@ pub struct PooledLimit {
     pub bounds: Vec<f64>,
 }
 
+/// All sections, and the number of each by its name: an archive has thousands of them.
+struct Units<'a> {
+    all: &'a [Unit],
+    numbers: HashMap<&'a str, usize>,
+}
+
+impl<'a> Units<'a> {
+    fn of(all: &'a [Unit]) -> Self {
+        Self { all, numbers: all.iter().enumerate().rev().map(|(number, unit)| (unit.name.as_str(), number)).collect() }
+    }
+
+    fn number(&self, unit: &Unit) -> Option<usize> {
+        self.numbers.get(unit.name.as_str()).copied()
+    }
+}
+
 /// Limits whose bound has no value are left out; the run itself reports their quantity as not assessable.
 pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]) -> Pool {
     let (rule, about) = match &plan.overall().decision {
@@ -277,6 +292,7 @@ pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]
     let rows: Vec<Rows<'_>> =
         plan.quantities.iter().enumerate().map(|(index, quantity)| rows(plan, quantity, index, &used, facts)).collect();
     let table: Vec<_> = rows.iter().map(Rows::usable).collect();
+    let all = Units::of(units);
     Pool {
         sections: units
             .iter()
@@ -294,15 +310,15 @@ pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]
             .map(|zone| Zone { name: zone.name.clone(), title: zone.title.clone(), needed: zone.minimum_sections })
             .collect(),
         minimum: plan.sections.minimum,
-        quantities: about.iter().map(|&index| pooled(&rules, index, units, values, &table)).collect(),
+        quantities: about.iter().map(|&index| pooled(&rules, index, &all, values, &table)).collect(),
         rule,
     }
 }
 
-fn pooled(rules: &Arc<(Plan, Facts)>, index: usize, units: &[Unit], values: &[SectionValues], table: &Table<'_>) -> PooledQuantity {
+fn pooled(rules: &Arc<(Plan, Facts)>, index: usize, units: &Units<'_>, values: &[SectionValues], table: &Table<'_>) -> PooledQuantity {
     let (plan, facts) = rules.as_ref();
     let quantity = &plan.quantities[index];
-    let used: Vec<(&Unit, &SectionValues)> = units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
+    let used: Vec<(&Unit, &SectionValues)> = units.all.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
     let members = members(quantity, index, &used);
     let of_section = |(unit, values): (&Unit, &SectionValues)| {
         let rows = values.rows.get(index).filter(|_| unit.fault.is_none()).into_iter().flatten();
@@ -321,7 +337,7 @@ fn pooled(rules: &Arc<(Plan, Facts)>, index: usize, units: &[Unit], values: &[Se
         title: quantity.title.clone(),
         symbol: quantity.symbol.clone(),
         unit: quantity.unit.text.clone(),
-        values: units.iter().zip(values).map(of_section).collect(),
+        values: units.all.iter().zip(values).map(of_section).collect(),
         minimum_signals: quantity.minimum_signals,
         // A quantity that cannot be evaluated in some section is not assessable, however many pairs the others give.
         minimum_pairs: if impossible { usize::MAX } else { quantity.minimum_pairs },
@@ -331,26 +347,28 @@ fn pooled(rules: &Arc<(Plan, Facts)>, index: usize, units: &[Unit], values: &[Se
 }
 
 /// A minimum, group by group. Where it cannot be told which rows belong to a group, no selection of sections has enough.
-fn minima(minimum: &MinimumOfGroups, judging: &Judging<'_>, units: &[Unit]) -> Vec<PooledMinimum> {
+fn minima(minimum: &MinimumOfGroups, judging: &Judging<'_>, units: &Units<'_>) -> Vec<PooledMinimum> {
     let Judging { plan, facts, quantity, members, .. } = *judging;
     let of_part = |part: &Part<'_>| {
-        let inside = part.members(facts, members).unwrap_or_default();
-        let signals = |unit: &Unit| {
-            let own = inside.iter().filter(|member| member.unit.name == unit.name).map(|member| member.signal);
-            own.collect::<BTreeSet<_>>().len()
-        };
-        PooledMinimum { needed: minimum.needed, pairs: units.iter().map(signals).collect() }
+        let mut signals: Vec<BTreeSet<&str>> = vec![BTreeSet::new(); units.all.len()];
+        for member in part.members(facts, members).unwrap_or_default() {
+            if let Some(number) = units.number(member.unit) {
+                signals[number].insert(member.signal);
+            }
+        }
+        PooledMinimum { needed: minimum.needed, pairs: signals.iter().map(BTreeSet::len).collect() }
     };
     parts(plan, Grouped::values(quantity), &minimum.scope, members, facts).iter().map(of_part).collect()
 }
 
-fn of_part(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &[Unit]) -> Option<PooledLimit> {
+fn of_part(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &Units<'_>) -> Option<PooledLimit> {
     let Judging { plan, facts, quantity, members, .. } = *judging;
     let own = applying(limit, facts, part.members(facts, members).ok()?).ok()??;
     let inside = if part.by_section() || facts.vehicles.len() > 1 {
-        units.iter().map(|unit| own.iter().any(|member| member.unit.name == unit.name)).collect()
+        let named: HashSet<&str> = own.iter().map(|member| member.unit.name.as_str()).collect();
+        units.all.iter().map(|unit| named.contains(unit.name.as_str())).collect()
     } else {
-        units.iter().map(|unit| part.has_section(unit, facts)).collect::<Result<Vec<_>, _>>().ok()?
+        units.all.iter().map(|unit| part.has_section(unit, facts)).collect::<Result<Vec<_>, _>>().ok()?
     };
     let positions = part.positions(quantity);
     let shown = |bound: Result<f64, String>| bound.ok().map(|bound| judging.unit(limit).from_si(bound));
@@ -359,7 +377,7 @@ fn of_part(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, par
             Some(_) => Some(f64::NAN),
             None => shown(judging.bound(limit, &Part::of_section(plan, limit, unit), &[], &unit.known(facts))),
         };
-        units.iter().map(own).collect::<Option<Vec<_>>>()?
+        units.all.iter().map(own).collect::<Option<Vec<_>>>()?
     } else {
         // Data of sections can be used in the limit. This bound is that of all sections; an estimate computes its own.
         vec![shown(judging.common_bound(limit, part, &own))?]

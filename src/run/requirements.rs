@@ -1,5 +1,7 @@
 //! Requirements on the data and records of sections, and the consequences of those that are not met.
 
+use std::collections::HashMap;
+
 use super::facts::{Facts, Vehicle, item, trimmed};
 use super::section_values::SectionValues;
 use super::unit::Unit;
@@ -157,6 +159,10 @@ pub fn take_over(
     notes: &mut Vec<String>,
 ) -> Result<(), Problems> {
     let mut stop = Problems::default();
+    let mut of_section: HashMap<&str, Vec<&Finding>> = HashMap::new();
+    for copy in copies {
+        of_section.entry(copy.section.as_deref().unwrap_or_default()).or_default().push(copy);
+    }
     for (unit, values) in units.iter_mut().zip(values) {
         for (check, rule) in values.checks.iter().zip(&plan.checks).filter(|(check, _)| check.holds == Some(false)) {
             let says = format!("{}: {}", check.title.to_lowercase(), check.says);
@@ -167,7 +173,7 @@ pub fn take_over(
             }
         }
         let name = unit.name.clone();
-        for finding in values.findings.iter().chain(copies.iter().filter(|copy| copy.section.as_deref() == Some(name.as_str()))) {
+        for finding in values.findings.iter().chain(of_section.get(name.as_str()).into_iter().flatten().copied()) {
             if finding.consequence == Consequence::NotUsed {
                 unit.refuse(finding.says.clone(), false);
             }

@@ -1,5 +1,6 @@
 //! The sections of a campaign for simulators.
 
+use crate::data::sites::sites;
 use crate::data::table::{Cell, Table};
 use crate::data::{Campaign, Heading};
 use crate::problem::{Problem, Problems};
@@ -68,7 +69,7 @@ impl Section {
     }
 }
 
-/// The sections of a campaign in the order of its table; none if a cell cannot be read.
+/// The sections of a campaign in the order of its table; none if a cell cannot be read or `repeat of` is wrong.
 pub fn sections(campaign: &Campaign, problems: &mut Problems) -> Option<Vec<Section>> {
     let Some(table) = &campaign.sections else {
         let whole =
@@ -87,6 +88,8 @@ pub fn sections(campaign: &Campaign, problems: &mut Problems) -> Option<Vec<Sect
     let units: Vec<Option<Unit>> =
         table.columns.iter().map(|heading| unit_of(heading).map_err(|fault| faults.push(fault)).ok().flatten()).collect();
     let readable = !faults.any_error();
+    // An evaluation needs the sites of all sections: what is wrong with them is told before hours of simulation.
+    sites(table, &mut faults);
     let mut found = Vec::new();
     for (row, cell) in campaign.names.iter().enumerate().filter(|_| readable) {
         let number = |column: &[Option<f64>]| column.get(row).copied().flatten();

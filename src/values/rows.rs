@@ -1,6 +1,6 @@
 //! The table of values as columns: those that a reader needs, and beside them the exact numbers in SI, from which sections are judged.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
 use arrow_array::cast::AsArray;
@@ -156,15 +156,23 @@ pub fn into_sections(plan: &Plan, units: &[Unit], table: &[RecordBatch], section
     for (_, of_section) in sections.iter_mut() {
         of_section.rows = vec![Vec::new(); plan.quantities.len()];
     }
+    let named = |(at, (number, _)): (usize, &(usize, SectionValues))| Some((units.get(*number)?.name.as_str(), at));
+    let places: HashMap<&str, usize> = sections.iter().enumerate().rev().filter_map(named).collect();
     let mut before = 0;
     for batch in table {
-        add(plan, units, (before, batch), sections)?;
+        add(plan, &places, (before, batch), sections)?;
         before += batch.num_rows();
     }
     Ok(())
 }
 
-fn add(plan: &Plan, units: &[Unit], (before, table): (usize, &RecordBatch), sections: &mut [(usize, SectionValues)]) -> Result<(), String> {
+/// The rows of one batch; `places` are those of the sections among `sections`, by name.
+fn add(
+    plan: &Plan,
+    places: &HashMap<&str, usize>,
+    (before, table): (usize, &RecordBatch),
+    sections: &mut [(usize, SectionValues)],
+) -> Result<(), String> {
     let texts = |name: &str| {
         let found = table.column_by_name(name).and_then(|column| column.as_string_opt::<i32>());
         found.ok_or_else(|| format!("it has no column `{name}` of texts"))
@@ -180,8 +188,6 @@ fn add(plan: &Plan, units: &[Unit], (before, table): (usize, &RecordBatch), sect
     let (quantities, names, signals, records) = (texts(QUANTITY)?, texts(SECTION)?, texts(SIGNAL)?, texts(RECORD)?);
     let (simulated, measured, values) = (numbers(SIMULATED_SI)?, numbers(MEASURED_SI)?, numbers(VALUE_SI)?);
     let (samples, which) = (counts(SAMPLES)?, counts(WHICH)?);
-    // Rows of a section stand together.
-    let mut last = 0;
     for row in 0..table.num_rows() {
         let number = |numbers: &Float64Array| numbers.is_valid(row).then(|| numbers.value(row));
         let count = |counts: &UInt64Array| if counts.is_valid(row) { counts.value(row) } else { 0 };
@@ -196,12 +202,9 @@ fn add(plan: &Plan, units: &[Unit], (before, table): (usize, &RecordBatch), sect
         if which >= several {
             return Err(wrong());
         }
-        let is_of = |at: usize| sections.get(at).and_then(|(number, _)| units.get(*number)).is_some_and(|unit| unit.name == name);
-        if !is_of(last) {
-            let none = || format!("row {}: the section `{name}` is not one of this part", before + row + 1);
-            last = (0..sections.len()).find(|at| is_of(*at)).ok_or_else(none)?;
-        }
-        sections[last].1.rows[index].push(Row {
+        let none = || format!("row {}: the section `{name}` is not one of this part", before + row + 1);
+        let place = *places.get(name).ok_or_else(none)?;
+        sections[place].1.rows[index].push(Row {
             position,
             which,
             record: records.is_valid(row).then(|| records.value(row).into()),

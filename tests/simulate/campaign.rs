@@ -72,6 +72,23 @@ fn a_campaign_that_lacks_what_the_model_needs() {
 }
 
 #[test]
+fn a_section_that_repeats_no_other() {
+    let place = Place::new();
+    let table = place.text("small/sections.csv");
+    let mut lines = table.lines();
+    let mut repeated = format!("{},repeat of\n", lines.next().expect("a header"));
+    lines.for_each(|line| repeated.push_str(&format!("{line},S99\n")));
+    fs::write(place.path("small/sections.csv"), repeated).expect("written");
+    let ran = place.simulate("out", &[]);
+    assert_eq!(ran.code, 2, "{}", ran.stderr);
+    assert!(ran.stderr.contains("error[unknown-section]: `repeat of` names `S99`"), "{}", ran.stderr);
+    let small = place.path("small").display().to_string();
+    let ran = super::program::ran(program().args(["diagnose", &small, "--preflight"]));
+    assert_eq!(ran.code, 2, "{}", ran.stderr);
+    assert!(ran.stderr.contains("error[unknown-section]: `repeat of` names `S99`"), "{}", ran.stderr);
+}
+
+#[test]
 fn sections_without_speed() {
     let place = Place::new();
     place.replace("small/sections.csv", "speed [km/h]", "velocity [km/h]");
