@@ -139,6 +139,9 @@ struct Stored {
     end: usize,
 }
 
+/// Bytes of a line behind a place that are stored with it. Rows of records are shorter; a file in a wrong format may be one line.
+const BEHIND: usize = 4096;
+
 impl Serialize for Span {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         let text = &self.source.text;
@@ -152,6 +155,7 @@ impl Serialize for Span {
         let (start, end) = (boundary(self.start), boundary(self.end.max(self.start)));
         let from = text[..start].rfind('\n').map_or(0, |at| at + 1);
         let to_line = text[end..].find('\n').map_or(text.len(), |at| end + at);
+        let to_line = boundary(to_line.min(end + BEHIND));
         let first_line = self.source.line_column(start).0;
         let (name, text) = (self.source.name.clone(), text[from..to_line].to_string());
         Stored { name, first_line, text, start: start - from, end: end - from }.serialize(to)
@@ -264,6 +268,15 @@ mod tests {
         assert_eq!(source.line_column(3), (10, 3));
         assert_eq!(source.line_column(5), (11, 1));
         assert_eq!(source.span(5..6).to_string(), "a.csv:11:1");
+    }
+
+    #[test]
+    fn a_stored_line_ends_soon_behind_the_place() {
+        let source = Source::new("a.csv", format!("a,b\nc,{}\n", "1".repeat(100_000)));
+        let stored = serde_json::to_string(&source.span(6..7)).expect("stored");
+        assert!(stored.len() < 5000, "{}", stored.len());
+        let again: Span = serde_json::from_str(&stored).expect("read");
+        assert_eq!((again.to_string(), again.text()), ("a.csv:2:3".to_string(), "1"));
     }
 
     #[test]

@@ -49,6 +49,15 @@ fn a_parameter_at_the_margin_is_told() {
     }
 }
 
+/// A record that is one line, as of old Apple programs, is told as such: by `certify`, and by the values of a part, which stay small.
+#[test]
+fn a_record_with_carriage_returns_alone() {
+    let path = "measurement/S01.csv";
+    let found = with(|campaign| bytes(&campaign.join(path), |text| text.into_iter().map(|c| if c == b'\n' { b'\r' } else { c }).collect()));
+    let reason = found.ran.stdout.lines().find(|line| line.contains("S01 not used")).expect("a reason");
+    assert!(reason.contains("the lines end with a carriage return (CR) alone") && reason.len() < 300, "{reason}");
+}
+
 #[test]
 fn a_sound_campaign_validates() {
     let found = with(|_| {});

@@ -213,6 +213,8 @@ fn settings_of_the_command_line_are_checked() {
     assert!(count.contains("must be a whole number, this is sections_per_zone = 2.5") && count.contains("set here"), "{count}");
     let order = said("lowpass_order=2.5");
     assert!(order.contains("the order must be a whole number from 1 to 20, this is 2.5") && order.contains("set here"), "{order}");
+    let place = said("evaluated_wheelsets=5");
+    assert_eq!(place.matches("error[").count(), 1, "{place}");
     // What follows from a value outside its range is not told.
     let outside = said("sections_per_zone=-1");
     assert!(outside.contains("`-1` is outside the range") && !outside.contains("not-a-count"), "{outside}");

@@ -53,6 +53,16 @@ fn sections_are_counted_and_written() {
     assert!(html.contains("Influence of individual sections") && !html.contains("NaN"));
 }
 
+/// Of eight sections with two signals no selection has the 24 pairs that the protocol requires.
+#[test]
+fn selections_that_cannot_be_assessed_say_why() {
+    let out = tempfile::tempdir().expect("a folder");
+    let (code, said, _) = run(&["study", "sections", "examples/run", "--out", &out.path().display().to_string()]);
+    let why = "has at most 16 pairs, and 24 are required.";
+    assert!(code == 0 && said.contains("differs for all selections") && said.contains(why), "{said}");
+    assert!(json(out.path())["notes"].to_string().contains(why));
+}
+
 #[test]
 fn offsets_of_nothing_change_nothing() {
     let out = tempfile::tempdir().expect("a folder");

@@ -87,8 +87,7 @@ impl Checker<'_> {
             return None;
         };
         let members = self.names.places.get(&place_name)?.members.clone();
-        let mut chosen = None;
-        for text in [default, source] {
+        let mut positions = |text: &Text| {
             let mut positions: Vec<String> = Vec::new();
             for word in from_pest::list(text, self.problems)? {
                 if !members.contains(&word.node) {
@@ -101,9 +100,12 @@ impl Checker<'_> {
                     positions.push(word.node);
                 }
             }
-            chosen = Some(positions);
-        }
-        Some((place_name, chosen?))
+            Some(positions)
+        };
+        let by_default = positions(default)?;
+        // As of a number outside its range: the rules are checked on with the default.
+        let chosen = positions(source).unwrap_or(by_default);
+        Some((place_name, chosen))
     }
 
     fn number(&mut self, name: &str, block: &Block, default: &Text, given: Option<&Text>) -> Option<(Scalar, Type)> {

@@ -12,7 +12,7 @@ use super::report::Report;
 use crate::data::Campaigns;
 use crate::disk;
 use crate::problem::{Problem, Problems, plain};
-use crate::run::Shard;
+use crate::run::{SectionValues, Shard};
 use crate::values::{self, File, Joined, Part, Values};
 
 #[derive(Debug, Args)]
@@ -54,7 +54,7 @@ impl Reduce {
                 problems.push(problem);
             }
         }
-        if self.out.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("parquet")) {
+        if !problems.any_error() && self.out.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("parquet")) {
             let says = format!("`{}` will be a Parquet table, whatever its name ends in", self.out.display());
             problems.push(Problem::warning("values-name", says).help("name it `values.parquet`"));
         }
@@ -90,14 +90,14 @@ impl Reduce {
 /// How many values of how many sections there are, and the sections that cannot be evaluated.
 fn told(values: &Values) -> String {
     let rows: usize = values.sections.iter().flat_map(|(_, values)| &values.rows).map(Vec::len).sum();
-    let mut out = format!("{rows} values of {} of {} sections\n", values.sections.len(), values.head.basis.units().len());
-    for (number, of_section) in &values.sections {
-        let Some(unit) = values.head.basis.units().get(*number) else { continue };
-        if let Some(fault) = unit.fault.as_ref().or(of_section.fault.as_ref()) {
-            out += &format!("  {} not used: {fault}\n", unit.name);
-        }
-    }
-    out
+    let units = values.head.basis.units();
+    let fault = |(number, of_section): &(usize, SectionValues)| {
+        let unit = units.get(*number)?;
+        let fault = unit.fault.as_ref().or(of_section.fault.as_ref())?;
+        Some(format!("  {} not used: {fault}\n", unit.name))
+    };
+    let faults: Vec<String> = values.sections.iter().filter_map(fault).collect();
+    format!("{rows} values of {} of {} sections\n{}", values.sections.len() - faults.len(), units.len(), faults.concat())
 }
 
 #[derive(Debug, Args)]

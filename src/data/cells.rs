@@ -4,8 +4,9 @@
 
 use std::ops::Range;
 
+use super::faults::Faults;
 use crate::problem::Problem;
-use crate::source::Span;
+use crate::source::{Source, Span};
 use crate::units::{Dimension, Unit};
 
 /// A cell without surrounding blanks.
@@ -130,7 +131,7 @@ pub(crate) fn name_and_unit(text: &str) -> (&str, Option<Range<usize>>) {
 
 /// The headings in the first line of a file, whose place is given.
 pub(super) fn headings(line: &Span, problems: &mut Vec<Problem>) -> Option<Vec<Heading>> {
-    if let Some(problem) = other_separator(line) {
+    if let Some(problem) = carriage_returns(line).or_else(|| other_separator(line)) {
         problems.push(problem);
         return None;
     }
@@ -160,17 +161,29 @@ pub(super) fn headings(line: &Span, problems: &mut Vec<Problem>) -> Option<Vec<H
     good.then_some(headings)
 }
 
-/// A problem for each column with the name of another one.
+/// Lines that end with a carriage return alone: the whole file is one line, of which only the header is shown.
+fn carriage_returns(line: &Span) -> Option<Problem> {
+    let end = line.text().trim_end_matches('\r').find('\r')?;
+    let header = Source::excerpt(line.source.name.clone(), &line.text()[..end], line.line());
+    let problem = Problem::error("line-ends", "the lines end with a carriage return (CR) alone").at(&header.whole());
+    Some(problem.help("save the file with the line ends of Windows (CR LF) or Linux (LF)"))
+}
+
+/// The first columns with the name of another one, and how many there are more.
 pub(super) fn duplicates(headings: &[Heading]) -> Vec<Problem> {
     let mut sorted: Vec<&Heading> = headings.iter().filter(|heading| !heading.name.is_empty()).collect();
     sorted.sort_by(|a, b| (&a.name, a.span.start).cmp(&(&b.name, b.span.start)));
     let twice = sorted.windows(2).filter(|pair| pair[0].name == pair[1].name);
-    let told = |pair: &[&Heading]| {
-        Problem::error("duplicate-column", format!("two columns are called `{}`", pair[1].name))
-            .at(&pair[1].span)
-            .also(&pair[0].span, "the first of them")
-    };
-    twice.map(told).collect()
+    let file = headings.first().map_or("", |heading| heading.span.source.name.as_str());
+    let mut faults = Faults::new(file);
+    for pair in twice {
+        faults.push(|| {
+            Problem::error("duplicate-column", format!("two columns are called `{}`", shortened(&pair[1].name)))
+                .at(&pair[1].span)
+                .also(&pair[0].span, "the first of them")
+        });
+    }
+    faults.into_vec()
 }
 
 /// `Y_1R,kN,Q_1R,kN`: a cell that is a unit and nothing else, behind a name that has none.
@@ -179,7 +192,7 @@ pub(super) fn unit_in_cell(headings: &[Heading]) -> Option<Problem> {
     let [name, unit] = headings.windows(2).find(|pair| pair[0].unit.is_none() && !is_unit(&pair[0]) && is_unit(&pair[1]))? else {
         return None;
     };
-    let says = format!("the unit of `{}` stands in a cell of its own: the comma parts columns", name.name);
+    let says = format!("the unit of `{}` stands in a cell of its own: the comma parts columns", shortened(&name.name));
     let problem = Problem::error("units-in-cell", says).at(&unit.span).also(&name.span, "its name");
     Some(problem.help(format!("write the unit behind the name, in one cell: `{} [{}]`", name.name, unit.name)))
 }

@@ -9,6 +9,8 @@ use crate::problem::{Problem, Problems};
 pub const SITE: &str = "site";
 pub const REPEAT_OF: &str = "repeat of";
 pub const TRACK: &str = "track";
+/// Help where sections repeat each other.
+const FIRST: &str = "leave `repeat of` empty for the section that was measured first";
 /// Largest number of sections of a circle that are named.
 const NAMED: usize = 5;
 const START: &str = "start";
@@ -95,11 +97,15 @@ fn circles(table: &Table, problems: &mut Problems) {
         if let Some(cell) = repeat.cell(circle[0]) {
             problem = problem.at(&cell.span);
         }
-        problems.push(problem.help(format!("leave `{REPEAT_OF}` empty for the section that was measured first")));
+        problems.push(problem.help(FIRST));
     }
 }
 
 fn no_repeat(table: &Table, row: usize, cell: &Cell) -> Problem {
+    if table.row_named(&cell.value) == Some(row) {
+        let problem = Problem::error("repeat-circle", format!("`{}` repeats itself", cell.value)).at(&cell.span);
+        return problem.help(FIRST);
+    }
     let says = format!("`{REPEAT_OF}` names `{}`, which is not another section", cell.value);
     let others = table.names().enumerate().filter(|(other, _)| *other != row).map(|(_, name)| name.value.as_str());
     let problem = Problem::error("unknown-section", says).at(&cell.span).suggest(&cell.value, others);
@@ -233,10 +239,14 @@ mod tests {
 
     #[test]
     fn a_repeat_of_no_section_is_told() {
-        for (text, help) in [("section,repeat of\nS01,\nS02,S10\n", "did you mean `S01`?"), ("section,repeat of\nS01,S01\n", "name the")] {
-            let problem = &of(text).1.0[0];
-            assert_eq!(problem.code, "unknown-section");
-            assert!(problem.help.as_ref().is_some_and(|found| found.starts_with(help)), "{problem:?}");
+        for (text, code, help) in [
+            ("section,repeat of\nS01,\nS02,S10\n", "unknown-section", "did you mean `S01`?"),
+            ("section,repeat of\nS01,another\n", "unknown-section", "name the"),
+            ("section,repeat of\nS01,S01\n", "repeat-circle", "leave `repeat of` empty"),
+        ] {
+            let problems = of(text).1.0;
+            assert_eq!((problems.len(), problems[0].code), (1, code));
+            assert!(problems[0].help.as_ref().is_some_and(|found| found.starts_with(help)), "{problems:?}");
         }
     }
 }

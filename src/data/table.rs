@@ -239,6 +239,13 @@ mod tests {
     }
 
     #[test]
+    fn carriage_returns_alone_are_told() {
+        let (table, problems) = parse("section,speed [km/h]\rS01,100\rS02,100\r");
+        let told: Vec<_> = problems.0.iter().map(|problem| (problem.code, problem.at.as_ref().map(|at| at.text().len()))).collect();
+        assert_eq!((table.is_none(), told), (true, vec![("line-ends", Some("section,speed [km/h]".len()))]));
+    }
+
+    #[test]
     fn a_header_among_the_rows() {
         let (table, problems) = parse("section,zone [-]\r\nS01,1\r\nsection,zone [-]\r\nS02,2\r\n");
         let places: Vec<_> = problems.0.iter().map(|problem| (problem.code, problem.at.as_ref().map(ToString::to_string))).collect();

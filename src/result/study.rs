@@ -29,6 +29,8 @@ pub struct SelectionStudy {
     pub share: Share,
     /// Verdict over all usable sections.
     pub verdict: Verdict,
+    /// Why no selection can be assessed, if none can.
+    pub lacking: Option<String>,
     pub quantities: Vec<QuantitySpread>,
     pub sections: Vec<Importance>,
     /// The worst selection for each limit that some selection does not meet.

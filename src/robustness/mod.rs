@@ -54,8 +54,9 @@ pub fn sections<'a>(
 /// `too-few-sections`.
 pub fn sections_of(compiled: &Compiled, evaluated: &Evaluated, campaign: CampaignInfo, settings: &Settings) -> Result<Study, Problems> {
     let (case, reduction) = case_of(evaluated, &compiled.plan, settings).map_err(too_few)?;
-    let found = Found::Sections(SelectionStudy { reduction, ..selections(&case, &settings.selections) });
-    Ok(Study { protocol: protocol_info(compiled), campaign, notes: evaluated.notes().to_vec(), found })
+    let found = SelectionStudy { reduction, ..selections(&case, &settings.selections) };
+    let notes = evaluated.notes().iter().chain(&found.lacking).cloned().collect();
+    Ok(Study { protocol: protocol_info(compiled), campaign, notes, found: Found::Sections(found) })
 }
 
 /// A study counts limits of selections: the overall verdict must rest on limits alone.

@@ -97,6 +97,7 @@ pub fn marked(case: &Case, settings: &Settings) -> (SelectionStudy, Option<Fails
         combinations,
         share: counted.share,
         verdict,
+        lacking: lacking(case),
         quantities: counted.quantities,
         sections: counted.sections,
         worst: counted.worst,
@@ -105,6 +106,25 @@ pub fn marked(case: &Case, settings: &Settings) -> (SelectionStudy, Option<Fails
         methods: counted.methods,
     };
     (found, fails)
+}
+
+/// Why no selection can be assessed: even the sections with the most pairs have fewer than a quantity needs.
+fn lacking(case: &Case) -> Option<String> {
+    let most = |pairs: &dyn Fn(usize) -> usize| -> usize {
+        let of_stratum = |stratum: &case::Stratum| {
+            let mut all: Vec<usize> = stratum.members.iter().map(|&at| pairs(at)).collect();
+            all.sort_unstable_by(|a, b| b.cmp(a));
+            all.iter().take(stratum.take).sum::<usize>()
+        };
+        case.strata.iter().map(of_stratum).sum()
+    };
+    let of_quantity = |quantity: &case::Quantity| {
+        let in_all = (quantity.minimum_pairs, most(&|at| quantity.values[at].len()));
+        let of_groups = quantity.minimum_of_groups.iter().map(|group| (group.needed, most(&|at| group.pairs[at])));
+        let (needed, most) = std::iter::once(in_all).chain(of_groups).find(|(needed, most)| most < needed && *needed < usize::MAX)?;
+        Some(format!("No selection can be assessed: {} has at most {most} pairs, and {needed} are required.", quantity.symbol))
+    };
+    case.quantities.iter().find_map(of_quantity)
 }
 
 fn named(case: &Case, stratum: &case::Stratum) -> Stratum {

@@ -59,6 +59,7 @@ fn each_fault_at_its_row_and_column() {
         ("\n\n", "file-empty", ""),
         ("time [s];Y [kN]\n0;1\n", "semicolon-separated", "1:9"),
         ("time [s]\tY [kN]\n0\t1\n", "tab-separated", "1:9"),
+        ("time [s],Y [kN]\r0,1\r1,1\r", "line-ends", "1:1"),
         ("time [s],Y\n0,1\n", "unit-missing", "1:10"),
         ("time [s],Y [kn]\n0,1\n", "unknown-unit", "1:13"),
         ("time [s],Y [m/s^2]\n0,1\n", "unit-mismatch", "1:13"),

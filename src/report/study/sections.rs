@@ -25,6 +25,7 @@ pub fn opening(found: &SelectionStudy, words: &VerdictWords) -> Opening {
     let same = match agrees {
         share if share >= 1.0 => "does not depend on the sections chosen",
         share if share >= 0.5 => "depends on the sections chosen",
+        share if share <= 0.0 => "differs for all selections from that of all sections together",
         _ => "differs for most selections from that of all sections together",
     };
     // The result box states the share: positive if the verdict holds for all, negative if for none.
@@ -34,7 +35,9 @@ pub fn opening(found: &SelectionStudy, words: &VerdictWords) -> Opening {
         _ => None,
     };
     let of = all_of(found);
-    let looked = if found.share.exact {
+    let looked = if found.share.exact && found.combinations <= 1.0 {
+        "There is one selection.".to_owned()
+    } else if found.share.exact {
         format!("All {} selections were evaluated.", number::large(found.combinations))
     } else {
         format!(
@@ -43,10 +46,11 @@ pub fn opening(found: &SelectionStudy, words: &VerdictWords) -> Opening {
             number::count(found.share.looked_at)
         )
     };
+    let lacking = found.lacking.as_ref().map_or_else(String::new, |lacking| format!(" {lacking}"));
     Opening {
         headline: Finding::new(holds, &share(&found.share), &share(&found.share), &share(&found.share)),
         sentence: format!(
-            "of the selections have the verdict '{}'. The verdict on all {of} together is '{}'. The verdict {same}. {looked}",
+            "of the selections have the verdict '{}'. The verdict on all {of} together is '{}'. The verdict {same}. {looked}{lacking}",
             words.good,
             words.word(found.verdict)
         ),
