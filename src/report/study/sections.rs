@@ -72,7 +72,7 @@ pub fn chapters(found: &SelectionStudy, words: &VerdictWords) -> Vec<Chapter> {
     let mut chapters = vec![
         Chapter { id: "selections".into(), title: "Selections".into(), items },
         Chapter { id: "spread".into(), title: "Scatter over the selections".into(), items: spread(&found.quantities, all_of(found)) },
-        Chapter { id: "failing".into(), title: "Criteria not met".into(), items: failing(found) },
+        Chapter { id: "failing".into(), title: "Criteria not met or not assessed".into(), items: failing(found) },
         Chapter {
             id: "sections".into(),
             title: "Influence of individual sections".into(),
@@ -201,9 +201,10 @@ fn failing(found: &SelectionStudy) -> Vec<Item> {
     }
     let mut items = vec![Item::Table {
         table: Table {
-            caption: "Quantities whose criteria are not met: share of the selections, and share in which no other quantity is concerned"
+            caption: "Quantities whose criteria are not met or cannot be assessed: share of the selections, and share in which no other \
+                      quantity is concerned"
                 .into(),
-            head: vec![Head::text("Quantity"), Head::text("Title"), Head::number("Not met"), Head::number("Not met alone")],
+            head: vec![Head::text("Quantity"), Head::text("Title"), Head::number("Share"), Head::number("Share alone")],
             rows: fails
                 .iter()
                 .map(|quantity| {
@@ -217,6 +218,9 @@ fn failing(found: &SelectionStudy) -> Vec<Item> {
                 .collect(),
         },
     }];
+    if found.worst.is_empty() {
+        return items;
+    }
     items.push(Item::Table {
         table: Table {
             caption: "Worst selection for each limit that is exceeded in some selection".into(),
