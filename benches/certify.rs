@@ -5,7 +5,8 @@
 //! ```
 //!
 //! - `FISHPLATE_PEER`: a Python script with `run(folder, jobs=N)` and `--make-test-campaign DIR`. Its process start and imports
-//!   are not counted (see `peer.py`); those of `fishplate` are. Its synthetic campaign of 33 sections is timed too. A library
+//!   are not counted (see `peer.py`); those of `fishplate` are. The rows "both started anew" count them for both, as a user of a
+//!   shell sees them. Its synthetic campaign of 33 sections is timed too. A library
 //!   below it may use more threads than `jobs` asks for (polars reads with all; `POLARS_MAX_THREADS=1` holds it to one).
 //!
 //! Each campaign is timed twice: as it is, and with its records as Parquet files, which the peer reads with polars (left out
@@ -81,6 +82,7 @@ fn time_campaign(campaign: &Path, rounds: usize, mut peer: Option<&mut Peer>) ->
     counts.dedup();
     for jobs in counts {
         let (mut here, mut there) = (runs.each_ref().map(|_| Vec::new()), [Vec::new(), Vec::new()]);
+        let mut anew = [Vec::new(), Vec::new()];
         for round in 0..=rounds {
             for (at, (_, words, _)) in runs.iter().enumerate() {
                 wait_until_idle();
@@ -92,11 +94,20 @@ fn time_campaign(campaign: &Path, rounds: usize, mut peer: Option<&mut Peer>) ->
                 let able = |peer: &&mut &mut Peer| at == 0 || peer.columns;
                 let theirs = peer.as_mut().filter(able).map(|peer| peer.run(folder, jobs)).transpose()?;
                 there[at].extend(theirs.map(|(time, _)| time).filter(|_| round > 0));
+                wait_until_idle();
+                let from_start =
+                    peer.as_ref().filter(|peer| at == 0 || peer.columns).map(|peer| peer.run_anew(folder, jobs)).transpose()?;
+                anew[at].extend(from_start.filter(|_| round > 0));
             }
         }
         let of = format!("{jobs} thread{}", if jobs == 1 { "" } else { "s" });
-        for ((what, _, format), here) in runs.iter().zip(here) {
-            print_times(&format!("{what}, {of}"), here, there[*format].clone());
+        for ((what, _, format), here) in runs.iter().zip(&here) {
+            print_times(&format!("{what}, {of}"), here, &there[*format]);
+        }
+        for (at, anew) in anew.into_iter().enumerate().filter(|(_, anew)| !anew.is_empty()) {
+            let (what, _, _) = &runs[2 * at + 1];
+            println!("  {what}, {of},");
+            print_row("  both started anew", here[2 * at + 1].iter().map(|time: &Time| time.clock).collect(), anew);
         }
     }
     if peer.as_ref().is_some_and(|peer| !peer.columns) {
@@ -228,6 +239,13 @@ impl Peer {
         Ok((Time { clock: clock.parse()?, processors: processors.parse()? }, memory.parse()?))
     }
 
+    /// Time of another process of the peer by the clock, from its start to its answer [s].
+    fn run_anew(&self, campaign: &Path, jobs: usize) -> Outcome<f64> {
+        let start = Instant::now();
+        Self::start(self.script.as_os_str())?.run(campaign, jobs)?;
+        Ok(start.elapsed().as_secs_f64())
+    }
+
     fn synthetic_campaign(&self) -> Outcome<PathBuf> {
         let folder = Path::new(SCRATCH).join("synthetic-33-sections");
         if !folder.join("sections.csv").exists() {
@@ -261,12 +279,12 @@ fn print_row(what: &str, here: Vec<f64>, there: Vec<f64>) {
     println!();
 }
 
-fn print_times(what: &str, here: Vec<Time>, there: Vec<Time>) {
+fn print_times(what: &str, here: &[Time], there: &[Time]) {
     let of = |times: &[Time], kind: fn(&Time) -> f64| times.iter().map(kind).collect::<Vec<f64>>();
-    print_row(what, of(&here, |time| time.clock), of(&there, |time| time.clock));
+    print_row(what, of(here, |time| time.clock), of(there, |time| time.clock));
     // The kernel counts in steps of 10 ms, which the mean evens out.
     let mean = |times: &[Time]| times.iter().map(|time| time.processors).sum::<f64>() / times.len() as f64;
-    let (here, there) = (mean(&here), mean(&there));
+    let (here, there) = (mean(here), mean(there));
     print!("    processors, mean                     {here:>8.4}");
     println!("{}", if there.is_finite() { format!("            {there:>8.4}            {:>5.1}", there / here) } else { String::new() });
 }

@@ -233,19 +233,32 @@ fn overrides(set: &[String], campaigns: &[Campaign], problems: &mut Problems) ->
         let text = Text { text: value.raw.clone(), span: value.span.clone(), exact: value.exact };
         overrides.insert(parameter.name.text.clone(), Override { text, set_by: SetBy::Campaign });
     }
-    for set in set {
+    for (name, text) in set_by_hand(set, problems)? {
+        overrides.insert(name, Override { text, set_by: SetBy::CommandLine });
+    }
+    Some(overrides)
+}
+
+/// The names and values of some `--set name=value`.
+///
+/// Problems: `set` (no `=`), `set-twice`.
+pub fn set_by_hand(all: &[String], problems: &mut Problems) -> Option<Vec<(String, Text)>> {
+    let mut found: Vec<(String, Text)> = Vec::new();
+    for set in all {
         let Some((name, value)) = set.split_once('=') else {
             problems.push(Problem::error("set", format!("`--set {set}` has no `=`")).help("write `--set name=value`"));
             return None;
         };
-        let source = Source::new("--set", set.clone());
-        let span = source.span(name.len() + 1..set.len());
-        overrides.insert(
-            name.trim().to_string(),
-            Override { text: Text { text: value.to_string(), span, exact: true }, set_by: SetBy::CommandLine },
-        );
+        let span = Source::new("--set", set.clone()).span(name.len() + 1..set.len());
+        let name = name.trim();
+        if let Some((_, first)) = found.iter().find(|(known, _)| known == name) {
+            let problem = Problem::error("set-twice", format!("the parameter `{name}` is set twice")).at(&span);
+            problems.push(problem.also(&first.span, "set before").help("keep one of the two"));
+            return None;
+        }
+        found.push((name.to_string(), Text { text: value.to_string(), span, exact: true }));
     }
-    Some(overrides)
+    Some(found)
 }
 
 /// The protocol that a campaign names: a shipped one, or a file inside the campaign; the same for those it extends.
@@ -257,7 +270,7 @@ fn campaign_protocol(campaign: &Campaign, named: &Spanned<String>, problems: &mu
         let place = campaign.place(named)?;
         campaign.read_text(&place).map_err(|problem| {
             let problem = if problem.at.is_some() { problem } else { problem.at(&named.span) };
-            if problem.code == "file-missing" { problem.suggest(&named.value, library::names()) } else { problem }
+            if problem.code == "file-missing" && problem.near.is_none() { problem.suggest(&named.value, library::names()) } else { problem }
         })
     };
     let source = inside(named).map_err(|problem| problems.push(problem)).ok()?;

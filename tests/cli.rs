@@ -218,6 +218,9 @@ fn settings_of_the_command_line_are_checked() {
     // What follows from a value outside its range is not told.
     let outside = said("sections_per_zone=-1");
     assert!(outside.contains("`-1` is outside the range") && !outside.contains("not-a-count"), "{outside}");
+    let twice = ["--only", "results", "--set", "lowpass_order=4", "--set", "lowpass_order = 2"];
+    let (code, _, said) = certify("examples/coach", &out.path().join("x"), &twice);
+    assert!(code == 2 && said.contains("error[set-twice]: the parameter `lowpass_order` is set twice"), "{said}");
 }
 
 #[test]
@@ -232,6 +235,18 @@ fn a_file_is_not_written_onto_a_folder() {
     refused(&["sections", "examples/run", "--out", &path]);
     refused(&["import", "--draft", "examples/coach/simulation/S01.csv", "--out", &path]);
     assert_eq!(fs::read_dir(out.path()).expect("the folder").count(), 0);
+    let file = out.path().join("file");
+    fs::write(&file, "").expect("written");
+    let (code, _, said) = run(&["man", "--out", &file.display().to_string()]);
+    assert!(code == 2 && said.contains("error[not-a-folder]"), "{said}");
+}
+
+#[test]
+fn counts_begin_at_one() {
+    for arguments in [&["certify", "examples/coach", "--jobs", "0"][..], &["study", "sections", "examples/coach", "--reduce", "0"]] {
+        let (code, _, said) = run(&[arguments, &["--out", "x"]].concat());
+        assert!(code == 2 && said.contains("expected a whole number from 1"), "{said}");
+    }
 }
 
 /// A link stays and its target is written; what is no file, such as a pipe, gets the bytes and stays too.

@@ -217,6 +217,7 @@ fn wrong_input_is_told_and_nothing_is_written() {
         (&["examples/coach-good", "--protocol", annex, "--sizes", "small"], "`--sizes small`"),
         (&["examples/coach-good", "--protocol", annex, "--set", "lowpass_frequency"], "has no `=`"),
         (&["examples/coach-good", "--protocol", annex, "--set", "lowpas_frequency=20 Hz"], "unknown-parameter"),
+        (&["examples/coach-good", "--protocol", annex, "--set", "x=1", "--set", "x=2"], "error[set-twice]"),
     ] {
         let (code, _, said) = run(&[&["compare", "--out", &out], arguments].concat());
         assert_eq!(code, 2, "{arguments:?}: {said}");

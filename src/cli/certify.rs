@@ -9,6 +9,7 @@ use super::inputs::{Pool, prepare_all, progress_bar, start_jobs};
 use super::output::{Console, Exit};
 use super::places::{REPORT, check_folder};
 use super::report::Report;
+use super::values::from_one;
 use crate::certify::certify;
 use crate::data::Campaigns;
 use crate::problem::{Problems, plain};
@@ -28,7 +29,7 @@ pub struct Certify {
     #[command(flatten)]
     report: Report,
     /// Number of records processed in parallel [default: one per core]
-    #[arg(long, short)]
+    #[arg(long, short, value_parser = from_one)]
     jobs: Option<NonZeroUsize>,
 }
 

@@ -9,11 +9,12 @@ use super::inputs::{progress_bar, start_jobs};
 use super::output::{Console, Exit};
 use super::places::{REPORT, check_folder};
 use super::protocols::load;
-use super::values::numbers;
+use super::values::{from_one, numbers};
 use crate::compare::{Prepared, SIZES, Settings};
 use crate::data::Campaign;
 use crate::deliver::{self, Reports};
 use crate::disk::SetKind;
+use crate::prepare::set_by_hand;
 use crate::problem::{Problem, Problems, plain};
 use crate::report::comparison as report;
 use crate::result::comparison::Comparison;
@@ -39,7 +40,7 @@ pub struct Compare {
     #[arg(long)]
     no_report: bool,
     /// Number of records processed in parallel [default: one per core]
-    #[arg(long, short)]
+    #[arg(long, short, value_parser = from_one)]
     jobs: Option<NonZeroUsize>,
 }
 
@@ -63,14 +64,7 @@ impl Compare {
 
     fn prepared(&self, problems: &mut Problems) -> Option<Prepared> {
         let sizes = self.sizes(problems);
-        let set = self.set.iter().filter_map(|set| match set.split_once('=') {
-            Some((name, value)) => Some((name.trim().to_owned(), value.trim().to_owned())),
-            None => {
-                problems.push(Problem::error("set", format!("`--set {set}` has no `=`")).help("write `--set name=value`"));
-                None
-            }
-        });
-        let set = set.collect();
+        let set = set_by_hand(&self.set, problems);
         let campaigns: Vec<Option<Campaign>> = self.campaigns.iter().map(|folder| Campaign::open(folder, problems)).collect();
         let families: Vec<_> = self.protocol.iter().map(|name| load(name, problems)).collect();
         let campaigns: Vec<Campaign> = campaigns.into_iter().collect::<Option<_>>()?;
@@ -80,6 +74,7 @@ impl Compare {
                 problems.push(problem);
             }
         }
+        let set = set?.into_iter().map(|(name, value)| (name, value.text.trim().to_owned())).collect();
         Prepared::new(families, campaigns, Settings { sizes: sizes?, set }, problems)
     }
 

@@ -12,6 +12,7 @@ use super::of_runs::WithFiles;
 use super::output::{Console, Exit};
 use super::places::{CAMPAIGN, REPORT, check_folder, same};
 use super::simulator::{Chosen, SimulatorChoice};
+use super::values::from_one;
 use crate::certify::Compiled;
 use crate::data::hash::sha256;
 use crate::data::write::Outputs;
@@ -65,7 +66,7 @@ pub struct Diagnose {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Number of sections processed in parallel [default: one per core]
-    #[arg(long, short)]
+    #[arg(long, short, value_parser = from_one)]
     jobs: Option<NonZeroUsize>,
 }
 

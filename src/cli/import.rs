@@ -10,6 +10,7 @@ use super::inputs::{progress_bar, start_jobs};
 use super::output::{Console, Exit};
 use super::places::{check_file, same};
 use super::protocols::load;
+use super::values::from_one;
 use crate::certify::{Compiled, certify, compile};
 use crate::check::Overrides;
 use crate::check::plan::{Plan, Side};
@@ -51,7 +52,7 @@ pub struct Import {
     #[arg(long, value_enum, default_value_t, conflicts_with = "draft")]
     records: Records,
     /// Number of files processed in parallel [default: one per core]
-    #[arg(long, short)]
+    #[arg(long, short, value_parser = from_one)]
     jobs: Option<NonZeroUsize>,
 }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::output::{Console, Exit};
-use super::places::check_file;
+use super::places::{check_file, check_out};
 use crate::check::{self, Overrides};
 use crate::disk::SetKind;
 use crate::library;
@@ -151,6 +151,9 @@ pub fn list(name: Option<&str>, console: &Console) -> Exit {
 
 /// One page for the program and one for each subcommand.
 pub fn man(out: &Path, console: &Console) -> Exit {
+    if let Err(problem) = check_out(out) {
+        return console.fail(problem, Exit::Wrong);
+    }
     let command = <super::Arguments as clap::CommandFactory>::command();
     let mut pages = vec![("fishplate.1".to_string(), clap_mangen::Man::new(command.clone()))];
     for sub in command.get_subcommands() {

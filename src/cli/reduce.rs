@@ -9,6 +9,7 @@ use super::inputs::{Pool, prepare_all, progress_bar, start_jobs};
 use super::output::{Console, Exit};
 use super::places::{check_file, check_folder, check_not_input, check_out};
 use super::report::Report;
+use super::values::from_one;
 use crate::data::Campaigns;
 use crate::disk;
 use crate::problem::{Problem, Problems, plain};
@@ -36,7 +37,7 @@ pub struct Reduce {
     #[arg(long)]
     no_plots: bool,
     /// Number of records processed in parallel [default: one per core]
-    #[arg(long, short)]
+    #[arg(long, short, value_parser = from_one)]
     jobs: Option<NonZeroUsize>,
 }
 

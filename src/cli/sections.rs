@@ -10,6 +10,7 @@ use super::convert_records::Records;
 use super::inputs::{Pool, compiled_for, start_jobs};
 use super::output::{Console, Exit};
 use super::places::{CAMPAIGN, check_file, check_folder};
+use super::values::from_one;
 use crate::data::Campaign;
 use crate::data::cut::cut;
 use crate::data::record::Format;
@@ -45,7 +46,7 @@ pub struct Sections {
     #[arg(long = "set", value_name = "NAME=VALUE")]
     set: Vec<String>,
     /// Number of threads [default: one per core]
-    #[arg(long, short)]
+    #[arg(long, short, value_parser = from_one)]
     jobs: Option<NonZeroUsize>,
 }
 

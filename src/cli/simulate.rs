@@ -12,6 +12,7 @@ use super::of_runs::WithFiles;
 use super::output::{Console, Exit};
 use super::places::{CAMPAIGN, check_file, check_folder};
 use super::simulator::{Chosen, SimulatorChoice};
+use super::values::from_one;
 use crate::data::record::Format;
 use crate::data::text::read_text;
 use crate::data::write::{Outputs, write_whole};
@@ -78,7 +79,7 @@ pub struct Simulate {
     #[arg(long, short)]
     output: Option<PathBuf>,
     /// Number of sections processed in parallel [default: one per core]
-    #[arg(long, short)]
+    #[arg(long, short, value_parser = from_one)]
     jobs: Option<NonZeroUsize>,
 }
 

@@ -9,7 +9,7 @@ use super::inputs::{prepare_all, progress_bar, start_jobs};
 use super::output::{Console, Exit};
 use super::places::{REPORT, check_folder};
 use super::reduce::joined;
-use super::values::{numbers, values};
+use super::values::{from_one, numbers, values};
 use crate::data::Campaigns;
 use crate::deliver::{self, Reports};
 use crate::disk::SetKind;
@@ -74,10 +74,10 @@ pub struct Common {
     #[arg(long = "set", value_name = "NAME=VALUE")]
     set: Vec<String>,
     /// Number of sections per zone in a selection [default: the number required by the protocol]
-    #[arg(long)]
+    #[arg(long, value_parser = from_one)]
     take: Option<NonZeroUsize>,
     /// Keep at most this number of sections per zone before selecting, so that the highest standard deviation is kept.
-    #[arg(long, value_name = "SECTIONS")]
+    #[arg(long, value_name = "SECTIONS", value_parser = from_one)]
     reduce: Option<NonZeroUsize>,
     /// Number of selections up to which all are evaluated; beyond it, random ones are drawn.
     #[arg(long, value_name = "SELECTIONS", default_value_t = study::MOST)]
@@ -89,7 +89,7 @@ pub struct Common {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Number of records processed in parallel [default: one per core]
-    #[arg(long, short)]
+    #[arg(long, short, value_parser = from_one)]
     jobs: Option<NonZeroUsize>,
 }
 

@@ -1,4 +1,6 @@
-//! Lists of values on the command line: `2, 4, 6`, `10..30 step 5 Hz`, or `a, b; c, d` for values that contain commas.
+//! Values on the command line: counts, and lists such as `2, 4, 6`, `10..30 step 5 Hz`, or `a, b; c, d` for values that contain commas.
+
+use std::num::NonZeroUsize;
 
 /// Values of a list or of a range, as text; those of a range include its unit.
 ///
@@ -53,6 +55,14 @@ pub fn numbers(text: &str) -> Result<Vec<f64>, String> {
         }),
     };
     values(text)?.iter().map(number).collect()
+}
+
+/// A count of at least one.
+///
+/// # Errors
+/// Another text.
+pub fn from_one(text: &str) -> Result<NonZeroUsize, String> {
+    text.trim().parse().map_err(|_| "expected a whole number from 1".to_string())
 }
 
 #[cfg(test)]

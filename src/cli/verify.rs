@@ -8,6 +8,7 @@ use clap::Args;
 use super::inputs::progress_bar;
 use super::output::{Console, Exit};
 use super::protocols::load;
+use super::values::from_one;
 use crate::check::family::Family;
 use crate::disk;
 use crate::problem::Problems;
@@ -41,7 +42,7 @@ pub struct Verify {
     #[arg(long, default_value_t = super::report::PLOTS)]
     plots: usize,
     /// Number of records processed in parallel [default: one per core]
-    #[arg(long, short)]
+    #[arg(long, short, value_parser = from_one)]
     jobs: Option<NonZeroUsize>,
 }
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::record::Frame;
 use super::text::{read_any, read_text, text_of};
 use crate::disk;
-use crate::problem::Problem;
+use crate::problem::{Problem, nearest};
 use crate::source::{Source, Span};
 
 /// Small files and records of a campaign that are in memory, by their paths inside it. A record has no ending: `measurement/S01`.
@@ -85,14 +85,14 @@ impl Folder {
     /// A small text file without its byte order mark, the SHA-256 of its bytes, and their number.
     ///
     /// # Errors
-    /// As [`read_text`].
+    /// As [`read_text`]; `file-missing` with the nearest name in that folder.
     pub fn read_text(&self, place: &Place) -> Result<(Arc<Source>, String, u64), Problem> {
         if let Some(bytes) = self.memory.texts.get(&place.inside) {
             let (source, hash) = text_of(bytes, &place.shown)?;
             return Ok((source, hash, bytes.len() as u64));
         }
         self.missing(place)?;
-        let (source, hash) = read_text(&place.path, &place.shown)?;
+        let (source, hash) = read_text(&place.path, &place.shown).map_err(|problem| near_file(problem, place))?;
         match disk::kind(&place.path) {
             Ok(Some(disk::Kind::File(size))) => Ok((source, hash, size)),
             Ok(_) => Err(Problem::error("file-missing", format!("`{}` went away while it was read", place.shown))),
@@ -103,13 +103,13 @@ impl Folder {
     /// All bytes of a file.
     ///
     /// # Errors
-    /// As [`read_any`].
+    /// As [`read_any`]; `file-missing` with the nearest name in that folder.
     pub fn read_any(&self, place: &Place) -> Result<Vec<u8>, Problem> {
         if let Some(bytes) = self.memory.texts.get(&place.inside) {
             return Ok(bytes.clone());
         }
         self.missing(place)?;
-        read_any(&place.path, &place.shown)
+        read_any(&place.path, &place.shown).map_err(|problem| near_file(problem, place))
     }
 
     fn missing(&self, place: &Place) -> Result<(), Problem> {
@@ -169,6 +169,21 @@ impl Folder {
     }
 }
 
+/// Names a file beside one that is missing, if its name is similar.
+fn near_file(problem: Problem, place: &Place) -> Problem {
+    let (Some(folder), Some(name)) = (place.path.parent(), place.path.file_name().and_then(|name| name.to_str())) else { return problem };
+    if problem.code != "file-missing" {
+        return problem;
+    }
+    let beside: Vec<String> = disk::names(folder).unwrap_or_default().iter().filter_map(|name| Some(name.to_str()?.to_string())).collect();
+    match nearest(name, beside.iter().map(String::as_str)) {
+        Some(near) => {
+            problem.meant(&place.inside.rsplit_once('/').map_or_else(|| near.to_string(), |(above, _)| format!("{above}/{near}")))
+        }
+        None => problem,
+    }
+}
+
 /// Checks a name that becomes part of a file name.
 ///
 /// # Errors
@@ -189,6 +204,19 @@ pub(super) fn check_file_name(name: &str, at: &Span) -> Result<(), Problem> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_missing_file_is_told_with_the_nearest_name_beside_it() {
+        let temp = tempfile::tempdir().expect("a temporary folder");
+        std::fs::create_dir(temp.path().join("data")).expect("made");
+        std::fs::write(temp.path().join("data/vehicle.yaml"), "mass: 1 t").expect("written");
+        let folder = Folder::open(temp.path()).expect("there");
+        let place = |written: &str| folder.place(written, &Source::new("t", "x").whole()).expect("a place inside");
+        let near = |written: &str| folder.read_text(&place(written)).expect_err("missing").near;
+        assert_eq!(near("data/vehicel.yaml").as_deref(), Some("data/vehicle.yaml"));
+        assert_eq!(near("data/something.yaml"), None);
+        assert_eq!(near("vehicel.yaml"), None, "it is in another folder");
+    }
 
     #[test]
     fn only_paths_inside_are_taken() {
