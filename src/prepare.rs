@@ -261,6 +261,15 @@ pub fn set_by_hand(all: &[String], problems: &mut Problems) -> Option<Vec<(Strin
     Some(found)
 }
 
+/// The campaign with the files of its own protocol and of those that this one extends, for a copy of it. What cannot be read is left out:
+/// a copy needs no protocol.
+pub fn with_protocols(campaign: Campaign) -> Campaign {
+    let named = campaign.protocol.as_ref().filter(|named| library::shipped(&named.value).is_none());
+    let Some(family) = named.and_then(|named| campaign_protocol(&campaign, named, &mut Problems::default())) else { return campaign };
+    let inside = family.sources.iter().map(|source| campaign.inside(&source.name).to_string()).collect();
+    campaign.with_protocols(inside)
+}
+
 /// The protocol that a campaign names: a shipped one, or a file inside the campaign; the same for those it extends.
 fn campaign_protocol(campaign: &Campaign, named: &Spanned<String>, problems: &mut Problems) -> Option<Family> {
     let inside = |named: &Spanned<String>| {

@@ -156,9 +156,18 @@ fn a_protocol_of_the_campaign_goes_along() {
     let text = fs::read_to_string(&file).expect("a campaign");
     let kept: String = text.lines().filter(|line| !line.starts_with("protocol:")).map(|line| format!("{line}\n")).collect();
     fs::write(&file, format!("protocol: own.fp\n{kept}")).expect("written");
-    fs::write(campaign.path().join("own.fp"), "protocol own \"Own\"\n  extends en14363-2016-annex-t\n").expect("written");
+    let write = |name: &str, extends: &str| {
+        let path = campaign.path().join(name);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        fs::write(path, format!("protocol own \"Own\"\n  extends {extends}\n")).expect("written");
+    };
+    write("own.fp", "rules/house.fp");
+    write("rules/house.fp", "base.fp");
+    write("rules/base.fp", "en14363-2016-annex-t");
     let (there, _) = converted(campaign.path(), "parquet");
-    assert!(there.path().join("own.fp").is_file());
+    for name in ["own.fp", "rules/house.fp", "rules/base.fp"] {
+        assert!(there.path().join(name).is_file(), "{name}");
+    }
     assert!(!certify(there.path(), &["--only", "results"]).results()["quantities"].is_null());
 }
 

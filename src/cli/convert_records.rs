@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use super::inputs::with_protocols;
 use super::output::{Console, Exit};
 use super::places::{CAMPAIGN, check_folder};
 use crate::data::Campaign;
@@ -47,7 +48,7 @@ pub struct ConvertRecords {
 impl ConvertRecords {
     pub fn run(self, console: &Console) -> Exit {
         let mut problems = Problems::default();
-        let campaign = Campaign::open(&self.campaign, &mut problems);
+        let campaign = Campaign::open(&self.campaign, &mut problems).map(with_protocols);
         if let Some(campaign) = &campaign
             && let Err(problem) = check_folder(&self.out, CAMPAIGN, campaign)
         {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::output::{Console, Exit};
-pub use crate::prepare::{Pool, Prepared, compiled_for, prepare, prepare_all};
+pub use crate::prepare::{Pool, Prepared, compiled_for, prepare, prepare_all, with_protocols};
 use crate::problem::Problem;
 
 /// Maximum number of records processed in parallel. Each takes a thread, and memory for its text and signals. The value exceeds the number

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::inputs::prepare;
+use super::inputs::{prepare, with_protocols};
 use crate::data::Campaign;
 use crate::data::cut::cut;
 use crate::data::record::Format;
@@ -21,6 +21,7 @@ pub struct WithFiles {
 impl WithFiles {
     /// The campaign itself; if its sections are parts of runs, a copy for which they were cut.
     pub fn of(campaign: Campaign, problems: &mut Problems) -> Option<Self> {
+        let campaign = with_protocols(campaign);
         if campaign.runs().is_empty() {
             return Some(Self { campaign, _copy: None });
         }
@@ -32,7 +33,7 @@ impl WithFiles {
         let mut outputs = Outputs::of(SetKind::Campaign, folder.path()).for_this_run();
         cut(&campaign, Format::Parquet, &mut outputs).map_err(|found| problems.0.extend(found)).ok()?;
         outputs.commit().map_err(|problem| problems.push(problem)).ok()?;
-        Some(Self { campaign: Campaign::open(folder.path(), problems)?, _copy: Some(folder) })
+        Some(Self { campaign: with_protocols(Campaign::open(folder.path(), problems)?), _copy: Some(folder) })
     }
 
     /// Opens a campaign; the protocol finds sections in its runs if there is no table of sections. `places` checks the output folders
@@ -46,7 +47,7 @@ impl WithFiles {
         let campaign = Campaign::open(folder, problems)?;
         places(&campaign).map_err(|problem| problems.push(problem)).ok()?;
         if campaign.runs().is_empty() {
-            return Some(Self { campaign, _copy: None });
+            return Self::of(campaign, problems);
         }
         Self::of(prepare(folder, protocol, &[], problems)?.campaign, problems)
     }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::convert_records::Records;
-use super::inputs::{Pool, compiled_for, start_jobs};
+use super::inputs::{Pool, compiled_for, start_jobs, with_protocols};
 use super::output::{Console, Exit};
 use super::places::{CAMPAIGN, check_file, check_folder};
 use super::values::from_one;
@@ -79,6 +79,7 @@ impl Sections {
                 }
             }
         };
+        let campaign = with_protocols(campaign);
         // The copy is complete beside its folder before the table is written: if one of them cannot be written, neither is.
         let copy = match self.cut.as_ref().map(|folder| cut_to(folder, &campaign, Format::from(self.records), console)).transpose() {
             Ok(copy) => copy,

@@ -76,6 +76,8 @@ pub struct Campaign {
     pub names: Vec<Cell>,
     /// `campaign.yaml`, the vehicle file, the section table and the table of wanted operation, if present.
     pub files: Vec<ReadFile>,
+    /// Files of its own protocol and of those that this one extends, as paths inside it; see [`Campaign::with_protocols`].
+    protocols: Vec<String>,
     folder: Folder,
     record_folders: Vec<RecordFolder>,
     runs: Vec<Run>,
@@ -205,6 +207,7 @@ impl Campaign {
             source,
             tree,
             files,
+            protocols: Vec::new(),
             folder,
             record_folders,
             runs,

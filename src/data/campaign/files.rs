@@ -46,11 +46,23 @@ impl Campaign {
         Inputs { files: files.map(|place| real(&place)).collect(), folder, folders }
     }
 
-    /// The protocol that the campaign brings along; a shipped one is a name.
-    fn protocol_file(&self) -> Option<Place> {
-        let protocol = self.protocol.as_ref().filter(|_| self.folder.on_disk())?;
-        let place = self.folder.place(&protocol.value, &protocol.span).ok()?;
-        disk::is_file(&place.path).is_ok_and(|there| there).then_some(place)
+    /// The same campaign, of which protocols that its own one extends are known: paths inside the campaign. A copy of it takes them along.
+    #[must_use]
+    pub fn with_protocols(mut self, inside: Vec<String>) -> Self {
+        self.protocols = inside;
+        self
+    }
+
+    /// Files of protocols that the campaign brings along; a shipped one is a name.
+    fn protocol_files(&self) -> Vec<Place> {
+        let named = self.protocol.iter().map(|protocol| &protocol.value).chain(&self.protocols).filter(|_| self.folder.on_disk());
+        let mut found: Vec<Place> = Vec::new();
+        for place in named.filter_map(|path| self.folder.place(path, &self.tree.span.part(0..0)).ok()) {
+            if disk::is_file(&place.path).is_ok_and(|there| there) && !found.contains(&place) {
+                found.push(place);
+            }
+        }
+        found
     }
 
     /// Every file that the campaign is read from but its records, with its path inside.
@@ -59,7 +71,7 @@ impl Campaign {
     /// A name leads outside.
     pub fn plain_files(&self) -> Result<Vec<String>, Problem> {
         let mut inside: Vec<String> = self.files.iter().map(|file| file.path.clone()).collect();
-        for place in self.vehicle_files()?.into_iter().chain(self.protocol_file()) {
+        for place in self.vehicle_files()?.into_iter().chain(self.protocol_files()) {
             if !inside.contains(&place.inside) {
                 inside.push(place.inside);
             }
@@ -84,7 +96,7 @@ impl Campaign {
                 }
             }
         }
-        for place in self.vehicle_files()?.into_iter().chain(self.protocol_file()) {
+        for place in self.vehicle_files()?.into_iter().chain(self.protocol_files()) {
             if !inside.contains(&place.inside) {
                 inside.push(place.inside);
             }
