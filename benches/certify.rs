@@ -1,21 +1,26 @@
-//! Wall time and peak memory of the program, beside an independent Python evaluation of the same job where one is given.
+//! Wall time and peak memory of the program, beside an independent Python evaluation of the same
+//! job where one is given.
 //!
 //! ```text
 //! cargo bench --bench certify -- [CAMPAIGN...]
 //! ```
 //!
-//! - `FISHPLATE_PEER`: a Python script with `run(folder, jobs=N)` and `--make-test-campaign DIR`. Its process start and imports
-//!   are not counted (see `peer.py`); those of `fishplate` are. The rows "both started anew" count them for both, as a user of a
-//!   shell sees them. Its synthetic campaign of 33 sections is timed too. A library
-//!   below it may use more threads than `jobs` asks for (polars reads with all; `POLARS_MAX_THREADS=1` holds it to one).
+//! - `FISHPLATE_PEER`: a Python script with `run(folder, jobs=N)` and `--make-test-campaign DIR`.
+//!   Its process start and imports are not counted (see `peer.py`); those of `fishplate` are. The
+//!   rows "both started anew" count them for both, as a user of a shell sees them. Its synthetic
+//!   campaign of 33 sections is timed too. A library below it may use more threads than `jobs` asks
+//!   for (polars reads with all; `POLARS_MAX_THREADS=1` holds it to one).
 //!
-//! Each campaign is timed twice: as it is, and with its records as Parquet files, which the peer reads with polars (left out
-//! with a word if it has none). Both are also timed by the same protocol without its plausibility rules: the peer has none, so
-//! that this is the same work. Beside the time by the clock stands that of the processors, which is fair where others use them.
+//! Each campaign is timed twice: as it is, and with its records as Parquet files, which the peer
+//! reads with polars (left out with a word if it has none). Both are also timed by the same
+//! protocol without its plausibility rules: the peer has none, so that this is the same work.
+//! Beside the time by the clock stands that of the processors, which is fair where others use them.
 //!
 //! - `FISHPLATE_PYTHON`: the interpreter, `python3` by default.
-//! - `FISHPLATE_QUIET`: longest wait in s before each round until the machine is idle, 0 by default; for machines that others use.
-//! - `FISHPLATE_ROUNDS`: rounds that count, 7 by default. One more goes before them, to warm up caches.
+//! - `FISHPLATE_QUIET`: longest wait in s before each round until the machine is idle, 0 by
+//!   default; for machines that others use.
+//! - `FISHPLATE_ROUNDS`: rounds that count, 7 by default. One more goes before them, to warm up
+//!   caches.
 //!
 //! Both take turns in each round, so that a change in the load of the machine meets both.
 
@@ -37,7 +42,8 @@ const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 fn main() -> Outcome<()> {
     let rounds = env::var("FISHPLATE_ROUNDS").ok().map_or(Ok(7), |text| text.parse())?;
-    let mut campaigns: Vec<PathBuf> = env::args().skip(1).filter(|word| !word.starts_with("--")).map(PathBuf::from).collect();
+    let mut campaigns: Vec<PathBuf> =
+        env::args().skip(1).filter(|word| !word.starts_with("--")).map(PathBuf::from).collect();
     let mut peer = env::var_os("FISHPLATE_PEER").map(|script| Peer::start(&script)).transpose()?;
     // The peer does not read the units in the file of the coach.
     if campaigns.is_empty() && peer.is_none() {
@@ -46,7 +52,11 @@ fn main() -> Outcome<()> {
     if let Some(peer) = &peer {
         campaigns.push(peer.synthetic_campaign()?);
     }
-    println!("{} processors, load {}, {rounds} rounds; seconds: minimum, median", threads(), load());
+    println!(
+        "{} processors, load {}, {rounds} rounds; seconds: minimum, median",
+        threads(),
+        load()
+    );
     println!("\n{:<40} {:>8} {:>8}   {:>8} {:>8}   {:>7}", "", "here", "", "peer", "", "peer/here");
     for campaign in &campaigns {
         time_campaign(campaign, rounds, peer.as_mut())?;
@@ -63,7 +73,14 @@ fn time_campaign(campaign: &Path, rounds: usize, mut peer: Option<&mut Peer>) ->
         fs::remove_dir_all(&columns)?;
     }
     seconds(
-        &["convert-records".as_ref(), campaign.as_os_str(), "--to".as_ref(), "parquet".as_ref(), "--out".as_ref(), columns.as_os_str()],
+        &[
+            "convert-records".as_ref(),
+            campaign.as_os_str(),
+            "--to".as_ref(),
+            "parquet".as_ref(),
+            "--out".as_ref(),
+            columns.as_os_str(),
+        ],
         1,
     )?;
     let bare = Path::new(SCRATCH).join("bare.fp");
@@ -74,7 +91,11 @@ fn time_campaign(campaign: &Path, rounds: usize, mut peer: Option<&mut Peer>) ->
         ("results", results.clone(), 0),
         ("results without plausibility", [results.as_slice(), &without_rules].concat(), 0),
         ("results from Parquet", results_of(&columns, &out), 1),
-        ("from Parquet without plausibility", [results_of(&columns, &out).as_slice(), &without_rules].concat(), 1),
+        (
+            "from Parquet without plausibility",
+            [results_of(&columns, &out).as_slice(), &without_rules].concat(),
+            1,
+        ),
     ];
     let sizes = [folder_size(campaign)?, folder_size(&columns)?].map(|bytes| bytes as f64 / 1e6);
     println!("\n{}, {:.1} MB; as Parquet {:.1} MB", campaign.display(), sizes[0], sizes[1]);
@@ -92,11 +113,15 @@ fn time_campaign(campaign: &Path, rounds: usize, mut peer: Option<&mut Peer>) ->
             for (at, folder) in [campaign, &columns].into_iter().enumerate() {
                 wait_until_idle();
                 let able = |peer: &&mut &mut Peer| at == 0 || peer.columns;
-                let theirs = peer.as_mut().filter(able).map(|peer| peer.run(folder, jobs)).transpose()?;
+                let theirs =
+                    peer.as_mut().filter(able).map(|peer| peer.run(folder, jobs)).transpose()?;
                 there[at].extend(theirs.map(|(time, _)| time).filter(|_| round > 0));
                 wait_until_idle();
-                let from_start =
-                    peer.as_ref().filter(|peer| at == 0 || peer.columns).map(|peer| peer.run_anew(folder, jobs)).transpose()?;
+                let from_start = peer
+                    .as_ref()
+                    .filter(|peer| at == 0 || peer.columns)
+                    .map(|peer| peer.run_anew(folder, jobs))
+                    .transpose()?;
                 anew[at].extend(from_start.filter(|_| round > 0));
             }
         }
@@ -107,16 +132,29 @@ fn time_campaign(campaign: &Path, rounds: usize, mut peer: Option<&mut Peer>) ->
         for (at, anew) in anew.into_iter().enumerate().filter(|(_, anew)| !anew.is_empty()) {
             let (what, _, _) = &runs[2 * at + 1];
             println!("  {what}, {of},");
-            print_row("  both started anew", here[2 * at + 1].iter().map(|time: &Time| time.clock).collect(), anew);
+            print_row(
+                "  both started anew",
+                here[2 * at + 1].iter().map(|time: &Time| time.clock).collect(),
+                anew,
+            );
         }
     }
     if peer.as_ref().is_some_and(|peer| !peer.columns) {
         println!("  the peer has no polars and was not timed on Parquet");
     }
     let whole = ["certify".as_ref(), campaign.as_os_str(), "--out".as_ref(), out.as_os_str()];
-    print_row("results and report (PDF, HTML)", repeat(rounds, || seconds(&whole, threads()))?, Vec::new());
-    let memory = [peak_memory(&results, 1)?, peak_memory(&results, threads())?, peak_memory(&whole, threads())?];
-    let [one, all, whole] = memory.map(|peak| peak.map_or("unknown".to_string(), |megabytes| format!("{megabytes:.0} MB")));
+    print_row(
+        "results and report (PDF, HTML)",
+        repeat(rounds, || seconds(&whole, threads()))?,
+        Vec::new(),
+    );
+    let memory = [
+        peak_memory(&results, 1)?,
+        peak_memory(&results, threads())?,
+        peak_memory(&whole, threads())?,
+    ];
+    let [one, all, whole] = memory
+        .map(|peak| peak.map_or("unknown".to_string(), |megabytes| format!("{megabytes:.0} MB")));
     println!("  peak memory: results {one} with 1 thread, {all} with all; with report {whole}");
     if let Some(peer) = peer {
         println!("  peak memory of the peer so far: {:.0} MB", peer.run(campaign, threads())?.1);
@@ -125,13 +163,23 @@ fn time_campaign(campaign: &Path, rounds: usize, mut peer: Option<&mut Peer>) ->
 }
 
 fn results_of<'a>(campaign: &'a Path, out: &'a Path) -> Vec<&'a OsStr> {
-    vec!["certify".as_ref(), campaign.as_os_str(), "--only".as_ref(), "results".as_ref(), "--out".as_ref(), out.as_os_str()]
+    vec![
+        "certify".as_ref(),
+        campaign.as_os_str(),
+        "--only".as_ref(),
+        "results".as_ref(),
+        "--out".as_ref(),
+        out.as_os_str(),
+    ]
 }
 
 fn time_protocols(rounds: usize) -> Outcome<()> {
-    let mut protocols: Vec<PathBuf> =
-        fs::read_dir(Path::new(ROOT).join("protocols"))?.map(|entry| Ok(entry?.path())).collect::<Outcome<_>>()?;
-    protocols.retain(|path| path.extension().is_some_and(|extension| extension == "fp" || extension == "yaml"));
+    let mut protocols: Vec<PathBuf> = fs::read_dir(Path::new(ROOT).join("protocols"))?
+        .map(|entry| Ok(entry?.path()))
+        .collect::<Outcome<_>>()?;
+    protocols.retain(|path| {
+        path.extension().is_some_and(|extension| extension == "fp" || extension == "yaml")
+    });
     protocols.sort();
     println!("\ncheck");
     for protocol in protocols {
@@ -143,8 +191,7 @@ fn time_protocols(rounds: usize) -> Outcome<()> {
 }
 
 /// The protocol of the campaigns without its plausibility rules.
-const BARE: &str =
-    "protocol bare \"Annex T without plausibility rules\"\n  extends  en14363-2016-annex-t\n\nremove\n  plausibility  every\n";
+const BARE: &str = "protocol bare \"Annex T without plausibility rules\"\n  extends  en14363-2016-annex-t\n\nremove\n  plausibility  every\n";
 
 /// Time by the clock and of the processors [s].
 #[derive(Clone, Copy)]
@@ -153,11 +200,15 @@ struct Time {
     processors: f64,
 }
 
-/// As [`seconds`], with the time of the processors; the kernel of Linux tells that of ended children, to 10 ms.
+/// As [`seconds`], with the time of the processors; the kernel of Linux tells that of ended
+/// children, to 10 ms.
 fn run(words: &[&OsStr], jobs: usize) -> Outcome<Time> {
     let before = children_time();
     let clock = seconds(words, jobs)?;
-    Ok(Time { clock, processors: children_time().zip(before).map_or(f64::NAN, |(after, before)| after - before) })
+    Ok(Time {
+        clock,
+        processors: children_time().zip(before).map_or(f64::NAN, |(after, before)| after - before),
+    })
 }
 
 /// Processor time of all children that have ended [s].
@@ -165,35 +216,53 @@ fn children_time() -> Option<f64> {
     /// Ticks in a second, the same on all systems in use.
     const TICKS: f64 = 100.0;
     let text = fs::read_to_string("/proc/self/stat").ok()?;
-    // Behind the name, which may have blanks: state, 12 others, then the times of children in user and system mode.
+    // Behind the name, which may have blanks: state, 12 others, then the times of children in user
+    // and system mode.
     let words: Vec<&str> = text.rsplit_once(')')?.1.split_whitespace().collect();
     let ticks = |at: usize| words.get(at)?.parse::<f64>().ok();
     Some((ticks(13)? + ticks(14)?) / TICKS)
 }
 
-/// One run of the program from its start to its end [s]. A verdict that does not hold (exit code 1) is a result as well.
+/// One run of the program from its start to its end [s]. A verdict that does not hold (exit code 1)
+/// is a result as well.
 fn seconds(words: &[&OsStr], jobs: usize) -> Outcome<f64> {
     let mut command = Command::new(FISHPLATE);
-    command.args(words).arg("--quiet").env("RAYON_NUM_THREADS", jobs.to_string()).stdout(Stdio::null());
+    command
+        .args(words)
+        .arg("--quiet")
+        .env("RAYON_NUM_THREADS", jobs.to_string())
+        .stdout(Stdio::null());
     let start = Instant::now();
     let done = command.output()?;
     let seconds = start.elapsed().as_secs_f64();
     match done.status.code() {
         Some(0 | 1) => Ok(seconds),
-        _ => Err(format!("{command:?}: {}\n{}", done.status, String::from_utf8_lossy(&done.stderr)).into()),
+        _ => {
+            Err(format!("{command:?}: {}\n{}", done.status, String::from_utf8_lossy(&done.stderr))
+                .into())
+        }
     }
 }
 
-/// Peak resident memory of one run [MB], from `/usr/bin/time` where there is one: the standard library does not tell.
+/// Peak resident memory of one run [MB], from `/usr/bin/time` where there is one: the standard
+/// library does not tell.
 fn peak_memory(words: &[&OsStr], jobs: usize) -> Outcome<Option<f64>> {
     let timer = Path::new("/usr/bin/time");
     if !timer.exists() {
         return Ok(None);
     }
     let mut command = Command::new(timer);
-    command.args(["-f", "%M", FISHPLATE]).args(words).arg("--quiet").env("RAYON_NUM_THREADS", jobs.to_string());
+    command
+        .args(["-f", "%M", FISHPLATE])
+        .args(words)
+        .arg("--quiet")
+        .env("RAYON_NUM_THREADS", jobs.to_string());
     let said = String::from_utf8(command.output()?.stderr)?;
-    Ok(said.lines().last().and_then(|line| line.trim().parse::<f64>().ok()).map(|kilobytes| kilobytes / 1024.0))
+    Ok(said
+        .lines()
+        .last()
+        .and_then(|line| line.trim().parse::<f64>().ok())
+        .map(|kilobytes| kilobytes / 1024.0))
 }
 
 fn repeat(rounds: usize, mut run: impl FnMut() -> Outcome<f64>) -> Outcome<Vec<f64>> {
@@ -219,12 +288,23 @@ struct Peer {
 impl Peer {
     fn start(script: &OsStr) -> Outcome<Self> {
         let driver = Path::new(ROOT).join("benches/peer.py");
-        let mut process = python().arg(driver).arg(script).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()?;
+        let mut process = python()
+            .arg(driver)
+            .arg(script)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()?;
         let requests = process.stdin.take().ok_or("no pipe to the peer")?;
         let mut answers = BufReader::new(process.stdout.take().ok_or("no pipe from the peer")?);
         let mut able = String::new();
         answers.read_line(&mut able)?;
-        Ok(Self { script: script.into(), process, requests, answers, columns: able.trim() == "parquet" })
+        Ok(Self {
+            script: script.into(),
+            process,
+            requests,
+            answers,
+            columns: able.trim() == "parquet",
+        })
     }
 
     /// Time of one evaluation and peak memory of the process so far [MB].
@@ -249,7 +329,8 @@ impl Peer {
     fn synthetic_campaign(&self) -> Outcome<PathBuf> {
         let folder = Path::new(SCRATCH).join("synthetic-33-sections");
         if !folder.join("sections.csv").exists() {
-            let status = python().arg(&self.script).arg("--make-test-campaign").arg(&folder).status()?;
+            let status =
+                python().arg(&self.script).arg("--make-test-campaign").arg(&folder).status()?;
             if !status.success() {
                 return Err(format!("the peer made no test campaign: {status}").into());
             }
@@ -260,7 +341,8 @@ impl Peer {
 
 impl Drop for Peer {
     fn drop(&mut self) {
-        // The driver ends with its input, which closes only after this; what it would still say is of no use.
+        // The driver ends with its input, which closes only after this; what it would still say is
+        // of no use.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
@@ -274,7 +356,11 @@ fn print_row(what: &str, here: Vec<f64>, there: Vec<f64>) {
     let Some((minimum, median)) = minimum_and_median(here) else { return };
     print!("  {what:<38} {minimum:>8.4} {median:>8.4}");
     if let Some((peer_minimum, peer_median)) = minimum_and_median(there) {
-        print!("   {peer_minimum:>8.4} {peer_median:>8.4}   {:>5.1} {:>5.1}", peer_minimum / minimum, peer_median / median);
+        print!(
+            "   {peer_minimum:>8.4} {peer_median:>8.4}   {:>5.1} {:>5.1}",
+            peer_minimum / minimum,
+            peer_median / median
+        );
     }
     println!();
 }
@@ -283,17 +369,28 @@ fn print_times(what: &str, here: &[Time], there: &[Time]) {
     let of = |times: &[Time], kind: fn(&Time) -> f64| times.iter().map(kind).collect::<Vec<f64>>();
     print_row(what, of(here, |time| time.clock), of(there, |time| time.clock));
     // The kernel counts in steps of 10 ms, which the mean evens out.
-    let mean = |times: &[Time]| times.iter().map(|time| time.processors).sum::<f64>() / times.len() as f64;
+    let mean =
+        |times: &[Time]| times.iter().map(|time| time.processors).sum::<f64>() / times.len() as f64;
     let (here, there) = (mean(here), mean(there));
     print!("    processors, mean                     {here:>8.4}");
-    println!("{}", if there.is_finite() { format!("            {there:>8.4}            {:>5.1}", there / here) } else { String::new() });
+    println!(
+        "{}",
+        if there.is_finite() {
+            format!("            {there:>8.4}            {:>5.1}", there / here)
+        } else {
+            String::new()
+        }
+    );
 }
 
 fn minimum_and_median(mut values: Vec<f64>) -> Option<(f64, f64)> {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;
-    let median =
-        if values.len() % 2 == 1 { *values.get(middle)? } else { (values.get(middle.checked_sub(1)?)? + values.get(middle)?) / 2.0 };
+    let median = if values.len() % 2 == 1 {
+        *values.get(middle)?
+    } else {
+        (values.get(middle.checked_sub(1)?)? + values.get(middle)?) / 2.0
+    };
     Some((*values.first()?, median))
 }
 
@@ -311,25 +408,39 @@ fn threads() -> usize {
     thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Returns once less than a tenth of the processors' time is used by others, or `FISHPLATE_QUIET` seconds have passed.
+/// Returns once less than a tenth of the processors' time is used by others, or `FISHPLATE_QUIET`
+/// seconds have passed.
 fn wait_until_idle() {
-    let patience = env::var("FISHPLATE_QUIET").ok().and_then(|text| text.parse().ok()).map_or(Duration::ZERO, Duration::from_secs);
+    let patience = env::var("FISHPLATE_QUIET")
+        .ok()
+        .and_then(|text| text.parse().ok())
+        .map_or(Duration::ZERO, Duration::from_secs);
     let start = Instant::now();
     while start.elapsed() < patience {
         let before = processor_time();
         thread::sleep(Duration::from_millis(200));
-        let (Some((idle, all)), Some((idle_after, all_after))) = (before, processor_time()) else { return };
+        let (Some((idle, all)), Some((idle_after, all_after))) = (before, processor_time()) else {
+            return;
+        };
         if (idle_after - idle) as f64 > 0.9 * (all_after - all) as f64 {
             return;
         }
     }
 }
 
-/// Idle time and all time of all processors since they started, in ticks; the kernel of Linux tells.
+/// Idle time and all time of all processors since they started, in ticks; the kernel of Linux
+/// tells.
 fn processor_time() -> Option<(u64, u64)> {
     let text = fs::read_to_string("/proc/stat").ok()?;
     // user, nice, system, idle, waiting for input, and what interrupts and other machines took.
-    let ticks: Vec<u64> = text.lines().next()?.split_whitespace().skip(1).take(8).filter_map(|word| word.parse().ok()).collect();
+    let ticks: Vec<u64> = text
+        .lines()
+        .next()?
+        .split_whitespace()
+        .skip(1)
+        .take(8)
+        .filter_map(|word| word.parse().ok())
+        .collect();
     Some((ticks.get(3)? + ticks.get(4)?, ticks.iter().sum()))
 }
 

@@ -1,8 +1,9 @@
-//! All selections of three sections from each zone, against a reference program in Python (numba), side by side in one run.
+//! All selections of three sections from each zone, against a reference program in Python (numba),
+//! side by side in one run.
 //!
-//! `cargo bench --bench combinations`; with `FISHPLATE_PEER_COMBINATIONS` naming the reference program, both get the same
-//! differences, their times alternate, and their results are compared. With `--plot FILE`, the cost against the number of
-//! sections as SVG.
+//! `cargo bench --bench combinations`; with `FISHPLATE_PEER_COMBINATIONS` naming the reference
+//! program, both get the same differences, their times alternate, and their results are compared.
+//! With `--plot FILE`, the cost against the number of sections as SVG.
 
 #![allow(clippy::print_stdout)]
 
@@ -21,11 +22,13 @@ const QUANTITIES: usize = 12;
 const SIGNALS: usize = 2;
 const RUNS: usize = 5;
 
-/// Differences of the size of the limits, with something in common between the signals of a section.
+/// Differences of the size of the limits, with something in common between the signals of a
+/// section.
 fn pool(counts: &[usize]) -> Pool {
     let all: usize = counts.iter().sum();
     let mut random = Random::new(20_160_516, all as u64);
-    let mut normal = || (0..12).map(|_| random.below(1 << 30) as f64 / f64::from(1 << 30)).sum::<f64>() - 6.0;
+    let mut normal =
+        || (0..12).map(|_| random.below(1 << 30) as f64 / f64::from(1 << 30)).sum::<f64>() - 6.0;
     let named = |name: &str| Statistic::named(name).expect("a statistic");
     let limit = |name: &str, bound: f64| PooledLimit {
         estimate: Pooled::Statistic(named(name), 1),
@@ -53,14 +56,25 @@ fn pool(counts: &[usize]) -> Pool {
             limits: vec![limit("std", 1.0), limit("mean", 2.0 / 3.0)],
         }
     });
-    let zone_of = counts.iter().enumerate().flat_map(|(zone, count)| (0..*count).map(move |_| (zone + 1).to_string()));
+    let zone_of = counts
+        .iter()
+        .enumerate()
+        .flat_map(|(zone, count)| (0..*count).map(move |_| (zone + 1).to_string()));
     Pool {
         quantities: quantities.collect(),
         sections: zone_of
             .enumerate()
-            .map(|(at, zone)| Section { name: format!("s{:02}", at + 1), zone: Some(zone), site: at, used: true, reason: None })
+            .map(|(at, zone)| Section {
+                name: format!("s{:02}", at + 1),
+                zone: Some(zone),
+                site: at,
+                used: true,
+                reason: None,
+            })
             .collect(),
-        zones: (1..=counts.len()).map(|zone| Zone { name: zone.to_string(), title: String::new(), needed: 3 }).collect(),
+        zones: (1..=counts.len())
+            .map(|zone| Zone { name: zone.to_string(), title: String::new(), needed: 3 })
+            .collect(),
         minimum: 12,
         rule: Some(Rule::EveryLimit),
     }
@@ -95,22 +109,42 @@ fn peer(script: &str, pool: &Pool, folder: &std::path::Path) -> Option<Peer> {
         for quantity in &pool.quantities {
             for (signal, value) in &quantity.values[at] {
                 let zone = section.zone.as_deref().unwrap_or_default();
-                let _ = writeln!(text, "{},{zone},{},{},{value:?},1.0", section.name, quantity.id, signal + 1);
+                let _ = writeln!(
+                    text,
+                    "{},{zone},{},{},{value:?},1.0",
+                    section.name,
+                    quantity.id,
+                    signal + 1
+                );
             }
         }
     }
     std::fs::write(&input, text).ok()?;
-    let run = Command::new("python3").arg(script).arg("--diffs").arg(&input).arg("--json").arg(&output).output().ok()?;
+    let run = Command::new("python3")
+        .arg(script)
+        .arg("--diffs")
+        .arg(&input)
+        .arg("--json")
+        .arg(&output)
+        .output()
+        .ok()?;
     let said = String::from_utf8_lossy(&run.stderr).into_owned();
-    // `numba: 13829760 selections in 1.74 s (1.71 s CPU); validated ...`; compiling is told on a line of its own.
+    // `numba: 13829760 selections in 1.74 s (1.71 s CPU); validated ...`; compiling is told on a
+    // line of its own.
     let seconds = said.split("selections in ").nth(1)?.split(' ').next()?.parse().ok()?;
-    let cpu = said.split("selections in ").nth(1)?.split('(').nth(1)?.split(' ').next()?.parse().ok()?;
-    let json: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&output).ok()?).ok()?;
+    let cpu =
+        said.split("selections in ").nth(1)?.split('(').nth(1)?.split(' ').next()?.parse().ok()?;
+    let json: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(&output).ok()?).ok()?;
     let of = |id: &str, statistic: &str| {
         let found = &json["quantities"][id][statistic];
         ["min", "q25", "q50", "q75", "max"].map(|key| found[key].as_f64().unwrap_or(f64::NAN))
     };
-    let values = pool.quantities.iter().flat_map(|quantity| [of(&quantity.id, "std"), of(&quantity.id, "mean")].concat()).collect();
+    let values = pool
+        .quantities
+        .iter()
+        .flat_map(|quantity| [of(&quantity.id, "std"), of(&quantity.id, "mean")].concat())
+        .collect();
     Some(Peer { seconds, cpu, validated: json["validated"].as_u64()?, values })
 }
 
@@ -150,12 +184,18 @@ fn main() {
         for _ in 0..RUNS {
             let before = cpu();
             let (seconds, good, values) = ours(&case);
-            own_cpu += cpu().zip(before).map_or(f64::NAN, |(after, before)| after - before) / RUNS as f64;
+            own_cpu +=
+                cpu().zip(before).map_or(f64::NAN, |(after, before)| after - before) / RUNS as f64;
             own.push(seconds);
             validated = good;
-            if let Some(peer) = script.as_ref().and_then(|script| peer(script, &pool, folder.path())) {
+            if let Some(peer) =
+                script.as_ref().and_then(|script| peer(script, &pool, folder.path()))
+            {
                 assert_eq!(peer.validated, good, "selections validated");
-                worst = values.iter().zip(&peer.values).fold(worst, |worst, (a, b)| worst.max((a - b).abs()));
+                worst = values
+                    .iter()
+                    .zip(&peer.values)
+                    .fold(worst, |worst, (a, b)| worst.max((a - b).abs()));
                 theirs.push(peer.seconds);
                 their_cpu.push(peer.cpu);
             }
@@ -171,8 +211,17 @@ fn main() {
         );
         if !theirs.is_empty() {
             let (theirs, their_cpu) = (median(theirs), median(their_cpu));
-            println!("  reference {:.0} ms: {:.1} times slower; largest difference {worst:.1e}", 1e3 * theirs, theirs / own);
-            println!("  CPU time {:.0} ms and {:.0} ms: {:.1} times", 1e3 * own_cpu, 1e3 * their_cpu, their_cpu / own_cpu);
+            println!(
+                "  reference {:.0} ms: {:.1} times slower; largest difference {worst:.1e}",
+                1e3 * theirs,
+                theirs / own
+            );
+            println!(
+                "  CPU time {:.0} ms and {:.0} ms: {:.1} times",
+                1e3 * own_cpu,
+                1e3 * their_cpu,
+                their_cpu / own_cpu
+            );
             assert!(worst <= 1e-12, "results differ by {worst}");
         }
     }
@@ -184,7 +233,10 @@ fn plot(path: &str) {
     for sections in [4, 5, 6, 7, 8, 9, 10, 11] {
         let case = Case::of(&pool(&[sections; 4]), None).expect("a case");
         let milliseconds = 1e3 * median((0..3).map(|_| ours(&case).0).collect());
-        println!("{sections} sections in each zone: {} selections, {milliseconds:.2} ms", case.combinations());
+        println!(
+            "{sections} sections in each zone: {} selections, {milliseconds:.2} ms",
+            case.combinations()
+        );
         points.push((case.combinations(), milliseconds, sections));
     }
     let x = |selections: f64| 60.0 + (selections.log10() - 2.0) / 7.0 * 400.0;
@@ -201,15 +253,23 @@ fn plot(path: &str) {
     }
     for power in -1..=4 {
         let at = y(10_f64.powi(power));
-        let label = if power < 0 { "0.1".to_owned() } else { format!("{}", 10_i32.pow(power as u32)) };
+        let label =
+            if power < 0 { "0.1".to_owned() } else { format!("{}", 10_i32.pow(power as u32)) };
         let _ = writeln!(
             svg,
             "<path d=\"M60 {at:.1}H460\" stroke=\"#DDE1E6\"/><text x=\"54\" y=\"{:.1}\" text-anchor=\"end\">{label}</text>",
             at + 4.0
         );
     }
-    let path_of: Vec<String> = points.iter().map(|(selections, ms, _)| format!("{:.1} {:.1}", x(*selections), y(*ms))).collect();
-    let _ = writeln!(svg, "<path d=\"M{}\" fill=\"none\" stroke=\"#0072B2\" stroke-width=\"1.5\"/>", path_of.join("L"));
+    let path_of: Vec<String> = points
+        .iter()
+        .map(|(selections, ms, _)| format!("{:.1} {:.1}", x(*selections), y(*ms)))
+        .collect();
+    let _ = writeln!(
+        svg,
+        "<path d=\"M{}\" fill=\"none\" stroke=\"#0072B2\" stroke-width=\"1.5\"/>",
+        path_of.join("L")
+    );
     for (selections, ms, sections) in &points {
         let (x, y) = (x(*selections), y(*ms));
         let _ = writeln!(

@@ -1,4 +1,5 @@
-//! How fast records are read, beside the `csv` crate and plain reading: `cargo bench --bench read_record [-- FOLDER]`.
+//! How fast records are read, beside the `csv` crate and plain reading: `cargo bench --bench
+//! read_record [-- FOLDER]`.
 //!
 //! Without a folder, records like those of a campaign of 66 files are made: 26 columns, 2600 rows.
 
@@ -31,7 +32,9 @@ fn main() {
         println!("{what:40} {:6.2} GB/s {:8.1} ms", bytes as f64 / best / 1e9, best * 1e3);
     };
     time("read the bytes", &|file| std::fs::read(file).expect("readable").len() as f64);
-    time("and SHA-256", &|file| fishplate::data::hash::sha256(&std::fs::read(file).expect("readable")).len() as f64);
+    time("and SHA-256", &|file| {
+        fishplate::data::hash::sha256(&std::fs::read(file).expect("readable")).len() as f64
+    });
     time("csv crate, ByteRecord, no numbers", &|file| with_csv(file, false));
     time("csv crate, ByteRecord, fast-float2", &|file| with_csv(file, true));
     let all: Vec<Wanted> = read_headings(&files[0], "first")
@@ -40,8 +43,12 @@ fn main() {
         .map(|heading| Wanted { name: heading.name, dimension: None, required: false })
         .collect();
     time("read_record, every column", &|file| checksum(file, &all));
-    time("read_record, every second column", &|file| checksum(file, &all.iter().step_by(2).cloned().collect::<Vec<_>>()));
-    time("read_record, time only", &|file| checksum(file, &[Wanted::new("time", Dimension::TIME).if_there()]));
+    time("read_record, every second column", &|file| {
+        checksum(file, &all.iter().step_by(2).cloned().collect::<Vec<_>>())
+    });
+    time("read_record, time only", &|file| {
+        checksum(file, &[Wanted::new("time", Dimension::TIME).if_there()])
+    });
 }
 
 fn checksum(file: &Path, wanted: &[Wanted]) -> f64 {
@@ -68,7 +75,10 @@ fn with_csv(file: &Path, numbers: bool) -> f64 {
 }
 
 fn csv_files(folder: &Path) -> Vec<PathBuf> {
-    let mut files: Vec<PathBuf> = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("readable").path()).collect();
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
+        .expect("a folder")
+        .map(|entry| entry.expect("readable").path())
+        .collect();
     files.retain(|file| file.extension().is_some_and(|extension| extension == "csv"));
     files.sort();
     files
@@ -78,7 +88,8 @@ fn made(folder: &Path) -> Vec<PathBuf> {
     let mut text = String::from("time [s],distance [m]");
     (0..24).for_each(|n| write!(text, ",c{n} [kN]").expect("in memory"));
     for row in 0..2600 {
-        write!(text, "\n{:.3},{:.3}", f64::from(row) * 0.005, 70.0 + f64::from(row) * 0.18).expect("in memory");
+        write!(text, "\n{:.3},{:.3}", f64::from(row) * 0.005, 70.0 + f64::from(row) * 0.18)
+            .expect("in memory");
         for n in 0..24 {
             let value = 60.0 * (f64::from(row) * 0.01 + f64::from(n)).sin();
             write!(text, ",{value:.2}").expect("in memory");

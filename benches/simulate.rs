@@ -1,8 +1,15 @@
-//! How fast the vehicle model runs: `cargo bench --bench simulate [-- CAMPAIGN]`, by default the coach of the examples.
+//! How fast the vehicle model runs: `cargo bench --bench simulate [-- CAMPAIGN]`, by default the
+//! coach of the examples.
 //!
 //! Times are the best of several rounds. What is timed is the run, not the reading of files.
 
-#![allow(clippy::print_stdout, clippy::unwrap_used, clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+#![allow(
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss
+)]
 
 #[path = "../tests/model/common.rs"]
 #[allow(dead_code)]
@@ -36,8 +43,8 @@ fn best<T>(mut work: impl FnMut() -> T) -> f64 {
     (0..ROUNDS).map(time).fold(f64::INFINITY, f64::min)
 }
 
-/// Time in s that this thread has had a processor: waiting for others on a shared machine does not count. By the clock where the
-/// system does not say.
+/// Time in s that this thread has had a processor: waiting for others on a shared machine does not
+/// count. By the clock where the system does not say.
 fn on_processor() -> f64 {
     static START: LazyLock<Instant> = LazyLock::new(Instant::now);
     let said = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
@@ -63,11 +70,17 @@ struct Campaign {
 
 impl Campaign {
     fn setup<'a>(&'a self, section: &'a Section) -> Setup<'a> {
-        Setup { vehicle: &self.vehicle, profile: &self.profile, track: &section.track, speed: section.speed }
+        Setup {
+            vehicle: &self.vehicle,
+            profile: &self.profile,
+            track: &section.track,
+            speed: section.speed,
+        }
     }
 
     fn steps(&self, section: &Section) -> usize {
-        steps_per_sample(&Equations::new(&self.vehicle, &self.profile, section.speed)).expect("few steps")
+        steps_per_sample(&Equations::new(&self.vehicle, &self.profile, section.speed))
+            .expect("few steps")
     }
 
     /// Samples of a run, of 1 ms.
@@ -79,15 +92,24 @@ impl Campaign {
 
     fn all(&self, divided: Option<usize>) {
         for section in &self.sections {
-            std::hint::black_box(simulate_with(&self.setup(section), section.window(), divided).unwrap());
+            std::hint::black_box(
+                simulate_with(&self.setup(section), section.window(), divided).unwrap(),
+            );
         }
     }
 }
 
 fn main() {
-    let folder = std::env::args().skip(1).find(|word| !word.starts_with('-')).unwrap_or_else(|| common::COACH.to_owned());
+    let folder = std::env::args()
+        .skip(1)
+        .find(|word| !word.starts_with('-'))
+        .unwrap_or_else(|| common::COACH.to_owned());
     let vehicle = common::vehicle(&folder, &[]);
-    let campaign = Campaign { profile: common::profile(&folder, &vehicle), vehicle, sections: common::sections(&folder) };
+    let campaign = Campaign {
+        profile: common::profile(&folder, &vehicle),
+        vehicle,
+        sections: common::sections(&folder),
+    };
     throughput(&campaign);
     right_hand_side(&campaign);
     peers(&campaign);
@@ -98,7 +120,14 @@ fn throughput(campaign: &Campaign) {
     let samples: f64 = campaign.sections.iter().map(|section| campaign.samples(section)).sum();
     println!("{} sections, {:.0} s of running", campaign.sections.len(), samples * SAMPLE);
     let steps = |divided: Option<usize>| -> f64 {
-        campaign.sections.iter().map(|section| campaign.samples(section) * divided.unwrap_or_else(|| campaign.steps(section)) as f64).sum()
+        campaign
+            .sections
+            .iter()
+            .map(|section| {
+                campaign.samples(section)
+                    * divided.unwrap_or_else(|| campaign.steps(section)) as f64
+            })
+            .sum()
     };
     for (what, divided) in [("default step", None), ("0.5 ms", Some(2))] {
         let time = best(|| campaign.all(divided));
@@ -115,7 +144,9 @@ fn throughput(campaign: &Campaign) {
         let time = best_by_clock(|| {
             pool.install(|| {
                 campaign.sections.par_iter().for_each(|section| {
-                    std::hint::black_box(simulate_with(&campaign.setup(section), section.window(), None).unwrap());
+                    std::hint::black_box(
+                        simulate_with(&campaign.setup(section), section.window(), None).unwrap(),
+                    );
                 });
             });
         });
@@ -130,7 +161,9 @@ fn right_hand_side(campaign: &Campaign) {
     let equations = Equations::new(&campaign.vehicle, &campaign.profile, section.speed);
     let track = Track::new(&section.track, &campaign.vehicle);
     let mut hints = Hints::default();
-    let input = best(|| (0..TIMES).map(|n| equations.input(&track, 100.0 + n as f64 * 4e-4, &mut hints)).last());
+    let input = best(|| {
+        (0..TIMES).map(|n| equations.input(&track, 100.0 + n as f64 * 4e-4, &mut hints)).last()
+    });
     println!("track under all bodies: {:.0} ns", input / TIMES as f64 * 1e9);
     let state = equations.at_rest();
     let arch = pulp::Arch::new();
@@ -165,7 +198,11 @@ impl System<f64, Y> for &Motion<'_> {
     #[inline(never)]
     fn system(&self, t: f64, y: &Y, dy: &mut Y) {
         *self.evaluations.borrow_mut() += 1;
-        let input = self.equations.input(self.track, self.from + self.equations.speed * t, &mut self.hints.borrow_mut());
+        let input = self.equations.input(
+            self.track,
+            self.from + self.equations.speed * t,
+            &mut self.hints.borrow_mut(),
+        );
         let mut rates = State::default();
         let state = State::from_slice(y.as_slice());
         pulp::Arch::new().dispatch(|| self.equations.rates(&state, &input, &mut rates));
@@ -173,28 +210,34 @@ impl System<f64, Y> for &Motion<'_> {
     }
 }
 
-/// Our method and those of a kept library over the first section: time against the largest error of a displacement of a wheelset
-/// at the samples, against our method with steps of 1/16 ms. (DOP853 at the end only: the library's continuous output of it goes wrong
-/// here.)
+/// Our method and those of a kept library over the first section: time against the largest error of
+/// a displacement of a wheelset at the samples, against our method with steps of 1/16 ms. (DOP853
+/// at the end only: the library's continuous output of it goes wrong here.)
 fn peers(campaign: &Campaign) {
     let section = &campaign.sections[0];
     let equations = Equations::new(&campaign.vehicle, &campaign.profile, section.speed);
     let track = Track::new(&section.track, &campaign.vehicle);
-    // Where the first wheelset reaches the track: before, nothing moves, and a step of any length will do.
+    // Where the first wheelset reaches the track: before, nothing moves, and a step of any length
+    // will do.
     let from = track.start() - (equations.wheelset_position(0.0, 0));
     let seconds = 5.0;
     let samples = (seconds / SAMPLE) as usize + 1;
     let ours = |divided: usize| {
         let mut states = Vec::with_capacity(samples);
-        run(&equations, &track, equations.at_rest(), from, samples, divided, |_, state, _| states.push(state.x)).unwrap();
+        run(&equations, &track, equations.at_rest(), from, samples, divided, |_, state, _| {
+            states.push(state.x)
+        })
+        .unwrap();
         states
     };
     let truth = ours(16);
     let lateral = 15..19;
     // Of all samples, or of the last.
     let error = |states: &[[f64; 31]]| {
-        let pairs =
-            states.iter().zip(&truth[truth.len() - states.len()..]).flat_map(|(a, b)| lateral.clone().map(move |i| (a[i] - b[i]).abs()));
+        let pairs = states
+            .iter()
+            .zip(&truth[truth.len() - states.len()..])
+            .flat_map(|(a, b)| lateral.clone().map(move |i| (a[i] - b[i]).abs()));
         pairs.fold(0.0, f64::max)
     };
     println!("first section, {seconds} s: method, time, evaluations, largest error");
@@ -205,7 +248,13 @@ fn peers(campaign: &Campaign) {
         let time = best_of_few(|| ours(divided));
         told(&format!("ours, 1/{divided} ms"), time, 4 * divided * (samples - 1), &ours(divided));
     }
-    let motion = Motion { equations: &equations, track: &track, from, hints: RefCell::default(), evaluations: RefCell::default() };
+    let motion = Motion {
+        equations: &equations,
+        track: &track,
+        from,
+        hints: RefCell::default(),
+        evaluations: RefCell::default(),
+    };
     let at_rest = Y::from_vec(equations.at_rest().to_vec());
     for tolerance in [1e-3, 1e-4, 1e-5, 1e-6] {
         // DOP853 needs more evaluations with each, not fewer: two tolerances show it.
@@ -224,7 +273,8 @@ fn peers(campaign: &Campaign) {
     }
 }
 
-/// The mean of ten, best of three: what takes a few milliseconds is short against the ticks in which the system counts.
+/// The mean of ten, best of three: what takes a few milliseconds is short against the ticks in
+/// which the system counts.
 fn best_of_few<T>(mut work: impl FnMut() -> T) -> f64 {
     let ten = |_| {
         let start = on_processor();
@@ -243,18 +293,23 @@ const STEPS: (u32, u32) = (10_000_000, u32::MAX);
 fn eighth_order(motion: &Motion<'_>, y: Y, seconds: f64, tolerance: f64) -> Vec<[f64; 31]> {
     let (absolute, (most, never)) = (tolerance * 1e-3, STEPS);
     let sparse = OutputType::Sparse;
-    let mut solver =
-        Dop853::from_param(motion, 0.0, seconds, SAMPLE, y, tolerance, absolute, 0.9, 0.0, 0.333, 6.0, seconds, 0.0, most, never, sparse);
+    let mut solver = Dop853::from_param(
+        motion, 0.0, seconds, SAMPLE, y, tolerance, absolute, 0.9, 0.0, 0.333, 6.0, seconds, 0.0,
+        most, never, sparse,
+    );
     solver.integrate().unwrap();
     solver.y_out().last().into_iter().map(|y| State::from_slice(y.as_slice()).x).collect()
 }
 
-/// Displacements at all samples, after the rates at them: the record is of forces, which ours has at its samples anyway.
+/// Displacements at all samples, after the rates at them: the record is of forces, which ours has
+/// at its samples anyway.
 fn fifth_order(motion: &Motion<'_>, y: Y, seconds: f64, tolerance: f64) -> Vec<[f64; 31]> {
     let (absolute, (most, never)) = (tolerance * 1e-3, STEPS);
     let dense = OutputType::Dense;
-    let mut solver =
-        Dopri5::from_param(motion, 0.0, seconds, SAMPLE, y, tolerance, absolute, 0.9, 0.04, 0.2, 10.0, seconds, 0.0, most, never, dense);
+    let mut solver = Dopri5::from_param(
+        motion, 0.0, seconds, SAMPLE, y, tolerance, absolute, 0.9, 0.04, 0.2, 10.0, seconds, 0.0,
+        most, never, dense,
+    );
     solver.integrate().unwrap();
     for (n, y) in solver.y_out().iter().enumerate() {
         motion.system(n as f64 * SAMPLE, y, &mut Y::zeros());
@@ -266,11 +321,17 @@ fn fifth_order(motion: &Motion<'_>, y: Y, seconds: f64, tolerance: f64) -> Vec<[
 fn memory(campaign: &Campaign) {
     let peak = || {
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-        let line = status.lines().find(|line| line.starts_with("VmHWM")).unwrap_or("VmHWM: unknown");
+        let line =
+            status.lines().find(|line| line.starts_with("VmHWM")).unwrap_or("VmHWM: unknown");
         line.trim_start_matches("VmHWM:").trim().to_owned()
     };
     campaign.all(None);
     let once = peak();
     (0..10).for_each(|_| campaign.all(None));
-    println!("peak memory after {} sections {once}, after {} {}", campaign.sections.len(), 11 * campaign.sections.len(), peak());
+    println!(
+        "peak memory after {} sections {once}, after {} {}",
+        campaign.sections.len(),
+        11 * campaign.sections.len(),
+        peak()
+    );
 }

@@ -1,12 +1,15 @@
-//! Inverse dynamics of a rigid double pendulum as an external simulator of `fishplate`: from measured positions to torques.
+//! Inverse dynamics of a rigid double pendulum as an external simulator of `fishplate`: from
+//! measured positions to torques.
 //!
 //! ```console
 //! double_pendulum_simulator VEHICLE KINEMATICS OUT [--set NAME=VALUE ...]
 //! ```
 //!
-//! VEHICLE has a line `name: value` for each parameter; `--set` overrides it. KINEMATICS is a record of `time`, `position_1` and
-//! `position_2` with constant time steps: the angle of the upper link from the vertical, and of the lower link relative to the upper one.
-//! Velocities and accelerations are those of a cubic fitted symmetrically around every sample, without phase error.
+//! VEHICLE has a line `name: value` for each parameter; `--set` overrides it. KINEMATICS is a
+//! record of `time`, `position_1` and `position_2` with constant time steps: the angle of the upper
+//! link from the vertical, and of the lower link relative to the upper one. Velocities and
+//! accelerations are those of a cubic fitted symmetrically around every sample, without phase
+//! error.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -22,13 +25,19 @@ type Error = Box<dyn std::error::Error>;
 fn main() -> Result<(), Error> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let [vehicle, kinematics, out, rest @ ..] = words.as_slice() else {
-        return Err("usage: double_pendulum_simulator VEHICLE KINEMATICS OUT [--set NAME=VALUE ...]".into());
+        return Err(
+            "usage: double_pendulum_simulator VEHICLE KINEMATICS OUT [--set NAME=VALUE ...]".into(),
+        );
     };
     let mut parameters = read_parameters(&std::fs::read_to_string(vehicle)?);
     for pair in rest.chunks(2) {
         let [set, assignment] = pair else { return Err("--set needs NAME=VALUE".into()) };
-        let (name, value) = assignment.split_once('=').filter(|_| set == "--set").ok_or("--set needs NAME=VALUE")?;
-        let known = parameters.get_mut(name).ok_or_else(|| format!("there is no parameter `{name}`"))?;
+        let (name, value) = assignment
+            .split_once('=')
+            .filter(|_| set == "--set")
+            .ok_or("--set needs NAME=VALUE")?;
+        let known =
+            parameters.get_mut(name).ok_or_else(|| format!("there is no parameter `{name}`"))?;
         *known = value.parse()?;
     }
     let [time, upper, lower] = read_kinematics(&std::fs::read_to_string(kinematics)?)?;
@@ -61,12 +70,15 @@ fn read_kinematics(text: &str) -> Result<[Vec<f64>; 3], Error> {
         }
     }
     if columns[0].len() < 32 || columns.iter().any(|column| column.len() != columns[0].len()) {
-        return Err("the kinematics need at least 32 rows of time, position_1 and position_2".into());
+        return Err(
+            "the kinematics need at least 32 rows of time, position_1 and position_2".into()
+        );
     }
     Ok(columns)
 }
 
-/// Position, velocity and acceleration, from a cubic fitted by weighted least squares around every sample.
+/// Position, velocity and acceleration, from a cubic fitted by weighted least squares around every
+/// sample.
 fn derivatives(values: &[f64], step: f64) -> Vec<[f64; 3]> {
     let half = (HALF / step).round() as usize;
     (0..values.len())
@@ -90,18 +102,32 @@ fn derivatives(values: &[f64], step: f64) -> Vec<[f64; 3]> {
 }
 
 /// Torques at the shoulder and at the elbow.
-fn torques(parameters: &BTreeMap<String, f64>, upper: [f64; 3], lower: [f64; 3]) -> Result<[f64; 2], Error> {
-    let of = |name: &str| parameters.get(name).copied().ok_or_else(|| format!("the vehicle file has no number `{name}`"));
+fn torques(
+    parameters: &BTreeMap<String, f64>,
+    upper: [f64; 3],
+    lower: [f64; 3],
+) -> Result<[f64; 2], Error> {
+    let of = |name: &str| {
+        parameters
+            .get(name)
+            .copied()
+            .ok_or_else(|| format!("the vehicle file has no number `{name}`"))
+    };
     let ([q1, v1, a1], [q2, v2, a2]) = (upper, lower);
     let (m1, m2, payload) = (of("upper_mass")?, of("lower_mass")?, of("payload_mass")?);
-    let (l1, r1, r2, l2) = (of("upper_length")?, of("upper_centre")?, of("lower_centre")?, of("lower_length")?);
+    let (l1, r1, r2, l2) =
+        (of("upper_length")?, of("upper_centre")?, of("lower_centre")?, of("lower_length")?);
     let (gravity, tilt) = (of("gravity")?, of("mount_tilt")?);
     // First and second moments of the lower link about the elbow, including the payload.
     let moment = m2 * r2 + payload * l2;
     let inertia = of("lower_inertia")? + payload * l2 * l2;
     let (gear, rotor) = (of("gear_ratio")?, of("motor_inertia")?);
     let (cos, sin) = (l1 * moment * q2.cos(), l1 * moment * q2.sin());
-    let m11 = of("upper_inertia")? + inertia + l1 * l1 * (m2 + payload) + 2.0 * cos + (gear * gear + 1.0) * rotor;
+    let m11 = of("upper_inertia")?
+        + inertia
+        + l1 * l1 * (m2 + payload)
+        + 2.0 * cos
+        + (gear * gear + 1.0) * rotor;
     let m12 = inertia + cos - gear * rotor;
     let m22 = inertia + gear * gear * rotor;
     let hangs = gravity * moment * (q1 + q2 + tilt).sin();

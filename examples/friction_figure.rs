@@ -1,9 +1,17 @@
-//! Guiding forces on the four wheels of the leading bogie for two friction coefficients and measured, arranged as in a top view of the
-//! bogie: `cargo run --release --example friction_figure -- CAMPAIGN SECTION [-o FILE.svg]`.
+//! Guiding forces on the four wheels of the leading bogie for two friction coefficients and
+//! measured, arranged as in a top view of the bogie: `cargo run --release --example friction_figure
+//! -- CAMPAIGN SECTION [-o FILE.svg]`.
 //!
-//! After Figures 3 and 4 of Götz and Polach, Verification and validation of simulations in a railway vehicle certification context.
+//! After Figures 3 and 4 of Götz and Polach, Verification and validation of simulations in a
+//! railway vehicle certification context.
 
-#![allow(clippy::print_stdout, clippy::unwrap_used, clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+#![allow(
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss
+)]
 
 #[path = "../tests/model/common.rs"]
 #[allow(dead_code)]
@@ -15,7 +23,9 @@ use fishplate::report::figure::axis::{Scale, title};
 use fishplate::report::figure::canvas::{Canvas, Font, Group};
 use fishplate::report::figure::frame::Frame;
 use fishplate::report::figure::legend::{Entry, Legend};
-use fishplate::report::figure::style::{BLUE, DASHED, Dash, GRID, INK, MEASURED, MUTED, SHADE, SOLID, TEXT, VERMILION, WIDTH};
+use fishplate::report::figure::style::{
+    BLUE, DASHED, Dash, GRID, INK, MEASURED, MUTED, SHADE, SOLID, TEXT, VERMILION, WIDTH,
+};
 use plotters::style::RGBColor;
 
 const FRICTION: [f64; 2] = [0.3, 0.6];
@@ -23,7 +33,8 @@ const PANEL: f64 = 105.0;
 /// Distance of the rows, for the drawing of the bogie.
 const BETWEEN: f64 = 78.0;
 
-/// Channel, label, column (0 left), row (0 top). The vehicle runs to the right, so its left side is at the top.
+/// Channel, label, column (0 left), row (0 top). The vehicle runs to the right, so its left side is
+/// at the top.
 const WHEELS: [(&str, &str, usize, usize); 4] = [
     ("Y_2L", "trailing, left", 0, 0),
     ("Y_1L", "leading, left", 1, 0),
@@ -47,28 +58,53 @@ fn main() {
         std::process::exit(2);
     };
     let section = common::section(campaign, name);
-    let low_pass = Filter::design(Band::LowPass(20.0), 4, SAMPLING_RATE, Phase::Zero, Cutoff::AsApplied).unwrap();
+    let low_pass =
+        Filter::design(Band::LowPass(20.0), 4, SAMPLING_RATE, Phase::Zero, Cutoff::AsApplied)
+            .unwrap();
     let curve = |color, width, dash, x: &[f64], y: Vec<&Vec<f64>>| {
-        let shown: Vec<usize> = (0..x.len()).filter(|i| x[*i] >= section.start - 20.0 && x[*i] <= section.end + 20.0).collect();
+        let shown: Vec<usize> = (0..x.len())
+            .filter(|i| x[*i] >= section.start - 20.0 && x[*i] <= section.end + 20.0)
+            .collect();
         let smooth = y.into_iter().map(|y| low_pass.apply(y).unwrap());
         let y = smooth.map(|y| shown.iter().map(|i| y[*i]).collect()).collect();
         Curve { color, width, dash, x: shown.iter().map(|i| x[*i]).collect(), y }
     };
-    let measured = common::columns(&common::folder(campaign).join("measurement").join(format!("{name}.csv")));
+    let measured =
+        common::columns(&common::folder(campaign).join("measurement").join(format!("{name}.csv")));
     let of_wheels = WHEELS.map(|wheel| common::channel(wheel.0));
-    let mut curves = vec![curve(MEASURED, 1.8, SOLID, &measured[1], of_wheels.iter().map(|at| &measured[2 + at]).collect())];
+    let mut curves = vec![curve(
+        MEASURED,
+        1.8,
+        SOLID,
+        &measured[1],
+        of_wheels.iter().map(|at| &measured[2 + at]).collect(),
+    )];
     println!("median of Y in kN inside {name}, friction {FRICTION:?}");
     let mut medians = vec![Vec::new(); 4];
     for (friction, color, dash) in [(FRICTION[0], BLUE, DASHED), (FRICTION[1], VERMILION, SOLID)] {
         let vehicle = common::vehicle(campaign, &[("friction", friction)]);
         let record = section.simulate(&vehicle, &common::profile(campaign, &vehicle)).unwrap();
         for (wheel, at) in of_wheels.iter().enumerate() {
-            medians[wheel].push(common::median(&section.inside(&record.distance, &record.channels[*at])));
+            medians[wheel]
+                .push(common::median(&section.inside(&record.distance, &record.channels[*at])));
         }
-        curves.push(curve(color, 0.9, dash, &record.distance, of_wheels.iter().map(|at| &record.channels[*at]).collect()));
+        curves.push(curve(
+            color,
+            0.9,
+            dash,
+            &record.distance,
+            of_wheels.iter().map(|at| &record.channels[*at]).collect(),
+        ));
     }
     for (wheel, medians) in WHEELS.iter().zip(&medians) {
-        println!("{} ({}): {:7.2} {:7.2}, change {:+.2}", wheel.0, wheel.1, medians[0], medians[1], medians[1] - medians[0]);
+        println!(
+            "{} ({}): {:7.2} {:7.2}, change {:+.2}",
+            wheel.0,
+            wheel.1,
+            medians[0],
+            medians[1],
+            medians[1] - medians[0]
+        );
     }
     let drawn = draw(&curves, section.start, section.end);
     match rest {
@@ -80,8 +116,18 @@ fn main() {
 fn draw(curves: &[Curve], start: f64, end: f64) -> String {
     let entries = vec![
         Entry::line(curves[0].color, curves[0].width, curves[0].dash, "measured"),
-        Entry::line(curves[1].color, 1.0, curves[1].dash, format!("simulated, friction {}", FRICTION[0])),
-        Entry::line(curves[2].color, 1.0, curves[2].dash, format!("simulated, friction {}", FRICTION[1])),
+        Entry::line(
+            curves[1].color,
+            1.0,
+            curves[1].dash,
+            format!("simulated, friction {}", FRICTION[0]),
+        ),
+        Entry::line(
+            curves[2].color,
+            1.0,
+            curves[2].dash,
+            format!("simulated, friction {}", FRICTION[1]),
+        ),
         Entry::ground(SHADE, "evaluated section"),
     ];
     let legend = Legend::new(entries, WIDTH - 20.0);
@@ -95,14 +141,27 @@ fn draw(curves: &[Curve], start: f64, end: f64) -> String {
         let left = [30.0, WIDTH / 2.0 + 30.0][*column];
         let top = rows[*row];
         // The same scale everywhere, for comparison.
-        let y = Scale::over(curves.iter().flat_map(|curve| curve.y.iter().flatten().copied()), top + PANEL, top);
+        let y = Scale::over(
+            curves.iter().flat_map(|curve| curve.y.iter().flatten().copied()),
+            top + PANEL,
+            top,
+        );
         let frame = Frame { x: Scale { low, high, from: left, to: left + WIDTH / 2.0 - 38.0 }, y };
-        canvas.draw(|layer| layer.rect((frame.x.at(start), top), (frame.x.at(end), top + PANEL), SHADE));
+        canvas.draw(|layer| {
+            layer.rect((frame.x.at(start), top), (frame.x.at(end), top + PANEL), SHADE)
+        });
         frame.x_axis(&mut canvas, &frame.x.ticks(5), &title("distance", "m"));
         frame.y_axis(&mut canvas, &y.ticks(6), &title(channel, "kN"));
         for curve in curves {
-            let points: Vec<(f64, f64)> = curve.x.iter().zip(&curve.y[wheel]).map(|(x, y)| (frame.x.at(*x), frame.y.at(*y))).collect();
-            canvas.group(&Group { dash: curve.dash, ..Group::default() }, |layer| layer.path(&points, curve.color, curve.width));
+            let points: Vec<(f64, f64)> = curve
+                .x
+                .iter()
+                .zip(&curve.y[wheel])
+                .map(|(x, y)| (frame.x.at(*x), frame.y.at(*y)))
+                .collect();
+            canvas.group(&Group { dash: curve.dash, ..Group::default() }, |layer| {
+                layer.path(&points, curve.color, curve.width)
+            });
         }
         frame.spine(&mut canvas);
         canvas.draw(|layer| layer.text(words, (left, top - 7.0), &Font::left(TEXT).bold(true)));
@@ -125,7 +184,12 @@ fn bogie(canvas: &mut Canvas, top: f64, height: f64) {
                 layer.rect((axle - 9.0, rail - 2.0), (axle + 9.0, rail + 2.0), INK);
             }
         }
-        layer.line((middle - 35.0, top + height / 2.0), (middle + 35.0, top + height / 2.0), MUTED, 3.0);
+        layer.line(
+            (middle - 35.0, top + height / 2.0),
+            (middle + 35.0, top + height / 2.0),
+            MUTED,
+            3.0,
+        );
         let tip = (middle + 110.0, top + height / 2.0);
         layer.line((middle + 88.0, tip.1), tip, MUTED, 1.0);
         layer.fill(&[tip, (tip.0 - 6.0, tip.1 - 3.0), (tip.0 - 6.0, tip.1 + 3.0)], MUTED);

@@ -1,8 +1,15 @@
-//! Code comparison: records of the reference model against the simulated records of campaigns, which an independent program computed from
-//! the same description. `cargo run --release --example verification -- CAMPAIGN...` prints the table, writes it into
-//! `docs/verification.md` and draws `docs/images/verification-*.svg`.
+//! Code comparison: records of the reference model against the simulated records of campaigns,
+//! which an independent program computed from the same description. `cargo run --release --example
+//! verification -- CAMPAIGN...` prints the table, writes it into `docs/verification.md` and draws
+//! `docs/images/verification-*.svg`.
 
-#![allow(clippy::print_stdout, clippy::unwrap_used, clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+#![allow(
+    clippy::print_stdout,
+    clippy::unwrap_used,
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss
+)]
 
 #[path = "../tests/model/common.rs"]
 #[allow(dead_code)]
@@ -20,7 +27,8 @@ use fishplate::report::figure::legend::{Entry, Legend};
 use fishplate::report::figure::style::{BLUE, MEASURED, Mark, SOLID, WIDTH, color};
 use rayon::prelude::*;
 
-/// Groups of channels: prefix of the names, label, unit, and the value above which a relative deviation is meaningful.
+/// Groups of channels: prefix of the names, label, unit, and the value above which a relative
+/// deviation is meaningful.
 const GROUPS: [(&str, &str, &str, f64); 5] = [
     ("Y", "guiding forces Y", "kN", 1.0),
     ("Q", "wheel forces Q", "kN", 1.0),
@@ -29,7 +37,8 @@ const GROUPS: [(&str, &str, &str, f64); 5] = [
     ("ayb_", "bogie, lateral", "m/s^2", 0.05),
 ];
 
-/// One channel of one section: medians, standard deviations about the mean, and the largest difference of a sample.
+/// One channel of one section: medians, standard deviations about the mean, and the largest
+/// difference of a sample.
 struct Pair {
     group: usize,
     ours: [f64; 2],
@@ -67,15 +76,26 @@ fn main() {
         let vehicle = common::vehicle(campaign, &[]);
         let profile = common::profile(campaign, &vehicle);
         let sections = common::sections(campaign);
-        let records: Vec<Record> = sections.par_iter().map(|section| section.simulate(&vehicle, &profile).unwrap()).collect();
-        let found: Vec<Pair> = sections.iter().zip(&records).flat_map(|(section, record)| pairs(section, record)).collect();
+        let records: Vec<Record> = sections
+            .par_iter()
+            .map(|section| section.simulate(&vehicle, &profile).unwrap())
+            .collect();
+        let found: Vec<Pair> = sections
+            .iter()
+            .zip(&records)
+            .flat_map(|(section, record)| pairs(section, record))
+            .collect();
         let name = Path::new(campaign).file_name().unwrap().to_string_lossy().into_owned();
         for (n, (_, words, unit, matters)) in GROUPS.iter().enumerate() {
             let of: Vec<&Pair> = found.iter().filter(|pair| pair.group == n).collect();
-            let most = |value: &dyn Fn(&Pair) -> f64| of.iter().map(|pair| value(pair)).fold(0.0, f64::max);
+            let most = |value: &dyn Fn(&Pair) -> f64| {
+                of.iter().map(|pair| value(pair)).fold(0.0, f64::max)
+            };
             let share = |k: usize| {
                 let large = of.iter().filter(|pair| pair.theirs[k].abs() > *matters);
-                large.map(|pair| (pair.ours[k] / pair.theirs[k] - 1.0).abs() * 100.0).fold(0.0, f64::max)
+                large
+                    .map(|pair| (pair.ours[k] / pair.theirs[k] - 1.0).abs() * 100.0)
+                    .fold(0.0, f64::max)
             };
             let unit = unit.replace("^2", "²");
             writeln!(
@@ -91,7 +111,10 @@ fn main() {
         }
         if number == 0 {
             let at = sections.iter().position(|section| section.name == "S13").unwrap_or(0);
-            write(Path::new("docs/images/verification-section.svg"), &traces(&sections[at], &records[at]));
+            write(
+                Path::new("docs/images/verification-section.svg"),
+                &traces(&sections[at], &records[at]),
+            );
         }
         all.push((name, found));
     }
@@ -111,9 +134,13 @@ fn write(path: &Path, text: &str) {
 fn insert(table: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/verification.md");
     let page = std::fs::read_to_string(&path).unwrap();
-    let (before, rest) = page.split_once("<!-- table -->\n").expect("the page has the mark `<!-- table -->`");
-    let (_, after) = rest.split_once("<!-- end of table -->").expect("the page has the mark `<!-- end of table -->`");
-    std::fs::write(&path, format!("{before}<!-- table -->\n{table}<!-- end of table -->{after}")).unwrap();
+    let (before, rest) =
+        page.split_once("<!-- table -->\n").expect("the page has the mark `<!-- table -->`");
+    let (_, after) = rest
+        .split_once("<!-- end of table -->")
+        .expect("the page has the mark `<!-- end of table -->`");
+    std::fs::write(&path, format!("{before}<!-- table -->\n{table}<!-- end of table -->{after}"))
+        .unwrap();
 }
 
 /// Three channels of a section, recorded and simulated, and below each the difference.
@@ -128,7 +155,8 @@ fn traces(section: &Section, record: &Record) -> String {
     let legend = Legend::new(entries, WIDTH - 50.0);
     let step = HEIGHT + REST + 20.0;
     let channels = ["Y_1L", "Q_1L", "ay_I"];
-    let mut canvas = Canvas::new(WIDTH, legend.height() + 6.0 + step * channels.len() as f64 + 16.0);
+    let mut canvas =
+        Canvas::new(WIDTH, legend.height() + 6.0 + step * channels.len() as f64 + 16.0);
     legend.draw(&mut canvas, (44.0, 0.0));
     let x = section.inside(&record.distance, &record.distance);
     for (n, channel) in channels.into_iter().enumerate() {
@@ -140,14 +168,21 @@ fn traces(section: &Section, record: &Record) -> String {
         let top = legend.height() + 6.0 + step * n as f64;
         let along = Scale { low: section.start, high: section.end, from: 44.0, to: WIDTH - 6.0 };
         let upper = Frame { x: along, y: Scale::over(theirs.iter().copied(), top + HEIGHT, top) };
-        let lower = Frame { x: along, y: Scale::over(rest.iter().copied(), top + HEIGHT + 6.0 + REST, top + HEIGHT + 6.0) };
+        let lower = Frame {
+            x: along,
+            y: Scale::over(rest.iter().copied(), top + HEIGHT + 6.0 + REST, top + HEIGHT + 6.0),
+        };
         upper.y_axis(&mut canvas, &upper.y.ticks(4), &title(channel, unit));
         let words = if n + 1 == channels.len() { title("distance", "m") } else { String::new() };
         lower.x_axis(&mut canvas, &along.ticks(8), &words);
         lower.y_axis(&mut canvas, &lower.y.ticks(2), "");
-        for (frame, signal, color, width) in [(&upper, &theirs, MEASURED, 1.8), (&upper, &ours, BLUE, 0.7), (&lower, &rest, color(1), 0.7)]
-        {
-            let points: Vec<(f64, f64)> = x.iter().zip(signal).map(|(x, y)| (frame.x.at(*x), frame.y.at(*y))).collect();
+        for (frame, signal, color, width) in [
+            (&upper, &theirs, MEASURED, 1.8),
+            (&upper, &ours, BLUE, 0.7),
+            (&lower, &rest, color(1), 0.7),
+        ] {
+            let points: Vec<(f64, f64)> =
+                x.iter().zip(signal).map(|(x, y)| (frame.x.at(*x), frame.y.at(*y))).collect();
             canvas.draw(|layer| layer.path(&points, color, width));
         }
         upper.spine(&mut canvas);
@@ -156,16 +191,23 @@ fn traces(section: &Section, record: &Record) -> String {
     canvas.finish()
 }
 
-/// Difference of the standard deviations in per cent over the recorded one, for every channel and section of all campaigns.
+/// Difference of the standard deviations in per cent over the recorded one, for every channel and
+/// section of all campaigns.
 fn scatter(all: &[(String, Vec<Pair>)]) -> String {
-    let entries = GROUPS.iter().enumerate().map(|(n, group)| Entry::mark(Mark::nth(n), color(n), group.1)).collect();
+    let entries = GROUPS
+        .iter()
+        .enumerate()
+        .map(|(n, group)| Entry::mark(Mark::nth(n), color(n), group.1))
+        .collect();
     let legend = Legend::new(entries, WIDTH - 50.0);
     let top = legend.height() + 6.0;
     let points: Vec<(usize, f64, f64)> = all
         .iter()
         .flat_map(|(_, pairs)| pairs)
         .filter(|pair| pair.theirs[1] > GROUPS[pair.group].3)
-        .map(|pair| (pair.group, pair.theirs[1].log10(), (pair.ours[1] / pair.theirs[1] - 1.0) * 100.0))
+        .map(|pair| {
+            (pair.group, pair.theirs[1].log10(), (pair.ours[1] / pair.theirs[1] - 1.0) * 100.0)
+        })
         .collect();
     let x = Scale::over(points.iter().map(|point| point.1), 44.0, WIDTH - 6.0);
     let frame = Frame { x, y: Scale::over(points.iter().map(|point| point.2), top + 120.0, top) };

@@ -14,7 +14,8 @@ use crate::data::hash::{hexadecimal, sha256};
 use crate::graph::{self, Graph};
 use crate::problem::Problems;
 use crate::result::{
-    CampaignInfo, Certification, ChannelInfo, DataItem, FileHash, FilterInfo, OriginInfo, ParameterInfo, ProtocolFile, ProtocolInfo,
+    CampaignInfo, Certification, ChannelInfo, DataItem, FileHash, FilterInfo, OriginInfo,
+    ParameterInfo, ProtocolFile, ProtocolInfo,
 };
 use crate::run::{self, Outcome, Progress, Settings};
 use crate::syntax::document::Block;
@@ -34,20 +35,28 @@ impl Compiled {
     /// The same protocol with findings as notes only, so that a diagnosis includes every section.
     #[must_use]
     pub fn only_telling(&self) -> Self {
-        Self { family: self.family.clone(), plan: self.plan.only_telling(), graph: self.graph.clone() }
+        Self {
+            family: self.family.clone(),
+            plan: self.plan.only_telling(),
+            graph: self.graph.clone(),
+        }
     }
 
-    /// The text of a section column as one of the words that the protocol declares for it, or a message; `None` if the protocol declares no
-    /// words.
+    /// The text of a section column as one of the words that the protocol declares for it, or a
+    /// message; `None` if the protocol declares no words.
     #[must_use]
     pub fn word(&self, column: &str, text: &str) -> Option<Result<String, String>> {
         let datum = self.plan.columns.iter().find(|datum| datum.key == column)?;
         match (&datum.kind, &datum.default) {
-            (DatumKind::Words(_), Some(Scalar::Word(word))) if text.is_empty() => Some(Ok(word.clone())),
-            (DatumKind::Words(_), _) => Some(run::scalar(&datum.kind, text).map(|known| match known {
-                Scalar::Word(word) => word,
-                Scalar::Number(_) | Scalar::Flag(_) => text.to_string(),
-            })),
+            (DatumKind::Words(_), Some(Scalar::Word(word))) if text.is_empty() => {
+                Some(Ok(word.clone()))
+            }
+            (DatumKind::Words(_), _) => {
+                Some(run::scalar(&datum.kind, text).map(|known| match known {
+                    Scalar::Word(word) => word,
+                    Scalar::Number(_) | Scalar::Flag(_) => text.to_string(),
+                }))
+            }
             _ => None,
         }
     }
@@ -99,12 +108,21 @@ pub fn certification(compiled: &Compiled, about: &About, outcome: Outcome) -> Ce
         application: outcome.application,
         traces: outcome.traces,
         findings: outcome.findings,
-        notes: parameters_set(&compiled.plan).into_iter().chain(unconfirmed(&compiled.plan)).chain(notes).collect(),
+        notes: parameters_set(&compiled.plan)
+            .into_iter()
+            .chain(unconfirmed(&compiled.plan))
+            .chain(notes)
+            .collect(),
     }
 }
 
 /// The campaign as printed in a report; `vehicle` are the data that the protocol reads.
-pub fn campaign_info<'a>(plan: &Plan, campaigns: impl Into<Campaigns<'a>>, records: Vec<FileHash>, vehicle: Vec<DataItem>) -> CampaignInfo {
+pub fn campaign_info<'a>(
+    plan: &Plan,
+    campaigns: impl Into<Campaigns<'a>>,
+    records: Vec<FileHash>,
+    vehicle: Vec<DataItem>,
+) -> CampaignInfo {
     About::of(plan, campaigns, vehicle).info(records)
 }
 
@@ -114,7 +132,11 @@ pub fn protocol_info(compiled: &Compiled) -> ProtocolInfo {
     let files: Vec<ProtocolFile> = family
         .sources
         .iter()
-        .map(|source| ProtocolFile { name: source.file_name(), sha256: sha256(source.text.as_bytes()), text: source.text.clone() })
+        .map(|source| ProtocolFile {
+            name: source.file_name(),
+            sha256: sha256(source.text.as_bytes()),
+            text: source.text.clone(),
+        })
         .collect();
     let mut all = Sha256::new();
     for source in &family.sources {
@@ -129,7 +151,10 @@ pub fn protocol_info(compiled: &Compiled) -> ProtocolInfo {
         notes: plan.notes.clone(),
         sha256: hexadecimal(&all.finalize()),
         files,
-        deviations: family.parent.as_ref().map_or_else(Vec::new, |parent| diff::diff(parent, &family.merged)),
+        deviations: family
+            .parent
+            .as_ref()
+            .map_or_else(Vec::new, |parent| diff::diff(parent, &family.merged)),
         parameters: plan.parameters.iter().map(parameter_info).collect(),
         filters: plan
             .filters
@@ -137,11 +162,22 @@ pub fn protocol_info(compiled: &Compiled) -> ProtocolInfo {
             .map(|filter| FilterInfo {
                 name: filter.name.clone(),
                 title: filter.title.clone(),
-                steps: filter.steps.iter().map(|step| step.words.as_str()).collect::<Vec<_>>().join(", then "),
+                steps: filter
+                    .steps
+                    .iter()
+                    .map(|step| step.words.as_str())
+                    .collect::<Vec<_>>()
+                    .join(", then "),
                 source: filter.source.clone(),
             })
             .collect(),
-        channels: family.merged.blocks.iter().filter(|block| block.kind.text == "channel").map(channel_info).collect(),
+        channels: family
+            .merged
+            .blocks
+            .iter()
+            .filter(|block| block.kind.text == "channel")
+            .map(channel_info)
+            .collect(),
         graph_nodes: graph.nodes.len(),
         graph_svg: graph::svg(graph),
         verdict_rule: verdict_rule(plan),
@@ -160,7 +196,8 @@ fn verdict_rule(plan: &Plan) -> String {
 }
 
 fn channel_info(block: &Block) -> ChannelInfo {
-    let notes: Vec<&str> = block.fields_named("note").map(|field| field.value.text.as_str()).collect();
+    let notes: Vec<&str> =
+        block.fields_named("note").map(|field| field.value.text.as_str()).collect();
     ChannelInfo {
         name: block.name_text().to_string(),
         title: block.title.as_ref().map_or_else(String::new, |title| title.text.clone()),
@@ -171,10 +208,15 @@ fn channel_info(block: &Block) -> ChannelInfo {
 
 /// A note on parameters with values other than the default, since the verdict depends on them.
 fn parameters_set(plan: &Plan) -> Option<String> {
-    let set = |parameter: &&Parameter| parameter.set_by != SetBy::Default && parameter.value != parameter.default;
+    let set = |parameter: &&Parameter| {
+        parameter.set_by != SetBy::Default && parameter.value != parameter.default
+    };
     let one = |parameter: &Parameter| {
         let info = parameter_info(parameter);
-        format!("`{}` {} (default {}, set by the {})", info.name, info.value, info.default, info.set_by)
+        format!(
+            "`{}` {} (default {}, set by the {})",
+            info.name, info.value, info.default, info.set_by
+        )
     };
     let all: Vec<String> = plan.parameters.iter().filter(set).map(one).collect();
     (!all.is_empty()).then(|| format!("Parameters not at their default: {}.", all.join("; ")))
@@ -192,7 +234,9 @@ fn unconfirmed(plan: &Plan) -> Vec<String> {
         by_reason.entry(why).or_default().push(what);
     }
     let against = if plan.source.is_some() { " against the standard" } else { "" };
-    let one = |(why, what): (&String, &Vec<String>)| format!("To be confirmed{against}: {}. {why}", what.join(", "));
+    let one = |(why, what): (&String, &Vec<String>)| {
+        format!("To be confirmed{against}: {}. {why}", what.join(", "))
+    };
     by_reason.iter().map(one).collect()
 }
 

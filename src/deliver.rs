@@ -1,4 +1,5 @@
-//! The files that a result is delivered as: numbers, tables, and the report as PDF and HTML. Each has its path inside the output folder.
+//! The files that a result is delivered as: numbers, tables, and the report as PDF and HTML. Each
+//! has its path inside the output folder.
 
 use std::panic::resume_unwind;
 use std::thread;
@@ -35,7 +36,10 @@ const REPORT_HTML: &str = "report.html";
 /// # Errors
 /// A table, a template or a text cannot be written.
 pub fn certification(found: &Certification, reports: Reports) -> Result<Files, Problems> {
-    let (results, tables) = rayon::join(|| json::results(found), || tables::tables(found).map_err(|error| error.to_string()));
+    let (results, tables) = rayon::join(
+        || json::results(found),
+        || tables::tables(found).map_err(|error| error.to_string()),
+    );
     let mut files = in_folder(tables)?;
     if reports.pdf || reports.html {
         let data = view::view(found);
@@ -55,17 +59,25 @@ pub fn certification(found: &Certification, reports: Reports) -> Result<Files, P
 /// # Errors
 /// As [`certification`].
 pub fn study(found: &Study, reports: Reports) -> Result<Files, Problems> {
-    let mut files = in_folder(report::study::tables::tables(found).map_err(|error| error.to_string()))?;
+    let mut files =
+        in_folder(report::study::tables::tables(found).map_err(|error| error.to_string()))?;
     let (data, figures) = (report::study::document(found), report::study::figures(found));
     let numbers = report::study::json::study(found);
-    files.extend(document(("study.json", "Every number of this study"), numbers, &data, &figures, reports)?);
+    files.extend(document(
+        ("study.json", "Every number of this study"),
+        numbers,
+        &data,
+        &figures,
+        reports,
+    )?);
     Ok(files)
 }
 
 /// # Errors
 /// As [`certification`].
 pub fn comparison(found: &Comparison, reports: Reports) -> Result<Files, Problems> {
-    let mut files = in_folder(report::comparison::tables::tables(found).map_err(|error| error.to_string()))?;
+    let mut files =
+        in_folder(report::comparison::tables::tables(found).map_err(|error| error.to_string()))?;
     let numbers = report::comparison::json(found);
     if !reports.pdf && !reports.html {
         files.push((COMPARISON.0.into(), numbers.into_bytes()));
@@ -82,8 +94,15 @@ const COMPARISON: (&str, &str) = ("comparison.json", "Every number of this compa
 /// As [`certification`].
 pub fn diagnosis(outcome: &Outcome, reports: Reports) -> Result<Files, Problems> {
     let found = &outcome.diagnosis;
-    let (data, figures) = (report::diagnosis::document(found, &outcome.before), report::diagnosis::figures(found));
-    document(("diagnosis.json", "Every number of this diagnosis"), diagnosis_json(found), &data, &figures, reports)
+    let (data, figures) =
+        (report::diagnosis::document(found, &outcome.before), report::diagnosis::figures(found));
+    document(
+        ("diagnosis.json", "Every number of this diagnosis"),
+        diagnosis_json(found),
+        &data,
+        &figures,
+        reports,
+    )
 }
 
 /// The text of `diagnosis.json`.
@@ -103,7 +122,8 @@ pub fn document(
     reports: Reports,
 ) -> Result<Files, Problems> {
     let pdf = || {
-        let attachment = Attachment { name, mime: "application/json", bytes: numbers.as_bytes(), description };
+        let attachment =
+            Attachment { name, mime: "application/json", bytes: numbers.as_bytes(), description };
         Ok(typst::typeset_study(data, figures, &[attachment])?.bytes)
     };
     let mut files = both(reports, pdf, || html::study_html(data, figures))?;
@@ -111,7 +131,8 @@ pub fn document(
     Ok(files)
 }
 
-/// The reports that are wanted, PDF and HTML at the same time: typesetting keeps one processor busy.
+/// The reports that are wanted, PDF and HTML at the same time: typesetting keeps one processor
+/// busy.
 fn both(
     reports: Reports,
     pdf: impl FnOnce() -> Result<Vec<u8>, Problems>,
@@ -120,14 +141,20 @@ fn both(
     thread::scope(|scope| {
         let html = reports.html.then(|| scope.spawn(html));
         let pdf = reports.pdf.then(pdf).transpose();
-        let html = html.map(|html| html.join().unwrap_or_else(|panic| resume_unwind(panic))).transpose();
+        let html =
+            html.map(|html| html.join().unwrap_or_else(|panic| resume_unwind(panic))).transpose();
         let pdf = pdf?.map(|bytes| (REPORT_PDF.into(), bytes));
-        Ok(pdf.into_iter().chain(html?.map(|text| (REPORT_HTML.into(), text.into_bytes()))).collect())
+        Ok(pdf
+            .into_iter()
+            .chain(html?.map(|text| (REPORT_HTML.into(), text.into_bytes())))
+            .collect())
     })
 }
 
 /// Tables in the folder `tables`.
-fn in_folder<T: Into<Vec<u8>>>(tables: Result<Vec<(String, T)>, String>) -> Result<Files, Problems> {
+fn in_folder<T: Into<Vec<u8>>>(
+    tables: Result<Vec<(String, T)>, String>,
+) -> Result<Files, Problems> {
     let tables = tables.map_err(|says| Problems(vec![Problem::error("table", says)]))?;
     Ok(tables.into_iter().map(|(name, bytes)| (format!("tables/{name}"), bytes.into())).collect())
 }

@@ -1,4 +1,5 @@
-//! Fishplate: a validation-protocol language and certification-report generator for rail vehicle simulation models.
+//! Fishplate: a validation-protocol language and certification-report generator for rail vehicle
+//! simulation models.
 //!
 //! Data flows one way. Each stage is a folder:
 //!
@@ -10,7 +11,8 @@
 //! | run | graph and campaign | [`result::Certification`] | `run` |
 //! | report | certification | PDF, HTML, JSON, CSV | `report` |
 //!
-//! [`source`], [`problem`], [`units`], [`yaml`] and `metrics` are used by all stages; `data` reads campaigns.
+//! [`source`], [`problem`], [`units`], [`yaml`] and `metrics` are used by all stages; `data` reads
+//! campaigns.
 
 pub mod catalog;
 pub mod certify;

@@ -52,10 +52,12 @@ pub const SHIPPED: &[Shipped] = shipped![
 ];
 
 /// The shipped catalogues of effects; the first is the default.
-pub const CATALOGUES: &[Shipped] = &[Shipped { name: "bogie-vehicle", text: include_str!("../effects/bogie-vehicle.yaml") }];
+pub const CATALOGUES: &[Shipped] =
+    &[Shipped { name: "bogie-vehicle", text: include_str!("../effects/bogie-vehicle.yaml") }];
 
 /// The shipped conventions: names of channels, and what is exchanged when a vehicle is turned.
-pub const CONVENTIONS: &[Shipped] = &[Shipped { name: "bogie-vehicle", text: include_str!("../conventions/bogie-vehicle.yaml") }];
+pub const CONVENTIONS: &[Shipped] =
+    &[Shipped { name: "bogie-vehicle", text: include_str!("../conventions/bogie-vehicle.yaml") }];
 
 /// A catalogue of effects by path or shipped name.
 ///
@@ -67,10 +69,15 @@ pub fn find_catalogue(name: &str, beside: Option<&Path>) -> Result<Arc<Source>, 
         return read(&path);
     }
     let shipped = CATALOGUES.iter().find(|shipped| shipped.name == name);
-    shipped.map(|shipped| Source::new(format!("effects/{name}.yaml"), shipped.text)).ok_or_else(|| {
-        let problem = Problem::error("no-such-catalogue", format!("there is no file and no shipped catalogue `{name}`"));
-        Box::new(problem.suggest(name, CATALOGUES.iter().map(|shipped| shipped.name)))
-    })
+    shipped.map(|shipped| Source::new(format!("effects/{name}.yaml"), shipped.text)).ok_or_else(
+        || {
+            let problem = Problem::error(
+                "no-such-catalogue",
+                format!("there is no file and no shipped catalogue `{name}`"),
+            );
+            Box::new(problem.suggest(name, CATALOGUES.iter().map(|shipped| shipped.name)))
+        },
+    )
 }
 
 /// The catalogue that another extends: a shipped name, or a path relative to its folder.
@@ -78,7 +85,14 @@ pub fn find_catalogue(name: &str, beside: Option<&Path>) -> Result<Arc<Source>, 
 /// # Errors
 /// As [`find_catalogue`].
 pub fn parent_catalogue(name: &str, from: &Source) -> Result<Arc<Source>, Box<Problem>> {
-    find_catalogue(name, if CATALOGUES.iter().any(|shipped| shipped.name == name) { None } else { Path::new(&from.name).parent() })
+    find_catalogue(
+        name,
+        if CATALOGUES.iter().any(|shipped| shipped.name == name) {
+            None
+        } else {
+            Path::new(&from.name).parent()
+        },
+    )
 }
 
 /// Names of the shipped protocols.
@@ -88,7 +102,10 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 
 /// The text of a shipped protocol.
 pub fn shipped(name: &str) -> Option<Arc<Source>> {
-    SHIPPED.iter().find(|shipped| shipped.name == name).map(|shipped| Source::new(format!("protocols/{name}.fp"), shipped.text))
+    SHIPPED
+        .iter()
+        .find(|shipped| shipped.name == name)
+        .map(|shipped| Source::new(format!("protocols/{name}.fp"), shipped.text))
 }
 
 /// A protocol by path, if such a file exists, else by shipped name.
@@ -101,7 +118,10 @@ pub fn find(name: &str, beside: Option<&Path>) -> Result<Arc<Source>, Box<Proble
         return read(&path);
     }
     shipped(name).ok_or_else(|| {
-        let problem = Problem::error("no-such-protocol", format!("there is no file and no shipped protocol `{name}`"));
+        let problem = Problem::error(
+            "no-such-protocol",
+            format!("there is no file and no shipped protocol `{name}`"),
+        );
         Box::new(problem.suggest(name, names()))
     })
 }
@@ -141,7 +161,13 @@ pub fn read(path: &Path) -> Result<Arc<Source>, Box<Problem>> {
         Err(error) => {
             let at = error.utf8_error().valid_up_to();
             let row = error.as_bytes()[..at].iter().filter(|byte| **byte == b'\n').count() + 1;
-            Err(Box::new(Problem::error("not-utf8", format!("{shown} is not UTF-8: byte {at}, in row {row}")).help("save it as UTF-8")))
+            Err(Box::new(
+                Problem::error(
+                    "not-utf8",
+                    format!("{shown} is not UTF-8: byte {at}, in row {row}"),
+                )
+                .help("save it as UTF-8"),
+            ))
         }
     }
 }

@@ -2,8 +2,9 @@
 
 use std::process::ExitCode;
 
-/// Signals of sections are large blocks that live briefly. The allocator of glibc often gives them back to the system, which clears them
-/// for the next section: `certify` then takes an eighth more processor time.
+/// Signals of sections are large blocks that live briefly. The allocator of glibc often gives them
+/// back to the system, which clears them for the next section: `certify` then takes an eighth more
+/// processor time.
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 

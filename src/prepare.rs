@@ -1,4 +1,5 @@
-//! Inputs of an evaluation: campaigns, and a protocol compiled for them. Programs and packages that evaluate begin here.
+//! Inputs of an evaluation: campaigns, and a protocol compiled for them. Programs and packages that
+//! evaluate begin here.
 
 use std::path::{Path, PathBuf};
 
@@ -48,7 +49,9 @@ impl Protocol<'_> {
     pub fn load(self, problems: &mut Problems) -> Option<Family> {
         match self {
             Self::Named(name) => load(name, problems),
-            Self::Text(text) => Some(family::read(&Source::new(IN_MEMORY, text), &library::parent, problems)),
+            Self::Text(text) => {
+                Some(family::read(&Source::new(IN_MEMORY, text), &library::parent, problems))
+            }
         }
     }
 }
@@ -67,33 +70,47 @@ pub fn load(name: &str, problems: &mut Problems) -> Option<Family> {
     }
 }
 
-/// What a diagnosis needs beside the protocol: the catalogue and its settings, and the sections of the campaign.
+/// What a diagnosis needs beside the protocol: the catalogue and its settings, and the sections of
+/// the campaign.
 ///
-/// Problems: of the catalogue; `section-in-run`, `several-records`, `several-vehicles`; of the table of sections.
-pub fn for_diagnosis(campaign: &Campaign, catalogue: &str, problems: &mut Problems) -> Option<(Catalogue, Settings, Vec<Section>)> {
+/// Problems: of the catalogue; `section-in-run`, `several-records`, `several-vehicles`; of the
+/// table of sections.
+pub fn for_diagnosis(
+    campaign: &Campaign,
+    catalogue: &str,
+    problems: &mut Problems,
+) -> Option<(Catalogue, Settings, Vec<Section>)> {
     campaign.file_for_each_section().map_err(|problem| problems.push(problem)).ok()?;
     let catalogue = load_catalogue(catalogue, problems)?;
     let settings = Settings::read(&catalogue, problems)?;
     let sections = sections(campaign, problems)?;
-    campaign.one_of_each().and_then(|()| campaign.one_vehicle()).map_err(|problem| problems.push(problem)).ok()?;
+    campaign
+        .one_of_each()
+        .and_then(|()| campaign.one_vehicle())
+        .map_err(|problem| problems.push(problem))
+        .ok()?;
     Some((catalogue, settings, sections))
 }
 
 /// A catalogue of effects, by path or name.
 pub fn load_catalogue(name: &str, problems: &mut Problems) -> Option<Catalogue> {
-    let source = library::find_catalogue(name, None).map_err(|problem| problems.push(*problem)).ok()?;
+    let source =
+        library::find_catalogue(name, None).map_err(|problem| problems.push(*problem)).ok()?;
     effects::read(&source, &library::parent_catalogue, &model_parameters(), problems)
 }
 
-/// The protocol of a mapping with the parameters that the mapping sets, if it names one. Mapping, protocol, tables and vehicle are checked
-/// against each other as an evaluation does it, before any record is read.
+/// The protocol of a mapping with the parameters that the mapping sets, if it names one. Mapping,
+/// protocol, tables and vehicle are checked against each other as an evaluation does it, before any
+/// record is read.
 pub fn for_import(mapping: &Mapping, problems: &mut Problems) -> Option<Option<Compiled>> {
     let before = problems.errors();
     let made = NotWritten::new(mapping, problems)?;
     let Some(named) = &mapping.protocol else { return Some(None) };
     let source = match library::shipped(&named.value) {
         Some(source) => source,
-        None => library::find(&named.value, Some(&mapping.folder)).map_err(|problem| problems.push(problem.at(&named.span))).ok()?,
+        None => library::find(&named.value, Some(&mapping.folder))
+            .map_err(|problem| problems.push(problem.at(&named.span)))
+            .ok()?,
     };
     let family = family::read(&source, &library::parent, problems);
     let overrides = overrides(&[], std::slice::from_ref(&made.campaign), problems)?;
@@ -108,20 +125,38 @@ pub fn for_import(mapping: &Mapping, problems: &mut Problems) -> Option<Option<C
     (problems.errors() == before).then_some(Some(compiled))
 }
 
-/// Opens a campaign and compiles the protocol named on the command line, else the campaign's, else the first shipped one.
-pub fn prepare(folder: &Path, protocol: Option<&str>, set: &[String], problems: &mut Problems) -> Option<Prepared> {
-    let Pool { compiled, mut campaigns, .. } = prepare_all(&[folder.to_path_buf()], protocol, set, problems)?;
+/// Opens a campaign and compiles the protocol named on the command line, else the campaign's, else
+/// the first shipped one.
+pub fn prepare(
+    folder: &Path,
+    protocol: Option<&str>,
+    set: &[String],
+    problems: &mut Problems,
+) -> Option<Prepared> {
+    let Pool { compiled, mut campaigns, .. } =
+        prepare_all(&[folder.to_path_buf()], protocol, set, problems)?;
     Some(Prepared { compiled, campaign: campaigns.pop()? })
 }
 
 /// As [`prepare`], of several campaigns. Sections that the protocol looks for in runs are found.
-pub fn prepare_all(folders: &[PathBuf], protocol: Option<&str>, set: &[String], problems: &mut Problems) -> Option<Pool> {
+pub fn prepare_all(
+    folders: &[PathBuf],
+    protocol: Option<&str>,
+    set: &[String],
+    problems: &mut Problems,
+) -> Option<Pool> {
     let pool = compiled_for(folders, protocol, set, problems)?;
     with_sections(pool, problems)
 }
 
-/// As [`prepare_all`], of campaigns that are open, with a protocol that is named or given as a text.
-pub fn prepare_opened(campaigns: Vec<Campaign>, protocol: Option<Protocol<'_>>, set: &[String], problems: &mut Problems) -> Option<Pool> {
+/// As [`prepare_all`], of campaigns that are open, with a protocol that is named or given as a
+/// text.
+pub fn prepare_opened(
+    campaigns: Vec<Campaign>,
+    protocol: Option<Protocol<'_>>,
+    set: &[String],
+    problems: &mut Problems,
+) -> Option<Pool> {
     let pool = compiled_with(campaigns, protocol, set, problems)?;
     with_sections(pool, problems)
 }
@@ -138,13 +173,24 @@ fn with_sections(mut pool: Pool, problems: &mut Problems) -> Option<Pool> {
 }
 
 /// As [`prepare_all`], before sections are looked for.
-pub fn compiled_for(folders: &[PathBuf], protocol: Option<&str>, set: &[String], problems: &mut Problems) -> Option<Pool> {
-    let opened: Vec<Option<Campaign>> = folders.iter().map(|folder| Campaign::open(folder, problems)).collect();
+pub fn compiled_for(
+    folders: &[PathBuf],
+    protocol: Option<&str>,
+    set: &[String],
+    problems: &mut Problems,
+) -> Option<Pool> {
+    let opened: Vec<Option<Campaign>> =
+        folders.iter().map(|folder| Campaign::open(folder, problems)).collect();
     let campaigns: Vec<Campaign> = opened.into_iter().collect::<Option<_>>()?;
     compiled_with(campaigns, protocol.map(Protocol::Named), set, problems)
 }
 
-fn compiled_with(campaigns: Vec<Campaign>, protocol: Option<Protocol<'_>>, set: &[String], problems: &mut Problems) -> Option<Pool> {
+fn compiled_with(
+    campaigns: Vec<Campaign>,
+    protocol: Option<Protocol<'_>>,
+    set: &[String],
+    problems: &mut Problems,
+) -> Option<Pool> {
     Campaigns::from(&campaigns).check(problems);
     let family = match protocol {
         Some(protocol) => protocol.load(problems),
@@ -153,7 +199,8 @@ fn compiled_with(campaigns: Vec<Campaign>, protocol: Option<Protocol<'_>>, set: 
     let overrides = overrides(set, &campaigns, problems)?;
     let compiled = compile(family, &overrides, problems)?;
     if protocol.is_none()
-        && let Some(problem) = campaigns.iter().find_map(|campaign| of_another_kind(&compiled, campaign))
+        && let Some(problem) =
+            campaigns.iter().find_map(|campaign| of_another_kind(&compiled, campaign))
     {
         problems.push(problem);
         return None;
@@ -166,11 +213,23 @@ fn compiled_with(campaigns: Vec<Campaign>, protocol: Option<Protocol<'_>>, set: 
 fn own_protocol(campaigns: &[Campaign], problems: &mut Problems) -> Option<Family> {
     let first = campaigns.first()?;
     let name = |campaign: &Campaign| campaign.protocol.as_ref().map(|named| named.value.clone());
-    let at = |campaign: &Campaign| campaign.protocol.as_ref().map_or(campaign.short_name.span.clone(), |named| named.span.clone());
-    let called = |campaign: &Campaign| name(campaign).map_or_else(|| "none".to_string(), |name| format!("`{name}`"));
+    let at = |campaign: &Campaign| {
+        campaign
+            .protocol
+            .as_ref()
+            .map_or(campaign.short_name.span.clone(), |named| named.span.clone())
+    };
+    let called = |campaign: &Campaign| {
+        name(campaign).map_or_else(|| "none".to_string(), |name| format!("`{name}`"))
+    };
     if let Some(other) = campaigns.iter().find(|other| name(other) != name(first)) {
-        let says = format!("the campaigns name different protocols: {} and {}", called(first), called(other));
-        let problem = Problem::error("several-protocols", says).at(&at(other)).also(&at(first), "the first");
+        let says = format!(
+            "the campaigns name different protocols: {} and {}",
+            called(first),
+            called(other)
+        );
+        let problem =
+            Problem::error("several-protocols", says).at(&at(other)).also(&at(first), "the first");
         problems.push(problem.help("name the one that is meant: `--protocol`"));
         return None;
     }
@@ -186,9 +245,12 @@ fn own_protocol(campaigns: &[Campaign], problems: &mut Problems) -> Option<Famil
     }
 }
 
-/// A campaign that names no protocol, and whose vehicle file has none of the data that the default one needs, is of another kind of machine.
+/// A campaign that names no protocol, and whose vehicle file has none of the data that the default
+/// one needs, is of another kind of machine.
 fn of_another_kind(compiled: &Compiled, campaign: &Campaign) -> Option<Problem> {
-    let needed = || compiled.plan.vehicle.iter().filter(|datum| datum.default.is_none() && !datum.may_be_absent);
+    let needed = || {
+        compiled.plan.vehicle.iter().filter(|datum| datum.default.is_none() && !datum.may_be_absent)
+    };
     let described = !campaign.vehicle.entries().is_empty();
     if campaign.protocol.is_some()
         || !described
@@ -197,15 +259,25 @@ fn of_another_kind(compiled: &Compiled, campaign: &Campaign) -> Option<Problem> 
     {
         return None;
     }
-    let says = format!("the campaign names no protocol, and its vehicle file has nothing that the default `{}` needs", compiled.plan.name);
+    let says = format!(
+        "the campaign names no protocol, and its vehicle file has nothing that the default `{}` needs",
+        compiled.plan.name
+    );
     let problem = Problem::error("no-protocol", says).at(&campaign.tree.span.part(0..0));
     Some(problem.help("name one: `protocol: protocol.fp` in this file, or `--protocol`"))
 }
 
 /// A fact of the campaign sets nothing; one with the name of a parameter was most likely meant to.
 fn facts_like_parameters(compiled: &Compiled, campaign: &Campaign, problems: &mut Problems) {
-    for fact in campaign.facts.iter().filter(|fact| compiled.plan.parameters.iter().any(|parameter| parameter.name == fact.name)) {
-        let says = format!("`{}` is a parameter of the protocol, and is not set by a fact of the campaign", fact.name);
+    for fact in campaign
+        .facts
+        .iter()
+        .filter(|fact| compiled.plan.parameters.iter().any(|parameter| parameter.name == fact.name))
+    {
+        let says = format!(
+            "`{}` is a parameter of the protocol, and is not set by a fact of the campaign",
+            fact.name
+        );
         let problem = Problem::warning("fact-like-parameter", says).at(&fact.span);
         problems.push(problem.help("to set it, let it stand below `parameters`, indented"));
     }
@@ -214,18 +286,29 @@ fn facts_like_parameters(compiled: &Compiled, campaign: &Campaign, problems: &mu
 /// Parameters of the campaigns, which must set them alike, and over them those of the command line.
 fn overrides(set: &[String], campaigns: &[Campaign], problems: &mut Problems) -> Option<Overrides> {
     let mut overrides = Overrides::new();
-    let on_command_line = |name: &str| set.iter().any(|set| set.split_once('=').is_some_and(|(set, _)| set.trim() == name));
+    let on_command_line = |name: &str| {
+        set.iter().any(|set| set.split_once('=').is_some_and(|(set, _)| set.trim() == name))
+    };
     for parameter in campaigns.iter().flat_map(|campaign| &campaign.parameters) {
         let name = &parameter.name.text;
-        let same =
-            |other: &&Campaign| other.parameters.iter().any(|other| (&other.name.text, &other.value.raw) == (name, &parameter.value.raw));
-        if let Some(other) = campaigns.iter().find(|other| !same(other)).filter(|_| !on_command_line(name)) {
-            let says =
-                format!("the parameter `{name}` is `{}` here, and not in the campaign `{}`", parameter.value.raw, other.short_name.value);
+        let same = |other: &&Campaign| {
+            other
+                .parameters
+                .iter()
+                .any(|other| (&other.name.text, &other.value.raw) == (name, &parameter.value.raw))
+        };
+        if let Some(other) =
+            campaigns.iter().find(|other| !same(other)).filter(|_| !on_command_line(name))
+        {
+            let says = format!(
+                "the parameter `{name}` is `{}` here, and not in the campaign `{}`",
+                parameter.value.raw, other.short_name.value
+            );
             let set = other.parameters.iter().find(|other| other.name.text == *name);
             let place = set.map_or(&other.short_name.span, |set| &set.value.span);
             let problem = Problem::error("parameters-differ", says).at(&parameter.value.span);
-            let problem = problem.also(place, if set.is_some() { "another value" } else { "not set" });
+            let problem =
+                problem.also(place, if set.is_some() { "another value" } else { "not set" });
             problems.push(problem.help(format!("set one for all: `--set {name}=...`")));
             return None;
         }
@@ -246,13 +329,18 @@ pub fn set_by_hand(all: &[String], problems: &mut Problems) -> Option<Vec<(Strin
     let mut found: Vec<(String, Text)> = Vec::new();
     for set in all {
         let Some((name, value)) = set.split_once('=') else {
-            problems.push(Problem::error("set", format!("`--set {set}` has no `=`")).help("write `--set name=value`"));
+            problems.push(
+                Problem::error("set", format!("`--set {set}` has no `=`"))
+                    .help("write `--set name=value`"),
+            );
             return None;
         };
         let span = Source::new("--set", set.clone()).span(name.len() + 1..set.len());
         let name = name.trim();
         if let Some((_, first)) = found.iter().find(|(known, _)| known == name) {
-            let problem = Problem::error("set-twice", format!("the parameter `{name}` is set twice")).at(&span);
+            let problem =
+                Problem::error("set-twice", format!("the parameter `{name}` is set twice"))
+                    .at(&span);
             problems.push(problem.also(&first.span, "set before").help("keep one of the two"));
             return None;
         }
@@ -261,17 +349,27 @@ pub fn set_by_hand(all: &[String], problems: &mut Problems) -> Option<Vec<(Strin
     Some(found)
 }
 
-/// The campaign with the files of its own protocol and of those that this one extends, for a copy of it. What cannot be read is left out:
-/// a copy needs no protocol.
+/// The campaign with the files of its own protocol and of those that this one extends, for a copy
+/// of it. What cannot be read is left out: a copy needs no protocol.
 pub fn with_protocols(campaign: Campaign) -> Campaign {
     let named = campaign.protocol.as_ref().filter(|named| library::shipped(&named.value).is_none());
-    let Some(family) = named.and_then(|named| campaign_protocol(&campaign, named, &mut Problems::default())) else { return campaign };
-    let inside = family.sources.iter().map(|source| campaign.inside(&source.name).to_string()).collect();
+    let Some(family) =
+        named.and_then(|named| campaign_protocol(&campaign, named, &mut Problems::default()))
+    else {
+        return campaign;
+    };
+    let inside =
+        family.sources.iter().map(|source| campaign.inside(&source.name).to_string()).collect();
     campaign.with_protocols(inside)
 }
 
-/// The protocol that a campaign names: a shipped one, or a file inside the campaign; the same for those it extends.
-fn campaign_protocol(campaign: &Campaign, named: &Spanned<String>, problems: &mut Problems) -> Option<Family> {
+/// The protocol that a campaign names: a shipped one, or a file inside the campaign; the same for
+/// those it extends.
+fn campaign_protocol(
+    campaign: &Campaign,
+    named: &Spanned<String>,
+    problems: &mut Problems,
+) -> Option<Family> {
     let inside = |named: &Spanned<String>| {
         if let Some(shipped) = library::shipped(&named.value) {
             return Ok(shipped);
@@ -279,7 +377,11 @@ fn campaign_protocol(campaign: &Campaign, named: &Spanned<String>, problems: &mu
         let place = campaign.place(named)?;
         campaign.read_text(&place).map_err(|problem| {
             let problem = if problem.at.is_some() { problem } else { problem.at(&named.span) };
-            if problem.code == "file-missing" && problem.near.is_none() { problem.suggest(&named.value, library::names()) } else { problem }
+            if problem.code == "file-missing" && problem.near.is_none() {
+                problem.suggest(&named.value, library::names())
+            } else {
+                problem
+            }
         })
     };
     let source = inside(named).map_err(|problem| problems.push(problem)).ok()?;
@@ -288,7 +390,8 @@ fn campaign_protocol(campaign: &Campaign, named: &Spanned<String>, problems: &mu
             return Ok(shipped);
         }
         let beside = Path::new(campaign.inside(&from.name)).parent().unwrap_or(Path::new(""));
-        inside(&Spanned::new(beside.join(name).display().to_string(), source.whole())).map_err(Box::new)
+        inside(&Spanned::new(beside.join(name).display().to_string(), source.whole()))
+            .map_err(Box::new)
     };
     Some(family::read(&source, &parent, problems))
 }

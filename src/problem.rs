@@ -41,11 +41,14 @@ pub struct Problem {
 /// A name for the type, since a plain `&str` would be taken for a part of the text that is read.
 type Code = &'static str;
 
-/// A code that was read. There are few different ones; each is kept once, for as long as the program runs.
+/// A code that was read. There are few different ones; each is kept once, for as long as the
+/// program runs.
 fn code<'de, D: Deserializer<'de>>(from: D) -> Result<Code, D::Error> {
     static KNOWN: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let text = String::deserialize(from)?;
-    let Ok(mut known) = KNOWN.lock() else { return Err(D::Error::custom("the codes are not accessible")) };
+    let Ok(mut known) = KNOWN.lock() else {
+        return Err(D::Error::custom("the codes are not accessible"));
+    };
     if let Some(code) = known.get(text.as_str()) {
         return Ok(code);
     }
@@ -57,7 +60,8 @@ fn code<'de, D: Deserializer<'de>>(from: D) -> Result<Code, D::Error> {
     Ok(code)
 }
 
-/// Bounds of the codes that are read from a file, in characters and in number; the program itself has some hundred of at most 30.
+/// Bounds of the codes that are read from a file, in characters and in number; the program itself
+/// has some hundred of at most 30.
 const LONGEST_CODE: usize = 64;
 const MOST_CODES: usize = 4096;
 
@@ -115,9 +119,14 @@ impl Problem {
         self
     }
 
-    /// Adds the help "did you mean ...?" if a candidate is similar, else the list of candidates if it is short.
+    /// Adds the help "did you mean ...?" if a candidate is similar, else the list of candidates if
+    /// it is short.
     #[must_use]
-    pub fn suggest<'a>(mut self, word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Self {
+    pub fn suggest<'a>(
+        mut self,
+        word: &str,
+        candidates: impl IntoIterator<Item = &'a str>,
+    ) -> Self {
         let all: Vec<&str> = candidates.into_iter().collect();
         if let Some(near) = nearest(word, all.iter().copied()) {
             return self.meant(near);
@@ -133,8 +142,10 @@ impl Problem {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
         };
-        let mut group =
-            level.primary_title(plain(&self.says)).id(self.code).elements(Vec::<Snippet<'_, annotate_snippets::Annotation<'_>>>::new());
+        let mut group = level
+            .primary_title(plain(&self.says))
+            .id(self.code)
+            .elements(Vec::<Snippet<'_, annotate_snippets::Annotation<'_>>>::new());
         let put_in = self.at.as_ref().and_then(|at| at.filled.as_ref()?.put_in());
         let put_in = put_in.map(|word| (word.span.clone(), format!("the member `{}`", word.value)));
         let name = |span: &Span| plain(&span.source.name).replace('\n', "\u{fffd}");
@@ -142,7 +153,11 @@ impl Problem {
             let mut same = Snippet::source(at.source.text.as_str())
                 .path(name(at))
                 .line_start(at.source.first_line)
-                .annotation(AnnotationKind::Primary.span(range(at)).label(self.label.clone().map(|text| plain(&text))));
+                .annotation(
+                    AnnotationKind::Primary
+                        .span(range(at))
+                        .label(self.label.clone().map(|text| plain(&text))),
+                );
             let mut others: Vec<Snippet<'_, _>> = Vec::new();
             for (span, text) in self.also.iter().chain(&put_in) {
                 let annotation = AnnotationKind::Context.span(range(span)).label(plain(text));
@@ -171,7 +186,8 @@ impl Problem {
         let renderer = if color { Renderer::styled() } else { Renderer::plain() };
         let mut text = renderer.render(&[group]).to_string();
         text.push('\n');
-        // The renderer replaces ASCII control characters only; a terminal interprets U+009B as the start of a command.
+        // The renderer replaces ASCII control characters only; a terminal interprets U+009B as the
+        // start of a command.
         text.replace(|c: char| matches!(c, '\u{80}'..='\u{9f}'), "\u{fffd}")
     }
 }
@@ -184,19 +200,30 @@ impl Problem {
     /// `in `Y_phase` and `Q_phase` of the family `{channel}_{part}``
     fn in_members(&self) -> Option<String> {
         let member = self.member()?;
-        let names: Vec<String> =
-            std::iter::once(&member.name).chain(self.members.iter().map(|(name, _)| name)).map(|name| format!("`{name}`")).collect();
+        let names: Vec<String> = std::iter::once(&member.name)
+            .chain(self.members.iter().map(|(name, _)| name))
+            .map(|name| format!("`{name}`"))
+            .collect();
         let listed = match names.split_last() {
-            Some((last, first)) if !first.is_empty() && names.len() <= MOST_LISTED => format!("{} and {last}", first.join(", ")),
-            _ if names.len() > MOST_LISTED => format!("{} and {} more", names[..MOST_LISTED].join(", "), names.len() - MOST_LISTED),
+            Some((last, first)) if !first.is_empty() && names.len() <= MOST_LISTED => {
+                format!("{} and {last}", first.join(", "))
+            }
+            _ if names.len() > MOST_LISTED => format!(
+                "{} and {} more",
+                names[..MOST_LISTED].join(", "),
+                names.len() - MOST_LISTED
+            ),
             _ => names.concat(),
         };
         Some(format!("in {listed} of the family `{}`", member.family))
     }
 
-    /// Adds the same problem of another member of the family; returns the other problem if it is a different one.
+    /// Adds the same problem of another member of the family; returns the other problem if it is a
+    /// different one.
     fn takes_in(&mut self, other: Problem) -> Option<Problem> {
-        let (Some(own), Some(its), Some(at), Some(there)) = (self.member(), other.member(), &self.at, &other.at) else {
+        let (Some(own), Some(its), Some(at), Some(there)) =
+            (self.member(), other.member(), &self.at, &other.at)
+        else {
             return Some(other);
         };
         if self.code != other.code
@@ -206,8 +233,11 @@ impl Problem {
         {
             return Some(other);
         }
-        let known = |problem: &Problem, name: &str| problem.members.iter().find(|(known, _)| known == name).map(|(_, says)| says.clone());
-        let said = if own.name == its.name { Some(self.says.clone()) } else { known(self, &its.name) };
+        let known = |problem: &Problem, name: &str| {
+            problem.members.iter().find(|(known, _)| known == name).map(|(_, says)| says.clone())
+        };
+        let said =
+            if own.name == its.name { Some(self.says.clone()) } else { known(self, &its.name) };
         if let Some(said) = said {
             return if said == other.says { None } else { Some(other) };
         }
@@ -219,14 +249,17 @@ impl Problem {
         }
         self.members.push((its.name.clone(), other.says));
         // What differs between members is not part of the problem.
-        if let Some(filled) = self.at.as_mut().filter(|_| !same_word).and_then(|at| at.filled.as_mut()) {
+        if let Some(filled) =
+            self.at.as_mut().filter(|_| !same_word).and_then(|at| at.filled.as_mut())
+        {
             Arc::make_mut(filled).pieces.clear();
         }
         None
     }
 }
 
-/// Byte range inside the text on character boundaries; not empty where a character can be underlined.
+/// Byte range inside the text on character boundaries; not empty where a character can be
+/// underlined.
 fn range(span: &Span) -> std::ops::Range<usize> {
     let text = &span.source.text;
     let mut start = span.start.min(text.len());
@@ -235,7 +268,11 @@ fn range(span: &Span) -> std::ops::Range<usize> {
     }
     let mut end = span.end.clamp(start, text.len());
     if end == start {
-        end = text[start..].chars().next().filter(|c| *c != '\n').map_or(start, |c| start + c.len_utf8());
+        end = text[start..]
+            .chars()
+            .next()
+            .filter(|c| *c != '\n')
+            .map_or(start, |c| start + c.len_utf8());
     }
     while !text.is_char_boundary(end) {
         end += 1;
@@ -248,10 +285,11 @@ pub fn plain(text: &str) -> String {
     text.chars().map(|c| if acts(c) && c != '\n' { '\u{fffd}' } else { c }).collect()
 }
 
-/// Whether a terminal interprets a character, or whether it changes the order of the text: the controls of bidirectional text
-/// (Unicode Standard Annex #9, Table 4).
+/// Whether a terminal interprets a character, or whether it changes the order of the text: the
+/// controls of bidirectional text (Unicode Standard Annex #9, Table 4).
 pub fn acts(c: char) -> bool {
-    c.is_control() || matches!(c, '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    c.is_control()
+        || matches!(c, '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
 /// A reader that ends at its first problem, in one that collects them.
@@ -267,7 +305,8 @@ pub struct Problems(pub Vec<Problem>);
 
 impl Problems {
     pub fn push(&mut self, problem: Problem) {
-        // The same problem at the same place is reported once, also for several members of a family.
+        // The same problem at the same place is reported once, also for several members of a
+        // family.
         if self.0.contains(&problem) {
             return;
         }
@@ -291,18 +330,23 @@ impl Problems {
     }
 }
 
-/// The most similar candidate of a word: the only one that begins with it, or one with a small edit distance.
+/// The most similar candidate of a word: the only one that begins with it, or one with a small edit
+/// distance.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     /// A shorter prefix is ambiguous: `max` suggests `maximum`, but `Y` nothing.
     const SHORTEST_BEGINNING: usize = 3;
     let lower = word.to_lowercase();
-    let candidates: Vec<&str> = candidates.into_iter().filter(|candidate| *candidate != word).collect();
+    let candidates: Vec<&str> =
+        candidates.into_iter().filter(|candidate| *candidate != word).collect();
     let slips = candidates.iter().filter_map(|candidate| {
         let other = candidate.to_lowercase();
         let longer = word.chars().count().max(candidate.chars().count());
         let distance = strsim::damerau_levenshtein(&lower, &other);
-        // A completely different word is not suggested: zone 7 is not a misspelling of zone 1. One letter in three may differ.
-        let near = distance <= longer.max(SHORTEST_BEGINNING) / 3 && distance < longer && same_symbol(&lower, &other);
+        // A completely different word is not suggested: zone 7 is not a misspelling of zone 1. One
+        // letter in three may differ.
+        let near = distance <= longer.max(SHORTEST_BEGINNING) / 3
+            && distance < longer
+            && same_symbol(&lower, &other);
         let alike = lower.chars().zip(other.chars()).take_while(|(a, b)| a == b).count();
         near.then_some((distance, std::cmp::Reverse(alike), *candidate))
     });
@@ -312,7 +356,8 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     }
     let mut begun = candidates.iter().filter(|candidate| {
         let rest = candidate.to_lowercase().strip_prefix(&lower).map(str::to_string);
-        lower.chars().count() >= SHORTEST_BEGINNING && rest.is_some_and(|rest| rest.starts_with(char::is_alphabetic))
+        lower.chars().count() >= SHORTEST_BEGINNING
+            && rest.is_some_and(|rest| rest.starts_with(char::is_alphabetic))
     });
     match (begun.next(), begun.next()) {
         (Some(only), None) => Some(only),
@@ -320,11 +365,14 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     }
 }
 
-/// Whether two names can have the same symbol, the part before the first `_`. `Q_1R` is another force than `Y_1R`, and `az_max`
-/// another acceleration than `ay_max`. A longer symbol may contain a misspelling.
+/// Whether two names can have the same symbol, the part before the first `_`. `Q_1R` is another
+/// force than `Y_1R`, and `az_max` another acceleration than `ay_max`. A longer symbol may contain
+/// a misspelling.
 fn same_symbol(a: &str, b: &str) -> bool {
     match (a.split_once('_'), b.split_once('_')) {
-        (Some((a, _)), Some((b, _))) => strsim::damerau_levenshtein(a, b) <= a.chars().count().max(b.chars().count()) / 3,
+        (Some((a, _)), Some((b, _))) => {
+            strsim::damerau_levenshtein(a, b) <= a.chars().count().max(b.chars().count()) / 3
+        }
         _ => true,
     }
 }
@@ -350,12 +398,16 @@ mod tests {
     #[test]
     fn both_places_are_underlined() {
         let source = Source::new("p.fp", "of Y\nlimit std 2 m/s^2\n");
-        let text = Problem::error("unit-mismatch", "the values are forces, the limit is an acceleration")
-            .at(&source.span(15..22))
-            .also(&source.span(3..4), "kN")
-            .help("write the limit in kN")
-            .render(false);
+        let text =
+            Problem::error("unit-mismatch", "the values are forces, the limit is an acceleration")
+                .at(&source.span(15..22))
+                .also(&source.span(3..4), "kN")
+                .help("write the limit in kN")
+                .render(false);
         assert!(text.contains("p.fp:2:11"), "{text}");
-        assert!(text.contains("1 | of Y") && text.contains("help: write the limit in kN"), "{text}");
+        assert!(
+            text.contains("1 | of Y") && text.contains("help: write the limit in kN"),
+            "{text}"
+        );
     }
 }

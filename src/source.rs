@@ -12,7 +12,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// One input text: a protocol, a YAML or CSV file, or an excerpt of one.
 #[derive(PartialEq, Eq)]
 pub struct Source {
-    /// Name shown to the user: the path as given, or `protocols/<name>.fp` for an embedded protocol.
+    /// Name shown to the user: the path as given, or `protocols/<name>.fp` for an embedded
+    /// protocol.
     pub name: String,
     pub text: String,
     /// Number of the first line of `text` in the file (1 unless this is an excerpt).
@@ -20,7 +21,8 @@ pub struct Source {
     lines: Lines,
 }
 
-/// Start positions of the lines of a text, computed on first use: a large table requests them for each row.
+/// Start positions of the lines of a text, computed on first use: a large table requests them for
+/// each row.
 #[derive(Default)]
 struct Lines(OnceLock<Vec<usize>>);
 
@@ -51,14 +53,21 @@ impl Source {
         Self::excerpt(name, text, 1)
     }
 
-    /// A few lines of a large file, so that a problem in row 30 000 of a record does not keep the record.
-    pub fn excerpt(name: impl Into<String>, text: impl Into<String>, first_line: usize) -> Arc<Self> {
+    /// A few lines of a large file, so that a problem in row 30 000 of a record does not keep the
+    /// record.
+    pub fn excerpt(
+        name: impl Into<String>,
+        text: impl Into<String>,
+        first_line: usize,
+    ) -> Arc<Self> {
         Arc::new(Self { name: name.into(), text: text.into(), first_line, lines: Lines::default() })
     }
 
     /// The name without its folders, independent of the working folder.
     pub fn file_name(&self) -> String {
-        std::path::Path::new(&self.name).file_name().map_or_else(|| self.name.clone(), |name| name.to_string_lossy().into_owned())
+        std::path::Path::new(&self.name)
+            .file_name()
+            .map_or_else(|| self.name.clone(), |name| name.to_string_lossy().into_owned())
     }
 
     /// Line and column (both from 1, column in characters) of a byte offset.
@@ -111,7 +120,8 @@ impl Span {
         Span { source: Arc::clone(&self.source), start, end, filled: None }
     }
 
-    /// The same place, restricted to these bytes of its text. Their place in the source is not known.
+    /// The same place, restricted to these bytes of its text. Their place in the source is not
+    /// known.
     pub fn of_which(&self, range: Range<usize>) -> Span {
         match &self.filled {
             Some(filled) => filled.part(self, range, false),
@@ -121,7 +131,12 @@ impl Span {
 
     /// From the start of this span to the end of another in the same source.
     pub fn to(&self, other: &Span) -> Span {
-        Span { source: Arc::clone(&self.source), start: self.start, end: other.end.max(self.start), filled: None }
+        Span {
+            source: Arc::clone(&self.source),
+            start: self.start,
+            end: other.end.max(self.start),
+            filled: None,
+        }
     }
 
     pub fn line(&self) -> usize {
@@ -139,7 +154,8 @@ struct Stored {
     end: usize,
 }
 
-/// Bytes of a line behind a place that are stored with it. Rows of records are shorter; a file in a wrong format may be one line.
+/// Bytes of a line behind a place that are stored with it. Rows of records are shorter; a file in a
+/// wrong format may be one line.
 const BEHIND: usize = 4096;
 
 impl Serialize for Span {
@@ -165,7 +181,11 @@ impl Serialize for Span {
 impl<'de> Deserialize<'de> for Span {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         let Stored { name, first_line, text, start, end } = Stored::deserialize(from)?;
-        if start > end || end > text.len() || !text.is_char_boundary(start) || !text.is_char_boundary(end) {
+        if start > end
+            || end > text.len()
+            || !text.is_char_boundary(start)
+            || !text.is_char_boundary(end)
+        {
             return Err(D::Error::custom(format!("a place in `{name}` that is not in its text")));
         }
         Ok(Source::excerpt(name, text, first_line).span(start..end))
@@ -216,24 +236,45 @@ pub struct Piece {
 impl Filled {
     fn part(&self, span: &Span, range: Range<usize>, exact: bool) -> Span {
         let end = range.end.max(range.start + 1);
-        let touched = || self.pieces.iter().filter(|piece| piece.text.start < end && range.start < piece.text.end);
-        let (Some(first), Some(last)) = (touched().next(), touched().next_back()) else { return span.clone() };
-        let ahead = |piece: &Piece| if piece.put_in.is_some() { 0 } else { range.start.saturating_sub(piece.text.start) };
-        let behind = |piece: &Piece| if piece.put_in.is_some() { 0 } else { piece.text.end.saturating_sub(range.end.max(range.start)) };
+        let touched = || {
+            self.pieces
+                .iter()
+                .filter(|piece| piece.text.start < end && range.start < piece.text.end)
+        };
+        let (Some(first), Some(last)) = (touched().next(), touched().next_back()) else {
+            return span.clone();
+        };
+        let ahead = |piece: &Piece| {
+            if piece.put_in.is_some() { 0 } else { range.start.saturating_sub(piece.text.start) }
+        };
+        let behind = |piece: &Piece| {
+            if piece.put_in.is_some() {
+                0
+            } else {
+                piece.text.end.saturating_sub(range.end.max(range.start))
+            }
+        };
         let from = first.from.start + ahead(first);
         let to = last.from.end.saturating_sub(behind(last)).max(from);
         let shift = if exact { from } else { 0 };
         let pieces = touched().map(|piece| Piece {
-            text: piece.text.start.max(range.start) - range.start..piece.text.end.min(range.end.max(range.start)) - range.start,
-            from: piece.from.start + ahead(piece) - shift..(piece.from.end - behind(piece)).max(piece.from.start + ahead(piece)) - shift,
+            text: piece.text.start.max(range.start) - range.start
+                ..piece.text.end.min(range.end.max(range.start)) - range.start,
+            from: piece.from.start + ahead(piece) - shift
+                ..(piece.from.end - behind(piece)).max(piece.from.start + ahead(piece)) - shift,
             put_in: piece.put_in.clone(),
         });
         let filled = Self {
-            text: self.text.get(range.start..range.end.min(self.text.len())).unwrap_or("").to_owned(),
+            text: self
+                .text
+                .get(range.start..range.end.min(self.text.len()))
+                .unwrap_or("")
+                .to_owned(),
             member: Arc::clone(&self.member),
             pieces: pieces.collect(),
         };
-        let (start, end) = if exact { (span.start + from, span.start + to) } else { (span.start, span.end) };
+        let (start, end) =
+            if exact { (span.start + from, span.start + to) } else { (span.start, span.end) };
         Span { source: Arc::clone(&span.source), start, end, filled: Some(Arc::new(filled)) }
     }
 
@@ -286,10 +327,17 @@ mod tests {
             let span = source.span(range);
             let stored = serde_json::to_string(&span).expect("JSON");
             let read: Span = serde_json::from_str(&stored).expect("a span");
-            assert_eq!((read.to_string(), read.text()), (span.to_string(), span.text()), "{stored}");
+            assert_eq!(
+                (read.to_string(), read.text()),
+                (span.to_string(), span.text()),
+                "{stored}"
+            );
             assert!(read.source.text.lines().count() <= 2);
         }
-        for wrong in ["{\"name\":\"a\",\"first_line\":1,\"text\":\"ä\",\"start\":0,\"end\":1}", "{\"name\":\"a\"}"] {
+        for wrong in [
+            "{\"name\":\"a\",\"first_line\":1,\"text\":\"ä\",\"start\":0,\"end\":1}",
+            "{\"name\":\"a\"}",
+        ] {
             assert!(serde_json::from_str::<Span>(wrong).is_err());
         }
     }
@@ -316,7 +364,14 @@ mod tests {
         ] {
             let found = span.part(part);
             assert_eq!((found.text(), written(&found).as_str()), (text, from));
-            assert_eq!(found.filled.as_ref().and_then(|filled| filled.put_in()).map(|word| word.value.as_str()), whole);
+            assert_eq!(
+                found
+                    .filled
+                    .as_ref()
+                    .and_then(|filled| filled.put_in())
+                    .map(|word| word.value.as_str()),
+                whole
+            );
         }
         assert_eq!(written(&span.part(5..16).part(6..11)), "limit");
         assert_eq!(written(&span.part(16..16)), written(&span));

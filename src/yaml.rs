@@ -1,6 +1,7 @@
 //! A YAML text as a tree in which every key and value has its place and its original text.
 //!
-//! One YAML 1.2 document, core schema: only `true` and `false` are booleans; `no` and `1.2.3` are text.
+//! One YAML 1.2 document, core schema: only `true` and `false` are booleans; `no` and `1.2.3` are
+//! text.
 
 mod load;
 mod scalar;
@@ -17,10 +18,11 @@ use crate::source::Span;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
     pub value: Value,
-    /// Span of the value without anchor, tag and, if [`Node::exact`], without quotes. For an alias, the span of the anchored value.
+    /// Span of the value without anchor, tag and, if [`Node::exact`], without quotes. For an alias,
+    /// the span of the anchored value.
     pub span: Span,
-    /// A scalar as text, whatever its type: `1.50`, `no`, `5 kN`; with escapes resolved and folded lines joined.
-    /// Empty for lists and maps.
+    /// A scalar as text, whatever its type: `1.50`, `no`, `5 kN`; with escapes resolved and folded
+    /// lines joined. Empty for lists and maps.
     pub raw: String,
     /// Whether byte `n` of `raw` is at byte `n` of `span`.
     pub exact: bool,

@@ -1,4 +1,5 @@
-//! Every kind of bad input of a campaign, end to end: exit code, message, place, and what is written.
+//! Every kind of bad input of a campaign, end to end: exit code, message, place, and what is
+//! written.
 
 mod common {
     pub mod campaign;
@@ -44,25 +45,44 @@ fn a_parameter_at_the_margin_is_told() {
         fs::write(&path, text + "lowpass_frequency: 10 Hz\n").expect("written");
     });
     assert_eq!(found.ran.code, 0, "{}", found.ran.stderr);
-    for part in ["warning[fact-like-parameter]: `lowpass_frequency`", "campaign.yaml:6:20", "below `parameters`"] {
+    for part in [
+        "warning[fact-like-parameter]: `lowpass_frequency`",
+        "campaign.yaml:6:20",
+        "below `parameters`",
+    ] {
         assert!(found.ran.stderr.contains(part), "{part}: {}", found.ran.stderr);
     }
 }
 
-/// A record that is one line, as of old Apple programs, is told as such: by `certify`, and by the values of a part, which stay small.
+/// A record that is one line, as of old Apple programs, is told as such: by `certify`, and by the
+/// values of a part, which stay small.
 #[test]
 fn a_record_with_carriage_returns_alone() {
     let path = "measurement/S01.csv";
-    let found = with(|campaign| bytes(&campaign.join(path), |text| text.into_iter().map(|c| if c == b'\n' { b'\r' } else { c }).collect()));
-    let reason = found.ran.stdout.lines().find(|line| line.contains("S01 not used")).expect("a reason");
-    assert!(reason.contains("the lines end with a carriage return (CR) alone") && reason.len() < 300, "{reason}");
+    let found = with(|campaign| {
+        bytes(&campaign.join(path), |text| {
+            text.into_iter().map(|c| if c == b'\n' { b'\r' } else { c }).collect()
+        })
+    });
+    let reason =
+        found.ran.stdout.lines().find(|line| line.contains("S01 not used")).expect("a reason");
+    assert!(
+        reason.contains("the lines end with a carriage return (CR) alone") && reason.len() < 300,
+        "{reason}"
+    );
 }
 
 #[test]
 fn a_sound_campaign_validates() {
     let found = with(|_| {});
     assert_eq!(found.ran.code, 0, "{}{}", found.ran.stdout, found.ran.stderr);
-    assert!(found.results()["sections"].as_array().expect("a list").iter().all(|section| section["used"] == true));
+    assert!(
+        found.results()["sections"]
+            .as_array()
+            .expect("a list")
+            .iter()
+            .all(|section| section["used"] == true)
+    );
 }
 
 /// A fault in one section: it is not used, with this reason, and zone 1 has one section too few.
@@ -144,22 +164,38 @@ fn one_faulty_section_is_not_used() {
         ),
         (
             "decimal comma",
-            |campaign| lines(&campaign.join(S), |lines| lines.iter_mut().skip(1).for_each(|line| *line = line.replace('.', ","))),
+            |campaign| {
+                lines(&campaign.join(S), |lines| {
+                    lines.iter_mut().skip(1).for_each(|line| *line = line.replace('.', ","))
+                })
+            },
             "the row has 28 values, the header 14 columns: the numbers seem to have decimal commas (simulation/S01.csv, row 2 and 4 more): write numbers with a point; and 821 more problems in `simulation/S01.csv`",
         ),
         (
             "semicolon",
-            |campaign| lines(&campaign.join(S), |lines| lines.iter_mut().for_each(|line| *line = line.replace(',', ";"))),
+            |campaign| {
+                lines(&campaign.join(S), |lines| {
+                    lines.iter_mut().for_each(|line| *line = line.replace(',', ";"))
+                })
+            },
             "the columns are separated by semicolons, not by commas (simulation/S01.csv, row 1): write a comma between the columns and a point in the numbers",
         ),
         (
             "semicolon and decimal comma",
             |campaign| {
-                lines(&campaign.join(S), |lines| lines.iter_mut().for_each(|line| *line = line.replace(',', ";").replace('.', ",")));
+                lines(&campaign.join(S), |lines| {
+                    lines
+                        .iter_mut()
+                        .for_each(|line| *line = line.replace(',', ";").replace('.', ","))
+                });
             },
             "the columns are separated by semicolons, not by commas (simulation/S01.csv, row 1): write a comma between the columns and a point in the numbers",
         ),
-        ("empty file", |campaign| fs::write(campaign.join(M), "").expect("written"), "`measurement/S01.csv` is empty"),
+        (
+            "empty file",
+            |campaign| fs::write(campaign.join(M), "").expect("written"),
+            "`measurement/S01.csv` is empty",
+        ),
         (
             "header only",
             |campaign| lines(&campaign.join(M), |lines| lines.truncate(1)),
@@ -173,13 +209,20 @@ fn one_faulty_section_is_not_used() {
         (
             "UTF-16",
             |campaign| {
-                bytes(&campaign.join(M), |bytes| [0xff, 0xfe].into_iter().chain(bytes.into_iter().flat_map(|byte| [byte, 0])).collect());
+                bytes(&campaign.join(M), |bytes| {
+                    [0xff, 0xfe]
+                        .into_iter()
+                        .chain(bytes.into_iter().flat_map(|byte| [byte, 0]))
+                        .collect()
+                });
             },
             "`measurement/S01.csv` is UTF-16 text, not UTF-8: save the file as UTF-8",
         ),
         (
             "Latin-1",
-            |campaign| bytes(&campaign.join(M), |bytes| [b"K\xf6ln [-],".as_slice(), &bytes].concat()),
+            |campaign| {
+                bytes(&campaign.join(M), |bytes| [b"K\xf6ln [-],".as_slice(), &bytes].concat())
+            },
             "byte 2 of `measurement/S01.csv`, hexadecimal f6, is not UTF-8: save the file as UTF-8",
         ),
         (
@@ -200,7 +243,11 @@ fn one_faulty_section_is_not_used() {
             |campaign| cell(&campaign.join("sections.csv"), 1, "end [m]", "30"),
             "its start is not before its end (sections.csv, row 2)",
         ),
-        ("no start", |campaign| cell(&campaign.join("sections.csv"), 1, "start [m]", ""), "`start` is empty (sections.csv, row 2)"),
+        (
+            "no start",
+            |campaign| cell(&campaign.join("sections.csv"), 1, "start [m]", ""),
+            "`start` is empty (sections.csv, row 2)",
+        ),
         (
             "start with a comma",
             |campaign| cell(&campaign.join("sections.csv"), 1, "start [m]", "\"40,5\""),
@@ -224,7 +271,11 @@ fn one_faulty_section_is_not_used() {
             |campaign| cell(&campaign.join("sections.csv"), 1, "zone [-]", "7"),
             "`zone`: `7` is not one of 1, 2, 3, 4 (sections.csv, row 2)",
         ),
-        ("zone empty", |campaign| cell(&campaign.join("sections.csv"), 1, "zone [-]", ""), "`zone` is empty (sections.csv, row 2)"),
+        (
+            "zone empty",
+            |campaign| cell(&campaign.join("sections.csv"), 1, "zone [-]", ""),
+            "`zone` is empty (sections.csv, row 2)",
+        ),
         (
             "direction misspelt",
             |campaign| cell(&campaign.join("sections.csv"), 1, "direction", "straigth"),
@@ -247,7 +298,10 @@ fn one_faulty_section_is_not_used() {
         assert_eq!(found.reason("S01").as_deref(), Some(*reason), "{case}");
         let results = found.results();
         assert_eq!(results["verdict"], "not assessable", "{case}");
-        assert_eq!(results["reasons"][0], "zone 1 has 2 usable sections; at least 3 required", "{case}");
+        assert_eq!(
+            results["reasons"][0], "zone 1 has 2 usable sections; at least 3 required",
+            "{case}"
+        );
         assert_eq!(results["quantities"][0]["pairs"], 44, "{case}");
         let line = format!("  S01 not used: {reason}\n");
         assert!(found.ran.stdout.contains(&line), "{case}: {}", found.ran.stdout);
@@ -263,7 +317,11 @@ fn values(found: &Certified) -> Vec<f64> {
         .expect("a list")
         .iter()
         .flat_map(|quantity| quantity["values"].as_array().expect("a list").clone());
-    pairs.flat_map(|pair| ["simulated", "measured", "difference"].map(|key| pair[key].as_f64().expect("a number"))).collect()
+    pairs
+        .flat_map(|pair| {
+            ["simulated", "measured", "difference"].map(|key| pair[key].as_f64().expect("a number"))
+        })
+        .collect()
 }
 
 fn records(campaign: &Path) -> Vec<PathBuf> {
@@ -290,8 +348,10 @@ fn units_are_converted() {
     let newtons = with(|campaign| {
         for path in records(campaign) {
             lines(&path, |lines| {
-                let at = lines[0].split(',').position(|heading| heading == "Q_1L [kN]").expect("there");
-                lines[0] = lines[0].replace("Q_1L [kN]", "Q_1L [N]").replace("time [s]", "time [ms]");
+                let at =
+                    lines[0].split(',').position(|heading| heading == "Q_1L [kN]").expect("there");
+                lines[0] =
+                    lines[0].replace("Q_1L [kN]", "Q_1L [N]").replace("time [s]", "time [ms]");
                 for line in lines.iter_mut().skip(1) {
                     let mut cells: Vec<String> = line.split(',').map(str::to_string).collect();
                     for at in [0, at] {
@@ -341,9 +401,17 @@ fn a_position_that_no_record_has_is_left_out_with_a_note() {
     assert_eq!(found.ran.code, 0, "{}{}", found.ran.stdout, found.ran.stderr);
     let results = found.results();
     let note = "`Q_3L` is in no record of the measurement; its position is left out";
-    assert!(results["notes"].as_array().expect("a list").iter().any(|found| found == note), "{}", results["notes"]);
-    let pairs: Vec<u64> =
-        results["quantities"].as_array().expect("a list").iter().map(|quantity| quantity["pairs"].as_u64().expect("a count")).collect();
+    assert!(
+        results["notes"].as_array().expect("a list").iter().any(|found| found == note),
+        "{}",
+        results["notes"]
+    );
+    let pairs: Vec<u64> = results["quantities"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|quantity| quantity["pairs"].as_u64().expect("a count"))
+        .collect();
     assert_eq!(pairs, [48, 36, 36, 24, 48, 36, 36, 24, 24, 24, 24, 24]);
 }
 
@@ -359,10 +427,16 @@ fn too_few_signals_are_not_assessable() {
     assert_eq!(results["verdict"], "not assessable");
     assert_eq!(
         results["reasons"],
-        serde_json::json!(["az_rms: 1 signal recorded; at least 2 required", "az_max: 1 signal recorded; at least 2 required"])
+        serde_json::json!([
+            "az_rms: 1 signal recorded; at least 2 required",
+            "az_max: 1 signal recorded; at least 2 required"
+        ])
     );
     let quantity = &results["quantities"][9];
-    assert_eq!((quantity["holds"].is_null(), quantity["reason"].as_str()), (true, Some("1 signal recorded; at least 2 required")));
+    assert_eq!(
+        (quantity["holds"].is_null(), quantity["reason"].as_str()),
+        (true, Some("1 signal recorded; at least 2 required"))
+    );
 }
 
 #[test]
@@ -371,7 +445,9 @@ fn too_few_sections_are_not_assessable() {
     assert_eq!(found.ran.code, 1);
     assert_eq!(found.results()["reasons"][0], "zone 4 has 2 usable sections; at least 3 required");
     assert!(
-        found.ran.stdout.contains("Verdict: not assessable\n  zone 4 has 2 usable sections; at least 3 required\n"),
+        found.ran.stdout.contains(
+            "Verdict: not assessable\n  zone 4 has 2 usable sections; at least 3 required\n"
+        ),
         "{}",
         found.ran.stdout
     );
@@ -384,7 +460,10 @@ fn the_report_says_why_a_section_is_not_used() {
     let found = certify(folder.path(), &["--only", "html"]);
     assert_eq!(found.ran.code, 1);
     let html = found.text("report.html");
-    assert!(html.replace("&#x2f;", "/").contains("`Y_1R`: `NaN` is not a finite number (measurement/S05.csv, row 10)"));
+    assert!(
+        html.replace("&#x2f;", "/")
+            .contains("`Y_1R`: `NaN` is not a finite number (measurement/S05.csv, row 10)")
+    );
 }
 
 /// A protocol may say that the first faulty section ends the run.
@@ -392,13 +471,22 @@ fn the_report_says_why_a_section_is_not_used() {
 fn a_protocol_may_stop_at_a_fault() {
     let folder = tiny();
     let protocol = folder.path().join("strict.fp");
-    fs::write(&protocol, "protocol strict \"Stops\"\n  extends  en14363-2016-annex-t\n\nsections\n  faulty  stop\n").expect("written");
+    fs::write(
+        &protocol,
+        "protocol strict \"Stops\"\n  extends  en14363-2016-annex-t\n\nsections\n  faulty  stop\n",
+    )
+    .expect("written");
     let strict = ["--protocol", protocol.to_str().expect("UTF-8"), "--only", "results"];
     assert_eq!(certify(folder.path(), &strict).ran.code, 0);
     cell(&folder.path().join("measurement/S05.csv"), 9, "Y_1R [kN]", "NaN");
     let found = certify(folder.path(), &strict);
     assert_eq!(found.ran.code, 2, "{}{}", found.ran.stdout, found.ran.stderr);
-    for part in ["error[not-finite]", "measurement/S05.csv:10:", "error[faulty-section]: section S05 is faulty", "sections.csv:6:1"] {
+    for part in [
+        "error[not-finite]",
+        "measurement/S05.csv:10:",
+        "error[faulty-section]: section S05 is faulty",
+        "sections.csv:6:1",
+    ] {
         assert!(found.ran.stderr.contains(part), "{part}\n{}", found.ran.stderr);
     }
     assert_eq!(found.ran.stdout, "");
@@ -412,9 +500,17 @@ fn unusable_campaigns() {
         (
             "no campaign file",
             |campaign| fs::remove_file(campaign.join("campaign.yaml")).expect("removed"),
-            &["error[file-missing]", "/campaign.yaml`", "a campaign is a folder with a file `campaign.yaml`"],
+            &[
+                "error[file-missing]",
+                "/campaign.yaml`",
+                "a campaign is a folder with a file `campaign.yaml`",
+            ],
         ),
-        ("no folder", |campaign| fs::remove_dir_all(campaign).expect("removed"), &["error[folder-missing]: there is no folder"]),
+        (
+            "no folder",
+            |campaign| fs::remove_dir_all(campaign).expect("removed"),
+            &["error[folder-missing]: there is no folder"],
+        ),
         (
             "no name",
             |campaign| replace(&campaign.join("campaign.yaml"), "name: Tiny\n", ""),
@@ -427,7 +523,9 @@ fn unusable_campaigns() {
         ),
         (
             "vehicle datum missing",
-            |campaign| replace(&campaign.join("vehicle.yaml"), "static_wheel_load", "static_wheelload"),
+            |campaign| {
+                replace(&campaign.join("vehicle.yaml"), "static_wheel_load", "static_wheelload")
+            },
             &[
                 "error[missing-vehicle-data]: the vehicle file has no `static_wheel_load` (Static vertical wheel force)",
                 "vehicle.yaml:1:1",
@@ -436,8 +534,17 @@ fn unusable_campaigns() {
         ),
         (
             "vehicle datum ill-formed",
-            |campaign| replace(&campaign.join("vehicle.yaml"), "static_wheel_load: 50", "static_wheel_load: '50,5'"),
-            &["error[vehicle-data]: `static_wheel_load`: `50,5` has a decimal comma", "vehicle.yaml:5:21"],
+            |campaign| {
+                replace(
+                    &campaign.join("vehicle.yaml"),
+                    "static_wheel_load: 50",
+                    "static_wheel_load: '50,5'",
+                )
+            },
+            &[
+                "error[vehicle-data]: `static_wheel_load`: `50,5` has a decimal comma",
+                "vehicle.yaml:5:21",
+            ],
         ),
         (
             "vehicle word unknown",
@@ -459,7 +566,9 @@ fn unusable_campaigns() {
         ),
         (
             "section column missing",
-            |campaign| replace(&campaign.join("sections.csv"), "cant deficiency [mm]", "deficiency [mm]"),
+            |campaign| {
+                replace(&campaign.join("sections.csv"), "cant deficiency [mm]", "deficiency [mm]")
+            },
             &[
                 "error[missing-column]: the table of sections has no column `cant deficiency`",
                 "sections.csv:1:1",
@@ -469,12 +578,19 @@ fn unusable_campaigns() {
         (
             "section column in a wrong unit",
             |campaign| replace(&campaign.join("sections.csv"), "speed [km/h]", "speed [kN]"),
-            &["error[unit-mismatch]: the column `speed` is in kN, which is a force; a speed is needed", "sections.csv:1:95"],
+            &[
+                "error[unit-mismatch]: the column `speed` is in kN, which is a force; a speed is needed",
+                "sections.csv:1:95",
+            ],
         ),
         (
             "duplicate section",
             |campaign| cell(&campaign.join("sections.csv"), 2, "section", "S01"),
-            &["error[duplicate-name]: two rows are called `S01`", "sections.csv:3:1", "the first of them"],
+            &[
+                "error[duplicate-name]: two rows are called `S01`",
+                "sections.csv:3:1",
+                "the first of them",
+            ],
         ),
         (
             "empty section table",
@@ -490,24 +606,46 @@ fn unusable_campaigns() {
             "campaign in UTF-16",
             |campaign| {
                 bytes(&campaign.join("campaign.yaml"), |text| {
-                    [0xff, 0xfe].into_iter().chain(text.into_iter().flat_map(|byte| [byte, 0])).collect()
+                    [0xff, 0xfe]
+                        .into_iter()
+                        .chain(text.into_iter().flat_map(|byte| [byte, 0]))
+                        .collect()
                 })
             },
             &["error[encoding]", "UTF-16 text, not UTF-8"],
         ),
         (
             "sections in Latin-1",
-            |campaign| bytes(&campaign.join("sections.csv"), |text| [&text[..], b"K\xf6ln,1,1,2,,straight,0,0,100\n"].concat()),
+            |campaign| {
+                bytes(&campaign.join("sections.csv"), |text| {
+                    [&text[..], b"K\xf6ln,1,1,2,,straight,0,0,100\n"].concat()
+                })
+            },
             &["error[encoding]", "sections.csv:14:2", "`ö` if the file is Windows-1252"],
         ),
         (
             "records above",
-            |campaign| replace(&campaign.join("campaign.yaml"), "measurement: measurement", "measurement: ../measurement"),
-            &["error[path-outside]: `../measurement` leads out of the campaign's folder", "campaign.yaml:4:14"],
+            |campaign| {
+                replace(
+                    &campaign.join("campaign.yaml"),
+                    "measurement: measurement",
+                    "measurement: ../measurement",
+                )
+            },
+            &[
+                "error[path-outside]: `../measurement` leads out of the campaign's folder",
+                "campaign.yaml:4:14",
+            ],
         ),
         (
             "absolute path",
-            |campaign| replace(&campaign.join("campaign.yaml"), "vehicle: vehicle.yaml", "vehicle: /etc/hostname"),
+            |campaign| {
+                replace(
+                    &campaign.join("campaign.yaml"),
+                    "vehicle: vehicle.yaml",
+                    "vehicle: /etc/hostname",
+                )
+            },
             &["error[path-outside]: `/etc/hostname` is an absolute path", "campaign.yaml:2:10"],
         ),
         (
@@ -517,26 +655,55 @@ fn unusable_campaigns() {
         ),
         (
             "protocol above",
-            |campaign| replace(&campaign.join("campaign.yaml"), "name: Tiny", "name: Tiny\nprotocol: ../p.fp"),
-            &["error[path-outside]: `../p.fp` leads out of the campaign's folder", "campaign.yaml:2:11"],
+            |campaign| {
+                replace(
+                    &campaign.join("campaign.yaml"),
+                    "name: Tiny",
+                    "name: Tiny\nprotocol: ../p.fp",
+                )
+            },
+            &[
+                "error[path-outside]: `../p.fp` leads out of the campaign's folder",
+                "campaign.yaml:2:11",
+            ],
         ),
         (
             "protocol that extends one above",
             |campaign| {
-                replace(&campaign.join("campaign.yaml"), "name: Tiny", "name: Tiny\nprotocol: rules/p.fp");
+                replace(
+                    &campaign.join("campaign.yaml"),
+                    "name: Tiny",
+                    "name: Tiny\nprotocol: rules/p.fp",
+                );
                 fs::create_dir(campaign.join("rules")).expect("made");
-                fs::write(campaign.join("rules/p.fp"), "protocol p \"P\"\n  extends  ../../q.fp\n").expect("written");
+                fs::write(campaign.join("rules/p.fp"), "protocol p \"P\"\n  extends  ../../q.fp\n")
+                    .expect("written");
             },
-            &["error[path-outside]: `rules/../../q.fp` leads out of the campaign's folder", "rules/p.fp:2:12"],
+            &[
+                "error[path-outside]: `rules/../../q.fp` leads out of the campaign's folder",
+                "rules/p.fp:2:12",
+            ],
         ),
         (
             "protocol misspelt",
-            |campaign| replace(&campaign.join("campaign.yaml"), "name: Tiny", "name: Tiny\nprotocol: en14363-2016-anex-t"),
+            |campaign| {
+                replace(
+                    &campaign.join("campaign.yaml"),
+                    "name: Tiny",
+                    "name: Tiny\nprotocol: en14363-2016-anex-t",
+                )
+            },
             &["error[file-missing]", "campaign.yaml:2:11", "did you mean `en14363-2016-annex-t`?"],
         ),
         (
             "unknown parameter",
-            |campaign| replace(&campaign.join("campaign.yaml"), "name: Tiny", "name: Tiny\nparameters:\n  lowpass_freqency: 20 Hz"),
+            |campaign| {
+                replace(
+                    &campaign.join("campaign.yaml"),
+                    "name: Tiny",
+                    "name: Tiny\nparameters:\n  lowpass_freqency: 20 Hz",
+                )
+            },
             &[
                 "error[unknown-parameter]: protocol `en14363-2016-annex-t` has no parameter `lowpass_freqency`",
                 "campaign.yaml:3:21",
@@ -545,8 +712,17 @@ fn unusable_campaigns() {
         ),
         (
             "parameter of a wrong unit",
-            |campaign| replace(&campaign.join("campaign.yaml"), "name: Tiny", "name: Tiny\nparameters:\n  lowpass_frequency: 20 kN"),
-            &["error[unit-mismatch]: parameter `lowpass_frequency` is a frequency, the given value is a force", "campaign.yaml:3:22"],
+            |campaign| {
+                replace(
+                    &campaign.join("campaign.yaml"),
+                    "name: Tiny",
+                    "name: Tiny\nparameters:\n  lowpass_frequency: 20 kN",
+                )
+            },
+            &[
+                "error[unit-mismatch]: parameter `lowpass_frequency` is a frequency, the given value is a force",
+                "campaign.yaml:3:22",
+            ],
         ),
         (
             "no folder of records",
@@ -587,7 +763,11 @@ fn unusable_campaigns() {
         let found = with(change);
         assert_eq!(found.ran.code, 2, "{case}: {}{}", found.ran.stdout, found.ran.stderr);
         for part in *parts {
-            assert!(found.ran.stderr.contains(part), "{case}: no `{part}` in\n{}", found.ran.stderr);
+            assert!(
+                found.ran.stderr.contains(part),
+                "{case}: no `{part}` in\n{}",
+                found.ran.stderr
+            );
         }
         assert_eq!(found.ran.stdout, "", "{case}");
     }
@@ -599,7 +779,11 @@ fn a_link_out_of_the_campaign_is_refused() {
     let outside = tiny();
     let found = with(|campaign| {
         fs::remove_file(campaign.join("measurement/S01.csv")).expect("removed");
-        std::os::unix::fs::symlink(outside.path().join("measurement/S01.csv"), campaign.join("measurement/S01.csv")).expect("linked");
+        std::os::unix::fs::symlink(
+            outside.path().join("measurement/S01.csv"),
+            campaign.join("measurement/S01.csv"),
+        )
+        .expect("linked");
     });
     assert_eq!(found.ran.code, 1);
     let reason = "`measurement/S01.csv` is a symbolic link out of the campaign's folder (sections.csv, row 2): paths must be relative to the campaign's folder and stay inside it";
@@ -619,28 +803,46 @@ fn a_record_too_short_for_the_filter() {
     cell(&folder.path().join("sections.csv"), 1, "start [m]", "2");
     cell(&folder.path().join("sections.csv"), 1, "end [m]", "6");
     lines(&folder.path().join("measurement/S01.csv"), |lines| lines.truncate(21));
-    let found = certify(folder.path(), &["--protocol", protocol.to_str().expect("UTF-8"), "--only", "results"]);
+    let found = certify(
+        folder.path(),
+        &["--protocol", protocol.to_str().expect("UTF-8"), "--only", "results"],
+    );
     assert_eq!(found.ran.code, 1, "{}", found.ran.stderr);
     let reason = "the signal has 20 samples, the filter needs 28";
     // The section serves other quantities.
     assert_eq!(found.reason("S01"), None);
     let reasons = found.results()["reasons"].to_string();
-    assert!(reasons.contains("ay_rms: it cannot be evaluated in section S01") && reasons.contains(reason), "{reasons}");
+    assert!(
+        reasons.contains("ay_rms: it cannot be evaluated in section S01")
+            && reasons.contains(reason),
+        "{reasons}"
+    );
 }
 
-/// A metric whose denominator is zero in one section: its quantity is not assessable, the section serves the others.
+/// A metric whose denominator is zero in one section: its quantity is not assessable, the section
+/// serves the others.
 #[test]
 fn a_metric_without_a_value_affects_its_quantity_only() {
     let folder = tiny();
     let record = folder.path().join("measurement/S01.csv");
     lines(&record, |lines| {
-        let at = lines[0].split(',').position(|heading| heading.starts_with("ay_I ")).expect("the channel");
+        let at = lines[0]
+            .split(',')
+            .position(|heading| heading.starts_with("ay_I "))
+            .expect("the channel");
         for line in &mut lines[1..] {
-            *line = line.split(',').enumerate().map(|(column, cell)| if column == at { "0" } else { cell }).collect::<Vec<_>>().join(",");
+            *line = line
+                .split(',')
+                .enumerate()
+                .map(|(column, cell)| if column == at { "0" } else { cell })
+                .collect::<Vec<_>>()
+                .join(",");
         }
     });
     let protocol = folder.path().join("metrics.fp");
-    let quantity = |name: &str, of: &str, metric: &str| format!("quantity {name}\n  of  {of}\n  metric  {metric}\n  limit  mean 10\n\n");
+    let quantity = |name: &str, of: &str, metric: &str| {
+        format!("quantity {name}\n  of  {of}\n  metric  {metric}\n  limit  mean 10\n\n")
+    };
     let text = format!(
         "protocol metrics \"Metrics\"\n  axis  distance in m\n  time  time in s\n\nchannel ay\n  in  m/s^2\n  column  \"ay_I\"\n\n\
         channel Y\n  in  kN\n  column  \"Y_1R\"\n\n{}{}{}",
@@ -649,12 +851,18 @@ fn a_metric_without_a_value_affects_its_quantity_only() {
         quantity("Y_magnitude", "Y", "sprague-geers magnitude"),
     );
     fs::write(&protocol, text).expect("written");
-    let found = certify(folder.path(), &["--protocol", protocol.to_str().expect("UTF-8"), "--only", "results"]);
+    let found = certify(
+        folder.path(),
+        &["--protocol", protocol.to_str().expect("UTF-8"), "--only", "results"],
+    );
     assert_eq!(found.reason("S01"), None, "{}", found.ran.stderr);
     let results = found.results();
     let quantity = |name: &str| {
         let all = results["quantities"].as_array().expect("a list");
-        all.iter().find(|quantity| quantity["id"] == name).unwrap_or_else(|| panic!("no {name}")).clone()
+        all.iter()
+            .find(|quantity| quantity["id"] == name)
+            .unwrap_or_else(|| panic!("no {name}"))
+            .clone()
     };
     for name in ["ay_magnitude", "ay_share"] {
         let reason = quantity(name)["reason"].to_string();
@@ -665,11 +873,15 @@ fn a_metric_without_a_value_affects_its_quantity_only() {
     assert_eq!(quantity("Y_magnitude")["values"].as_array().map(Vec::len), Some(sections));
 }
 
-/// A quantity that a record is sampled too slowly for is not assessable; its section serves the others.
+/// A quantity that a record is sampled too slowly for is not assessable; its section serves the
+/// others.
 #[test]
 fn a_record_sampled_too_slowly_for_a_filter() {
     let found = with(|campaign| thinned(&campaign.join("measurement/S01.csv"), 4));
     assert_eq!((found.ran.code, found.reason("S01")), (1, None));
     let reason = found.results()["quantities"][0]["reason"].to_string();
-    assert!(reason.contains("20 Hz does not lie between 0 and half the sampling rate, 12.5 Hz"), "{reason}");
+    assert!(
+        reason.contains("20 Hz does not lie between 0 and half the sampling rate, 12.5 Hz"),
+        "{reason}"
+    );
 }

@@ -1,7 +1,9 @@
-//! What the checker refuses and how it is said, in both forms; what it accepts, and that it means what was written.
+//! What the checker refuses and how it is said, in both forms; what it accepts, and that it means
+//! what was written.
 //!
-//! Expected output lies beside each case as `<case>.out`; `UPDATE_EXPECT=1 cargo test` rewrites it. Every bad case is tried in YAML
-//! too, converted by the printer: the same faults must be found, at places in the YAML (`<case>.yaml.out`).
+//! Expected output lies beside each case as `<case>.out`; `UPDATE_EXPECT=1 cargo test` rewrites it.
+//! Every bad case is tried in YAML too, converted by the printer: the same faults must be found, at
+//! places in the YAML (`<case>.yaml.out`).
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -43,8 +45,13 @@ fn source(path: &Path) -> Arc<Source> {
 
 /// Shipped protocols, cases beside a case, and an endless line of ancestors.
 fn find(name: &str, from: &Source) -> Result<Arc<Source>, Box<Problem>> {
-    if let Some(number) = name.strip_prefix("ancestor-").and_then(|number| number.parse::<usize>().ok()) {
-        return Ok(Source::new(name, format!("protocol {name} \"An ancestor\"\n  extends  ancestor-{}\n", number + 1)));
+    if let Some(number) =
+        name.strip_prefix("ancestor-").and_then(|number| number.parse::<usize>().ok())
+    {
+        return Ok(Source::new(
+            name,
+            format!("protocol {name} \"An ancestor\"\n  extends  ancestor-{}\n", number + 1),
+        ));
     }
     for folder in ["bad", "good"] {
         let path = root().join("tests/cases/check").join(folder).join(name);
@@ -113,7 +120,11 @@ fn both_forms_name_a_fault_alike() {
         assert_eq!(codes(&of_yaml), codes(&problems), "{}", path.display());
         for problem in &of_yaml.0 {
             let at = problem.at.as_ref().expect("a place");
-            assert!(!at.source.name.ends_with(".fp") || at.source.name.starts_with("protocols/"), "{at} of {}", problem.code);
+            assert!(
+                !at.source.name.ends_with(".fp") || at.source.name.starts_with("protocols/"),
+                "{at} of {}",
+                problem.code
+            );
         }
         compare_or_update(&path.with_extension("yaml"), &of_yaml.render(false));
         tried += 1;
@@ -128,15 +139,22 @@ fn every_fault_has_a_case() {
     for path in files("tests/cases/check/bad") {
         given.extend(checked(&source(&path)).2.0.iter().map(|problem| problem.code.to_string()));
     }
-    // Faults of the program, which nothing written can bring about, and what needs a campaign or command line (tested below).
+    // Faults of the program, which nothing written can bring about, and what needs a campaign or
+    // command line (tested below).
     given.extend(["internal", "not-constant", "unknown-parameter"].map(String::from));
     let mut missing = BTreeSet::new();
-    let folders = ["src/check", "src/check/plan"].map(|folder| fs::read_dir(root().join(folder)).expect("sources"));
-    let sources = folders.into_iter().flatten().map(|entry| entry.expect("an entry").path()).filter(|path| path.is_file());
+    let folders = ["src/check", "src/check/plan"]
+        .map(|folder| fs::read_dir(root().join(folder)).expect("sources"));
+    let sources = folders
+        .into_iter()
+        .flatten()
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.is_file());
     for path in sources {
         let text = fs::read_to_string(path).expect("a source");
         for part in text.split("Problem::error(").chain(text.split("Problem::warning(")).skip(1) {
-            let code = part.trim_start().split('"').nth(1).filter(|_| part.trim_start().starts_with('"'));
+            let code =
+                part.trim_start().split('"').nth(1).filter(|_| part.trim_start().starts_with('"'));
             missing.extend(code.map(String::from).filter(|code| !given.contains(code)));
         }
     }
@@ -154,11 +172,24 @@ fn ten_faults_are_reported_in_one_go() {
 fn messages_state_facts() {
     for path in files("tests/cases/check/bad") {
         for problem in checked(&source(&path)).2.0 {
-            for text in [Some(&problem.says), problem.help.as_ref(), problem.label.as_ref()].into_iter().flatten() {
+            for text in [Some(&problem.says), problem.help.as_ref(), problem.label.as_ref()]
+                .into_iter()
+                .flatten()
+            {
                 let lower = text.to_lowercase().replace("did you mean", "");
-                assert!(!lower.split(|c: char| !c.is_alphabetic()).any(|word| word == "you" || word == "your"), "{text}");
+                assert!(
+                    !lower
+                        .split(|c: char| !c.is_alphabetic())
+                        .any(|word| word == "you" || word == "your"),
+                    "{text}"
+                );
                 assert!(!text.ends_with('.') || text.ends_with("..."), "{text}");
-                assert!(!text.contains("Some(") && !text.contains("Dimension") && !text.contains("None"), "{text}");
+                assert!(
+                    !text.contains("Some(")
+                        && !text.contains("Dimension")
+                        && !text.contains("None"),
+                    "{text}"
+                );
             }
         }
     }
@@ -168,19 +199,47 @@ fn set(name: &str, value: &str) -> Overrides {
     let campaign = Source::new("campaign.yaml", format!("parameters:\n  {name}: {value}\n"));
     let start = campaign.text.rfind(value).expect("the value");
     let span = campaign.span(start..start + value.len());
-    Overrides::from_iter([(name.to_string(), Override { text: Text { text: value.into(), span, exact: true }, set_by: SetBy::Campaign })])
+    Overrides::from_iter([(
+        name.to_string(),
+        Override { text: Text { text: value.into(), span, exact: true }, set_by: SetBy::Campaign },
+    )])
 }
 
 #[test]
 fn parameters_of_a_campaign_are_checked_where_they_stand() {
     let protocol = library::shipped("en14363-2016-annex-t").expect("a shipped protocol");
     for (name, value, code, says) in [
-        ("lowpass_frequency", "20 m", "unit-mismatch", "parameter `lowpass_frequency` is a frequency, the given value is a length"),
-        ("lowpass_frequency", "25", "unit-mismatch", "parameter `lowpass_frequency` is a frequency, the given value is a plain number"),
-        ("lowpass_frequency", "90 Hz", "out-of-range", "`90 Hz` is outside the range of `lowpass_frequency`"),
+        (
+            "lowpass_frequency",
+            "20 m",
+            "unit-mismatch",
+            "parameter `lowpass_frequency` is a frequency, the given value is a length",
+        ),
+        (
+            "lowpass_frequency",
+            "25",
+            "unit-mismatch",
+            "parameter `lowpass_frequency` is a frequency, the given value is a plain number",
+        ),
+        (
+            "lowpass_frequency",
+            "90 Hz",
+            "out-of-range",
+            "`90 Hz` is outside the range of `lowpass_frequency`",
+        ),
         ("lowpass_frequency", "20 Herz", "unknown-unit", "`Herz` is not a known unit"),
-        ("lowpas_frequency", "20 Hz", "unknown-parameter", "protocol `en14363-2016-annex-t` has no parameter `lowpas_frequency`"),
-        ("filter_phase", "zerophase", "unknown-choice", "`zerophase` is not one of the choices of `filter_phase`"),
+        (
+            "lowpas_frequency",
+            "20 Hz",
+            "unknown-parameter",
+            "protocol `en14363-2016-annex-t` has no parameter `lowpas_frequency`",
+        ),
+        (
+            "filter_phase",
+            "zerophase",
+            "unknown-choice",
+            "`zerophase` is not one of the choices of `filter_phase`",
+        ),
         ("lowpass_order", "4 +", "syntax", "an expression ends too early"),
     ] {
         let (_, plan, problems) = checked_with(&protocol, &set(name, value));
@@ -193,7 +252,11 @@ fn parameters_of_a_campaign_are_checked_where_they_stand() {
     let (_, plan, problems) = checked_with(&protocol, &set("lowpass_frequency", "0.025 kHz"));
     assert!(problems.0.is_empty(), "{}", problems.render(false));
     let plan = plan.expect("a plan");
-    assert!(plan.filters[0].steps[0].words.starts_with("low-pass 25 Hz"), "{}", plan.filters[0].steps[0].words);
+    assert!(
+        plan.filters[0].steps[0].words.starts_with("low-pass 25 Hz"),
+        "{}",
+        plan.filters[0].steps[0].words
+    );
 }
 
 // ---- good protocols
@@ -210,21 +273,37 @@ fn good_protocols_are_accepted_as_meant() {
 
 /// What was understood, in a form that shows a change of meaning.
 fn described(plan: &Plan) -> String {
-    let mut out = format!("{}: {} zones, {}\n", plan.name, plan.zones.len(), plan.overall().criterion);
+    let mut out =
+        format!("{}: {} zones, {}\n", plan.name, plan.zones.len(), plan.overall().criterion);
     for verdict in plan.verdicts.iter().filter(|verdict| verdict.name.is_some()) {
-        out += &format!("verdict {}: {:?}, {} | {}\n", verdict.title, verdict.decision, verdict.criterion, verdict.words.join(" | "));
+        out += &format!(
+            "verdict {}: {:?}, {} | {}\n",
+            verdict.title,
+            verdict.decision,
+            verdict.criterion,
+            verdict.words.join(" | ")
+        );
     }
     for quantity in &plan.quantities {
-        let signals: Vec<&str> = quantity.positions.iter().map(|position| position.name.as_str()).collect();
+        let signals: Vec<&str> =
+            quantity.positions.iter().map(|position| position.name.as_str()).collect();
         out += &format!("quantity {} [{}] of {}\n", quantity.id, quantity.unit, signals.join(", "));
-        out += &format!("  {} | {} | {}\n", quantity.words.filter, quantity.words.processing, quantity.words.comparison);
+        out += &format!(
+            "  {} | {} | {}\n",
+            quantity.words.filter, quantity.words.processing, quantity.words.comparison
+        );
         for limit in &quantity.limits {
             let bound = check::evaluate::shape(&limit.bound.expr);
             let least = if limit.at_least { " at least" } else { "" };
             let zones = limit.scope.zones.join(", ");
             let zones = if zones.is_empty() { zones } else { format!(" for {zones}") };
-            let each: String = limit.scope.each.iter().map(|key| format!(" each {key:?}")).collect();
-            let condition = limit.scope.condition.as_ref().map_or(String::new(), |(_, words)| format!(" where {words}"));
+            let each: String =
+                limit.scope.each.iter().map(|key| format!(" each {key:?}")).collect();
+            let condition = limit
+                .scope
+                .condition
+                .as_ref()
+                .map_or(String::new(), |(_, words)| format!(" where {words}"));
             out += &format!("  {}{least} {bound}{zones}{each}{condition}\n", limit.estimate.name);
         }
     }
@@ -241,11 +320,16 @@ fn shipped_protocols_are_without_remarks_and_canonical() {
     for path in files("protocols") {
         let text = fs::read_to_string(&path).expect("a readable protocol");
         let document = syntax::read(&source(&path), &mut Problems::default());
-        assert!(print_text(&document) == text, "{} is not as `fishplate fmt` writes it", path.display());
+        assert!(
+            print_text(&document) == text,
+            "{} is not as `fishplate fmt` writes it",
+            path.display()
+        );
     }
 }
 
-/// Two surfaces, one meaning: plan and graph of a protocol and of what it is converted to are the same, places aside.
+/// Two surfaces, one meaning: plan and graph of a protocol and of what it is converted to are the
+/// same, places aside.
 #[test]
 fn both_forms_mean_the_same() {
     for path in files("protocols").into_iter().chain(files("tests/cases/check/good")) {
@@ -288,7 +372,10 @@ fn graph_of(plan: &Plan) -> serde_json::Value {
 
 #[track_caller]
 fn variant(text: &str) -> (Family, Option<Plan>, Problems) {
-    checked(&Source::new("variant.fp", format!("protocol variant \"A variant\"\n  extends  en14363-2016-annex-t\n\n{text}")))
+    checked(&Source::new(
+        "variant.fp",
+        format!("protocol variant \"A variant\"\n  extends  en14363-2016-annex-t\n\n{text}"),
+    ))
 }
 
 #[track_caller]
@@ -296,7 +383,10 @@ fn deviations(text: &str) -> Vec<(String, Option<String>, Option<String>)> {
     let (family, plan, problems) = variant(text);
     assert!(plan.is_some(), "{}", problems.render(false));
     let parent = family.parent.as_ref().expect("a parent");
-    diff(parent, &family.merged).into_iter().map(|deviation| (deviation.rule, deviation.before, deviation.after)).collect()
+    diff(parent, &family.merged)
+        .into_iter()
+        .map(|deviation| (deviation.rule, deviation.before, deviation.after))
+        .collect()
 }
 
 #[test]
@@ -304,26 +394,51 @@ fn a_variant_overrides_field_by_field() {
     let some = |text: &str| Some(text.to_string());
     assert_eq!(
         deviations("quantity ay_max\n  limit  std 0.28 m/s^2\n"),
-        [("quantity ay_max, limit std".into(), some("std 0.40 m/s^2, doubled when lighter_requirements"), some("std 0.28 m/s^2"))]
+        [(
+            "quantity ay_max, limit std".into(),
+            some("std 0.40 m/s^2, doubled when lighter_requirements"),
+            some("std 0.28 m/s^2")
+        )]
     );
     assert_eq!(
         deviations("quantity ay_max \"Another title\"\n  filter  LP20\n"),
         [
-            ("quantity ay_max, title".into(), some("Car body lateral acceleration, maximum"), some("Another title")),
+            (
+                "quantity ay_max, title".into(),
+                some("Car body lateral acceleration, maximum"),
+                some("Another title")
+            ),
             ("quantity ay_max, filter".into(), some("BP"), some("LP20")),
         ]
     );
     // A metric takes the place of value and difference.
     let rules: Vec<String> =
-        deviations("quantity Y_max\n  metric  sprague-geers phase\n  limit   std 0.2\n").into_iter().map(|(rule, ..)| rule).collect();
-    assert_eq!(rules, ["quantity Y_max, value", "quantity Y_max, difference", "quantity Y_max, metric", "quantity Y_max, limit std"]);
-    assert_eq!(deviations("zone 1\n  minimum sections  5\n"), [("zone 1, minimum sections".into(), some("sections_per_zone"), some("5"))]);
+        deviations("quantity Y_max\n  metric  sprague-geers phase\n  limit   std 0.2\n")
+            .into_iter()
+            .map(|(rule, ..)| rule)
+            .collect();
+    assert_eq!(
+        rules,
+        [
+            "quantity Y_max, value",
+            "quantity Y_max, difference",
+            "quantity Y_max, metric",
+            "quantity Y_max, limit std"
+        ]
+    );
+    assert_eq!(
+        deviations("zone 1\n  minimum sections  5\n"),
+        [("zone 1, minimum sections".into(), some("sections_per_zone"), some("5"))]
+    );
     assert_eq!(
         deviations("remove\n  limit  az_max mean\n"),
         [("quantity az_max, limit mean".into(), some("mean mean_limit_share of std"), None)]
     );
     let removed = deviations("remove\n  quantity  az_max\n");
-    assert_eq!((removed.len(), removed[0].0.as_str(), &removed[0].2), (1, "quantity az_max", &None));
+    assert_eq!(
+        (removed.len(), removed[0].0.as_str(), &removed[0].2),
+        (1, "quantity az_max", &None)
+    );
 }
 
 // ---- families of blocks
@@ -337,7 +452,8 @@ fn a_family_is_its_blocks_written_out() {
         let text = print_text(&family.merged);
         families += usize::from(source(&path).text.contains("  for each "));
         assert!(!text.contains("  for each "), "{text}");
-        let (_, again, problems) = checked(&Source::new(name(&path), text.replace("  extends  ", "  # extends ")));
+        let (_, again, problems) =
+            checked(&Source::new(name(&path), text.replace("  extends  ", "  # extends ")));
         let again = again.unwrap_or_else(|| panic!("{}", problems.render(false)));
         let plan = plan.expect("a plan");
         assert_eq!(described(&again), described(&plan), "{}", path.display());
@@ -355,16 +471,24 @@ type Difference = (String, Option<String>, Option<String>);
 /// The variant of a protocol with a family, and what differs.
 #[track_caller]
 fn of_pairs(text: &str) -> (Vec<String>, Vec<Difference>) {
-    let variant = Source::new("variant.fp", format!("protocol variant \"A variant\"\n  extends  \"pairs.fp\"\n\n{text}"));
+    let variant = Source::new(
+        "variant.fp",
+        format!("protocol variant \"A variant\"\n  extends  \"pairs.fp\"\n\n{text}"),
+    );
     let mut problems = Problems::default();
     let family = family::read(&variant, &|_, _| Ok(Source::new("pairs.fp", PAIRS)), &mut problems);
-    let plan = check::check(&family, &Overrides::new(), &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
+    let plan = check::check(&family, &Overrides::new(), &mut problems)
+        .unwrap_or_else(|| panic!("{}", problems.render(false)));
     let parent = family.parent.as_ref().expect("a parent");
-    let found = diff(parent, &family.merged).into_iter().map(|found| (found.rule, found.before, found.after)).collect();
+    let found = diff(parent, &family.merged)
+        .into_iter()
+        .map(|found| (found.rule, found.before, found.after))
+        .collect();
     (plan.quantities.iter().map(|quantity| quantity.id.clone()).collect(), found)
 }
 
-/// One member by its name, all of them by the name of the family, or the family given again: deviations are told member by member.
+/// One member by its name, all of them by the name of the family, or the family given again:
+/// deviations are told member by member.
 #[test]
 fn a_variant_overrides_members_of_a_family() {
     let some = |text: &str| Some(text.to_string());
@@ -373,7 +497,9 @@ fn a_variant_overrides_members_of_a_family() {
     assert_eq!(names, all);
     assert_eq!(found, [("quantity b_rms, limit std".into(), some("std 1 m"), some("std 3 m"))]);
 
-    let (names, found) = of_pairs("remove\n  quantity  a_rms\n\nquantity {s}_{v} \"{v} of {s}\"\n  limit  std 3 m\n");
+    let (names, found) = of_pairs(
+        "remove\n  quantity  a_rms\n\nquantity {s}_{v} \"{v} of {s}\"\n  limit  std 3 m\n",
+    );
     assert_eq!(names, ["a_mean", "b_mean", "b_rms"]);
     let rules: Vec<&str> = found.iter().map(|(rule, ..)| rule.as_str()).collect();
     assert_eq!(
@@ -394,7 +520,10 @@ fn a_variant_overrides_members_of_a_family() {
         "quantity {s}_{v}\n  for each    s in b and v in rms, peak\n  of          {s}\n  value       {v}\n  difference  signed\n  limit       std 1 m\n",
     );
     assert_eq!(names, ["a_mean", "a_rms", "b_mean", "b_rms", "b_peak"]);
-    assert_eq!(found.iter().map(|(rule, ..)| rule.as_str()).collect::<Vec<_>>(), ["quantity b_peak"]);
+    assert_eq!(
+        found.iter().map(|(rule, ..)| rule.as_str()).collect::<Vec<_>>(),
+        ["quantity b_peak"]
+    );
 }
 
 #[test]
@@ -406,7 +535,11 @@ fn a_variant_removes_every_one_of_a_kind() {
         assert_eq!(found.len(), 5, "{removed}");
     }
     let limits = |removed: &str| -> Vec<String> {
-        of_pairs(&format!("remove\n  limit  {removed}\n")).1.into_iter().map(|(rule, ..)| rule).collect()
+        of_pairs(&format!("remove\n  limit  {removed}\n"))
+            .1
+            .into_iter()
+            .map(|(rule, ..)| rule)
+            .collect()
     };
     assert_eq!(limits("a_rms"), ["quantity a_rms, limit std", "quantity a_rms, limit each"]);
     assert_eq!(limits("a_rms each"), ["quantity a_rms, limit each"]);
@@ -417,19 +550,31 @@ fn a_variant_removes_every_one_of_a_kind() {
     assert_eq!((names.len(), found.len()), (4, 4));
 }
 
-/// The families of a variant stand over places of its parent, too; a text cannot grow without bound.
+/// The families of a variant stand over places of its parent, too; a text cannot grow without
+/// bound.
 #[test]
 fn members_of_places_and_bounds() {
-    let (family, plan, problems) = variant("signal v{w}\n  for each  w in wheelsets\n  is        Y at wheelset {w} side R\n");
+    let (family, plan, problems) =
+        variant("signal v{w}\n  for each  w in wheelsets\n  is        Y at wheelset {w} side R\n");
     assert!(plan.is_some(), "{}", problems.render(false));
-    let made = family.merged.blocks.iter().filter(|block| block.kind.text == "signal" && block.name_text().starts_with('v')).count();
+    let made = family
+        .merged
+        .blocks
+        .iter()
+        .filter(|block| block.kind.text == "signal" && block.name_text().starts_with('v'))
+        .count();
     assert_eq!(made, 4);
     let long = "{x}".repeat(20_000);
     let members = (0..900).map(|number| format!("m{number}")).collect::<Vec<_>>().join(", ");
-    let (_, plan, problems) = variant(&format!("quantity {{x}}\n  for each  x in {members}\n  note      \"{long}\"\n"));
+    let (_, plan, problems) =
+        variant(&format!("quantity {{x}}\n  for each  x in {members}\n  note      \"{long}\"\n"));
     assert!(plan.is_none());
     assert_eq!(codes(&problems), ["too-large"]);
-    let many: String = (0..12).map(|number| format!("define d{number}_{{x}}\n  for each  x in {members}\n  is        1\n\n")).collect();
+    let many: String = (0..12)
+        .map(|number| {
+            format!("define d{number}_{{x}}\n  for each  x in {members}\n  is        1\n\n")
+        })
+        .collect();
     assert_eq!(codes(&variant(&many).2), ["too-large"]);
 }
 
@@ -464,7 +609,8 @@ fn the_same_meaning_is_no_difference() {
     }
 }
 
-/// The variants that are shipped differ from their parents in what their titles say, and in nothing else.
+/// The variants that are shipped differ from their parents in what their titles say, and in nothing
+/// else.
 #[test]
 fn shipped_variants_differ_only_where_they_say() {
     let rules = |name: &str| {
@@ -472,9 +618,15 @@ fn shipped_variants_differ_only_where_they_say() {
         let found = diff(family.parent.as_ref().expect("a parent"), &family.merged);
         found.into_iter().map(|deviation| deviation.rule).collect::<Vec<_>>()
     };
-    assert_eq!(rules("en14363-2016-annex-t-population-deviation"), ["parameter variance_divisor, default"]);
+    assert_eq!(
+        rules("en14363-2016-annex-t-population-deviation"),
+        ["parameter variance_divisor, default"]
+    );
     let strict = rules("en14363-2016-annex-t-strict-acceleration");
-    assert!(strict.iter().all(|rule| rule.contains("limit std") || rule.contains("source")), "{strict:?}");
+    assert!(
+        strict.iter().all(|rule| rule.contains("limit std") || rule.contains("source")),
+        "{strict:?}"
+    );
     assert_eq!(strict.len(), 8);
 }
 
@@ -483,10 +635,14 @@ fn a_warning_is_no_error() {
     let protocol = "quantity Y_extra\n  of          Y at wheelset 1\n  value       median\n  difference  signed\n";
     let (_, plan, problems) = variant(protocol);
     assert!(plan.is_some());
-    assert_eq!(problems.0.iter().map(|problem| (problem.severity, problem.code)).collect::<Vec<_>>(), [(Severity::Warning, "no-limit")]);
+    assert_eq!(
+        problems.0.iter().map(|problem| (problem.severity, problem.code)).collect::<Vec<_>>(),
+        [(Severity::Warning, "no-limit")]
+    );
 }
 
-/// A number of no checked source says so beside every limit that it is in, by whatever way, until somebody sets it.
+/// A number of no checked source says so beside every limit that it is in, by whatever way, until
+/// somebody sets it.
 #[test]
 fn a_number_to_be_confirmed_says_so() {
     const TEXT: &str = "parameter highest \"Highest\"\n  default      4 kN\n  unconfirmed  \"From memory.\"\n\n\
@@ -497,20 +653,48 @@ fn a_number_to_be_confirmed_says_so() {
         quantity Q_max\n  limit        mean 3 kN\n  unconfirmed  \"By eye.\"\n";
     const MARK: &str = ", to be confirmed against the standard";
     let words = |text: &str, overrides: &Overrides| {
-        let source = Source::new("variant.fp", format!("protocol variant \"A variant\"\n  extends  en14363-2016-annex-t\n\n{text}"));
+        let source = Source::new(
+            "variant.fp",
+            format!("protocol variant \"A variant\"\n  extends  en14363-2016-annex-t\n\n{text}"),
+        );
         let (_, plan, problems) = checked_with(&source, overrides);
         let plan = plan.unwrap_or_else(|| panic!("{}", problems.render(false)));
-        let of = |id: &str| plan.quantities.iter().find(|quantity| quantity.id == id).expect("a quantity").limits.clone();
-        let marked = of("Y_max").iter().chain(&of("Q_max")).map(|limit| limit.words.ends_with(MARK)).collect::<Vec<_>>();
-        (marked, plan.parameters.iter().filter(|parameter| parameter.unconfirmed.is_some()).count(), plan.unconfirmed)
+        let of = |id: &str| {
+            plan.quantities
+                .iter()
+                .find(|quantity| quantity.id == id)
+                .expect("a quantity")
+                .limits
+                .clone()
+        };
+        let marked = of("Y_max")
+            .iter()
+            .chain(&of("Q_max"))
+            .map(|limit| limit.words.ends_with(MARK))
+            .collect::<Vec<_>>();
+        (
+            marked,
+            plan.parameters.iter().filter(|parameter| parameter.unconfirmed.is_some()).count(),
+            plan.unconfirmed,
+        )
     };
-    let others = vec![("higher".to_string(), "From memory.".to_string()), ("Q_max".to_string(), "By eye.".to_string())];
+    let others = vec![
+        ("higher".to_string(), "From memory.".to_string()),
+        ("Q_max".to_string(), "By eye.".to_string()),
+    ];
     // Y_max: std, mean, reached, peak; Q_max: the parent's std, mean.
-    assert_eq!(words(TEXT, &Overrides::new()), (vec![true, true, false, true, true, true], 1, others.clone()));
-    assert_eq!(words(TEXT, &set("highest", "5 kN")), (vec![false, false, false, true, true, true], 0, others));
+    assert_eq!(
+        words(TEXT, &Overrides::new()),
+        (vec![true, true, false, true, true, true], 1, others.clone())
+    );
+    assert_eq!(
+        words(TEXT, &set("highest", "5 kN")),
+        (vec![false, false, false, true, true, true], 0, others)
+    );
 }
 
-/// A variant with a slip in a name adds something, and what it was to change stays: this is told. A new name is left alone.
+/// A variant with a slip in a name adds something, and what it was to change stays: this is told. A
+/// new name is left alone.
 #[test]
 fn a_name_one_slip_away_from_one_of_the_parent_is_told() {
     const VARIANT: &str = r#"protocol slips "A variant with two slips"
@@ -528,7 +712,9 @@ zone 5 "Another zone"
 "#;
     let (_, plan, problems) = checked_with(&Source::new("slips.fp", VARIANT), &Overrides::new());
     assert!(plan.is_some(), "{}", problems.render(false));
-    let told: Vec<(&str, Option<&str>)> = problems.0.iter().map(|problem| (problem.code, problem.help.as_deref())).collect();
-    let helps = ["to override `speed_change`, use that name", "to override `deficiency`, use that name"];
+    let told: Vec<(&str, Option<&str>)> =
+        problems.0.iter().map(|problem| (problem.code, problem.help.as_deref())).collect();
+    let helps =
+        ["to override `speed_change`, use that name", "to override `deficiency`, use that name"];
     assert_eq!(told, helps.map(|help| ("near-name", Some(help))));
 }

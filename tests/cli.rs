@@ -10,8 +10,11 @@ fn root() -> PathBuf {
 
 /// Runs the program in the project's folder.
 fn run(arguments: &[&str]) -> (i32, String, String) {
-    let output: Output =
-        Command::new(env!("CARGO_BIN_EXE_fishplate")).args(arguments).current_dir(root()).output().expect("the program runs");
+    let output: Output = Command::new(env!("CARGO_BIN_EXE_fishplate"))
+        .args(arguments)
+        .current_dir(root())
+        .output()
+        .expect("the program runs");
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     (output.status.code().unwrap_or(-1), text(&output.stdout), text(&output.stderr))
 }
@@ -30,13 +33,16 @@ fn certify(campaign: &str, out: &Path, more: &[&str]) -> (i32, String, String) {
 #[test]
 fn exit_codes_follow_the_verdict() {
     let out = folder();
-    let (code, printed, _) = certify("examples/coach", &out.path().join("a"), &["--only", "results"]);
+    let (code, printed, _) =
+        certify("examples/coach", &out.path().join("a"), &["--only", "results"]);
     assert_eq!(code, 1);
     assert!(printed.contains("Verdict: not validated"), "{printed}");
-    let (code, printed, _) = certify("examples/coach-good", &out.path().join("b"), &["--only", "results"]);
+    let (code, printed, _) =
+        certify("examples/coach-good", &out.path().join("b"), &["--only", "results"]);
     assert_eq!(code, 0);
     assert!(printed.contains("Verdict: validated"), "{printed}");
-    let (code, _, said) = certify("examples/coach", &out.path().join("c"), &["--protocol", "sprague-gears"]);
+    let (code, _, said) =
+        certify("examples/coach", &out.path().join("c"), &["--protocol", "sprague-gears"]);
     assert_eq!(code, 2);
     assert!(said.contains("did you mean `sprague-geers`?"), "{said}");
     let (code, _, _) = certify("examples/nowhere", &out.path().join("c"), &[]);
@@ -45,11 +51,13 @@ fn exit_codes_follow_the_verdict() {
     let (code, _, _) = run(&["certify"]);
     assert_eq!(code, 2, "a command line without a campaign");
     fs::write(out.path().join("file"), "in the way").expect("a file");
-    let (code, _, said) = certify("examples/coach", &out.path().join("file").join("below"), &["--only", "results"]);
+    let (code, _, said) =
+        certify("examples/coach", &out.path().join("file").join("below"), &["--only", "results"]);
     assert_eq!(code, 2, "{said}");
 }
 
-/// An assessment: one line for each estimate, all groups in results.json, values not under `difference`.
+/// An assessment: one line for each estimate, all groups in results.json, values not under
+/// `difference`.
 #[test]
 fn an_assessment_is_told_by_its_estimates() {
     let out = folder();
@@ -57,15 +65,28 @@ fn an_assessment_is_told_by_its_estimates() {
     let (code, printed, _) = certify("examples/coach-good", out.path(), &arguments);
     assert_eq!(code, 1);
     assert!(printed.contains("Verdict: not assessable") && !printed.contains("pairs"), "{printed}");
-    let line = printed.lines().find(|line| line.contains("One-dimensional estimate, running safety")).expect("a line");
-    assert!(line.contains("16 of 16, met") && line.contains("zone ") && line.contains(", wheelset "), "{line}");
-    assert_eq!(printed.matches("One-dimensional estimate, running safety").count(), 2, "one for each quantity: {printed}");
+    let line = printed
+        .lines()
+        .find(|line| line.contains("One-dimensional estimate, running safety"))
+        .expect("a line");
+    assert!(
+        line.contains("16 of 16, met") && line.contains("zone ") && line.contains(", wheelset "),
+        "{line}"
+    );
+    assert_eq!(
+        printed.matches("One-dimensional estimate, running safety").count(),
+        2,
+        "one for each quantity: {printed}"
+    );
 
     let text = fs::read_to_string(out.path().join("results.json")).expect("results");
     let results: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     let quantity = &results["quantities"][0];
     assert_eq!((quantity["assessed"].as_str(), quantity.get("metric")), (Some("measured"), None));
-    assert!(quantity["values"][0].get("value").is_some() && quantity["values"][0].get("difference").is_none());
+    assert!(
+        quantity["values"][0].get("value").is_some()
+            && quantity["values"][0].get("difference").is_none()
+    );
     let groups = quantity["groups"].as_array().expect("groups");
     assert_eq!(groups.len(), quantity["statistics"].as_array().expect("statistics").len());
     for key in ["estimate", "n", "value", "low", "high", "limit", "ratio", "holds", "mean", "std"] {
@@ -77,22 +98,30 @@ fn an_assessment_is_told_by_its_estimates() {
 
     let table = fs::read_to_string(out.path().join("tables/values.csv")).expect("a table");
     let mut rows = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
-    assert_eq!(rows.next().expect("a head")[5..], ["record", "simulated", "measured", "difference", "value", "samples"]);
+    assert_eq!(
+        rows.next().expect("a head")[5..],
+        ["record", "simulated", "measured", "difference", "value", "samples"]
+    );
     assert!(rows.all(|row| row[8].is_empty() && row[9].parse::<f64>().is_ok()));
 }
 
 #[test]
 fn the_same_input_gives_the_same_files() {
     let out = folder();
-    let names = ["results.json", "report.pdf", "report.html", "tables/values.csv", "tables/summary.csv"];
+    let names =
+        ["results.json", "report.pdf", "report.html", "tables/values.csv", "tables/summary.csv"];
     certify("examples/coach", &out.path().join("one"), &["--jobs", "1", "--quiet"]);
     let absolute = root().join("examples/coach").display().to_string();
     certify(&absolute, &out.path().join("two"), &["--jobs", "2", "--quiet"]);
     for name in names {
-        let [one, two] = ["one", "two"].map(|run| fs::read(out.path().join(run).join(name)).expect("a written file"));
+        let [one, two] = ["one", "two"]
+            .map(|run| fs::read(out.path().join(run).join(name)).expect("a written file"));
         assert!(one == two, "{name} differs");
         let text = String::from_utf8_lossy(&one);
-        assert!(!text.contains(&root().display().to_string()), "{name} names a folder of this machine");
+        assert!(
+            !text.contains(&root().display().to_string()),
+            "{name} names a folder of this machine"
+        );
         if name.ends_with("json") {
             assert!(!text.contains("NaN") && !text.contains("inf"), "{name}");
         }
@@ -105,15 +134,45 @@ fn results_have_the_keys_of_the_contract() {
     certify("examples/coach", out.path(), &["--only", "results", "--quiet"]);
     let text = fs::read_to_string(out.path().join("results.json")).expect("results");
     let results: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    for key in ["fishplate", "protocol", "campaign", "verdict", "reasons", "quantities", "sections"] {
+    for key in ["fishplate", "protocol", "campaign", "verdict", "reasons", "quantities", "sections"]
+    {
         assert!(results.get(key).is_some(), "{key}");
     }
-    let ids: Vec<&str> = results["quantities"].as_array().expect("a list").iter().filter_map(|quantity| quantity["id"].as_str()).collect();
+    let ids: Vec<&str> = results["quantities"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .filter_map(|quantity| quantity["id"].as_str())
+        .collect();
     assert_eq!(
         ids,
-        ["Y_qst", "Q_qst", "YQ_qst", "SigmaY_qst", "Y_max", "Q_max", "YQ_max", "SigmaY_max", "ay_rms", "az_rms", "ay_max", "az_max"]
+        [
+            "Y_qst",
+            "Q_qst",
+            "YQ_qst",
+            "SigmaY_qst",
+            "Y_max",
+            "Q_max",
+            "YQ_max",
+            "SigmaY_max",
+            "ay_rms",
+            "az_rms",
+            "ay_max",
+            "az_max"
+        ]
     );
-    for key in ["unit", "pairs", "mean", "std", "limit_mean", "limit_std", "normalised_mean", "normalised_std", "holds", "values"] {
+    for key in [
+        "unit",
+        "pairs",
+        "mean",
+        "std",
+        "limit_mean",
+        "limit_std",
+        "normalised_mean",
+        "normalised_std",
+        "holds",
+        "values",
+    ] {
         assert!(results["quantities"][0].get(key).is_some(), "{key}");
     }
     for key in ["section", "zone", "signal", "simulated", "measured", "difference"] {
@@ -126,15 +185,24 @@ fn results_have_the_keys_of_the_contract() {
 #[test]
 fn protocols_are_checked_formatted_converted_and_compared() {
     let out = folder();
-    let (code, _, said) = run(&["check", "en14363-2016-annex-t", "protocols/en14363-2016-annex-t.yaml", "stationary-sway"]);
+    let (code, _, said) = run(&[
+        "check",
+        "en14363-2016-annex-t",
+        "protocols/en14363-2016-annex-t.yaml",
+        "stationary-sway",
+    ]);
     assert_eq!(code, 0, "{said}");
     let broken = out.path().join("broken.fp");
     fs::write(&broken, "protocol broken \"x\"\n  axis  distance in kN\n").expect("a file");
     let (code, printed, said) = run(&["check", &broken.display().to_string()]);
     assert_eq!(code, 2);
-    assert!(printed.is_empty() && said.contains("unit-mismatch") && said.contains("no-quantity"), "{said}");
+    assert!(
+        printed.is_empty() && said.contains("unit-mismatch") && said.contains("no-quantity"),
+        "{said}"
+    );
     let loose = out.path().join("loose.fp");
-    fs::write(&loose, "protocol   loose   \"x\"\n     extends en14363-2016-annex-t\n").expect("a file");
+    fs::write(&loose, "protocol   loose   \"x\"\n     extends en14363-2016-annex-t\n")
+        .expect("a file");
     let loose = loose.display().to_string();
     assert_eq!(run(&["fmt", "--check", &loose]).0, 1);
     assert_eq!(run(&["fmt", &loose]).0, 0);
@@ -144,9 +212,16 @@ fn protocols_are_checked_formatted_converted_and_compared() {
     let (code, printed, _) = run(&["diff", "en14363-2016-annex-t", &yaml]);
     assert_eq!((code, printed.as_str()), (0, "no rule differs\n"));
     let (_, printed, _) = run(&["convert", &yaml, "--to", "fp"]);
-    assert_eq!(printed, fs::read_to_string(root().join("protocols/en14363-2016-annex-t.fp")).expect("the protocol"));
-    let (_, printed, _) = run(&["diff", "en14363-2016-annex-t", "en14363-2016-annex-t-population-deviation"]);
-    assert!(printed.contains("parameter variance_divisor") && printed.lines().count() < 8, "{printed}");
+    assert_eq!(
+        printed,
+        fs::read_to_string(root().join("protocols/en14363-2016-annex-t.fp")).expect("the protocol")
+    );
+    let (_, printed, _) =
+        run(&["diff", "en14363-2016-annex-t", "en14363-2016-annex-t-population-deviation"]);
+    assert!(
+        printed.contains("parameter variance_divisor") && printed.lines().count() < 8,
+        "{printed}"
+    );
 }
 
 #[test]
@@ -161,18 +236,29 @@ fn every_stage_can_be_printed() {
         ("graph", "dot", "digraph"),
         ("graph", "svg", "<svg"),
     ] {
-        let (code, printed, said) = run(&["explain", "en14363-2016-annex-t", "--stage", stage, "--format", format]);
+        let (code, printed, said) =
+            run(&["explain", "en14363-2016-annex-t", "--stage", stage, "--format", format]);
         assert_eq!(code, 0, "{stage} {format}: {said}");
         assert!(printed.contains(holds), "{stage} {format}");
     }
-    assert_eq!(run(&["explain", "en14363-2016-annex-t", "--stage", "plan", "--format", "svg"]).0, 2);
+    assert_eq!(
+        run(&["explain", "en14363-2016-annex-t", "--stage", "plan", "--format", "svg"]).0,
+        2
+    );
     let own = folder();
     let file = own.path().join("own.fp").display().to_string();
     let text = "protocol own \"Own\"\n  extends kraft\n";
     fs::write(&file, text).expect("written");
-    for words in [&["explain", &file, "-o", &file][..], &["convert", &file, "--to", "yaml", "-o", &file]] {
+    for words in
+        [&["explain", &file, "-o", &file][..], &["convert", &file, "--to", "yaml", "-o", &file]]
+    {
         let (code, _, said) = run(words);
-        assert!(code == 2 && said.contains("error[output-is-input]") && fs::read_to_string(&file).is_ok_and(|now| now == text), "{said}");
+        assert!(
+            code == 2
+                && said.contains("error[output-is-input]")
+                && fs::read_to_string(&file).is_ok_and(|now| now == text),
+            "{said}"
+        );
     }
     let (code, printed, _) = run(&["explain"]);
     assert_eq!(code, 0);
@@ -181,26 +267,49 @@ fn every_stage_can_be_printed() {
 
 #[test]
 fn help_shows_an_example_and_the_rest_is_at_hand() {
-    for command in ["certify", "check", "fmt", "convert", "explain", "diff", "protocols", "schema", "completions", "man"] {
+    for command in [
+        "certify",
+        "check",
+        "fmt",
+        "convert",
+        "explain",
+        "diff",
+        "protocols",
+        "schema",
+        "completions",
+        "man",
+    ] {
         let (code, printed, _) = run(&[command, "--help"]);
         assert_eq!(code, 0, "{command}");
-        assert!(printed.contains("Example") && printed.contains("--quiet") && printed.contains("--color"), "{command}: {printed}");
+        assert!(
+            printed.contains("Example")
+                && printed.contains("--quiet")
+                && printed.contains("--color"),
+            "{command}: {printed}"
+        );
     }
     assert!(run(&["completions", "bash"]).1.contains("fishplate"));
     let out = folder();
     assert_eq!(run(&["man", "--out", &out.path().display().to_string()]).0, 0);
-    assert!(out.path().join("fishplate.1").is_file() && out.path().join("fishplate-certify.1").is_file());
+    assert!(
+        out.path().join("fishplate.1").is_file()
+            && out.path().join("fishplate-certify.1").is_file()
+    );
     let (_, printed, _) = run(&["protocols"]);
     assert!(printed.lines().count() >= 6 && printed.contains("stationary-sway"));
     let (_, printed, _) = run(&["schema"]);
-    assert_eq!(printed, fs::read_to_string(root().join("protocols/protocol.schema.json")).expect("the schema"));
+    assert_eq!(
+        printed,
+        fs::read_to_string(root().join("protocols/protocol.schema.json")).expect("the schema")
+    );
 }
 
 #[test]
 fn settings_of_the_command_line_are_checked() {
     let out = folder();
     let said = |set: &str| {
-        let (code, _, said) = certify("examples/coach", &out.path().join("x"), &["--only", "results", "--set", set]);
+        let (code, _, said) =
+            certify("examples/coach", &out.path().join("x"), &["--only", "results", "--set", set]);
         assert_eq!(code, 2, "{set}");
         said
     };
@@ -210,17 +319,31 @@ fn settings_of_the_command_line_are_checked() {
     assert!(said("lowpass_order=99").contains("out-of-range"));
     assert!(said("nothing").contains("--set name=value"));
     let count = said("sections_per_zone=2.5");
-    assert!(count.contains("must be a whole number, this is sections_per_zone = 2.5") && count.contains("set here"), "{count}");
+    assert!(
+        count.contains("must be a whole number, this is sections_per_zone = 2.5")
+            && count.contains("set here"),
+        "{count}"
+    );
     let order = said("lowpass_order=2.5");
-    assert!(order.contains("the order must be a whole number from 1 to 20, this is 2.5") && order.contains("set here"), "{order}");
+    assert!(
+        order.contains("the order must be a whole number from 1 to 20, this is 2.5")
+            && order.contains("set here"),
+        "{order}"
+    );
     let place = said("evaluated_wheelsets=5");
     assert_eq!(place.matches("error[").count(), 1, "{place}");
     // What follows from a value outside its range is not told.
     let outside = said("sections_per_zone=-1");
-    assert!(outside.contains("`-1` is outside the range") && !outside.contains("not-a-count"), "{outside}");
+    assert!(
+        outside.contains("`-1` is outside the range") && !outside.contains("not-a-count"),
+        "{outside}"
+    );
     let twice = ["--only", "results", "--set", "lowpass_order=4", "--set", "lowpass_order = 2"];
     let (code, _, said) = certify("examples/coach", &out.path().join("x"), &twice);
-    assert!(code == 2 && said.contains("error[set-twice]: the parameter `lowpass_order` is set twice"), "{said}");
+    assert!(
+        code == 2 && said.contains("error[set-twice]: the parameter `lowpass_order` is set twice"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -229,7 +352,10 @@ fn a_file_is_not_written_onto_a_folder() {
     let path = out.path().display().to_string();
     let refused = |arguments: &[&str]| {
         let (code, _, said) = run(arguments);
-        assert!(code == 2 && said.contains("error[not-a-file]") && said.contains("is a folder"), "{arguments:?}: {said}");
+        assert!(
+            code == 2 && said.contains("error[not-a-file]") && said.contains("is a folder"),
+            "{arguments:?}: {said}"
+        );
     };
     refused(&["reduce", "examples/coach", "--out", &path]);
     refused(&["sections", "examples/run", "--out", &path]);
@@ -243,13 +369,17 @@ fn a_file_is_not_written_onto_a_folder() {
 
 #[test]
 fn counts_begin_at_one() {
-    for arguments in [&["certify", "examples/coach", "--jobs", "0"][..], &["study", "sections", "examples/coach", "--reduce", "0"]] {
+    for arguments in [
+        &["certify", "examples/coach", "--jobs", "0"][..],
+        &["study", "sections", "examples/coach", "--reduce", "0"],
+    ] {
         let (code, _, said) = run(&[arguments, &["--out", "x"]].concat());
         assert!(code == 2 && said.contains("expected a whole number from 1"), "{said}");
     }
 }
 
-/// A link stays and its target is written; what is no file, such as a pipe, gets the bytes and stays too.
+/// A link stays and its target is written; what is no file, such as a pipe, gets the bytes and
+/// stays too.
 #[cfg(unix)]
 #[test]
 fn an_output_goes_through_links_and_into_pipes() {
@@ -259,9 +389,14 @@ fn an_output_goes_through_links_and_into_pipes() {
     std::os::unix::fs::symlink("target", path("link")).expect("linked");
     std::os::unix::fs::symlink("nothing", path("dangling")).expect("linked");
     let (_, expected, _) = run(&["convert", "kraft", "--to", "yaml"]);
-    let to = |name: &str| run(&["convert", "kraft", "--to", "yaml", "-o", &path(name).display().to_string()]);
+    let to = |name: &str| {
+        run(&["convert", "kraft", "--to", "yaml", "-o", &path(name).display().to_string()])
+    };
     assert_eq!(to("link").0, 0);
-    assert!(path("link").is_symlink() && fs::read_to_string(path("target")).expect("readable") == expected);
+    assert!(
+        path("link").is_symlink()
+            && fs::read_to_string(path("target")).expect("readable") == expected
+    );
     let (code, _, said) = to("dangling");
     assert!(code == 3 && path("dangling").is_symlink() && said.contains("write-failed"), "{said}");
     let (code, printed, said) = run(&["convert", "kraft", "--to", "yaml", "-o", "/dev/stdout"]);
@@ -274,18 +409,40 @@ fn outputs_that_cannot_be_written() {
     let folder = folder();
     fs::write(folder.path().join("file"), "x").expect("written");
     for out in ["file", "file/inside"] {
-        let (code, _, said) = certify("examples/coach", &folder.path().join(out), &["--only", "results"]);
+        let (code, _, said) =
+            certify("examples/coach", &folder.path().join(out), &["--only", "results"]);
         assert!(code == 2 && said.contains("error[not-a-folder]"), "{said}");
     }
     // The files of runs are read as well.
     let run = folder.path().join("run");
-    assert!(Command::new("cp").arg("-r").arg("examples/run").arg(&run).status().expect("started").success());
-    let (code, _, said) = certify(&run.display().to_string(), &run.join("records"), &["--only", "results"]);
-    assert!(code == 2 && said.contains("error[output-is-input]") && !run.join("records/results.json").exists(), "{said}");
+    assert!(
+        Command::new("cp")
+            .arg("-r")
+            .arg("examples/run")
+            .arg(&run)
+            .status()
+            .expect("started")
+            .success()
+    );
+    let (code, _, said) =
+        certify(&run.display().to_string(), &run.join("records"), &["--only", "results"]);
+    assert!(
+        code == 2
+            && said.contains("error[output-is-input]")
+            && !run.join("records/results.json").exists(),
+        "{said}"
+    );
     if let Ok(full) = fs::OpenOptions::new().write(true).open("/dev/full") {
-        let program = Command::new(env!("CARGO_BIN_EXE_fishplate")).arg("protocols").stdout(full).output().expect("the program runs");
+        let program = Command::new(env!("CARGO_BIN_EXE_fishplate"))
+            .arg("protocols")
+            .stdout(full)
+            .output()
+            .expect("the program runs");
         let said = String::from_utf8_lossy(&program.stderr).into_owned();
-        assert!(program.status.code() == Some(3) && said.contains("standard output cannot be written"), "{said}");
+        assert!(
+            program.status.code() == Some(3) && said.contains("standard output cannot be written"),
+            "{said}"
+        );
     }
 }
 
@@ -297,8 +454,12 @@ fn blind_without_a_diagnosis_is_an_error() {
     fs::create_dir(&campaign).expect("made");
     fs::write(campaign.join("campaign.yaml"), "name: [\n").expect("written");
     let (from, out) = (campaign.display().to_string(), folder.path().join("out"));
-    let blind = |more: &[&str]| run(&[&["blind", &from, "--out", &out.display().to_string()], more].concat());
-    for (more, says) in [(&["--protocol", "nope"][..], "error[no-such-protocol]"), (&[], "error[no-diagnosis]")] {
+    let blind = |more: &[&str]| {
+        run(&[&["blind", &from, "--out", &out.display().to_string()], more].concat())
+    };
+    for (more, says) in
+        [(&["--protocol", "nope"][..], "error[no-such-protocol]"), (&[], "error[no-diagnosis]")]
+    {
         let (code, _, said) = blind(more);
         assert!(code == 2 && said.contains(says) && !out.exists(), "{said}");
     }

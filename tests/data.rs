@@ -17,16 +17,25 @@ fn cases(path: &str) -> PathBuf {
 }
 
 fn wanted() -> [Wanted; 3] {
-    [Wanted::new("time", Dimension::TIME), Wanted::new("distance", Dimension::LENGTH), Wanted::new("Y_1R", FORCE)]
+    [
+        Wanted::new("time", Dimension::TIME),
+        Wanted::new("distance", Dimension::LENGTH),
+        Wanted::new("Y_1R", FORCE),
+    ]
 }
 
-/// `code file:line:column`, the file without its folders; only the code where a problem has no place.
+/// `code file:line:column`, the file without its folders; only the code where a problem has no
+/// place.
 #[track_caller]
 fn same(case: &str, problems: &[Problem], expected: &[&str]) {
     let found: Vec<String> = problems
         .iter()
         .map(|problem| match &problem.at {
-            Some(at) => format!("{} {}", problem.code, at.to_string().rsplit('/').next().unwrap_or_default()),
+            Some(at) => format!(
+                "{} {}",
+                problem.code,
+                at.to_string().rsplit('/').next().unwrap_or_default()
+            ),
             None => problem.code.to_string(),
         })
         .collect();
@@ -96,16 +105,36 @@ fn faulty_records() {
 #[test]
 fn a_fault_of_many_columns_is_one_problem() {
     for (case, says, help) in [
-        ("no_units", "the column `time` has no unit; a time is needed; the same of `distance`, `Y_1R`", "`time [...]`"),
-        ("unit_in_cell", "the unit of `Y_1R` stands in a cell of its own", "in one cell: `Y_1R [kN]`"),
-        ("other_brackets", "has no columns `time`, `distance`, `Y_1R`", "`Y_1R [kN]` for `Y_1R/kN`"),
-        ("header_repeated", "the header stands between the rows again, in line 4, and once more", "one file holds one record"),
+        (
+            "no_units",
+            "the column `time` has no unit; a time is needed; the same of `distance`, `Y_1R`",
+            "`time [...]`",
+        ),
+        (
+            "unit_in_cell",
+            "the unit of `Y_1R` stands in a cell of its own",
+            "in one cell: `Y_1R [kN]`",
+        ),
+        (
+            "other_brackets",
+            "has no columns `time`, `distance`, `Y_1R`",
+            "`Y_1R [kN]` for `Y_1R/kN`",
+        ),
+        (
+            "header_repeated",
+            "the header stands between the rows again, in line 4, and once more",
+            "one file holds one record",
+        ),
     ] {
         let path = cases("bad/record").join(format!("{case}.csv"));
         let problems = read_record(&path, &path.display().to_string(), &wanted()).expect_err(case);
         let [problem] = problems.as_slice() else { panic!("{case}: {}", problems.len()) };
         assert!(problem.says.contains(says), "{case}: {}", problem.says);
-        assert!(problem.help.as_ref().is_some_and(|told| told.contains(help)), "{case}: {:?}", problem.help);
+        assert!(
+            problem.help.as_ref().is_some_and(|told| told.contains(help)),
+            "{case}: {:?}",
+            problem.help
+        );
     }
 }
 
@@ -115,12 +144,24 @@ fn records_that_cannot_be_evaluated() {
     for (case, section, expected) in [
         ("bad/record/gap.csv", &inside, "gap gap.csv:6:1"),
         ("bad/record/time_repeated.csv", &inside, "time-not-increasing time_repeated.csv:4:1"),
-        ("bad/record/distance_backwards.csv", &inside, "axis-not-increasing distance_backwards.csv:4:7"),
-        ("good/small/measurement/S01.csv", &Section { start: 90.0, end: 101.0, at: None }, "outside-record"),
+        (
+            "bad/record/distance_backwards.csv",
+            &inside,
+            "axis-not-increasing distance_backwards.csv:4:7",
+        ),
+        (
+            "good/small/measurement/S01.csv",
+            &Section { start: 90.0, end: 101.0, at: None },
+            "outside-record",
+        ),
     ] {
         let path = cases(case);
         let record = read_record(&path, &path.display().to_string(), &wanted()).expect(case);
-        same(case, &check_axis(&record, "time", "distance", Some(section)).expect_err(case), &[expected]);
+        same(
+            case,
+            &check_axis(&record, "time", "distance", Some(section)).expect_err(case),
+            &[expected],
+        );
     }
 }
 
@@ -130,7 +171,10 @@ fn faulty_tables() {
         ("duplicate_section", &["duplicate-name duplicate_section.csv:3:1"][..]),
         ("name_missing", &["name-missing name_missing.csv:3:1"]),
         ("ragged", &["ragged-row ragged.csv:3:13"]),
-        ("decimal_comma", &["decimal-comma decimal_comma.csv:2:8", "decimal-comma decimal_comma.csv:3:8"]),
+        (
+            "decimal_comma",
+            &["decimal-comma decimal_comma.csv:2:8", "decimal-comma decimal_comma.csv:3:8"],
+        ),
         ("semicolons", &["semicolon-separated semicolons.csv:1:8"]),
         ("duplicate_column", &["duplicate-column duplicate_column.csv:1:28"]),
         ("blank_line", &["blank-line blank_line.csv:3:1"]),
@@ -143,9 +187,13 @@ fn faulty_tables() {
     ] {
         let path = cases("bad/table").join(format!("{case}.csv"));
         let mut problems = Problems::default();
-        if let Some(table) = Table::read(&path, &path.display().to_string(), Some("section"), &mut problems) {
+        if let Some(table) =
+            Table::read(&path, &path.display().to_string(), Some("section"), &mut problems)
+        {
             match table.need_column("start") {
-                Ok(column) => problems.0.extend(table.numbers(column, Some(Dimension::LENGTH)).err().unwrap_or_default()),
+                Ok(column) => problems.0.extend(
+                    table.numbers(column, Some(Dimension::LENGTH)).err().unwrap_or_default(),
+                ),
                 Err(problem) => problems.push(problem),
             }
         }
@@ -183,7 +231,10 @@ fn faulty_campaigns() {
         ("no_records/measurement", &["file-missing"]),
     ] {
         let mut problems = Problems::default();
-        assert!(Campaign::open(&cases("bad/campaign").join(case), &mut problems).is_none(), "{case}");
+        assert!(
+            Campaign::open(&cases("bad/campaign").join(case), &mut problems).is_none(),
+            "{case}"
+        );
         same(case, &problems.0, expected);
     }
 }
@@ -191,12 +242,16 @@ fn faulty_campaigns() {
 #[test]
 fn a_missing_record_is_told_where_the_section_stands() {
     let mut problems = Problems::default();
-    let campaign = Campaign::open(&cases("bad/campaign/record_missing"), &mut problems).expect("opens");
-    let missing = campaign.record_place(RecordKind::Simulation, &campaign.names[1]).expect_err("no such record");
+    let campaign =
+        Campaign::open(&cases("bad/campaign/record_missing"), &mut problems).expect("opens");
+    let missing = campaign
+        .record_place(RecordKind::Simulation, &campaign.names[1])
+        .expect_err("no such record");
     // S01.csv is there, but it is the record of another section.
     assert_eq!(missing.help, None);
     same("record", &[missing], &["file-missing sections.csv:3:1"]);
-    let missing = campaign.record_place(RecordKind::Track, &campaign.names[0]).expect_err("no such folder");
+    let missing =
+        campaign.record_place(RecordKind::Track, &campaign.names[0]).expect_err("no such folder");
     same("folder", &[missing], &["key-missing campaign.yaml:1:1"]);
 }
 
@@ -204,12 +259,21 @@ fn a_missing_record_is_told_where_the_section_stands() {
 fn a_good_campaign() {
     for path in [cases("good/small"), cases("good/small/campaign.yaml")] {
         let mut problems = Problems::default();
-        let campaign = Campaign::open(&path, &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
+        let campaign = Campaign::open(&path, &mut problems)
+            .unwrap_or_else(|| panic!("{}", problems.render(false)));
         assert_eq!(campaign.name, "small");
         assert_eq!(campaign.protocol.as_ref().map(|name| name.value.as_str()), Some("coach-check"));
-        assert_eq!(campaign.vehicle.lookup("name").and_then(|node| node.scalar_text()), Some("coach"));
-        let facts: Vec<_> =
-            campaign.facts.iter().map(|fact| (fact.group.as_str(), fact.name.as_str(), fact.unit.as_deref(), fact.text.as_str())).collect();
+        assert_eq!(
+            campaign.vehicle.lookup("name").and_then(|node| node.scalar_text()),
+            Some("coach")
+        );
+        let facts: Vec<_> = campaign
+            .facts
+            .iter()
+            .map(|fact| {
+                (fact.group.as_str(), fact.name.as_str(), fact.unit.as_deref(), fact.text.as_str())
+            })
+            .collect();
         assert_eq!(
             facts,
             [
@@ -218,14 +282,29 @@ fn a_good_campaign() {
                 ("declared_tolerances", "Y offset", Some("kN"), "0.50")
             ]
         );
-        let parameters: Vec<_> = campaign.parameters.iter().map(|set| (set.name.text.as_str(), set.value.raw.as_str())).collect();
+        let parameters: Vec<_> = campaign
+            .parameters
+            .iter()
+            .map(|set| (set.name.text.as_str(), set.value.raw.as_str()))
+            .collect();
         assert_eq!(parameters, [("window", "2 m"), ("percentile", "99.85")]);
-        let (record, file) = campaign.read(RecordKind::Measurement.into(), &campaign.names[0], &wanted(), None).expect("a record");
+        let (record, file) = campaign
+            .read(RecordKind::Measurement.into(), &campaign.names[0], &wanted(), None)
+            .expect("a record");
         assert_eq!((file.path.as_str(), record.rows), ("measurement/S01.csv", 4));
         assert_eq!(record.columns[2].values, [1500.0, -2250.0, 3000.0, 3500.0]);
         let table = campaign.sections.as_ref().expect("a table");
-        let at = table.need_column("start").map(|column| table.cell(0, column).map(|cell| cell.span.clone())).expect("there");
-        let axis = check_axis(&record, "time", "distance", Some(&Section { start: 100.2, end: 100.4, at })).expect("even");
+        let at = table
+            .need_column("start")
+            .map(|column| table.cell(0, column).map(|cell| cell.span.clone()))
+            .expect("there");
+        let axis = check_axis(
+            &record,
+            "time",
+            "distance",
+            Some(&Section { start: 100.2, end: 100.4, at }),
+        )
+        .expect("even");
         assert_eq!((axis.sampling_rate, axis.rows), (200.0, 1..3));
         assert_eq!(
             campaign.files.iter().map(|file| file.path.as_str()).collect::<Vec<_>>(),
@@ -240,16 +319,24 @@ fn what_is_written_is_read_back() {
     let folder = temp.path().join("made");
     let mut problems = Problems::default();
     let old = Campaign::open(&cases("good/small"), &mut problems).expect("opens");
-    let (record, _) = old.read(RecordKind::Simulation.into(), &old.names[0], &wanted(), None).expect("a record");
+    let (record, _) =
+        old.read(RecordKind::Simulation.into(), &old.names[0], &wanted(), None).expect("a record");
     let columns: Vec<OutColumn<'_>> = record
         .columns
         .iter()
-        .map(|column| OutColumn { name: &column.name, unit: &column.unit, values: &column.values, decimals: 3 })
+        .map(|column| OutColumn {
+            name: &column.name,
+            unit: &column.unit,
+            values: &column.values,
+            decimals: 3,
+        })
         .collect();
     let text = record_csv(&columns).expect("finite");
     let table = old.sections.as_ref().expect("a table");
     let header = table.columns.iter().map(|column| column.span.text().to_string()).collect();
-    let rows = std::iter::once(header).chain(table.rows.iter().map(|row| row.iter().map(|cell| cell.value.clone()).collect::<Vec<_>>()));
+    let rows = std::iter::once(header).chain(
+        table.rows.iter().map(|row| row.iter().map(|cell| cell.value.clone()).collect::<Vec<_>>()),
+    );
     let yaml = campaign_yaml(&[
         ("name", Entry::Text("made: again")),
         ("vehicle", Entry::Text("vehicle.yaml")),
@@ -265,12 +352,14 @@ fn what_is_written_is_read_back() {
     outputs.add("measurement/S01.csv", text.as_bytes()).expect("added");
     outputs.commit().expect("written");
 
-    let new = Campaign::open(&folder, &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
+    let new = Campaign::open(&folder, &mut problems)
+        .unwrap_or_else(|| panic!("{}", problems.render(false)));
     assert_eq!(new.name, "made: again");
     assert_eq!(new.parameters.len(), 2);
     assert_eq!(new.facts[0].text, "200");
     assert_eq!(new.sections.as_ref().map(|table| table.rows.len()), Some(2));
-    let (again, _) = new.read(RecordKind::Measurement.into(), &new.names[0], &wanted(), None).expect("a record");
+    let (again, _) =
+        new.read(RecordKind::Measurement.into(), &new.names[0], &wanted(), None).expect("a record");
     assert_eq!(again.columns, record.columns);
 }
 
@@ -278,14 +367,20 @@ fn what_is_written_is_read_back() {
 fn without_a_section_table_every_measured_record_is_a_section() {
     let temp = tempfile::tempdir().expect("a temporary folder");
     let mut outputs = Outputs::new(temp.path());
-    outputs.add("campaign.yaml", b"\xef\xbb\xbfname: two\r\nmeasurement: records\r\n").expect("added");
+    outputs
+        .add("campaign.yaml", b"\xef\xbb\xbfname: two\r\nmeasurement: records\r\n")
+        .expect("added");
     for name in ["b", "a", ".hidden"] {
         outputs.add(&format!("records/{name}.csv"), b"time [s]\n0\n1\n").expect("added");
     }
     outputs.commit().expect("written");
     let mut problems = Problems::default();
-    let campaign = Campaign::open(temp.path(), &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
-    assert_eq!(campaign.names.iter().map(|name| name.value.as_str()).collect::<Vec<_>>(), ["a", "b"]);
+    let campaign = Campaign::open(temp.path(), &mut problems)
+        .unwrap_or_else(|| panic!("{}", problems.render(false)));
+    assert_eq!(
+        campaign.names.iter().map(|name| name.value.as_str()).collect::<Vec<_>>(),
+        ["a", "b"]
+    );
     assert!(campaign.sections.is_none() && campaign.vehicle.entries().is_empty());
 }
 
@@ -296,19 +391,25 @@ fn a_record_that_links_out_of_the_folder_is_not_read() {
     let secret = temp.path().join("secret.csv");
     std::fs::write(&secret, "time [s]\n1\n").expect("written");
     let mut outputs = Outputs::new(temp.path().join("campaign"));
-    outputs.add("campaign.yaml", b"name: x\nmeasurement: m\nsections: sections.csv\n").expect("added");
+    outputs
+        .add("campaign.yaml", b"name: x\nmeasurement: m\nsections: sections.csv\n")
+        .expect("added");
     outputs.add("sections.csv", b"section\nS01\n").expect("added");
     outputs.add("m/other.csv", b"").expect("added");
     outputs.commit().expect("written");
     std::os::unix::fs::symlink(&secret, temp.path().join("campaign/m/S01.csv")).expect("linked");
     let mut problems = Problems::default();
-    let campaign = Campaign::open(&temp.path().join("campaign"), &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
-    let refused = campaign.read(RecordKind::Measurement.into(), &campaign.names[0], &[], None).expect_err("outside");
+    let campaign = Campaign::open(&temp.path().join("campaign"), &mut problems)
+        .unwrap_or_else(|| panic!("{}", problems.render(false)));
+    let refused = campaign
+        .read(RecordKind::Measurement.into(), &campaign.names[0], &[], None)
+        .expect_err("outside");
     assert_eq!(refused[0].code, "path-outside");
 }
 
 #[test]
 fn units_of_the_file_are_kept() {
-    let record = read_record(&cases("good/small/measurement/S01.csv"), "S01.csv", &wanted()).expect("a record");
+    let record = read_record(&cases("good/small/measurement/S01.csv"), "S01.csv", &wanted())
+        .expect("a record");
     assert_eq!(record.columns[2].unit, Unit::parse("kN").expect("known"));
 }

@@ -1,4 +1,5 @@
-//! Sections found in runs: against a search written by itself here, against the same sections as records of their own, and what is refused.
+//! Sections found in runs: against a search written by itself here, against the same sections as
+//! records of their own, and what is refused.
 
 mod common {
     pub mod program;
@@ -35,15 +36,23 @@ fn curvature(at: f64) -> f64 {
 
 /// 20 m/s, from 1300 to 1700 m 24 m/s, with ramps of 40 m.
 fn speed(at: f64) -> f64 {
-    20.0 + 4.0 * ((at - 1300.0) / 40.0).clamp(0.0, 1.0) - 4.0 * ((at - 1700.0) / 40.0).clamp(0.0, 1.0)
+    20.0 + 4.0 * ((at - 1300.0) / 40.0).clamp(0.0, 1.0)
+        - 4.0 * ((at - 1700.0) / 40.0).clamp(0.0, 1.0)
 }
 
 /// A row of a record: time, distance, speed [km/h], force [kN].
 fn rows(side: usize) -> Vec<[f64; 4]> {
     let (mut time, mut at, mut rows) = (0.0, FIRST[side], Vec::new());
     while at < END {
-        let force = 10.0 + 3.0 * (at / 7.0).sin() + (0.3 + 2.0 * at / END) * (at / (1.3 + side as f64 * 0.01)).cos();
-        rows.push([time, (at * 1e3).round() / 1e3, (speed(at) * 3.6 * 100.0).round() / 100.0, (force * 1e3).round() / 1e3]);
+        let force = 10.0
+            + 3.0 * (at / 7.0).sin()
+            + (0.3 + 2.0 * at / END) * (at / (1.3 + side as f64 * 0.01)).cos();
+        rows.push([
+            time,
+            (at * 1e3).round() / 1e3,
+            (speed(at) * 3.6 * 100.0).round() / 100.0,
+            (force * 1e3).round() / 1e3,
+        ]);
         at += speed(at) / RATE;
         time += 1.0 / RATE;
     }
@@ -141,7 +150,9 @@ fn campaign() -> TempDir {
     write("vehicle.yaml", "name: none\n");
     write("runs/measurement.csv", &csv(&rows(0)));
     write("runs/simulation.csv", &csv(&rows(1)));
-    let track: String = (0..=8000).map(|at| format!("{},{}\n", at as f64 / 2.0, curvature(at as f64 / 2.0))).collect();
+    let track: String = (0..=8000)
+        .map(|at| format!("{},{}\n", at as f64 / 2.0, curvature(at as f64 / 2.0)))
+        .collect();
     write("runs/track.csv", &format!("distance [m],curvature [1/m]\n{track}"));
     write("runs.fp", PROTOCOL);
     folder
@@ -150,7 +161,10 @@ fn campaign() -> TempDir {
 /// Start, end and zone of each section, and why other places are none: written without the program.
 fn expected() -> (Vec<(f64, f64, u8)>, [usize; 4]) {
     let measured = rows(0);
-    let last = [rows(0), rows(1)].map(|rows| rows[rows.len() - 1][1]).into_iter().fold(f64::INFINITY, f64::min);
+    let last = [rows(0), rows(1)]
+        .map(|rows| rows[rows.len() - 1][1])
+        .into_iter()
+        .fold(f64::INFINITY, f64::min);
     let (mut found, mut rejected, mut at) = (Vec::new(), [0; 4], 11.0_f64);
     while at <= last {
         let mut reason = None;
@@ -162,7 +176,11 @@ fn expected() -> (Vec<(f64, f64, u8)>, [usize; 4]) {
                 continue;
             }
             let track = |from: f64, to: f64| -> Vec<f64> {
-                (0..=8000).map(|at| at as f64 / 2.0).filter(|x| (from..=to).contains(x)).map(curvature).collect()
+                (0..=8000)
+                    .map(|at| at as f64 / 2.0)
+                    .filter(|x| (from..=to).contains(x))
+                    .map(curvature)
+                    .collect()
             };
             let inside = track(at, end);
             let mean = inside.iter().sum::<f64>() / inside.len() as f64;
@@ -176,8 +194,15 @@ fn expected() -> (Vec<(f64, f64, u8)>, [usize; 4]) {
             if is != zone {
                 continue;
             }
-            let range = |of: &[f64]| of.iter().copied().fold(f64::MIN, f64::max) - of.iter().copied().fold(f64::MAX, f64::min);
-            let speeds: Vec<f64> = measured.iter().filter(|row| (at..=end).contains(&row[1])).map(|row| row[2]).collect();
+            let range = |of: &[f64]| {
+                of.iter().copied().fold(f64::MIN, f64::max)
+                    - of.iter().copied().fold(f64::MAX, f64::min)
+            };
+            let speeds: Vec<f64> = measured
+                .iter()
+                .filter(|row| (at..=end).contains(&row[1]))
+                .map(|row| row[2])
+                .collect();
             let condition = if at - 30.0 < 0.0 || range(&track(at - 30.0, end + 10.0)) > 0.000001 {
                 Some(2)
             } else if range(&speeds) > 2.0 + 1e-9 {
@@ -186,7 +211,10 @@ fn expected() -> (Vec<(f64, f64, u8)>, [usize; 4]) {
                 None
             };
             match condition {
-                Some(condition) => reason = if reason.is_none_or(|known| known < 2) { Some(condition) } else { reason },
+                Some(condition) => {
+                    reason =
+                        if reason.is_none_or(|known| known < 2) { Some(condition) } else { reason }
+                }
                 None => {
                     fits = Some((at, end, zone));
                     break;
@@ -215,33 +243,66 @@ fn path(folder: &TempDir, name: &str) -> String {
 #[track_caller]
 fn sections(folder: &TempDir, protocol: &str) -> Vec<Vec<String>> {
     let out = path(folder, "out.csv");
-    let ran = fishplate(&["sections", &folder.path().display().to_string(), "--protocol", &path(folder, protocol), "--out", &out]);
+    let ran = fishplate(&[
+        "sections",
+        &folder.path().display().to_string(),
+        "--protocol",
+        &path(folder, protocol),
+        "--out",
+        &out,
+    ]);
     assert_eq!(ran.code, 0, "{}", ran.stderr);
     let text = fs::read_to_string(out).expect("a table");
     text.lines().map(|line| line.split(',').map(str::to_string).collect()).collect()
 }
 
 fn with(folder: &TempDir, name: &str, more: &str) {
-    fs::write(folder.path().join(name), format!("protocol variant \"Variant\"\n  extends  \"runs.fp\"\n\n{more}")).expect("written");
+    fs::write(
+        folder.path().join(name),
+        format!("protocol variant \"Variant\"\n  extends  \"runs.fp\"\n\n{more}"),
+    )
+    .expect("written");
 }
 
 #[test]
 fn sections_are_those_of_an_independent_search() {
     let folder = campaign();
     let table = sections(&folder, "runs.fp");
-    assert_eq!(table[0], ["section", "run", "start [m]", "end [m]", "zone [-]", "radius [m]", "direction", "speed [km/h]", "country"]);
+    assert_eq!(
+        table[0],
+        [
+            "section",
+            "run",
+            "start [m]",
+            "end [m]",
+            "zone [-]",
+            "radius [m]",
+            "direction",
+            "speed [km/h]",
+            "country"
+        ]
+    );
     let (places, rejected) = expected();
     assert!(places.len() > 20, "{}", places.len());
     let number = |text: &str| text.parse::<f64>().expect("a number");
-    let found: Vec<(f64, f64, u8)> =
-        table[1..].iter().map(|row| (number(&row[2]), number(&row[3]), row[4].parse().expect("a zone"))).collect();
+    let found: Vec<(f64, f64, u8)> = table[1..]
+        .iter()
+        .map(|row| (number(&row[2]), number(&row[3]), row[4].parse().expect("a zone")))
+        .collect();
     assert_eq!(found, places);
     assert!(table[1..].iter().all(|row| row[1] == "R1" && row[8] == "IT"));
-    assert!(table[1..].iter().all(|row| (row[4] == "1") == (row[6] == "straight") && (row[4] == "1") == row[5].is_empty()), "{table:?}");
+    assert!(
+        table[1..]
+            .iter()
+            .all(|row| (row[4] == "1") == (row[6] == "straight")
+                && (row[4] == "1") == row[5].is_empty()),
+        "{table:?}"
+    );
     let curve = table.iter().find(|row| row[4] == "2").expect("a curve");
     assert_eq!((curve[5].as_str(), curve[6].as_str()), ("500", "right"));
     // The same in the results, with what was rejected.
-    let certified = certify(folder.path(), &["--protocol", &path(&folder, "runs.fp"), "--only", "results"]);
+    let certified =
+        certify(folder.path(), &["--protocol", &path(&folder, "runs.fp"), "--only", "results"]);
     assert_eq!(certified.ran.code, 0, "{}", certified.ran.stderr);
     let results = certified.results();
     let run = &results["found_sections"][0]["runs"][0];
@@ -249,11 +310,18 @@ fn sections_are_those_of_an_independent_search() {
     assert_eq!(run["tried"], places.len() + rejected.iter().sum::<usize>());
     let of = |reason: &str| {
         let all = run["rejected"].as_array().expect("a list");
-        all.iter().find(|one| one["reason"] == reason).map_or(0, |one| one["places"].as_u64().expect("a count") as usize)
+        all.iter()
+            .find(|one| one["reason"] == reason)
+            .map_or(0, |one| one["places"].as_u64().expect("a count") as usize)
     };
     let reasons = ["the record ends too close", "in no zone", "Constant curvature", "Steady speed"];
     assert_eq!(reasons.map(of), rejected);
-    let stretches: u64 = run["stretches"].as_array().expect("a list").iter().filter_map(|one| one["places"].as_u64()).sum();
+    let stretches: u64 = run["stretches"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .filter_map(|one| one["places"].as_u64())
+        .sum();
     assert_eq!(stretches as usize, rejected.iter().sum::<usize>());
 }
 
@@ -266,25 +334,35 @@ fn values(results: &Value) -> Vec<(String, f64, f64)> {
             value["measured"].as_f64().expect("a number"),
         )
     };
-    quantities.iter().flat_map(|quantity| quantity["values"].as_array().expect("a list").iter().map(of)).collect()
+    quantities
+        .iter()
+        .flat_map(|quantity| quantity["values"].as_array().expect("a list").iter().map(of))
+        .collect()
 }
 
 #[test]
 fn a_section_of_a_run_has_the_values_of_a_record_of_its_own() {
     let folder = campaign();
-    let found = certify(folder.path(), &["--protocol", &path(&folder, "runs.fp"), "--only", "results"]).results();
+    let found =
+        certify(folder.path(), &["--protocol", &path(&folder, "runs.fp"), "--only", "results"])
+            .results();
     // The table by hand: the same sections, cut from the same run.
     let table = sections(&folder, "runs.fp");
     fs::copy(folder.path().join("out.csv"), folder.path().join("sections.csv")).expect("copied");
-    fs::write(folder.path().join("campaign.yaml"), format!("{CAMPAIGN}sections: sections.csv\n")).expect("written");
-    let by_table = certify(folder.path(), &["--protocol", &path(&folder, "runs.fp"), "--only", "results"]).results();
+    fs::write(folder.path().join("campaign.yaml"), format!("{CAMPAIGN}sections: sections.csv\n"))
+        .expect("written");
+    let by_table =
+        certify(folder.path(), &["--protocol", &path(&folder, "runs.fp"), "--only", "results"])
+            .results();
     assert!(by_table.get("found_sections").is_none());
     assert_eq!(values(&found), values(&by_table));
     // A file for each section, with the same rows around it.
-    let text = table.iter().map(|row| [&row[..1], &row[2..]].concat().join(",") + "\n").collect::<String>();
+    let text = table
+        .iter()
+        .map(|row| [&row[..1], &row[2..]].concat().join(",") + "\n")
+        .collect::<String>();
     fs::write(folder.path().join("sections.csv"), text).expect("written");
-    let files =
-        "name: Runs\nvehicle: vehicle.yaml\nmeasurement: measurement\nsimulation: simulation\ntrack: track\nsections: sections.csv\n";
+    let files = "name: Runs\nvehicle: vehicle.yaml\nmeasurement: measurement\nsimulation: simulation\ntrack: track\nsections: sections.csv\n";
     fs::write(folder.path().join("campaign.yaml"), files).expect("written");
     for (side, name) in ["measurement", "simulation"].into_iter().enumerate() {
         fs::create_dir_all(folder.path().join(name)).expect("made");
@@ -292,15 +370,25 @@ fn a_section_of_a_run_has_the_values_of_a_record_of_its_own() {
         for row in &table[1..] {
             let [start, end] = [2, 3].map(|column| row[column].parse::<f64>().expect("a number"));
             let around = 2.0 * (end - start);
-            let inside: Vec<[f64; 4]> = all.iter().filter(|row| (start - around..=end + around).contains(&row[1])).copied().collect();
-            fs::write(folder.path().join(name).join(format!("{}.csv", row[0])), csv(&inside)).expect("written");
+            let inside: Vec<[f64; 4]> = all
+                .iter()
+                .filter(|row| (start - around..=end + around).contains(&row[1]))
+                .copied()
+                .collect();
+            fs::write(folder.path().join(name).join(format!("{}.csv", row[0])), csv(&inside))
+                .expect("written");
         }
     }
-    // A filter settles further in a run, where neighbours share a stretch; the other quantity is not filtered.
-    let by_file = certify(folder.path(), &["--protocol", &path(&folder, "runs.fp"), "--only", "results"]).results();
+    // A filter settles further in a run, where neighbours share a stretch; the other quantity is
+    // not filtered.
+    let by_file =
+        certify(folder.path(), &["--protocol", &path(&folder, "runs.fp"), "--only", "results"])
+            .results();
     let (in_run, by_file) = (values(&found), values(&by_file));
     assert_eq!(in_run.len(), by_file.len());
-    for (at, ((section, simulated, measured), (same, s, m))) in in_run.iter().zip(&by_file).enumerate() {
+    for (at, ((section, simulated, measured), (same, s, m))) in
+        in_run.iter().zip(&by_file).enumerate()
+    {
         let within = if at < table.len() - 1 { 2e-3 } else { 0.0 };
         assert_eq!(section, same);
         assert!(
@@ -316,16 +404,27 @@ fn of_places_that_overlap_the_preferred_one_is_taken() {
     with(&folder, "prefer.fp", "sections\n  prefer  std of F\n");
     let first = sections(&folder, "runs.fp");
     let preferred = sections(&folder, "prefer.fp");
-    let starts = |table: &[Vec<String>]| table[1..].iter().map(|row| row[2].parse::<f64>().expect("a number")).collect::<Vec<f64>>();
+    let starts = |table: &[Vec<String>]| {
+        table[1..].iter().map(|row| row[2].parse::<f64>().expect("a number")).collect::<Vec<f64>>()
+    };
     assert_ne!(starts(&first), starts(&preferred));
-    let ends: Vec<f64> = preferred[1..].iter().map(|row| row[3].parse().expect("a number")).collect();
-    assert!(starts(&preferred)[1..].iter().zip(&ends).all(|(start, end)| start >= end), "no overlap");
+    let ends: Vec<f64> =
+        preferred[1..].iter().map(|row| row[3].parse().expect("a number")).collect();
+    assert!(
+        starts(&preferred)[1..].iter().zip(&ends).all(|(start, end)| start >= end),
+        "no overlap"
+    );
     let measured = rows(0);
     let deviation = |row: &Vec<String>| {
         let [start, end] = [2, 3].map(|column| row[column].parse::<f64>().expect("a number"));
-        let inside: Vec<f64> = measured.iter().filter(|row| (start..=end).contains(&row[1])).map(|row| row[3]).collect();
+        let inside: Vec<f64> = measured
+            .iter()
+            .filter(|row| (start..=end).contains(&row[1]))
+            .map(|row| row[3])
+            .collect();
         let mean = inside.iter().sum::<f64>() / inside.len() as f64;
-        (inside.iter().map(|force| (force - mean).powi(2)).sum::<f64>() / (inside.len() - 1) as f64).sqrt()
+        (inside.iter().map(|force| (force - mean).powi(2)).sum::<f64>() / (inside.len() - 1) as f64)
+            .sqrt()
     };
     let highest = |table: &[Vec<String>]| table[1..].iter().map(deviation).fold(0.0, f64::max);
     assert!(highest(&preferred) > highest(&first), "{} {}", highest(&preferred), highest(&first));
@@ -337,8 +436,12 @@ fn a_length_by_speed_is_that_of_the_section() {
     with(&folder, "length.fp", "sections\n  length  150 m when speed > 80 km/h, otherwise 60 m\n");
     let table = sections(&folder, "length.fp");
     let number = |row: &[String], at: usize| row[at].parse::<f64>().expect("a number");
-    let lengths: Vec<(f64, f64)> = table[1..].iter().map(|row| (number(row, 3) - number(row, 2), number(row, 7))).collect();
-    assert!(lengths.iter().all(|(length, speed)| *length == if *speed > 80.0 { 150.0 } else { 60.0 }), "{lengths:?}");
+    let lengths: Vec<(f64, f64)> =
+        table[1..].iter().map(|row| (number(row, 3) - number(row, 2), number(row, 7))).collect();
+    assert!(
+        lengths.iter().all(|(length, speed)| *length == if *speed > 80.0 { 150.0 } else { 60.0 }),
+        "{lengths:?}"
+    );
     assert!(lengths.iter().any(|(length, _)| *length == 150.0));
 }
 
@@ -353,12 +456,23 @@ fn sections_are_reduced_and_the_verdict_and_its_check_use_those_kept() {
     let sections = results["sections"].as_array().expect("a list");
     assert_eq!(sections.iter().filter(used).count(), 6);
     let left = sections.iter().find(|section| section["used"] == false).expect("one left out");
-    assert!(left["reason"].as_str().expect("a reason").starts_with("left out by the reduction to at most 3"), "{left}");
+    assert!(
+        left["reason"]
+            .as_str()
+            .expect("a reason")
+            .starts_with("left out by the reduction to at most 3"),
+        "{left}"
+    );
     assert_eq!(results["quantities"][0]["pairs"], 6);
     let kept = results["reduction"]["kept"].as_array().expect("a list");
-    assert_eq!(kept.iter().map(|group| group[0].as_str().expect("a name")).collect::<Vec<_>>(), ["1, IT", "2, IT"]);
+    assert_eq!(
+        kept.iter().map(|group| group[0].as_str().expect("a name")).collect::<Vec<_>>(),
+        ["1, IT", "2, IT"]
+    );
     let scatter = results["reduction"]["scatter"].as_array().expect("a list");
-    let highest = |at: usize| scatter.iter().map(|row| row[at].as_f64().expect("a number")).fold(0.0, f64::max);
+    let highest = |at: usize| {
+        scatter.iter().map(|row| row[at].as_f64().expect("a number")).fold(0.0, f64::max)
+    };
     assert!((highest(1) - highest(2)).abs() < 0.05 * highest(1), "{scatter:?}");
     let report = certified.folder().join("report.pdf").display().to_string();
     let verified = fishplate(&["verify", &report, &folder.path().display().to_string()]);
@@ -366,7 +480,11 @@ fn sections_are_reduced_and_the_verdict_and_its_check_use_those_kept() {
     let html = certified.text("report.html");
     assert!(html.contains("Search for sections in runs") && html.contains("Sections kept"));
     let result = certified.folder().join("results.json").display().to_string();
-    let section = sections.iter().find(used).and_then(|section| section["section"].as_str()).expect("a section");
+    let section = sections
+        .iter()
+        .find(used)
+        .and_then(|section| section["section"].as_str())
+        .expect("a section");
     let traced = fishplate(&[
         "trace",
         &result,
@@ -386,43 +504,89 @@ fn what_cannot_be_found_is_told_with_its_place() {
     let refused = |change: &dyn Fn(&Path), protocol: &str, code: &str, says: &str| {
         let folder = campaign();
         change(folder.path());
-        fs::write(folder.path().join("none.fp"), PROTOCOL.replace("found sections", "sections")).expect("written");
+        fs::write(folder.path().join("none.fp"), PROTOCOL.replace("found sections", "sections"))
+            .expect("written");
         let campaign = folder.path().display().to_string();
-        let ran = fishplate(&["sections", &campaign, "--protocol", &path(&folder, protocol), "--out", &path(&folder, "out.csv")]);
+        let ran = fishplate(&[
+            "sections",
+            &campaign,
+            "--protocol",
+            &path(&folder, protocol),
+            "--out",
+            &path(&folder, "out.csv"),
+        ]);
         assert_eq!(ran.code, 2, "{code}: {}", ran.stdout);
-        assert!(ran.stderr.contains(&format!("error[{code}]")) && ran.stderr.contains(says), "{code}: {}", ran.stderr);
+        assert!(
+            ran.stderr.contains(&format!("error[{code}]")) && ran.stderr.contains(says),
+            "{code}: {}",
+            ran.stderr
+        );
         assert!(!folder.path().join("out.csv").exists(), "{code}");
     };
     let yaml = |from: &'static str, to: &'static str| {
-        move |folder: &Path| fs::write(folder.join("campaign.yaml"), CAMPAIGN.replace(from, to)).expect("written")
+        move |folder: &Path| {
+            fs::write(folder.join("campaign.yaml"), CAMPAIGN.replace(from, to)).expect("written")
+        }
     };
     refused(&|_| {}, "none.fp", "no-search", "use found sections");
     refused(&yaml("    country: IT\n", ""), "runs.fp", "missing-run-data", "campaign.yaml:4:3");
     refused(
-        &|folder| fs::write(folder.join("fine.fp"), PROTOCOL.replace("  step    1 m", "  step    0.00001 m")).expect("written"),
+        &|folder| {
+            fs::write(
+                folder.join("fine.fp"),
+                PROTOCOL.replace("  step    1 m", "  step    0.00001 m"),
+            )
+            .expect("written")
+        },
         "fine.fp",
         "too-many-places",
         "write a longer `step`",
     );
-    refused(&yaml("country: IT", "country: Italy"), "runs.fp", "wrong-run-data", "campaign.yaml:8:14");
+    refused(
+        &yaml("country: IT", "country: Italy"),
+        "runs.fp",
+        "wrong-run-data",
+        "campaign.yaml:8:14",
+    );
     refused(
         &yaml("country: IT", "county: IT"),
         "runs.fp",
         "missing-run-data",
         "the run states `county`: if `country` is meant, write `country`",
     );
-    refused(&yaml("    track: runs/track.csv\n", ""), "runs.fp", "key-missing", "the run `R1` has no `track`");
-    refused(&yaml("runs/track.csv", "runs/trak.csv"), "runs.fp", "file-missing", "did you mean `runs/track.csv`?");
-    refused(&yaml("runs/track.csv", "../track.csv"), "runs.fp", "path-outside", "campaign.yaml:7");
-    refused(&yaml("    simulation:", "    simulatoin:"), "runs.fp", "unknown-key", "did you mean `simulation`?");
     refused(
-        &|folder| fs::write(folder.join("campaign.yaml"), "name: Runs\nvehicle: vehicle.yaml\nruns: R1\n").expect("written"),
+        &yaml("    track: runs/track.csv\n", ""),
+        "runs.fp",
+        "key-missing",
+        "the run `R1` has no `track`",
+    );
+    refused(
+        &yaml("runs/track.csv", "runs/trak.csv"),
+        "runs.fp",
+        "file-missing",
+        "did you mean `runs/track.csv`?",
+    );
+    refused(&yaml("runs/track.csv", "../track.csv"), "runs.fp", "path-outside", "campaign.yaml:7");
+    refused(
+        &yaml("    simulation:", "    simulatoin:"),
+        "runs.fp",
+        "unknown-key",
+        "did you mean `simulation`?",
+    );
+    refused(
+        &|folder| {
+            fs::write(folder.join("campaign.yaml"), "name: Runs\nvehicle: vehicle.yaml\nruns: R1\n")
+                .expect("written")
+        },
         "runs.fp",
         "wrong-kind",
         "a map of names and runs",
     );
     refused(
-        &|folder| fs::write(folder.join("runs.fp"), PROTOCOL.replace("<= 2 km/h", "<= -1 km/h")).expect("written"),
+        &|folder| {
+            fs::write(folder.join("runs.fp"), PROTOCOL.replace("<= 2 km/h", "<= -1 km/h"))
+                .expect("written")
+        },
         "runs.fp",
         "nothing-found",
         "were rejected first by",
@@ -430,7 +594,11 @@ fn what_cannot_be_found_is_told_with_its_place() {
     refused(
         &|folder| {
             let path = folder.join("runs/measurement.csv");
-            let text = fs::read_to_string(&path).expect("a record").replacen("speed [km/h]", "sped [km/h]", 1);
+            let text = fs::read_to_string(&path).expect("a record").replacen(
+                "speed [km/h]",
+                "sped [km/h]",
+                1,
+            );
             fs::write(path, text).expect("written");
         },
         "runs.fp",
@@ -439,8 +607,14 @@ fn what_cannot_be_found_is_told_with_its_place() {
     );
     // A table that names a run which is not there.
     let folder = campaign();
-    fs::write(folder.path().join("sections.csv"), "section,run,start [m],end [m]\nA,R2,100,200\n").expect("written");
-    fs::write(folder.path().join("campaign.yaml"), format!("{CAMPAIGN}sections: sections.csv\n")).expect("written");
+    fs::write(folder.path().join("sections.csv"), "section,run,start [m],end [m]\nA,R2,100,200\n")
+        .expect("written");
+    fs::write(folder.path().join("campaign.yaml"), format!("{CAMPAIGN}sections: sections.csv\n"))
+        .expect("written");
     let ran = certify(folder.path(), &["--protocol", &path(&folder, "runs.fp")]).ran;
-    assert!(ran.stderr.contains("error[unknown-run]") && ran.stderr.contains("did you mean `R1`?"), "{}", ran.stderr);
+    assert!(
+        ran.stderr.contains("error[unknown-run]") && ran.stderr.contains("did you mean `R1`?"),
+        "{}",
+        ran.stderr
+    );
 }

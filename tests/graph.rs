@@ -1,4 +1,5 @@
-//! The processing graph: acyclic by construction, common parts once, and drawn so that any text stays text.
+//! The processing graph: acyclic by construction, common parts once, and drawn so that any text
+//! stays text.
 
 // Each test file uses a part of what they share.
 #[allow(dead_code)]
@@ -20,12 +21,18 @@ use fishplate::source::Source;
 fn compiled(source: &std::sync::Arc<Source>) -> Graph {
     let mut problems = Problems::default();
     let family = family::read(source, &library::parent, &mut problems);
-    let plan = check::check(&family, &Overrides::new(), &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
+    let plan = check::check(&family, &Overrides::new(), &mut problems)
+        .unwrap_or_else(|| panic!("{}", problems.render(false)));
     from_plan(&plan)
 }
 
 fn shipped() -> Vec<(&'static str, Graph)> {
-    library::SHIPPED.iter().map(|shipped| (shipped.name, compiled(&library::shipped(shipped.name).expect("a shipped protocol")))).collect()
+    library::SHIPPED
+        .iter()
+        .map(|shipped| {
+            (shipped.name, compiled(&library::shipped(shipped.name).expect("a shipped protocol")))
+        })
+        .collect()
 }
 
 fn small() -> Graph {
@@ -45,9 +52,15 @@ fn inputs_come_before_nodes_and_stages_never_go_back() {
                 assert!(input < id, "{name}: n{input} is not before n{id}");
                 // Deriving and filtering may alternate; what follows them does not.
                 let (from, to) = (graph.nodes[input].operation.stage(), node.operation.stage());
-                assert!(from <= to || (from <= Stage::Filter && to <= Stage::Filter), "{name}: {from:?} before {to:?}");
+                assert!(
+                    from <= to || (from <= Stage::Filter && to <= Stage::Filter),
+                    "{name}: {from:?} before {to:?}"
+                );
             }
-            assert!(node.from.line() >= 1 && !node.from.source.text.is_empty(), "{name}: n{id} comes from nowhere");
+            assert!(
+                node.from.line() >= 1 && !node.from.source.text.is_empty(),
+                "{name}: n{id} comes from nowhere"
+            );
         }
     }
 }
@@ -55,19 +68,40 @@ fn inputs_come_before_nodes_and_stages_never_go_back() {
 #[test]
 fn every_node_is_used() {
     for (name, graph) in all() {
-        let mut used: BTreeSet<usize> = graph.nodes.iter().flat_map(|node| node.inputs.iter().copied()).collect();
+        let mut used: BTreeSet<usize> =
+            graph.nodes.iter().flat_map(|node| node.inputs.iter().copied()).collect();
         used.extend(graph.verdicts.iter().copied());
-        // Checks on sections end by themselves; so does a signal before its cut where a metric cuts for itself.
+        // Checks on sections end by themselves; so does a signal before its cut where a metric cuts
+        // for itself.
         used.extend(graph.checks.iter().flatten().map(|input| input.node));
         let find = &graph.find;
-        used.extend(find.data.iter().chain(&find.conditions).flatten().chain(&find.prefer).map(|input| input.node));
+        used.extend(
+            find.data
+                .iter()
+                .chain(&find.conditions)
+                .flatten()
+                .chain(&find.prefer)
+                .map(|input| input.node),
+        );
         let positions = || graph.plausibility.iter().flat_map(|rule| &rule.positions);
-        used.extend(positions().flat_map(|position| position.own.into_iter().chain(position.inputs.iter().map(|input| input.node))));
-        used.extend(graph.quantities.iter().flat_map(|quantity| quantity.signals.iter().map(|signal| signal.filtered)));
+        used.extend(positions().flat_map(|position| {
+            position.own.into_iter().chain(position.inputs.iter().map(|input| input.node))
+        }));
+        used.extend(
+            graph
+                .quantities
+                .iter()
+                .flat_map(|quantity| quantity.signals.iter().map(|signal| signal.filtered)),
+        );
         // A quantity without limits ends in its values.
         let reported = graph.quantities.iter().filter(|quantity| quantity.limits.is_empty());
-        used.extend(reported.flat_map(|quantity| quantity.signals.iter().map(|signal| signal.compare)));
-        let idle: Vec<&str> = (0..graph.nodes.len()).filter(|id| !used.contains(id)).map(|id| graph.nodes[id].label.as_str()).collect();
+        used.extend(
+            reported.flat_map(|quantity| quantity.signals.iter().map(|signal| signal.compare)),
+        );
+        let idle: Vec<&str> = (0..graph.nodes.len())
+            .filter(|id| !used.contains(id))
+            .map(|id| graph.nodes[id].label.as_str())
+            .collect();
         assert!(idle.is_empty(), "{name}: {idle:?}");
     }
 }
@@ -78,8 +112,8 @@ fn common_parts_stand_once() {
         let mut seen = BTreeSet::new();
         for node in &graph.nodes {
             let what = match &node.operation {
-                // Their expressions hold places; that there is one for each quantity and signal is their meaning.
-                // So do verdicts: a person may judge several.
+                // Their expressions hold places; that there is one for each quantity and signal is
+                // their meaning. So do verdicts: a person may judge several.
                 Operation::Value(_)
                 | Operation::Compare(_)
                 | Operation::Estimate(_)
@@ -89,25 +123,41 @@ fn common_parts_stand_once() {
                     continue;
                 }
                 Operation::Constant(expr) => format!("constant {}", check::evaluate::shape(expr)),
-                Operation::Select(conditions) => format!("select {:?}", conditions.iter().map(check::evaluate::shape).collect::<Vec<_>>()),
+                Operation::Select(conditions) => format!(
+                    "select {:?}",
+                    conditions.iter().map(check::evaluate::shape).collect::<Vec<_>>()
+                ),
                 operation => format!("{operation:?}"),
             };
-            assert!(seen.insert((what.clone(), node.inputs.clone())), "{name}: {what} of {:?} stands twice", node.inputs);
+            assert!(
+                seen.insert((what.clone(), node.inputs.clone())),
+                "{name}: {what} of {:?} stands twice",
+                node.inputs
+            );
         }
     }
 }
 
-/// Annex T filters each channel once for all quantities: Y, Q and Y/Q of four wheels, the sum of guiding forces of two wheelsets.
+/// Annex T filters each channel once for all quantities: Y, Q and Y/Q of four wheels, the sum of
+/// guiding forces of two wheelsets.
 #[test]
 fn a_filter_runs_once_for_each_channel() {
     let (_, graph) = shipped().remove(0);
-    let filters =
-        |word: &str| graph.nodes.iter().filter(|node| matches!(node.operation, Operation::Step(_)) && node.label.starts_with(word)).count();
+    let filters = |word: &str| {
+        graph
+            .nodes
+            .iter()
+            .filter(|node| {
+                matches!(node.operation, Operation::Step(_)) && node.label.starts_with(word)
+            })
+            .count()
+    };
     assert_eq!(filters("low-pass"), 4 + 4 + 4 + 2);
     assert_eq!(filters("band-pass"), 2 + 2);
-    let reads = graph.nodes.iter().filter(|node| matches!(node.operation, Operation::Read { .. })).count();
-    // Y and Q of eight wheels (plausibility looks at all of them), two accelerations at two places, curvature and cant of the track,
-    // distance and time.
+    let reads =
+        graph.nodes.iter().filter(|node| matches!(node.operation, Operation::Read { .. })).count();
+    // Y and Q of eight wheels (plausibility looks at all of them), two accelerations at two places,
+    // curvature and cant of the track, distance and time.
     assert_eq!(reads, 16 + 4 + 2 + 2);
 }
 
@@ -130,8 +180,14 @@ fn pictures_are_well_formed() {
         assert_eq!(tags[0].name, "svg");
         let (width, height) = (tags[0].number("width"), tags[0].number("height"));
         for tag in tags.iter().filter(|tag| matches!(tag.name, "rect" | "text")) {
-            assert!((0.0..=width).contains(&tag.get("x").map_or(0.0, |_| tag.number("x"))), "{name}: {tag:?}");
-            assert!((0.0..=height).contains(&tag.get("y").map_or(0.0, |_| tag.number("y"))), "{name}: {tag:?}");
+            assert!(
+                (0.0..=width).contains(&tag.get("x").map_or(0.0, |_| tag.number("x"))),
+                "{name}: {tag:?}"
+            );
+            assert!(
+                (0.0..=height).contains(&tag.get("y").map_or(0.0, |_| tag.number("y"))),
+                "{name}: {tag:?}"
+            );
         }
         // An ampersand begins an entity, nothing else.
         for rest in svg.split('&').skip(1) {
@@ -160,7 +216,11 @@ fn dot_names_every_node_and_edge() {
         assert_eq!((lines[0], lines[lines.len() - 1]), ("digraph protocol {", "}"));
         let edges: usize = graph.nodes.iter().map(|node| node.inputs.len()).sum();
         assert_eq!(lines.iter().filter(|line| line.contains(" -> ")).count(), edges, "{name}");
-        assert_eq!(lines.iter().filter(|line| line.contains("[label=\"")).count(), graph.nodes.len(), "{name}");
+        assert_eq!(
+            lines.iter().filter(|line| line.contains("[label=\"")).count(),
+            graph.nodes.len(),
+            "{name}"
+        );
         for line in &lines[1..lines.len() - 1] {
             let quotes = line.replace("\\\\", "").replace("\\\"", "").matches('"').count();
             assert!(line.ends_with(';') && quotes % 2 == 0, "{name}: {line}");

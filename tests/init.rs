@@ -1,4 +1,5 @@
-//! `init`: the draft passes `check`, has what the protocol needs and no more, and is a campaign once its data are filled in.
+//! `init`: the draft passes `check`, has what the protocol needs and no more, and is a campaign
+//! once its data are filled in.
 
 mod common {
     pub mod campaign;
@@ -31,7 +32,10 @@ fn sound(protocol: &Path) {
     let checked = fishplate(&["check", path]);
     assert_eq!(checked.code, 0, "{}", checked.stderr);
     // A parent whose verdicts have names does not know of further quantities.
-    let others = checked.stderr.lines().filter(|line| line.starts_with("warning[") && !line.contains("quantity-without-verdict"));
+    let others = checked
+        .stderr
+        .lines()
+        .filter(|line| line.starts_with("warning[") && !line.contains("quantity-without-verdict"));
     assert_eq!(others.count(), 0, "{}", checked.stderr);
     assert_eq!(fishplate(&["fmt", "--check", path]).code, 0, "not in canonical form");
 }
@@ -54,7 +58,8 @@ fn header(folder: &Path, name: &str) -> Vec<String> {
     text(folder, name).lines().next().expect("a header").split(',').map(str::to_string).collect()
 }
 
-/// The records of `tiny` in place of the empty ones, and its sections cell by cell below the header of the draft.
+/// The records of `tiny` in place of the empty ones, and its sections cell by cell below the header
+/// of the draft.
 fn fill(folder: &Path, from: &Path) {
     for side in ["simulation", "measurement"] {
         fs::remove_file(folder.join(side).join("S01.csv")).expect("removed");
@@ -64,9 +69,12 @@ fn fill(folder: &Path, from: &Path) {
         }
     }
     let name = |heading: &str| heading.split(" [").next().unwrap_or_default().to_string();
-    let given: Vec<String> = header(from, "sections.csv").iter().map(|heading| name(heading)).collect();
-    let wanted: Vec<Option<usize>> =
-        header(folder, "sections.csv").iter().map(|heading| given.iter().position(|known| *known == name(heading))).collect();
+    let given: Vec<String> =
+        header(from, "sections.csv").iter().map(|heading| name(heading)).collect();
+    let wanted: Vec<Option<usize>> = header(folder, "sections.csv")
+        .iter()
+        .map(|heading| given.iter().position(|known| *known == name(heading)))
+        .collect();
     let rows = text(from, "sections.csv");
     let row = |line: &str| {
         let cells: Vec<&str> = line.split(',').collect();
@@ -106,7 +114,13 @@ fn a_list_of_channels_becomes_a_campaign() {
     assert!(found.ran.code < 2, "{}", found.ran.stderr);
     let results = found.results();
     assert_eq!(results["quantities"].as_array().map(Vec::len), Some(2));
-    assert!(results["sections"].as_array().is_some_and(|all| all.iter().all(|section| section["used"] == true)), "{}", results["sections"]);
+    assert!(
+        results["sections"]
+            .as_array()
+            .is_some_and(|all| all.iter().all(|section| section["used"] == true)),
+        "{}",
+        results["sections"]
+    );
     assert_ne!(results["verdict"], "not assessable", "{}", results["reasons"]);
 }
 
@@ -141,13 +155,22 @@ fn a_variant_has_what_its_parent_needs_and_gives_the_same_numbers() {
     init(&folder, &["--extends", ANNEX]);
     sound(&folder.join("protocol.fp"));
     let needs = needs(ANNEX);
-    for (record, side) in [("simulated", "simulation"), ("measured", "measurement"), ("track", "track")] {
-        assert_eq!(header(&folder, &format!("{side}/S01.csv")), headings(&needs["channels"], "name", |need| need["record"] == record));
+    for (record, side) in
+        [("simulated", "simulation"), ("measured", "measurement"), ("track", "track")]
+    {
+        assert_eq!(
+            header(&folder, &format!("{side}/S01.csv")),
+            headings(&needs["channels"], "name", |need| need["record"] == record)
+        );
     }
     assert_eq!(header(&folder, "sections.csv"), headings(&needs["sections"], "name", |_| true));
     let vehicle = text(&folder, "vehicle.yaml");
     for need in needs["vehicle"].as_array().expect("a list") {
-        let line = format!("{}{}:", if need["required"] == true { "\n" } else { "# " }, need["name"].as_str().expect("a name"));
+        let line = format!(
+            "{}{}:",
+            if need["required"] == true { "\n" } else { "# " },
+            need["name"].as_str().expect("a name")
+        );
         assert!(vehicle.contains(&line), "{line}: {vehicle}");
         assert!(vehicle.contains(need["title"].as_str().expect("a title")), "{vehicle}");
     }
@@ -158,10 +181,15 @@ fn a_variant_has_what_its_parent_needs_and_gives_the_same_numbers() {
     let given = text(tiny.path(), "vehicle.yaml");
     lines(&folder.join("vehicle.yaml"), |lines| {
         for line in lines.iter_mut().filter(|line| line.ends_with(':') && !line.starts_with('#')) {
-            *line = given.lines().find(|known| known.starts_with(line.as_str())).expect("the vehicle has it").to_string();
+            *line = given
+                .lines()
+                .find(|known| known.starts_with(line.as_str()))
+                .expect("the vehicle has it")
+                .to_string();
         }
     });
-    let (found, expected) = (certify(&folder, &["--only", "results"]), certify(tiny.path(), &["--only", "results"]));
+    let (found, expected) =
+        (certify(&folder, &["--only", "results"]), certify(tiny.path(), &["--only", "results"]));
     assert_eq!(found.ran.code, expected.ran.code, "{}", found.ran.stderr);
     let verdicts = |results: &Value| (results["verdict"].clone(), results["zones"].clone());
     assert_eq!(verdicts(&found.results()), verdicts(&expected.results()));
@@ -180,8 +208,12 @@ fn every_shipped_protocol_can_be_extended() {
         init(&folder, &["--extends", name, "--channels", "Y_1R [kN], z_1 [mm], z_2 [mm]"]);
         sound(&folder.join("protocol.fp"));
     }
-    let application = header(&parent.path().join("en14363-2016-annex-t-application"), "application.csv");
-    assert_eq!(application, headings(&needs("en14363-2016-annex-t-application")["application"], "name", |_| true));
+    let application =
+        header(&parent.path().join("en14363-2016-annex-t-application"), "application.csv");
+    assert_eq!(
+        application,
+        headings(&needs("en14363-2016-annex-t-application")["application"], "name", |_| true)
+    );
     assert_eq!(application[0], "point");
     // A protocol that is a file is copied, since a campaign extends nothing outside of it.
     let mine = parent.path().join("mine.fp");
@@ -213,14 +245,23 @@ fn faults_have_their_place_and_nothing_is_written() {
         says.iter().for_each(|part| assert!(done.stderr.contains(part), "{part}: {}", done.stderr));
         assert_eq!(files(parent.path()), before);
     };
-    refused(&["--channels", "Y [kn]"], &["error[unknown-unit]", "--channels:1:4", "did you mean `kN`?"]);
-    refused(&["--channels", "Y [kN], Y [N]"], &["error[duplicate-column]", "--channels:1:9", "the first of them"]);
+    refused(
+        &["--channels", "Y [kn]"],
+        &["error[unknown-unit]", "--channels:1:4", "did you mean `kN`?"],
+    );
+    refused(
+        &["--channels", "Y [kN], Y [N]"],
+        &["error[duplicate-column]", "--channels:1:9", "the first of them"],
+    );
     refused(&["--channels", "Y"], &["error[unit-missing]", "`Y [...]`"]);
     refused(&["--channels", ""], &["error[file-empty]"]);
     refused(&["--channels", "time [s]"], &["error[no-channels]"]);
     refused(&["--channels", "a\"b [m]"], &["error[channel-name]"]);
     refused(&["--channels", "a [m], , b [m]"], &["error[name-missing]", "--channels:1:7"]);
-    refused(&["--extends", "en14363-2016-anex-t"], &["error[no-such-protocol]", "did you mean `en14363-2016-annex-t`?"]);
+    refused(
+        &["--extends", "en14363-2016-anex-t"],
+        &["error[no-such-protocol]", "did you mean `en14363-2016-annex-t`?"],
+    );
     refused(&["--channels-from", "no/such.csv"], &["error[file-missing]"]);
     let record = parent.path().join("record.csv");
     fs::write(&record, "Y [kN],Q [kN]\n").expect("written");

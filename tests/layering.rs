@@ -1,4 +1,5 @@
-//! The structure stays as `docs/architecture.md` says: its table of imports is compared with the code, and rules stay out of the code.
+//! The structure stays as `docs/architecture.md` says: its table of imports is compared with the
+//! code, and rules stay out of the code.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -25,7 +26,8 @@ fn sources() -> Vec<(String, PathBuf)> {
     files.sort();
     let module = |path: &PathBuf| {
         let inside = path.strip_prefix(root().join("src")).expect("below src");
-        let first = inside.components().next().expect("a part").as_os_str().to_string_lossy().into_owned();
+        let first =
+            inside.components().next().expect("a part").as_os_str().to_string_lossy().into_owned();
         first.trim_end_matches(".rs").to_string()
     };
     files.into_iter().map(|path| (module(&path), path)).collect()
@@ -42,7 +44,9 @@ fn code(path: &Path) -> String {
 fn imports(code: &str, after: &str) -> BTreeSet<String> {
     code.split(after)
         .skip(1)
-        .map(|rest| rest.chars().take_while(|c| c.is_ascii_lowercase() || *c == '_').collect::<String>())
+        .map(|rest| {
+            rest.chars().take_while(|c| c.is_ascii_lowercase() || *c == '_').collect::<String>()
+        })
         .filter(|name| !name.is_empty())
         .collect()
 }
@@ -50,10 +54,17 @@ fn imports(code: &str, after: &str) -> BTreeSet<String> {
 /// A table of `docs/architecture.md`, in the order of its rows.
 fn table(header: &str) -> Vec<(String, BTreeSet<String>)> {
     let text = fs::read_to_string(root().join("docs/architecture.md")).expect("the page");
-    let rows = text.lines().skip_while(|line| *line != header).skip(2).take_while(|line| line.starts_with('|'));
+    let rows = text
+        .lines()
+        .skip_while(|line| *line != header)
+        .skip(2)
+        .take_while(|line| line.starts_with('|'));
     rows.map(|row| {
         let cells: Vec<&str> = row.split('|').map(str::trim).collect();
-        let imports = cells[cells.len() - 2].split(',').map(|name| name.trim().to_string()).filter(|name| !name.is_empty());
+        let imports = cells[cells.len() - 2]
+            .split(',')
+            .map(|name| name.trim().to_string())
+            .filter(|name| !name.is_empty());
         (cells[1].to_string(), imports.collect())
     })
     .collect()
@@ -67,12 +78,9 @@ fn modules_import_what_the_table_says() {
         uses.extend(imports(&code(&path), "crate::").into_iter().filter(|name| *name != module));
         // The program is a crate of its own and names the library by its name.
         if module == "main" {
-            uses.extend(
-                code(&path)
-                    .split("fishplate::")
-                    .skip(1)
-                    .map(|rest| rest.chars().take_while(|c| c.is_ascii_lowercase()).collect::<String>()),
-            );
+            uses.extend(code(&path).split("fishplate::").skip(1).map(|rest| {
+                rest.chars().take_while(|c| c.is_ascii_lowercase()).collect::<String>()
+            }));
         }
     }
     compare(&found, MODULES);
@@ -84,13 +92,16 @@ fn the_diagnosis_goes_one_way() {
     let mut found: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for (_, path) in sources().into_iter().filter(|(module, _)| module == "diagnose") {
         let inside = path.strip_prefix(root().join("src/diagnose")).expect("below it");
-        let parts: Vec<String> = inside.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+        let parts: Vec<String> =
+            inside.iter().map(|part| part.to_string_lossy().into_owned()).collect();
         let part = parts[0].trim_end_matches(".rs").to_string();
         if part == "mod" {
             continue;
         }
         let uses = found.entry(part.clone()).or_default();
-        uses.extend(imports(&code(&path), "crate::diagnose::").into_iter().filter(|name| *name != part));
+        uses.extend(
+            imports(&code(&path), "crate::diagnose::").into_iter().filter(|name| *name != part),
+        );
         if parts.len() == 1 {
             uses.extend(imports(&code(&path), "super::"));
         }
@@ -128,7 +139,9 @@ fn paths(code: &str, module: &[String]) -> BTreeSet<String> {
     let mut found = Vec::new();
     let mut rest = String::new();
     for statement in code.split_inclusive(';') {
-        match statement.rfind("use ").filter(|at| statement[..*at].trim_end().is_empty() || statement[..*at].ends_with(['\n', ' '])) {
+        match statement.rfind("use ").filter(|at| {
+            statement[..*at].trim_end().is_empty() || statement[..*at].ends_with(['\n', ' '])
+        }) {
             Some(at) => {
                 rest.push_str(&statement[..at]);
                 spread("", statement[at + 4..].trim_end_matches(';').trim(), &mut found);
@@ -138,7 +151,12 @@ fn paths(code: &str, module: &[String]) -> BTreeSet<String> {
     }
     for root in ["crate::", "super::"] {
         for (at, _) in rest.match_indices(root) {
-            found.push(rest[at..].chars().take_while(|letter| letter.is_ascii_alphanumeric() || "_:".contains(*letter)).collect());
+            found.push(
+                rest[at..]
+                    .chars()
+                    .take_while(|letter| letter.is_ascii_alphanumeric() || "_:".contains(*letter))
+                    .collect(),
+            );
         }
     }
     let absolute = |path: &String| {
@@ -147,7 +165,9 @@ fn paths(code: &str, module: &[String]) -> BTreeSet<String> {
         if ups > 0 {
             parts.drain(..ups);
             let above = module.get(..module.len().checked_sub(ups)?)?;
-            return Some(above.iter().map(String::as_str).chain(parts).collect::<Vec<_>>().join("::"));
+            return Some(
+                above.iter().map(String::as_str).chain(parts).collect::<Vec<_>>().join("::"),
+            );
         }
         (parts.first() == Some(&"crate")).then(|| parts[1..].join("::"))
     };
@@ -162,15 +182,18 @@ fn imports_are_spread() {
     assert_eq!(paths(code, &module), BTreeSet::from(wanted));
 }
 
-/// A file may be read after those that it imports, down to files that import none. The front of a folder (`mod.rs`, or the file with
-/// the folder's name) holds what its files have in common and names them, so it is left out.
+/// A file may be read after those that it imports, down to files that import none. The front of a
+/// folder (`mod.rs`, or the file with the folder's name) holds what its files have in common and
+/// names them, so it is left out.
 #[test]
 fn files_make_no_circle() {
     let mut left: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for (_, path) in sources() {
         let inside = path.strip_prefix(root().join("src")).expect("below it").with_extension("");
-        let parts: Vec<String> = inside.iter().map(|part| part.to_string_lossy().into_owned()).collect();
-        let front = path.with_extension("").is_dir() || ["mod", "lib", "main"].iter().any(|name| parts[parts.len() - 1] == *name);
+        let parts: Vec<String> =
+            inside.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+        let front = path.with_extension("").is_dir()
+            || ["mod", "lib", "main"].iter().any(|name| parts[parts.len() - 1] == *name);
         if !front {
             left.insert(parts.join("::"), paths(&code(&path), &parts));
         }
@@ -179,25 +202,45 @@ fn files_make_no_circle() {
     let names: BTreeSet<String> = left.keys().cloned().collect();
     // A path may go on to what a file holds.
     let file = |path: &String| {
-        let ends = path.match_indices("::").map(|(at, _)| at).chain([path.len()]).collect::<Vec<_>>();
-        ends.into_iter().rev().map(|end| &path[..end]).find(|path| names.contains(*path)).map(str::to_string)
+        let ends =
+            path.match_indices("::").map(|(at, _)| at).chain([path.len()]).collect::<Vec<_>>();
+        ends.into_iter()
+            .rev()
+            .map(|end| &path[..end])
+            .find(|path| names.contains(*path))
+            .map(str::to_string)
     };
     for (name, uses) in &mut left {
         *uses = uses.iter().filter_map(file).filter(|used| used != name).collect();
     }
-    while let Some(lowest) = left.iter().find(|(_, uses)| uses.iter().all(|used| !left.contains_key(used))).map(|(name, _)| name.clone()) {
+    while let Some(lowest) = left
+        .iter()
+        .find(|(_, uses)| uses.iter().all(|used| !left.contains_key(used)))
+        .map(|(name, _)| name.clone())
+    {
         left.remove(&lowest);
     }
-    assert!(left.is_empty(), "each of these files imports another of them: {:?}", left.keys().collect::<Vec<_>>());
+    assert!(
+        left.is_empty(),
+        "each of these files imports another of them: {:?}",
+        left.keys().collect::<Vec<_>>()
+    );
 }
 
 /// What can change an answer stands in one file, with its unit and reason.
 #[test]
 fn constants_of_the_diagnosis_stand_in_one_file() {
     let types = ["f64", "usize", "u64", "i32", "[f64", "(f64"];
-    for (_, path) in sources().into_iter().filter(|(module, path)| module == "diagnose" && !path.ends_with("levels.rs")) {
+    for (_, path) in sources()
+        .into_iter()
+        .filter(|(module, path)| module == "diagnose" && !path.ends_with("levels.rs"))
+    {
         let number = |line: &&str| {
-            let said = line.trim_start().trim_start_matches("pub ").strip_prefix("const ").and_then(|rest| rest.split_once(": "));
+            let said = line
+                .trim_start()
+                .trim_start_matches("pub ")
+                .strip_prefix("const ")
+                .and_then(|rest| rest.split_once(": "));
             said.is_some_and(|(_, kind)| types.iter().any(|one| kind.starts_with(one)))
         };
         if let Some(line) = code(&path).lines().find(number) {
@@ -221,7 +264,17 @@ fn compare(found: &BTreeMap<String, BTreeSet<String>>, header: &str) {
 /// What goes around `disk` cannot be made to fail by a test.
 #[test]
 fn files_are_reached_through_one_module() {
-    let ways = ["std::fs", "fs::File", "File::open", "File::create", "OpenOptions", "tempfile::", ".is_file()", ".is_dir()", ".exists()"];
+    let ways = [
+        "std::fs",
+        "fs::File",
+        "File::open",
+        "File::create",
+        "OpenOptions",
+        "tempfile::",
+        ".is_file()",
+        ".is_dir()",
+        ".exists()",
+    ];
     let more = [".canonicalize()", ".metadata()", "read_dir("];
     for (module, path) in sources() {
         if module == "disk" || path.ends_with("tests.rs") {
@@ -229,12 +282,22 @@ fn files_are_reached_through_one_module() {
         }
         let code = code(&path);
         // The files that take what a program says have no name, and were made by `disk`.
-        let code = if path.ends_with("process.rs") { code.replace("use std::fs::File;", "").replace("file.metadata()", "") } else { code };
-        // What a Parquet file says of itself has the same name as what the file system says of a path.
-        let parquet = path.iter().any(|part| part == "columnar") || path.ends_with("values/read.rs");
+        let code = if path.ends_with("process.rs") {
+            code.replace("use std::fs::File;", "").replace("file.metadata()", "")
+        } else {
+            code
+        };
+        // What a Parquet file says of itself has the same name as what the file system says of a
+        // path.
+        let parquet =
+            path.iter().any(|part| part == "columnar") || path.ends_with("values/read.rs");
         let code = if parquet { code.replace(".metadata()", "") } else { code };
         // Options of the readers of HDF5 and MDF files.
-        let code = if path.ends_with("v73.rs") || path.ends_with("mdf4.rs") { code.replace("OpenOptions", "") } else { code };
+        let code = if path.ends_with("v73.rs") || path.ends_with("mdf4.rs") {
+            code.replace("OpenOptions", "")
+        } else {
+            code
+        };
         for way in ways.iter().chain(&more) {
             let line = code.lines().find(|line| line.contains(way));
             assert!(line.is_none(), "{}: `{}`", path.display(), line.unwrap_or_default().trim());
@@ -249,7 +312,10 @@ fn imports_go_one_way() {
         let place = |name: &str| rows.iter().position(|(module, _)| module == name);
         for (module, uses) in &rows {
             for used in uses {
-                assert!(place(used) < place(module), "`{module}` imports `{used}`, which stands below it");
+                assert!(
+                    place(used) < place(module),
+                    "`{module}` imports `{used}`, which stands below it"
+                );
             }
         }
     }
@@ -273,18 +339,30 @@ fn rules_live_in_protocols() {
         "static_wheel_load",
     ];
     for (module, path) in sources() {
-        // The library lists the shipped protocols by name; keys and forms show examples of the language to its users.
-        // The reference vehicle model is one vehicle, not a rule.
-        if module == "model" || module == "library" || path.to_string_lossy().contains("syntax/keys") || path.ends_with("tests.rs") {
+        // The library lists the shipped protocols by name; keys and forms show examples of the
+        // language to its users. The reference vehicle model is one vehicle, not a rule.
+        if module == "model"
+            || module == "library"
+            || path.to_string_lossy().contains("syntax/keys")
+            || path.ends_with("tests.rs")
+        {
             continue;
         }
         let code = code(&path);
         for word in words {
             let place = code.lines().find(|line| line.contains(word));
             let shown = place.is_some_and(|line| {
-                line.contains("after_help") || line.contains("default:") || line.contains("[default") || line.contains("help")
+                line.contains("after_help")
+                    || line.contains("default:")
+                    || line.contains("[default")
+                    || line.contains("help")
             });
-            assert!(place.is_none() || shown, "{}: `{word}` in `{}`", path.display(), place.unwrap_or_default().trim());
+            assert!(
+                place.is_none() || shown,
+                "{}: `{word}` in `{}`",
+                path.display(),
+                place.unwrap_or_default().trim()
+            );
         }
     }
 }
@@ -293,10 +371,30 @@ fn rules_live_in_protocols() {
 #[test]
 fn tests_and_program_share_one_build() {
     let tree = |edges: &str| {
-        let arguments = ["tree", "--locked", "--offline", "-p", "fishplate", "-e", edges, "-f", "{p} {f}", "--prefix", "none"];
-        let ran = std::process::Command::new(env!("CARGO")).args(arguments).current_dir(root()).output().ok()?;
+        let arguments = [
+            "tree",
+            "--locked",
+            "--offline",
+            "-p",
+            "fishplate",
+            "-e",
+            edges,
+            "-f",
+            "{p} {f}",
+            "--prefix",
+            "none",
+        ];
+        let ran = std::process::Command::new(env!("CARGO"))
+            .args(arguments)
+            .current_dir(root())
+            .output()
+            .ok()?;
         let text = String::from_utf8_lossy(&ran.stdout).into_owned();
-        ran.status.success().then(|| text.lines().map(|line| line.trim_end_matches(" (*)").to_string()).collect::<BTreeSet<_>>())
+        ran.status.success().then(|| {
+            text.lines()
+                .map(|line| line.trim_end_matches(" (*)").to_string())
+                .collect::<BTreeSet<_>>()
+        })
     };
     let (Some(program), Some(tests)) = (tree("normal,build"), tree("normal,build,dev")) else {
         eprintln!("skipped: `cargo tree` cannot be run here");
@@ -304,5 +402,8 @@ fn tests_and_program_share_one_build() {
     };
     assert!(program.len() > 100, "the crates were not found");
     let other: Vec<&String> = program.difference(&tests).collect();
-    assert!(other.is_empty(), "tests compile these with more features; ask for the same in Cargo.toml: {other:#?}");
+    assert!(
+        other.is_empty(),
+        "tests compile these with more features; ask for the same in Cargo.toml: {other:#?}"
+    );
 }

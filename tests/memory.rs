@@ -59,7 +59,11 @@ fn memory(folder: &Path, named: bool) -> Memory {
             let mut frame = Frame::new(&name, &schema, batches).unwrap();
             if named {
                 let bytes = std::fs::read(&path).unwrap();
-                frame = frame.read_from(ReadFrom { ending: "csv", sha256: sha256(&bytes), bytes: bytes.len() });
+                frame = frame.read_from(ReadFrom {
+                    ending: "csv",
+                    sha256: sha256(&bytes),
+                    bytes: bytes.len(),
+                });
             }
             memory.records.insert(name, Arc::new(frame));
         }
@@ -76,7 +80,8 @@ fn certified(campaign: Campaign) -> Certification {
 
 fn opened(memory: Memory) -> Campaign {
     let mut problems = Problems::default();
-    Campaign::with_memory(None, memory, &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)))
+    Campaign::with_memory(None, memory, &mut problems)
+        .unwrap_or_else(|| panic!("{}", problems.render(false)))
 }
 
 #[test]
@@ -91,7 +96,16 @@ fn the_results_are_the_same_bytes() {
 /// Records that are not from files have the hash of their numbers.
 #[test]
 fn numbers_that_change_change_the_hash() {
-    let hash = |found: &Certification| found.campaign.files.iter().find(|file| file.path == "measurement/S01").unwrap().sha256.clone();
+    let hash = |found: &Certification| {
+        found
+            .campaign
+            .files
+            .iter()
+            .find(|file| file.path == "measurement/S01")
+            .unwrap()
+            .sha256
+            .clone()
+    };
     let before = certified(opened(memory(&folder("coach"), false)));
     let mut changed = memory(&folder("coach"), false);
     let (schema, batch) = table(&folder("coach").join("measurement/S01.csv"));
@@ -102,7 +116,10 @@ fn numbers_that_change_change_the_hash() {
     let last = columns.len() - 1;
     columns[last] = Arc::new(Float64Array::from(vec![0.0; batch.num_rows()]));
     let other = RecordBatch::try_new(batch.schema(), columns).unwrap();
-    changed.records.insert("measurement/S01".into(), Arc::new(Frame::new("measurement/S01", &schema, vec![other]).unwrap()));
+    changed.records.insert(
+        "measurement/S01".into(),
+        Arc::new(Frame::new("measurement/S01", &schema, vec![other]).unwrap()),
+    );
     assert_ne!(hash(&before), hash(&certified(opened(changed))));
 }
 
@@ -116,10 +133,16 @@ fn a_faulty_value_is_named_with_its_row() {
     let values = (0..batch.num_rows()).map(|row| (row != 16).then_some(1.0));
     columns[at] = Arc::new(values.collect::<Float64Array>());
     let batch = RecordBatch::try_new(batch.schema(), columns).unwrap();
-    parts.records.insert("measurement/S02".into(), Arc::new(Frame::new("measurement/S02", &schema, vec![batch]).unwrap()));
+    parts.records.insert(
+        "measurement/S02".into(),
+        Arc::new(Frame::new("measurement/S02", &schema, vec![batch]).unwrap()),
+    );
     let found = certified(opened(parts));
     let reason = found.sections[1].reason.clone().unwrap();
-    assert!(reason.contains("Y_1R") && reason.contains("measurement/S02") && reason.contains("17"), "{reason}");
+    assert!(
+        reason.contains("Y_1R") && reason.contains("measurement/S02") && reason.contains("17"),
+        "{reason}"
+    );
     assert!(found.sections[0].used);
 }
 
@@ -136,7 +159,10 @@ fn nothing_is_read_from_the_disk() {
     lacking.records.remove("simulation/S03");
     let campaign = opened(lacking);
     let told = campaign.source_of(RecordKind::Simulation.into(), &campaign.names[2]).unwrap_err();
-    assert_eq!((told.code, told.says.as_str()), ("file-missing", "there is no record `simulation/S03` in memory"));
+    assert_eq!(
+        (told.code, told.says.as_str()),
+        ("file-missing", "there is no record `simulation/S03` in memory")
+    );
     // A program that needs files is refused.
     let told = campaign.record_place(RecordKind::Measurement, &campaign.names[0]).unwrap_err();
     assert_eq!(told.code, "record-in-memory");
@@ -148,24 +174,39 @@ fn nothing_is_read_from_the_disk() {
 fn campaigns_in_memory_form_a_pool() {
     let mut second = memory(&folder("coach-good"), false);
     let text = String::from_utf8(second.texts["campaign.yaml"].clone()).unwrap();
-    let renamed: String = text.lines().filter(|line| !line.starts_with("short name:")).map(|line| format!("{line}\n")).collect();
-    second.texts.insert("campaign.yaml".into(), format!("short name: another\n{renamed}").into_bytes());
+    let renamed: String = text
+        .lines()
+        .filter(|line| !line.starts_with("short name:"))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    second
+        .texts
+        .insert("campaign.yaml".into(), format!("short name: another\n{renamed}").into_bytes());
     let mut problems = Problems::default();
     let both = vec![opened(memory(&folder("coach"), false)), opened(second)];
-    let pool = prepare_opened(both, Some(Protocol::Named("en14363-2016-annex-t")), &[], &mut problems).unwrap();
+    let pool =
+        prepare_opened(both, Some(Protocol::Named("en14363-2016-annex-t")), &[], &mut problems)
+            .unwrap();
     assert!(!problems.any_error(), "{}", problems.render(false));
     let found = certify(&pool.compiled, &pool.campaigns, Settings { traces: 0 }, &|_| {}).unwrap();
     assert_eq!(found.campaign.members.len(), 2);
 }
 
-/// The unit of a column stands in brackets or in the metadata of its field, and not differently in both.
+/// The unit of a column stands in brackets or in the metadata of its field, and not differently in
+/// both.
 #[test]
 fn units_of_columns() {
     let field = |name: &str, unit: &str| {
-        Schema::new(vec![Field::new(name, DataType::Float64, true).with_metadata([("unit".to_string(), unit.to_string())].into())])
+        Schema::new(vec![
+            Field::new(name, DataType::Float64, true)
+                .with_metadata([("unit".to_string(), unit.to_string())].into()),
+        ])
     };
     assert!(Frame::new("r", &field("Y_1R", "kN"), Vec::new()).is_ok());
     assert!(Frame::new("r", &field("Y_1R [kN]", "kN"), Vec::new()).is_ok());
-    assert_eq!(Frame::new("r", &field("Y_1R [kN]", "N"), Vec::new()).unwrap_err().code, "unit-conflict");
+    assert_eq!(
+        Frame::new("r", &field("Y_1R [kN]", "N"), Vec::new()).unwrap_err().code,
+        "unit-conflict"
+    );
     assert_eq!(Frame::new("r", &Schema::empty(), Vec::new()).unwrap_err().code, "file-empty");
 }

@@ -25,7 +25,9 @@ fn needs() -> Value {
 /// Names of what is required in a list.
 fn required(list: &Value, of: impl Fn(&Value) -> bool) -> BTreeSet<String> {
     let all = list.as_array().expect("a list").iter();
-    all.filter(|need| need["required"] == true && of(need)).map(|need| need["name"].as_str().expect("a name").to_string()).collect()
+    all.filter(|need| need["required"] == true && of(need))
+        .map(|need| need["name"].as_str().expect("a name").to_string())
+        .collect()
 }
 
 /// Keeps the columns of a table that satisfy a condition.
@@ -34,7 +36,12 @@ fn keep(path: &Path, kept: impl Fn(&str) -> bool) {
         let name = |heading: &str| heading.split(" [").next().unwrap_or_default().to_string();
         let keep: Vec<bool> = lines[0].split(',').map(|heading| kept(&name(heading))).collect();
         for line in lines.iter_mut() {
-            let cells: Vec<&str> = line.split(',').zip(&keep).filter(|(_, keep)| **keep).map(|(cell, _)| cell).collect();
+            let cells: Vec<&str> = line
+                .split(',')
+                .zip(&keep)
+                .filter(|(_, keep)| **keep)
+                .map(|(cell, _)| cell)
+                .collect();
             *line = cells.join(",");
         }
     });
@@ -58,7 +65,9 @@ fn cut_down(campaign: &Path, needs: &Value) {
     let columns = required(&needs["sections"], |_| true);
     keep(&campaign.join("sections.csv"), |name| columns.contains(name));
     let vehicle = required(&needs["vehicle"], |_| true);
-    lines(&campaign.join("vehicle.yaml"), |lines| lines.retain(|line| vehicle.contains(line.split(':').next().unwrap_or_default())));
+    lines(&campaign.join("vehicle.yaml"), |lines| {
+        lines.retain(|line| vehicle.contains(line.split(':').next().unwrap_or_default()))
+    });
 }
 
 #[test]
@@ -67,7 +76,9 @@ fn what_is_required_is_enough_for_the_same_numbers() {
     // More than is needed: columns and vehicle data that no rule reads.
     let add = |path: &Path, heading: &str, cell: &str| {
         lines(path, |lines| {
-            lines.iter_mut().enumerate().for_each(|(row, line)| *line += &format!(",{}", if row == 0 { heading } else { cell }))
+            lines.iter_mut().enumerate().for_each(|(row, line)| {
+                *line += &format!(",{}", if row == 0 { heading } else { cell })
+            })
         });
     };
     add(&campaign.path().join("sections.csv"), "weather", "dry");
@@ -95,7 +106,11 @@ fn nothing_that_is_required_can_be_missing_unnoticed() {
         let found = certify(campaign.path(), &RESULTS);
         let results = if found.ran.code == 2 { String::new() } else { found.results().to_string() };
         let said = format!("{}{}{results}", found.ran.stdout, found.ran.stderr);
-        assert!(said.contains(&format!("`{what}`")), "{what} (exit code {}): {said}", found.ran.code);
+        assert!(
+            said.contains(&format!("`{what}`")),
+            "{what} (exit code {}): {said}",
+            found.ran.code
+        );
     };
     let mut count = 0;
     for (side, folder) in SIDES {
@@ -110,7 +125,11 @@ fn nothing_that_is_required_can_be_missing_unnoticed() {
     }
     for key in required(&needs["vehicle"], |_| true) {
         let start = format!("{key}:");
-        told(&key, &|campaign| lines(&campaign.join("vehicle.yaml"), |lines| lines.retain(|line| !line.starts_with(&start))));
+        told(&key, &|campaign| {
+            lines(&campaign.join("vehicle.yaml"), |lines| {
+                lines.retain(|line| !line.starts_with(&start))
+            })
+        });
         count += 1;
     }
     assert!(count > 35, "{count} were removed");
@@ -121,27 +140,54 @@ fn nothing_that_is_required_can_be_missing_unnoticed() {
 fn each_need_has_its_unit_and_users() {
     let needs = needs();
     let find = |list: &str, name: &str| {
-        let found = needs[list].as_array().expect("a list").iter().find(|need| need["name"] == name);
+        let found =
+            needs[list].as_array().expect("a list").iter().find(|need| need["name"] == name);
         found.unwrap_or_else(|| panic!("no {name}")).clone()
     };
     let guiding = find("channels", "Y_1R");
-    assert_eq!((&guiding["unit"], &guiding["channel"], &guiding["record"]), (&"kN".into(), &"Y".into(), &"simulated".into()));
-    assert_eq!(guiding["quantities"], serde_json::json!(["Y_qst", "YQ_qst", "SigmaY_qst", "Y_max", "YQ_max", "SigmaY_max"]));
-    assert_eq!((&find("channels", "curvature")["record"], &find("channels", "curvature")["required"]), (&"track".into(), &false.into()));
+    assert_eq!(
+        (&guiding["unit"], &guiding["channel"], &guiding["record"]),
+        (&"kN".into(), &"Y".into(), &"simulated".into())
+    );
+    assert_eq!(
+        guiding["quantities"],
+        serde_json::json!(["Y_qst", "YQ_qst", "SigmaY_qst", "Y_max", "YQ_max", "SigmaY_max"])
+    );
+    assert_eq!(
+        (&find("channels", "curvature")["record"], &find("channels", "curvature")["required"]),
+        (&"track".into(), &false.into())
+    );
     assert_eq!(find("channels", "Y_2R")["required"], false, "only plausibility rules look at it");
     assert_eq!(find("sections", "cant")["unit"], "mm");
-    assert_eq!(find("sections", "direction")["words"], serde_json::json!(["right", "left", "straight"]));
+    assert_eq!(
+        find("sections", "direction")["words"],
+        serde_json::json!(["right", "left", "straight"])
+    );
     let load = find("vehicle", "static_wheel_load");
-    assert_eq!((&load["unit"], &load["range"], &load["required"]), (&"kN".into(), &"10 kN to 200 kN".into(), &true.into()));
+    assert_eq!(
+        (&load["unit"], &load["range"], &load["required"]),
+        (&"kN".into(), &"10 kN to 200 kN".into(), &true.into())
+    );
     assert_eq!(load["quantities"], serde_json::json!(["Q_qst", "Q_max"]));
     assert_eq!(
-        (&find("vehicle", "admissible_speed")["default"], &find("vehicle", "admissible_speed")["required"]),
+        (
+            &find("vehicle", "admissible_speed")["default"],
+            &find("vehicle", "admissible_speed")["required"]
+        ),
         (&"not stated".into(), &false.into())
     );
     let ran = fishplate(&["explain", PROTOCOL, "--stage", "needs", "--format", "csv"]);
-    assert!(ran.stdout.starts_with("kind,record,name,channel,title,unit,words,range,default,required,needed by\n"), "{}", ran.stdout);
-    let listed =
-        ["channels", "sections", "application", "vehicle"].iter().map(|list| needs[list].as_array().map_or(0, Vec::len)).sum::<usize>();
+    assert!(
+        ran.stdout.starts_with(
+            "kind,record,name,channel,title,unit,words,range,default,required,needed by\n"
+        ),
+        "{}",
+        ran.stdout
+    );
+    let listed = ["channels", "sections", "application", "vehicle"]
+        .iter()
+        .map(|list| needs[list].as_array().map_or(0, Vec::len))
+        .sum::<usize>();
     assert_eq!(ran.stdout.lines().count(), listed + 1);
     assert_eq!(fishplate(&["explain", PROTOCOL, "--stage", "plan", "--format", "csv"]).code, 2);
     assert_eq!(fishplate(&["explain", PROTOCOL, "--stage", "needs", "--format", "svg"]).code, 2);
@@ -155,12 +201,24 @@ fn wanted_operation_sites_and_states_are_listed() {
         serde_json::from_str(&ran.stdout).expect("JSON")
     };
     let names = |list: &Value| -> Vec<String> {
-        list.as_array().expect("a list").iter().map(|need| need["name"].as_str().expect("a name").to_string()).collect()
+        list.as_array()
+            .expect("a list")
+            .iter()
+            .map(|need| need["name"].as_str().expect("a name").to_string())
+            .collect()
     };
     let application = of("en14363-2016-annex-t-application");
-    let table = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/coach-good/application.csv")).expect("a table");
-    let mut given: Vec<&str> =
-        table.lines().next().expect("a header").split(',').filter_map(|heading| heading.split(" [").next()).collect();
+    let table = fs::read_to_string(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/coach-good/application.csv"),
+    )
+    .expect("a table");
+    let mut given: Vec<&str> = table
+        .lines()
+        .next()
+        .expect("a header")
+        .split(',')
+        .filter_map(|heading| heading.split(" [").next())
+        .collect();
     let mut listed = names(&application["application"]);
     assert_eq!(listed[0], "point");
     given.retain(|name| listed.iter().any(|known| known == name));
@@ -182,8 +240,14 @@ fn wanted_operation_sites_and_states_are_listed() {
     }
     let repeats = of("kraft");
     assert_eq!(need(&repeats, "repeat of")["required"], true);
-    assert!(need(&repeats, "repeat of")["quantities"].as_array().is_some_and(|users| !users.is_empty()));
-    assert!(of("stationary-sway")["sections"].as_array().is_some_and(Vec::is_empty), "whole records have no sections");
-    let text = fishplate(&["explain", "en14363-2016-annex-t-application", "--stage", "needs"]).stdout;
+    assert!(
+        need(&repeats, "repeat of")["quantities"].as_array().is_some_and(|users| !users.is_empty())
+    );
+    assert!(
+        of("stationary-sway")["sections"].as_array().is_some_and(Vec::is_empty),
+        "whole records have no sections"
+    );
+    let text =
+        fishplate(&["explain", "en14363-2016-annex-t-application", "--stage", "needs"]).stdout;
     assert!(text.contains("columns of the table of wanted operation\n  point"), "{text}");
 }

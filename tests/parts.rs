@@ -1,4 +1,5 @@
-//! Campaigns evaluated in parts: `reduce` and `judge` give the bytes that `certify` gives, and what does not belong together is refused.
+//! Campaigns evaluated in parts: `reduce` and `judge` give the bytes that `certify` gives, and what
+//! does not belong together is refused.
 
 mod common {
     pub mod campaign;
@@ -38,7 +39,9 @@ fn parts(folder: &Path, campaigns: &[&str], more: &[&str], of: usize) -> Vec<Str
     let one = |number: usize| {
         let out = text(&folder.join(format!("values-{number}-{of}.parquet")));
         let shard = format!("{number}/{of}");
-        let ran = fishplate(&[&["reduce"], campaigns, more, &["--shard", &shard, "--out", &out]].concat());
+        let ran = fishplate(
+            &[&["reduce"], campaigns, more, &["--shard", &shard, "--out", &out]].concat(),
+        );
         assert_eq!(ran.code, 0, "{}{}", ran.stdout, ran.stderr);
         out
     };
@@ -70,7 +73,8 @@ fn same_bytes(campaigns: &[&str], more: &[&str]) {
         let (ran, out) = judged(folder.path(), &values, only);
         assert_eq!((ran.code, &ran.stdout), (certified.code, &certified.stdout), "{}", ran.stderr);
         let found = contents(&out);
-        let of_pdf = |name: &str| name == "report.pdf" || name == "statement.json" || name.starts_with('.');
+        let of_pdf =
+            |name: &str| name == "report.pdf" || name == "statement.json" || name.starts_with('.');
         for (name, bytes) in expected.iter().filter(|(name, _)| of == 3 || !of_pdf(name)) {
             assert!(found.get(name) == Some(bytes), "{campaigns:?} in {of} parts: {name} differs");
         }
@@ -92,7 +96,11 @@ fn found_sections_in_parts() {
 #[test]
 fn parts_of_a_campaign_in_two_places() {
     let (campaign, folder) = (copy(Path::new("examples/coach")), folder());
-    let places = ["examples/coach".to_string(), text(campaign.path()), "examples/../examples/coach".to_string()];
+    let places = [
+        "examples/coach".to_string(),
+        text(campaign.path()),
+        "examples/../examples/coach".to_string(),
+    ];
     let mut values = Vec::new();
     for (number, place) in places.iter().enumerate() {
         let out = text(&folder.path().join(format!("of-{number}.parquet")));
@@ -105,7 +113,8 @@ fn parts_of_a_campaign_in_two_places() {
     assert_eq!(fishplate(&["reduce", &places[1], "--shard", "0/3", "--out", &again]).code, 0);
     values.push(again);
     let whole = folder.path().join("whole");
-    let certified = fishplate(&["certify", "examples/coach", "--only", "results", "--out", &text(&whole)]);
+    let certified =
+        fishplate(&["certify", "examples/coach", "--only", "results", "--out", &text(&whole)]);
     let (ran, out) = judged(folder.path(), &values, &["--only", "results"]);
     assert_eq!(ran.code, certified.code, "{}", ran.stderr);
     let results = |of: &Path| fs::read(of.join("results.json")).expect("results");
@@ -114,7 +123,10 @@ fn parts_of_a_campaign_in_two_places() {
 
 #[test]
 fn an_assessment_in_parts() {
-    same_bytes(&["examples/coach"], &["--protocol", "en14363-on-track-assessment", "--set", "sections_per_zone=2"]);
+    same_bytes(
+        &["examples/coach"],
+        &["--protocol", "en14363-on-track-assessment", "--set", "sections_per_zone=2"],
+    );
 }
 
 #[test]
@@ -131,12 +143,22 @@ fn repeats_and_several_models_in_parts() {
 #[test]
 fn a_record_that_cannot_be_read_is_named_and_the_others_are_evaluated() {
     let (campaign, folder) = (copy(Path::new("examples/coach")), folder());
-    fs::write(campaign.path().join("measurement/S05.csv"), "time [s],distance [m],Y_1R [kN]\n0,zero,1\n").expect("written");
+    fs::write(
+        campaign.path().join("measurement/S05.csv"),
+        "time [s],distance [m],Y_1R [kN]\n0,zero,1\n",
+    )
+    .expect("written");
     let path = text(campaign.path());
     let values = parts(folder.path(), &[&path], &[], 4);
     let out = text(&folder.path().join("again.parquet"));
     let ran = fishplate(&["reduce", &path, "--shard", "1/4", "--out", &out]);
-    assert!(ran.code == 0 && ran.stdout.contains("S05 not used: ") && ran.stdout.contains("values of 2 of 13 sections"), "{}", ran.stdout);
+    assert!(
+        ran.code == 0
+            && ran.stdout.contains("S05 not used: ")
+            && ran.stdout.contains("values of 2 of 13 sections"),
+        "{}",
+        ran.stdout
+    );
     let (ran, judged) = judged(folder.path(), &values, &["--only", "results"]);
     let whole = folder.path().join("whole");
     let certified = fishplate(&["certify", &path, "--only", "results", "--out", &text(&whole)]);
@@ -148,10 +170,18 @@ fn a_record_that_cannot_be_read_is_named_and_the_others_are_evaluated() {
 fn missing_values_are_told_and_nothing_is_assessed() {
     let folder = folder();
     let values = parts(folder.path(), &["examples/coach-good"], &[], 4);
-    let (ran, out) = judged(folder.path(), &[values[3].clone(), values[0].clone(), values[2].clone()], &["--only", "results"]);
+    let (ran, out) = judged(
+        folder.path(),
+        &[values[3].clone(), values[0].clone(), values[2].clone()],
+        &["--only", "results"],
+    );
     assert_eq!(ran.code, 1, "{}", ran.stderr);
     let says = "values of 3 of 13 sections are missing: S05, S06, S07";
-    assert!(ran.stdout.contains("Verdict: not assessable") && ran.stdout.contains(says), "{}", ran.stdout);
+    assert!(
+        ran.stdout.contains("Verdict: not assessable") && ran.stdout.contains(says),
+        "{}",
+        ran.stdout
+    );
     let results: Value = serde_json::from_slice(&contents(&out)["results.json"]).expect("JSON");
     assert_eq!(results["verdict"], "not assessable");
     let reasons = results["reasons"].as_array().expect("a list");
@@ -172,7 +202,13 @@ fn values_that_are_given_twice_are_told() {
     values.push(again);
     let whole = parts(folder.path(), &["examples/coach"], &[], 1);
     let (ran, out) = judged(folder.path(), &values, &["--only", "results"]);
-    assert!(ran.code == 1 && ran.stderr.contains("warning[values-twice]") && ran.stderr.contains("copy.parquet"), "{}", ran.stderr);
+    assert!(
+        ran.code == 1
+            && ran.stderr.contains("warning[values-twice]")
+            && ran.stderr.contains("copy.parquet"),
+        "{}",
+        ran.stderr
+    );
     let found = contents(&out);
     // The same sections in other parts are the same values.
     values.extend(whole.iter().cloned());
@@ -205,8 +241,15 @@ fn values_that_do_not_belong_together_are_refused() {
     let second = reduced("second.parquet", &[&path, "--shard", "1/2"]);
     let protocol = reduced("protocol.parquet", &[&path, "--shard", "1/2", "--protocol", "kraft"]);
     refused(folder.path(), &[&first, &protocol], "is of the protocol en14363-2016-annex-t.fp, ");
-    let parameter = reduced("parameter.parquet", &[&path, "--shard", "1/2", "--set", "lowpass_frequency=15 Hz"]);
-    refused(folder.path(), &[&first, &parameter], "the parameter `lowpass_frequency` is 20 Hz (default) in `");
+    let parameter = reduced(
+        "parameter.parquet",
+        &[&path, "--shard", "1/2", "--set", "lowpass_frequency=15 Hz"],
+    );
+    refused(
+        folder.path(),
+        &[&first, &parameter],
+        "the parameter `lowpass_frequency` is 20 Hz (default) in `",
+    );
     let other = reduced("other.parquet", &["examples/coach", "--shard", "1/2"]);
     refused(folder.path(), &[&first, &other], "is of the campaign Tiny, ");
     // A record that was changed after it was evaluated, in a section that two files have.
@@ -214,13 +257,25 @@ fn values_that_do_not_belong_together_are_refused() {
         lines.pop();
     });
     let changed = reduced("changed.parquet", &[&path]);
-    refused(folder.path(), &[&first, &second, &changed], "has other values of section S01 than a file before it");
-    replace(&campaign.path().join("vehicle.yaml"), "static_wheel_load: 50", "static_wheel_load: 51");
+    refused(
+        folder.path(),
+        &[&first, &second, &changed],
+        "has other values of section S01 than a file before it",
+    );
+    replace(
+        &campaign.path().join("vehicle.yaml"),
+        "static_wheel_load: 50",
+        "static_wheel_load: 51",
+    );
     let vehicle = reduced("vehicle.parquet", &[&path, "--shard", "1/2"]);
     refused(folder.path(), &[&first, &vehicle], "the campaign was changed between");
     // Not files of values.
     refused(folder.path(), &[&first, "examples/coach/sections.csv"], "is not a file of values");
-    refused(folder.path(), &[&first, "examples/run/records/north-track.parquet"], "is a Parquet file, but not one of values");
+    refused(
+        folder.path(),
+        &[&first, "examples/run/records/north-track.parquet"],
+        "is a Parquet file, but not one of values",
+    );
     refused(folder.path(), &[&first, "nowhere.parquet"], "there is no file");
     assert_eq!(fishplate(&["reduce", &path, "--shard", "2/2", "--out", &first]).code, 2);
 }
@@ -229,21 +284,29 @@ fn values_that_do_not_belong_together_are_refused() {
 fn tiny_values(shard: Shard) -> (fishplate::certify::Compiled, Values) {
     let (folder, mut problems) = (tiny(), Problems::default());
     let source = fishplate::library::find("en14363-2016-annex-t", None).expect("shipped");
-    let family = fishplate::check::family::read(&source, &fishplate::library::parent, &mut problems);
-    let compiled = fishplate::certify::compile(family, &Default::default(), &mut problems).expect("compiled");
+    let family =
+        fishplate::check::family::read(&source, &fishplate::library::parent, &mut problems);
+    let compiled =
+        fishplate::certify::compile(family, &Default::default(), &mut problems).expect("compiled");
     let campaign = Campaign::open(folder.path(), &mut problems).expect("a campaign");
-    let values = values::reduce(&compiled, (&campaign, Vec::new()), Part { shard, plots: true }, &|_| {}).expect("reduced");
+    let values =
+        values::reduce(&compiled, (&campaign, Vec::new()), Part { shard, plots: true }, &|_| {})
+            .expect("reduced");
     (compiled, values)
 }
 
 #[test]
 fn values_of_another_version_are_refused() {
     let (compiled, values) = tiny_values(Shard::WHOLE);
-    let bytes = values::write(&compiled.plan, &Values { program: "0.0.9".into(), ..values }).expect("bytes");
+    let bytes = values::write(&compiled.plan, &Values { program: "0.0.9".into(), ..values })
+        .expect("bytes");
     let problem = values::read("old.parquet", bytes).expect_err("another version");
     assert_eq!(problem.code, "values-version");
     let this = env!("CARGO_PKG_VERSION");
-    assert_eq!(problem.says, format!("`old.parquet` was written by fishplate 0.0.9, this is {this}"));
+    assert_eq!(
+        problem.says,
+        format!("`old.parquet` was written by fishplate 0.0.9, this is {this}")
+    );
 }
 
 /// The same values in the table as in the metadata, and numbers that come back to the last bit.
@@ -251,17 +314,25 @@ fn values_of_another_version_are_refused() {
 fn values_come_back_to_the_last_bit() {
     let (compiled, values) = tiny_values(Shard { number: 1, of: 3 });
     let bytes = values::write(&compiled.plan, &values).expect("bytes");
-    assert!(bytes == values::write(&compiled.plan, &values).expect("bytes"), "the same values, the same bytes");
+    assert!(
+        bytes == values::write(&compiled.plan, &values).expect("bytes"),
+        "the same values, the same bytes"
+    );
     let mut problems = Problems::default();
     let read = values::read("v.parquet", bytes.clone()).expect("values");
     let joined = values::join(vec![read], &mut problems).expect("joined");
-    let found: Vec<_> = joined.sections().iter().map(|(number, section)| (*number, section.rows.clone())).collect();
-    let expected: Vec<_> = values.sections.iter().map(|(number, section)| (*number, section.rows.clone())).collect();
+    let found: Vec<_> =
+        joined.sections().iter().map(|(number, section)| (*number, section.rows.clone())).collect();
+    let expected: Vec<_> =
+        values.sections.iter().map(|(number, section)| (*number, section.rows.clone())).collect();
     assert_eq!(found, expected);
-    assert!(found.iter().map(|(_, rows)| rows.iter().map(Vec::len).sum::<usize>()).sum::<usize>() > 100);
+    assert!(
+        found.iter().map(|(_, rows)| rows.iter().map(Vec::len).sum::<usize>()).sum::<usize>() > 100
+    );
 }
 
-/// A file that was damaged is an error; one that was changed and sealed again, as no accident does, does not end the program either.
+/// A file that was damaged is an error; one that was changed and sealed again, as no accident does,
+/// does not end the program either.
 #[test]
 fn damaged_values_are_an_error_and_never_a_panic() {
     let (compiled, values) = tiny_values(Shard { number: 0, of: 4 });
@@ -280,8 +351,12 @@ fn damaged_values_are_an_error_and_never_a_panic() {
         damaged[begin..begin + 64].fill(b'0');
         values::seal::close(&mut damaged);
         let mut problems = Problems::default();
-        let joined = values::read("v.parquet", damaged).ok().and_then(|file| values::join(vec![file], &mut problems));
-        sound += usize::from(joined.is_some_and(|joined| joined.certification(Settings { traces: 8 }).is_ok()));
+        let joined = values::read("v.parquet", damaged)
+            .ok()
+            .and_then(|file| values::join(vec![file], &mut problems));
+        sound += usize::from(
+            joined.is_some_and(|joined| joined.certification(Settings { traces: 8 }).is_ok()),
+        );
     }
     assert!(sound < 400, "{sound}");
 }
@@ -293,14 +368,24 @@ fn sections_are_studied_from_values() {
     let values = parts(folder.path(), &["examples/coach"], &[], 3);
     let values: Vec<&str> = values.iter().map(String::as_str).collect();
     let (whole, of_parts) = (folder.path().join("whole"), folder.path().join("parts"));
-    let study = |of: &[&str], out: &Path| fishplate(&[&["study", "sections"], of, &["--out", &text(out)]].concat());
+    let study = |of: &[&str], out: &Path| {
+        fishplate(&[&["study", "sections"], of, &["--out", &text(out)]].concat())
+    };
     let (first, second) = (study(&["examples/coach"], &whole), study(&values, &of_parts));
     assert_eq!((first.code, &first.stdout), (second.code, &second.stdout), "{}", second.stderr);
     assert!(contents(&whole) == contents(&of_parts));
     let missing = study(&values[1..], &whole);
-    assert!(missing.code == 2 && missing.stderr.contains("values of 4 of 13 sections are missing"), "{}", missing.stderr);
+    assert!(
+        missing.code == 2 && missing.stderr.contains("values of 4 of 13 sections are missing"),
+        "{}",
+        missing.stderr
+    );
     let refused = fishplate(&[&["study", "sync"], &values[..], &["--out", &text(&whole)]].concat());
-    assert!(refused.code == 2 && refused.stderr.contains("files of values contain none"), "{}", refused.stderr);
+    assert!(
+        refused.code == 2 && refused.stderr.contains("files of values contain none"),
+        "{}",
+        refused.stderr
+    );
 }
 
 /// Killed at any time: there is no file, or the whole file.
@@ -311,16 +396,26 @@ fn a_part_that_is_killed_leaves_no_half_file() {
     let out = folder.path().join("killed.parquet");
     let mut left_over = 0;
     for milliseconds in (0..400).step_by(20) {
-        let mut child = program().args(["reduce", "examples/coach", "--out"]).arg(&out).spawn().expect("started");
+        let mut child = program()
+            .args(["reduce", "examples/coach", "--out"])
+            .arg(&out)
+            .spawn()
+            .expect("started");
         std::thread::sleep(Duration::from_millis(milliseconds));
         child.kill().expect("killed");
         child.wait().expect("ended");
         if out.exists() {
             left_over += 1;
-            assert!(fs::read(&out).expect("readable") == expected, "a half file after {milliseconds} ms");
+            assert!(
+                fs::read(&out).expect("readable") == expected,
+                "a half file after {milliseconds} ms"
+            );
             fs::remove_file(&out).expect("removed");
         }
     }
     let ran = fishplate(&["reduce", "examples/coach", "--out", &text(&out)]);
-    assert!(ran.code == 0 && fs::read(&out).expect("values") == expected, "{left_over} were complete");
+    assert!(
+        ran.code == 0 && fs::read(&out).expect("values") == expected,
+        "{left_over} were complete"
+    );
 }

@@ -50,7 +50,11 @@ fn three_codes() -> TempDir {
                 };
                 line.split(',').zip(&heads).map(cell).collect::<Vec<_>>().join(",") + "\n"
             };
-            fs::write(to.join(path.file_name().expect("a name")), text.lines().map(line).collect::<String>()).expect("written");
+            fs::write(
+                to.join(path.file_name().expect("a name")),
+                text.lines().map(line).collect::<String>(),
+            )
+            .expect("written");
         }
     }
     let list = "simulation: [simulation/alpha, simulation/beta, simulation/gamma]";
@@ -109,7 +113,9 @@ fn several_codes_are_compared_with_each_other_and_with_the_measurement() {
     let found = run(folder.path(), &text.concat());
     assert_eq!(found.ran.code, 0, "{}{}", found.ran.stdout, found.ran.stderr);
     let results = found.results();
-    for (id, expected) in [("mean", [-2.0, -1.0, 3.0]), ("median", [-1.0, 0.0, 4.0]), ("plain", [1.0, 2.0, 6.0])] {
+    for (id, expected) in
+        [("mean", [-2.0, -1.0, 3.0]), ("median", [-1.0, 0.0, 4.0]), ("plain", [1.0, 2.0, 6.0])]
+    {
         let quantity = quantity(&results, id);
         let group = |at: usize| (CODES[at].0, expected[at], 24, 12);
         assert_records(&by_record(quantity, "mean"), &[group(0), group(1), group(2)]);
@@ -119,11 +125,20 @@ fn several_codes_are_compared_with_each_other_and_with_the_measurement() {
     // The measured values and the offset of each code.
     let tested = by_record(quantity(&results, "tested"), "mean")[0].1;
     let group = |at: usize| (CODES[at].0, tested + CODES[at].1, 24, 12);
-    assert_records(&by_record(quantity(&results, "alone"), "mean"), &[group(0), group(1), group(2)]);
+    assert_records(
+        &by_record(quantity(&results, "alone"), "mean"),
+        &[group(0), group(1), group(2)],
+    );
     let files = results["campaign"]["files"].as_array().expect("a list");
-    let named = files.iter().filter(|file| file["record"]["name"] == "beta" && file["record"]["kind"] == "simulation").count();
+    let named = files
+        .iter()
+        .filter(|file| file["record"]["name"] == "beta" && file["record"]["kind"] == "simulation")
+        .count();
     let measured = files.iter().filter(|file| file["record"]["kind"] == "measurement");
-    assert_eq!((named, measured.filter(|file| file["record"].get("name").is_none()).count()), (12, 12));
+    assert_eq!(
+        (named, measured.filter(|file| file["record"].get("name").is_none()).count()),
+        (12, 12)
+    );
 }
 
 /// The rows of a table in `tables/`, without its head.
@@ -144,12 +159,21 @@ fn the_spread_of_the_codes_is_a_table() {
     );
     let found = certify(folder.path(), &["--protocol", &protocol, "--only", "html"]);
     assert_eq!(found.ran.code, 0, "{}{}", found.ran.stdout, found.ran.stderr);
-    let near =
-        |text: &str, wanted: f64| assert!((text.parse::<f64>().expect("a number") - wanted).abs() < 1e-9, "{text} in place of {wanted}");
+    let near = |text: &str, wanted: f64| {
+        assert!(
+            (text.parse::<f64>().expect("a number") - wanted).abs() < 1e-9,
+            "{text} in place of {wanted}"
+        )
+    };
     let rows = rows_of(&found, "spreads.csv");
     let all: Vec<&Vec<String>> = rows.iter().filter(|row| row[3].is_empty()).collect();
-    for (row, (name, mean, rank)) in all.iter().zip([("alpha", -2.0, "2"), ("beta", -1.0, "1"), ("gamma", 3.0, "3")]) {
-        assert_eq!((row[0].as_str(), row[4].as_str(), row[5].as_str(), row[12].as_str()), ("Q", name, "24", rank));
+    for (row, (name, mean, rank)) in
+        all.iter().zip([("alpha", -2.0, "2"), ("beta", -1.0, "1"), ("gamma", 3.0, "3")])
+    {
+        assert_eq!(
+            (row[0].as_str(), row[4].as_str(), row[5].as_str(), row[12].as_str()),
+            ("Q", name, "24", rank)
+        );
         near(&row[6], mean);
         near(&row[7], 0.0);
         near(&row[8], mean);
@@ -164,11 +188,17 @@ fn the_spread_of_the_codes_is_a_table() {
     }
     let page = fs::read_to_string(found.folder().join("report.html")).expect("a page");
     // The plot shows all codes, in the section where one is farthest from their mean.
-    assert!(page.contains("Records gamma, alpha, beta: Q_1") && page.matches("class=\"curve other\"").count() == 2);
+    assert!(
+        page.contains("Records gamma, alpha, beta: Q_1")
+            && page.matches("class=\"curve other\"").count() == 2
+    );
     assert_eq!(page.matches("<table class=\"spread\">").count(), 1);
-    for word in
-        ["Spread of the codes in", "deviations from the mean of all codes", "Spread of the codes, largest", "Max. − min. of the codes"]
-    {
+    for word in [
+        "Spread of the codes in",
+        "deviations from the mean of all codes",
+        "Spread of the codes, largest",
+        "Max. − min. of the codes",
+    ] {
         assert!(page.contains(word), "{word}");
     }
 }
@@ -183,7 +213,12 @@ fn values_and_metrics_are_printed_with_the_values_of_parameters() {
                       quantity rating \"Rating\"\n  of  Q at wheelset 1\n  metric  weight * correlation + 0.6 * (1 - theil_inequality)\n  \
                       limit  p50 2\n";
     let found = run(folder.path(), quantities);
-    assert_eq!(found.results()["quantities"][1]["metric"], "0.4 * correlation + 0.6 * (1 - theil_inequality)", "{}", found.ran.stderr);
+    assert_eq!(
+        found.results()["quantities"][1]["metric"],
+        "0.4 * correlation + 0.6 * (1 - theil_inequality)",
+        "{}",
+        found.ran.stderr
+    );
     assert_eq!(rows_of(&found, "summary.csv")[0][3], "1.25 * mean");
 }
 
@@ -199,7 +234,10 @@ fn several_codes_are_no_further_pairs() {
     };
     assert_eq!(run(folder.path(), &of(24)).ran.code, 0);
     let found = run(folder.path(), &of(25));
-    assert_eq!(found.results()["reasons"][0], "Q: 24 pairs of site and signal (a repeat is no further section); at least 25 required");
+    assert_eq!(
+        found.results()["reasons"][0],
+        "Q: 24 pairs of site and signal (a repeat is no further section); at least 25 required"
+    );
 }
 
 /// The offsets of the codes are 1, 2 and 6 kN, on average 3 kN.
@@ -208,7 +246,9 @@ fn a_good_simulation_does_not_hide_a_bad_one() {
     let folder = three_codes();
     let path = folder.path();
     let of = |limit: &str| {
-        format!("quantity Q \"Q\"\n  of  Q at wheelset 1\n  value  mean\n  difference  simulated - measured\n  limit  {limit}\n")
+        format!(
+            "quantity Q \"Q\"\n  of  Q at wheelset 1\n  value  mean\n  difference  simulated - measured\n  limit  {limit}\n"
+        )
     };
     let verdict = |rules: &str| run(path, rules).results()["verdict"].clone();
     assert_eq!(verdict(&of("mean 7 kN")), "validated");
@@ -222,22 +262,39 @@ fn a_good_simulation_does_not_hide_a_bad_one() {
     let (here, small) = (path.display().to_string(), path.join("small.fp").display().to_string());
     let verified = fishplate(&["verify", &report, &here, "--protocol", &small]);
     assert_eq!(verified.code, 0, "{}{}", verified.stdout, verified.stderr);
-    // The same for values of the simulations alone: the largest mean of all is far above that of alpha and beta.
-    let assessed = |limit: String| of(&limit).replace("  difference  simulated - measured", "  from  simulated");
-    let mean_of =
-        |at: usize| by_record(quantity(&run(path, &assessed("mean 1000 kN for each record".into())).results(), "Q"), "mean")[at].1;
+    // The same for values of the simulations alone: the largest mean of all is far above that of
+    // alpha and beta.
+    let assessed = |limit: String| {
+        of(&limit).replace("  difference  simulated - measured", "  from  simulated")
+    };
+    let mean_of = |at: usize| {
+        by_record(
+            quantity(&run(path, &assessed("mean 1000 kN for each record".into())).results(), "Q"),
+            "mean",
+        )[at]
+            .1
+    };
     let between = (mean_of(0) + mean_of(1) + mean_of(2)) / 3.0 + 1.0;
     let found = run(path, &assessed(format!("mean {between} kN")));
-    assert!(found.results()["reasons"][0].as_str().is_some_and(|reason| reason.contains("but gamma by itself does not")));
+    assert!(
+        found.results()["reasons"][0]
+            .as_str()
+            .is_some_and(|reason| reason.contains("but gamma by itself does not"))
+    );
     assert_eq!(run(path, &assessed(format!("mean {} kN", mean_of(2) + 0.5))).ran.code, 0);
     // Who names records knows of several.
     let codes = "record codes \"Codes\"\n  is  simulated alpha, beta, gamma\n\n";
-    let named = of("mean 4 kN").replace("  difference", "  compare  codes with measured\n  difference");
+    let named =
+        of("mean 4 kN").replace("  difference", "  compare  codes with measured\n  difference");
     assert_eq!(verdict(&format!("{codes}{named}")), "validated");
     // Two runs of the measurement are no two models.
     let campaign = path.join("campaign.yaml");
     replace(&campaign, "[simulation/alpha, simulation/beta, simulation/gamma]", "simulation/alpha");
-    replace(&campaign, "measurement: measurement", "measurement: [simulation/beta, simulation/gamma]");
+    replace(
+        &campaign,
+        "measurement: measurement",
+        "measurement: [simulation/beta, simulation/gamma]",
+    );
     assert_eq!(verdict(&of("mean 4 kN")), "validated");
 }
 
@@ -250,7 +307,11 @@ fn runs_and_codes_are_paired_verified_and_traced() {
     fs::rename(path.join("simulation/gamma"), path.join("second")).expect("renamed");
     let campaign = path.join("campaign.yaml");
     replace(&campaign, "measurement: measurement", "measurement: {monday: first, tuesday: second}");
-    replace(&campaign, "[simulation/alpha, simulation/beta, simulation/gamma]", "{alpha: simulation/alpha, beta: simulation/beta}");
+    replace(
+        &campaign,
+        "[simulation/alpha, simulation/beta, simulation/gamma]",
+        "{alpha: simulation/alpha, beta: simulation/beta}",
+    );
     let found = run(
         path,
         "quantity Q \"Q\"\n  of  Q at wheelset 1\n  value  mean\n  difference  simulated - measured\n  limit  mean 100 kN for each record\n\n\
@@ -260,8 +321,12 @@ fn runs_and_codes_are_paired_verified_and_traced() {
     );
     assert_eq!(found.ran.code, 0, "{}{}", found.ran.stdout, found.ran.stderr);
     let results = found.results();
-    let expected =
-        [("alpha, monday", 1.0, 24, 12), ("alpha, tuesday", -5.0, 24, 12), ("beta, monday", 2.0, 24, 12), ("beta, tuesday", -4.0, 24, 12)];
+    let expected = [
+        ("alpha, monday", 1.0, 24, 12),
+        ("alpha, tuesday", -5.0, 24, 12),
+        ("beta, monday", 2.0, 24, 12),
+        ("beta, tuesday", -4.0, 24, 12),
+    ];
     assert_records(&by_record(quantity(&results, "Q"), "mean"), &expected);
     assert_eq!(quantity(&results, "misfit")["values"].as_array().map(Vec::len), Some(96));
     let report = found.folder().join("results.json").display().to_string();
@@ -269,36 +334,69 @@ fn runs_and_codes_are_paired_verified_and_traced() {
     let verified = fishplate(&["verify", &report, &here, "--protocol", &small]);
     assert_eq!(verified.code, 0, "{}{}", verified.stdout, verified.stderr);
     let trace = |quantity: &str, more: &[&str]| {
-        let mut all = vec!["trace", &report, quantity, "S05", "Q_1R", "--campaign", &here, "--protocol", &small];
+        let mut all = vec![
+            "trace",
+            &report,
+            quantity,
+            "S05",
+            "Q_1R",
+            "--campaign",
+            &here,
+            "--protocol",
+            &small,
+        ];
         all.extend(more);
         fishplate(&all)
     };
     let several = trace("Q", &[]);
-    assert!(several.code == 2 && several.stderr.contains("alpha, monday; alpha, tuesday"), "{}", several.stderr);
+    assert!(
+        several.code == 2 && several.stderr.contains("alpha, monday; alpha, tuesday"),
+        "{}",
+        several.stderr
+    );
     let unknown = trace("Q", &["--record", "alfa, monday"]);
-    assert!(unknown.code == 2 && unknown.stderr.contains("did you mean `alpha, monday`?"), "{}", unknown.stderr);
+    assert!(
+        unknown.code == 2 && unknown.stderr.contains("did you mean `alpha, monday`?"),
+        "{}",
+        unknown.stderr
+    );
     let one = trace("Q", &["--record", "beta, tuesday"]);
     assert_eq!(one.code, 0, "{}{}", one.stdout, one.stderr);
-    for (file, there) in [("simulation/beta/S05.csv", true), ("second/S05.csv", true), ("first/S05.csv", false), ("alpha/S05.csv", false)] {
+    for (file, there) in [
+        ("simulation/beta/S05.csv", true),
+        ("second/S05.csv", true),
+        ("first/S05.csv", false),
+        ("alpha/S05.csv", false),
+    ] {
         assert_eq!(one.stdout.contains(file), there, "{file}: {}", one.stdout);
     }
     assert_eq!(one.stdout.matches("as in the report").count(), 3, "{}", one.stdout);
     let spread = trace("spread", &["--record", "monday"]);
-    assert!(spread.code == 0 && spread.stdout.contains("second/S05.csv"), "{}{}", spread.stdout, spread.stderr);
+    assert!(
+        spread.code == 0 && spread.stdout.contains("second/S05.csv"),
+        "{}{}",
+        spread.stdout,
+        spread.stderr
+    );
 }
 
 /// A sound campaign stays so where one code is given as a list, to the last byte of its results.
 #[test]
 fn a_list_of_one_is_one_record() {
     let (plain, listed) = (tiny(), tiny());
+    let quantities = "quantity Q \"Q\"\n  of  Q at wheelset 1\n  value  rms\n  difference  simulated - measured\n  limit  std 100 kN for each record\n";
+    replace(
+        &listed.path().join("campaign.yaml"),
+        "simulation: simulation",
+        "simulation: [simulation]",
+    );
     let quantities =
-        "quantity Q \"Q\"\n  of  Q at wheelset 1\n  value  rms\n  difference  simulated - measured\n  limit  std 100 kN for each record\n";
-    replace(&listed.path().join("campaign.yaml"), "simulation: simulation", "simulation: [simulation]");
-    let quantities = |folder: &TempDir| run(folder.path(), quantities).results()["quantities"].clone();
+        |folder: &TempDir| run(folder.path(), quantities).results()["quantities"].clone();
     assert_eq!(quantities(&plain), quantities(&listed));
 }
 
-/// The plausibility of every record is looked at, and a finding names it; a fault of one record is one of the section.
+/// The plausibility of every record is looked at, and a finding names it; a fault of one record is
+/// one of the section.
 #[test]
 fn every_record_is_looked_at() {
     let folder = three_codes();
@@ -310,12 +408,22 @@ fn every_record_is_looked_at() {
     let found = run(folder.path(), text);
     let results = found.results();
     let finding = &results["findings"][0];
-    assert_eq!((finding["section"].as_str(), finding["record"].as_str()), (Some("S03"), Some("simulation beta")), "{finding}");
+    assert_eq!(
+        (finding["section"].as_str(), finding["record"].as_str()),
+        (Some("S03"), Some("simulation beta")),
+        "{finding}"
+    );
     fs::remove_file(&path).expect("removed");
     let results = run(folder.path(), text).results();
-    let section = results["sections"].as_array().and_then(|all| all.iter().find(|section| section["section"] == "S03")).expect("S03");
+    let section = results["sections"]
+        .as_array()
+        .and_then(|all| all.iter().find(|section| section["section"] == "S03"))
+        .expect("S03");
     assert_eq!(section["used"], false);
-    assert!(section["reason"].as_str().is_some_and(|reason| reason.contains("simulation/beta/S03.csv")), "{section}");
+    assert!(
+        section["reason"].as_str().is_some_and(|reason| reason.contains("simulation/beta/S03.csv")),
+        "{section}"
+    );
 }
 
 /// What needs one simulation says that there are several.
@@ -323,7 +431,8 @@ fn every_record_is_looked_at() {
 fn who_needs_one_record_refuses_several() {
     let folder = three_codes();
     let out = tempfile::tempdir().expect("a folder");
-    let (here, out) = (folder.path().display().to_string(), out.path().join("new").display().to_string());
+    let (here, out) =
+        (folder.path().display().to_string(), out.path().join("new").display().to_string());
     for arguments in [
         &["study", "sync", "--offsets", "0,1"][..],
         &["study", "sections"],
@@ -336,12 +445,18 @@ fn who_needs_one_record_refuses_several() {
         all.extend(options);
         let ran = fishplate(&all);
         assert_ne!(ran.code, 0);
-        assert!(ran.stderr.contains("error[several-records]") && ran.stderr.contains("campaign.yaml:5:13"), "{all:?}: {}", ran.stderr);
+        assert!(
+            ran.stderr.contains("error[several-records]")
+                && ran.stderr.contains("campaign.yaml:5:13"),
+            "{all:?}: {}",
+            ran.stderr
+        );
         assert!(!Path::new(&out).exists(), "{all:?}");
     }
 }
 
-/// Misfits of repeats and of the model, and the quality index, 1e-9; see `cases/values/repeats/misfit.json`.
+/// Misfits of repeats and of the model, and the quality index, 1e-9; see
+/// `cases/values/repeats/misfit.json`.
 #[test]
 fn repeats_are_compared_with_their_originals() {
     let folder = copy(&root().join("tests/cases/values/repeats"));
@@ -355,14 +470,19 @@ fn repeats_are_compared_with_their_originals() {
     assert_eq!(found.ran.code, 0, "{}{}", found.ran.stdout, found.ran.stderr);
     assert_eq!(found.results()["verdict"], "validated");
     let results = found.results();
-    let expected: Value = serde_json::from_str(&fs::read_to_string(folder.path().join("misfit.json")).expect("numbers")).expect("JSON");
+    let expected: Value = serde_json::from_str(
+        &fs::read_to_string(folder.path().join("misfit.json")).expect("numbers"),
+    )
+    .expect("JSON");
     let mut numbers = Vec::new();
     for (id, key, count) in [("index", "repeats", 4), ("model", "model", 8)] {
         let values = quantity(&results, id)["values"].as_array().expect("a list");
         let expected = expected[key].as_array().expect("a list");
         assert_eq!((values.len(), expected.len()), (count, count), "{id}");
         for one in expected {
-            let value = values.iter().find(|value| value["section"] == one["section"] && value["signal"] == one["signal"]);
+            let value = values.iter().find(|value| {
+                value["section"] == one["section"] && value["signal"] == one["signal"]
+            });
             let value = value.and_then(|value| value["value"].as_f64()).expect("a value");
             let want = one["misfit"].as_f64().expect("a number");
             assert!((value - want).abs() < 1e-9 * want.max(1.0), "{one}: {value}");
@@ -376,13 +496,29 @@ fn repeats_are_compared_with_their_originals() {
     assert_records(&by_record(index, "p80"), &[("all", p80, 4, 2)]);
     // Each value of a repeat follows from its two sides, and is traced to both records.
     let report = found.folder().join("results.json").display().to_string();
-    let (here, small) = (folder.path().display().to_string(), folder.path().join("small.fp").display().to_string());
+    let (here, small) =
+        (folder.path().display().to_string(), folder.path().join("small.fp").display().to_string());
     let verified = fishplate(&["verify", &report, &here, "--protocol", &small]);
     assert_eq!(verified.code, 0, "{}{}", verified.stdout, verified.stderr);
     for quantity in ["index", "values"] {
-        let traced = fishplate(&["trace", &report, quantity, "S18", "az_I", "--campaign", &here, "--protocol", &small]);
+        let traced = fishplate(&[
+            "trace",
+            &report,
+            quantity,
+            "S18",
+            "az_I",
+            "--campaign",
+            &here,
+            "--protocol",
+            &small,
+        ]);
         assert_eq!(traced.code, 0, "{}{}", traced.stdout, traced.stderr);
-        assert!(traced.stdout.contains("measurement/S06.csv") && traced.stdout.contains("measurement/S18.csv"), "{}", traced.stdout);
+        assert!(
+            traced.stdout.contains("measurement/S06.csv")
+                && traced.stdout.contains("measurement/S18.csv"),
+            "{}",
+            traced.stdout
+        );
         assert!(!traced.stdout.contains("NOT"), "{}", traced.stdout);
     }
     // A repeat of a section that is not used has no value.
@@ -392,7 +528,8 @@ fn repeats_are_compared_with_their_originals() {
     assert_eq!(values, Some(2), "{}", found.ran.stderr);
 }
 
-/// Numbers of both sides' samples, as a metric by itself: the repeat lies elsewhere than its original.
+/// Numbers of both sides' samples, as a metric by itself: the repeat lies elsewhere than its
+/// original.
 #[test]
 fn expressions_compare_repeats_with_their_originals() {
     let folder = copy(&root().join("tests/cases/values/repeats"));
@@ -404,7 +541,8 @@ fn expressions_compare_repeats_with_their_originals() {
     };
     let repeat = "((rms of (simulated - measured)) / (rms of (simulated + 0 * measured)))^2";
     let original = "((rms of (simulated - measured)) / (rms of (measured + 0 * simulated)))^2";
-    let all = [("index", "misfit"), ("double", "2 * misfit"), ("repeat", repeat), ("original", original)];
+    let all =
+        [("index", "misfit"), ("double", "2 * misfit"), ("repeat", repeat), ("original", original)];
     let text = all.iter().fold(LP20.to_string(), |text, (name, metric)| text + &of(name, metric));
     let found = run(folder.path(), &text);
     assert_eq!(found.ran.code, 0, "{}{}", found.ran.stdout, found.ran.stderr);
@@ -420,7 +558,11 @@ fn expressions_compare_repeats_with_their_originals() {
     for (at, one) in index.iter().enumerate() {
         // A misfit is over the smaller sum of squares.
         let samples = repeat[at].max(original[at]);
-        assert!((2.0 * one - double[at]).abs() <= 1e-9 * one && (one - samples).abs() <= 1e-9 * one, "{one}: {} {samples}", double[at]);
+        assert!(
+            (2.0 * one - double[at]).abs() <= 1e-9 * one && (one - samples).abs() <= 1e-9 * one,
+            "{one}: {} {samples}",
+            double[at]
+        );
     }
 }
 
@@ -428,18 +570,22 @@ fn expressions_compare_repeats_with_their_originals() {
 #[test]
 fn without_repeats_their_quantity_is_not_assessable() {
     let folder = tiny();
-    let text =
-        "quantity index \"Quality index\"\n  of  Q at wheelset 1\n  metric  misfit\n  compare  repeats with originals\n  limit  p80 1\n";
+    let text = "quantity index \"Quality index\"\n  of  Q at wheelset 1\n  metric  misfit\n  compare  repeats with originals\n  limit  p80 1\n";
     let found = run(folder.path(), text);
     let reason = found.results()["reasons"][0].as_str().map(str::to_string);
-    assert!(reason.as_deref().is_some_and(|reason| reason.contains("repeats another one")), "{reason:?}");
+    assert!(
+        reason.as_deref().is_some_and(|reason| reason.contains("repeats another one")),
+        "{reason:?}"
+    );
 }
 
-const LP20: &str = "filter LP20 \"Low-pass filter\"\n  step  low-pass 20 Hz, order 4, zero-phase, as-applied\n\n";
+const LP20: &str =
+    "filter LP20 \"Low-pass filter\"\n  step  low-pass 20 Hz, order 4, zero-phase, as-applied\n\n";
 const INDEX: &str = "quantity repeated \"Misfit of repeats\"\n  of  az at each gear\n  filter  LP20\n  metric  misfit\n  \
      compare  repeats with originals\n\n";
 
-/// The model's misfits against those of the repeats, whether the quantity referred to stands before or after.
+/// The model's misfits against those of the repeats, whether the quantity referred to stands before
+/// or after.
 #[test]
 fn a_limit_refers_to_another_quantity() {
     let folder = copy(&root().join("tests/cases/values/repeats"));
@@ -450,18 +596,38 @@ fn a_limit_refers_to_another_quantity() {
     let results = read(&format!("{LP20}{INDEX}{model}"));
     let after = read(&format!("{LP20}{model}{INDEX}"));
     for key in ["value", "limit", "holds"] {
-        let of =
-            |quantity: &Value| quantity["statistics"].as_array().expect("a list").iter().map(|one| one[key].clone()).collect::<Vec<_>>();
+        let of = |quantity: &Value| {
+            quantity["statistics"]
+                .as_array()
+                .expect("a list")
+                .iter()
+                .map(|one| one[key].clone())
+                .collect::<Vec<_>>()
+        };
         assert_eq!(of(&results["quantities"][1]), of(&after["quantities"][0]), "{key}");
     }
-    let expected: Value = serde_json::from_str(&fs::read_to_string(folder.path().join("misfit.json")).expect("numbers")).expect("JSON");
+    let expected: Value = serde_json::from_str(
+        &fs::read_to_string(folder.path().join("misfit.json")).expect("numbers"),
+    )
+    .expect("JSON");
     let numbers = |key: &str| -> Vec<f64> {
-        expected[key].as_array().expect("a list").iter().map(|one| one["misfit"].as_f64().expect("a number")).collect()
+        expected[key]
+            .as_array()
+            .expect("a list")
+            .iter()
+            .map(|one| one["misfit"].as_f64().expect("a number"))
+            .collect()
     };
     let p80 = |key: &str| percentile(&numbers(key), 80.0, Method::Linear).expect("a percentile");
-    let share = numbers("model").iter().filter(|misfit| **misfit <= 3.0 * p80("repeats")).count() as f64 / 8.0;
-    let near =
-        |value: &Value, want: f64| assert!((value.as_f64().expect("a number") - want).abs() < 1e-8 * want.max(1.0), "{value} {want}");
+    let share = numbers("model").iter().filter(|misfit| **misfit <= 3.0 * p80("repeats")).count()
+        as f64
+        / 8.0;
+    let near = |value: &Value, want: f64| {
+        assert!(
+            (value.as_f64().expect("a number") - want).abs() < 1e-8 * want.max(1.0),
+            "{value} {want}"
+        )
+    };
     let statistics = &results["quantities"][1]["statistics"];
     near(&statistics[0]["value"], share);
     near(&statistics[1]["limit"], p80("repeats"));
@@ -473,7 +639,8 @@ fn a_limit_refers_to_another_quantity() {
     assert_eq!(results["verdict"], "not assessable", "{}", results["reasons"]);
 }
 
-/// A datum of the vehicle that differs from section to section is a column: here the wheel load Q0 of two states.
+/// A datum of the vehicle that differs from section to section is a column: here the wheel load Q0
+/// of two states.
 #[test]
 fn a_state_of_the_vehicle_is_section_data() {
     let folder = tiny();
@@ -496,33 +663,58 @@ fn a_state_of_the_vehicle_is_section_data() {
     let results = found.results();
     let statistics = quantity(&results, "Q")["statistics"].as_array().expect("a list").clone();
     let of_state = |state: &str| {
-        let one = statistics.iter().find(|one| one["group"]["state"] == state).unwrap_or_else(|| panic!("{statistics:?}"));
+        let one = statistics
+            .iter()
+            .find(|one| one["group"]["state"] == state)
+            .unwrap_or_else(|| panic!("{statistics:?}"));
         (one["limit"].as_f64().map(f64::round), one["count"].as_u64(), one["n"].as_u64())
     };
-    assert_eq!((of_state("tare"), of_state("laden")), ((Some(70.0), Some(12), Some(6)), (Some(100.0), Some(12), Some(6))));
+    assert_eq!(
+        (of_state("tare"), of_state("laden")),
+        ((Some(70.0), Some(12), Some(6)), (Some(100.0), Some(12), Some(6)))
+    );
 }
 
-/// Spreads of three codes with known offsets by the shipped protocol, and their deviations from the reference: of the wheel force 1, 2 and
-/// 6 kN, mean 3 kN, and of nothing else.
+/// Spreads of three codes with known offsets by the shipped protocol, and their deviations from the
+/// reference: of the wheel force 1, 2 and 6 kN, mean 3 kN, and of nothing else.
 #[test]
 fn a_code_benchmark_finds_the_offsets() {
     let folder = three_codes();
-    let run = |protocol: &str| certify(folder.path(), &["--protocol", protocol, "--only", "results", "--set", "force_tolerance=2.5 kN"]);
+    let run = |protocol: &str| {
+        certify(
+            folder.path(),
+            &["--protocol", protocol, "--only", "results", "--set", "force_tolerance=2.5 kN"],
+        )
+    };
     let (spread, deviation) = (run("code-benchmark"), run("code-benchmark-reference"));
     let (spreads, deviations) = (spread.results(), deviation.results());
     for (at, (code, offset)) in CODES.into_iter().enumerate() {
         for (results, expected) in [(&spreads, offset - 3.0), (&deviations, offset)] {
             // Nine sections in curves; the maximum in all twelve.
-            for (id, rows, expected) in [("Q_qst", 18, expected), ("Q_max", 24, expected), ("Y_qst", 18, 0.0), ("az_max", 12, 0.0)] {
+            for (id, rows, expected) in [
+                ("Q_qst", 18, expected),
+                ("Q_max", 24, expected),
+                ("Y_qst", 18, 0.0),
+                ("az_max", 12, 0.0),
+            ] {
                 let values = quantity(results, id)["values"].as_array().expect("a list");
-                let values: Vec<f64> =
-                    values.iter().filter(|one| one["record"] == code).map(|one| one["difference"].as_f64().expect("a number")).collect();
+                let values: Vec<f64> = values
+                    .iter()
+                    .filter(|one| one["record"] == code)
+                    .map(|one| one["difference"].as_f64().expect("a number"))
+                    .collect();
                 assert_eq!(values.len(), rows, "{id} {code}");
-                assert!(values.iter().all(|value| (value - expected).abs() < 1e-9), "{id} {code}: {values:?}");
+                assert!(
+                    values.iter().all(|value| (value - expected).abs() < 1e-9),
+                    "{id} {code}: {values:?}"
+                );
             }
         }
         let histories = quantity(&deviations, "Q_history")["values"].as_array().expect("a list");
-        let histories = histories.iter().filter(|one| one["record"] == code).map(|one| one["value"].as_f64().expect("a number"));
+        let histories = histories
+            .iter()
+            .filter(|one| one["record"] == code)
+            .map(|one| one["value"].as_f64().expect("a number"));
         assert!(histories.into_iter().all(|value| (value - offset).abs() < 1e-9), "{code}");
         // Within 2.5 kN of the mean: -2 and -1, not 3. Of the reference: 1 and 2, not 6.
         let groups = quantity(&spreads, "Q_qst")["statistics"].as_array().expect("a list");
@@ -530,15 +722,20 @@ fn a_code_benchmark_finds_the_offsets() {
     }
     assert_eq!((spread.ran.code, deviation.ran.code), (1, 1));
     assert_eq!(spreads["verdict_word"], "no agreement within the tolerances");
-    let accepted = certify(folder.path(), &["--protocol", "code-benchmark", "--only", "results", "--set", "force_tolerance=3.001 kN"]);
+    let accepted = certify(
+        folder.path(),
+        &["--protocol", "code-benchmark", "--only", "results", "--set", "force_tolerance=3.001 kN"],
+    );
     assert_eq!(accepted.results()["verdict_word"], "agreement within the tolerances");
 }
 
-/// Deviations of the example from its reference, against SciPy (`tests/cases/code_benchmark/make.py`).
+/// Deviations of the example from its reference, against SciPy
+/// (`tests/cases/code_benchmark/make.py`).
 #[test]
 fn the_example_of_codes_has_the_numbers_of_scipy() {
     let example = root().join("examples/code-benchmark");
-    let found = certify(&example, &["--protocol", "code-benchmark-reference", "--only", "results"]).results();
+    let found = certify(&example, &["--protocol", "code-benchmark-reference", "--only", "results"])
+        .results();
     for (id, section, code, expected) in [
         ("Y_qst", "S13", "polach", 5.795995496887336),
         ("Y_qst", "S13", "independent", 0.00047489782190979213),
@@ -551,14 +748,23 @@ fn the_example_of_codes_has_the_numbers_of_scipy() {
     ] {
         let values = quantity(&found, id)["values"].as_array().expect("a list");
         let wheel = if id.starts_with('Y') { "Y_1L" } else { "Q_1L" };
-        let one = values.iter().find(|one| one["section"] == section && one["record"] == code && one["signal"] == wheel).expect("a value");
+        let one = values
+            .iter()
+            .find(|one| {
+                one["section"] == section && one["record"] == code && one["signal"] == wheel
+            })
+            .expect("a value");
         let value = one["difference"].as_f64().or(one["value"].as_f64()).expect("a number");
         assert!((value - expected).abs() < 1e-9, "{id} {section} {code}: {value}");
     }
-    // The creep law differs, the integration does not: three codes of four agree with the reference.
+    // The creep law differs, the integration does not: three codes of four agree with the
+    // reference.
     let groups = quantity(&found, "Y_qst")["statistics"].as_array().expect("a list");
-    let holding: Vec<&str> =
-        groups.iter().filter(|one| one["holds"] == true).map(|one| one["group"]["record"].as_str().expect("a name")).collect();
+    let holding: Vec<&str> = groups
+        .iter()
+        .filter(|one| one["holds"] == true)
+        .map(|one| one["group"]["record"].as_str().expect("a name"))
+        .collect();
     assert_eq!(holding, ["independent", "built_in", "midpoint"]);
 }
 
@@ -589,18 +795,35 @@ fn declared_records_are_compared() {
     let found = run(folder.path(), &format!("{records}{}", text.concat()));
     assert_eq!(found.ran.code, 0, "{}{}", found.ran.stdout, found.ran.stderr);
     let results = found.results();
-    let means = |id: &str| -> Vec<(String, f64, u64, u64)> { by_record(quantity(&results, id), "mean") };
-    assert_records(&means("against"), &[("alpha, gamma", -5.0, 24, 12), ("beta, gamma", -4.0, 24, 12)]);
+    let means =
+        |id: &str| -> Vec<(String, f64, u64, u64)> { by_record(quantity(&results, id), "mean") };
+    assert_records(
+        &means("against"),
+        &[("alpha, gamma", -5.0, 24, 12), ("beta, gamma", -4.0, 24, 12)],
+    );
     assert_eq!(means("against"), means("all_against"));
-    assert_records(&means("each"), &[("alpha, beta", -1.0, 24, 12), ("alpha, gamma", -5.0, 24, 12), ("beta, gamma", -4.0, 24, 12)]);
+    assert_records(
+        &means("each"),
+        &[
+            ("alpha, beta", -1.0, 24, 12),
+            ("alpha, gamma", -5.0, 24, 12),
+            ("beta, gamma", -4.0, 24, 12),
+        ],
+    );
     assert_records(&means("mean"), &[("gamma", 4.5, 24, 12)]);
     assert_records(&means("tested"), &[("alpha", 1.0, 24, 12), ("beta", 2.0, 24, 12)]);
     assert_records(&means("rms"), &[("alpha, gamma", 5.0, 24, 12), ("beta, gamma", 4.0, 24, 12)]);
     assert_eq!(means("alone").len(), 1);
     let row = &quantity(&results, "against")["values"][1];
-    assert_eq!((&row["record"], &row["signal"]), (&Value::from("beta, gamma"), &Value::from("Q_1R")));
+    assert_eq!(
+        (&row["record"], &row["signal"]),
+        (&Value::from("beta, gamma"), &Value::from("Q_1R"))
+    );
     let difference = |key: &str| row[key].as_f64().expect("a number");
-    assert!((difference("simulated") - difference("measured") - difference("difference")).abs() < 1e-9, "{row}");
+    assert!(
+        (difference("simulated") - difference("measured") - difference("difference")).abs() < 1e-9,
+        "{row}"
+    );
 }
 
 /// A report of two codes is checked and traced to the records of both.
@@ -616,14 +839,31 @@ fn a_pair_of_codes_is_verified_and_traced() {
     let campaign = folder.path().display().to_string();
     let verified = fishplate(&["verify", &report, &campaign]);
     assert_eq!(verified.code, 0, "{}", verified.stdout);
-    let traced = fishplate(&["trace", &report, "code", "S02", "Q_1L", "--record", "beta, gamma", "--campaign", &campaign]);
+    let traced = fishplate(&[
+        "trace",
+        &report,
+        "code",
+        "S02",
+        "Q_1L",
+        "--record",
+        "beta, gamma",
+        "--campaign",
+        &campaign,
+    ]);
     assert_eq!(traced.code, 0, "{}{}", traced.stdout, traced.stderr);
     for part in ["simulation/beta/S02.csv", "simulation/gamma/S02.csv", "as in the report"] {
         assert!(traced.stdout.contains(part), "{part}: {}", traced.stdout);
     }
-    assert!(!traced.stdout.contains("measurement/S02.csv") && !traced.stdout.contains("alpha"), "{}", traced.stdout);
+    assert!(
+        !traced.stdout.contains("measurement/S02.csv") && !traced.stdout.contains("alpha"),
+        "{}",
+        traced.stdout
+    );
     let page = found.text("report.html");
-    assert!(page.contains("Comparison report") && page.contains("Reference code"), "the second side has its title");
+    assert!(
+        page.contains("Comparison report") && page.contains("Reference code"),
+        "the second side has its title"
+    );
 }
 
 /// What a protocol calls by name must be in the campaign.
@@ -638,13 +878,28 @@ fn a_record_that_a_campaign_lacks_is_told() {
     };
     let found = run(folder.path(), &of("gama"));
     assert_eq!(found.ran.code, 2, "{}", found.ran.stdout);
-    for part in ["error[unknown-record]: the campaign has no simulation `gama`", "did you mean `gamma`?", "small.fp:25:17"] {
+    for part in [
+        "error[unknown-record]: the campaign has no simulation `gama`",
+        "did you mean `gamma`?",
+        "small.fp:25:17",
+    ] {
         assert!(found.ran.stderr.contains(part), "{part}: {}", found.ran.stderr);
     }
     // One record without a name.
     let one = tiny();
     let found = run(one.path(), &of("gamma"));
-    assert!(found.ran.stderr.contains("give its records names in campaign.yaml: `simulation: {gamma: folder}`"), "{}", found.ran.stderr);
-    replace(&one.path().join("campaign.yaml"), "simulation: simulation", "simulation: {gamma: simulation}");
+    assert!(
+        found
+            .ran
+            .stderr
+            .contains("give its records names in campaign.yaml: `simulation: {gamma: folder}`"),
+        "{}",
+        found.ran.stderr
+    );
+    replace(
+        &one.path().join("campaign.yaml"),
+        "simulation: simulation",
+        "simulation: {gamma: simulation}",
+    );
     assert_eq!(run(one.path(), &of("gamma")).ran.code, 0);
 }

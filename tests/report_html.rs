@@ -1,4 +1,5 @@
-//! The HTML report: order, escaping, determinism, degenerate results, and a browser's opinion where there is one.
+//! The HTML report: order, escaping, determinism, degenerate results, and a browser's opinion where
+//! there is one.
 // Each test file uses a part of what they share.
 #[allow(dead_code)]
 mod common {
@@ -22,14 +23,44 @@ fn page(found: &Certification) -> String {
 #[test]
 fn chapters_come_in_the_order_of_an_assessor() {
     let page = page(&coach::certification());
-    let ids = ["cover", "summary", "figure-overview", "vehicle", "sections", "quantities", "quantity-0", "figure-pairs-0", "quantity-11"];
-    let more = ["traces", "figure-trace-1", "domain", "figure-domain", "protocol", "figure-graph", "provenance", "statements"];
-    let places: Vec<usize> =
-        ids.iter().chain(&more).map(|id| page.find(&format!("id=\"{id}\"")).unwrap_or_else(|| panic!("no {id}"))).collect();
+    let ids = [
+        "cover",
+        "summary",
+        "figure-overview",
+        "vehicle",
+        "sections",
+        "quantities",
+        "quantity-0",
+        "figure-pairs-0",
+        "quantity-11",
+    ];
+    let more = [
+        "traces",
+        "figure-trace-1",
+        "domain",
+        "figure-domain",
+        "protocol",
+        "figure-graph",
+        "provenance",
+        "statements",
+    ];
+    let places: Vec<usize> = ids
+        .iter()
+        .chain(&more)
+        .map(|id| page.find(&format!("id=\"{id}\"")).unwrap_or_else(|| panic!("no {id}")))
+        .collect();
     assert!(places.is_sorted(), "{places:?}");
-    assert_eq!(page.matches("<svg").count(), 1 + 11 + 2 + 1, "overview, quantities with values, traces, domain");
-    assert!(page.contains("not validated") && page.contains("10 of 12 met, 1 not met, 1 not assessed"));
-    assert!(page.contains("Rules that differ in meaning") && page.contains("limit std 0.40 m&#x2f;s^2"));
+    assert_eq!(
+        page.matches("<svg").count(),
+        1 + 11 + 2 + 1,
+        "overview, quantities with values, traces, domain"
+    );
+    assert!(
+        page.contains("not validated") && page.contains("10 of 12 met, 1 not met, 1 not assessed")
+    );
+    assert!(
+        page.contains("Rules that differ in meaning") && page.contains("limit std 0.40 m&#x2f;s^2")
+    );
 }
 
 #[test]
@@ -60,13 +91,23 @@ fn texts_of_users_are_printed_and_nothing_more() {
         let page = page(&found);
         assert_eq!(page.matches("<script>").count(), 1);
         assert_eq!(page.matches("</script>").count(), 1);
-        assert!(!page.contains("<img src=x") && !page.contains("<script>alert") && !page.contains("<!--"));
+        assert!(
+            !page.contains("<img src=x")
+                && !page.contains("<script>alert")
+                && !page.contains("<!--")
+        );
         assert!(page.contains("&lt;script&gt;alert(1)&lt;&#x2f;script&gt;"));
-        assert!(page.chars().all(|c| c == '\n' || !c.is_control()), "control characters are spelled out");
+        assert!(
+            page.chars().all(|c| c == '\n' || !c.is_control()),
+            "control characters are spelled out"
+        );
         assert!(!page.contains('\u{202e}'));
     }
     let page = page(&coach::certification());
-    assert!(page.contains("{{ 7*7 }}{% raw %}#{7*7}"), "templates are not run over what users wrote");
+    assert!(
+        page.contains("{{ 7*7 }}{% raw %}#{7*7}"),
+        "templates are not run over what users wrote"
+    );
     assert!(page.contains("S&quot;&gt;&lt;img src=x onerror=alert(2)&gt;"));
 }
 
@@ -74,28 +115,53 @@ fn texts_of_users_are_printed_and_nothing_more() {
 fn nothing_outside_the_page_is_named() {
     let page = page(&coach::certification());
     let policy = between(&page, "Content-Security-Policy\" content=\"", "\"");
-    assert!(policy.starts_with("default-src &#x27;none&#x27;; style-src &#x27;sha256-"), "{policy}");
-    assert!(!policy.contains("unsafe") && !policy.contains('*') && !policy.contains("http"), "{policy}");
+    assert!(
+        policy.starts_with("default-src &#x27;none&#x27;; style-src &#x27;sha256-"),
+        "{policy}"
+    );
+    assert!(
+        !policy.contains("unsafe") && !policy.contains('*') && !policy.contains("http"),
+        "{policy}"
+    );
     for attribute in ["src=\"", "href=\""] {
         for (at, _) in page.match_indices(attribute) {
             let target = &page[at + attribute.len()..];
-            assert!(target.starts_with('#') || target.starts_with("data:image&#x2f;svg+xml;base64,"), "{}", &target[..40]);
+            assert!(
+                target.starts_with('#') || target.starts_with("data:image&#x2f;svg+xml;base64,"),
+                "{}",
+                &target[..40]
+            );
         }
     }
     assert!(!page.contains(" style=\"") && !page.contains("@import") && !page.contains("url("));
     for (at, _) in page.match_indices("http") {
         let rest = &page[at..];
-        assert!(rest.starts_with("http-equiv") || rest.starts_with("http://www.w3.org/2000/svg\""), "{}", &rest[..40]);
+        assert!(
+            rest.starts_with("http-equiv") || rest.starts_with("http://www.w3.org/2000/svg\""),
+            "{}",
+            &rest[..40]
+        );
     }
 }
 
 #[test]
 fn elements_are_closed_and_ids_are_one_of_a_kind() {
-    for found in [coach::certification(), odd::certification(), assessment::certification(), coach::empty(), coach::unassessed()] {
+    for found in [
+        coach::certification(),
+        odd::certification(),
+        assessment::certification(),
+        coach::empty(),
+        coach::unassessed(),
+    ] {
         let page = page(&found);
-        let body = page.replace(between(&page, "<style>", "</style>"), "").replace(between(&page, "<script>", "</script>"), "");
+        let body = page
+            .replace(between(&page, "<style>", "</style>"), "")
+            .replace(between(&page, "<script>", "</script>"), "");
         xml::balanced(&body, &["meta", "img", "br"]);
-        let mut ids: Vec<&str> = page.match_indices(" id=\"").map(|(at, _)| page[at + 5..].split('"').next().unwrap_or_default()).collect();
+        let mut ids: Vec<&str> = page
+            .match_indices(" id=\"")
+            .map(|(at, _)| page[at + 5..].split('"').next().unwrap_or_default())
+            .collect();
         let all = ids.len();
         ids.sort_unstable();
         ids.dedup();
@@ -126,21 +192,39 @@ fn results_with_nothing_in_them_still_make_a_report() {
     assert!(page(&coach::empty()).contains("not assessable"));
 }
 
-/// An assessment says so, has one row for each estimate in the summary, and a table and a figure of all groups.
+/// An assessment says so, has one row for each estimate in the summary, and a table and a figure of
+/// all groups.
 #[test]
 fn an_assessment_is_no_validation() {
     let page = page(&assessment::certification());
-    assert!(page.contains("<title>Assessment report: ") && page.contains("Assessment of a vehicle by measured records"));
-    assert!(page.contains("<p class=\"word\">requirements not met</p>") && page.contains("<dt>Assessed values</dt>"));
-    for (from, to) in [("<body>", "id=\"identity\""), ("id=\"quantities\"", "id=\"domain\""), ("id=\"statements\"", "</main>")] {
+    assert!(
+        page.contains("<title>Assessment report: ")
+            && page.contains("Assessment of a vehicle by measured records")
+    );
+    assert!(
+        page.contains("<p class=\"word\">requirements not met</p>")
+            && page.contains("<dt>Assessed values</dt>")
+    );
+    for (from, to) in [
+        ("<body>", "id=\"identity\""),
+        ("id=\"quantities\"", "id=\"domain\""),
+        ("id=\"statements\"", "</main>"),
+    ] {
         let part = between(&page, from, to);
         for word in ["alidat", "imulat", "Pair", " pairs"] {
-            assert!(!part.contains(word), "`{word}` in {}", &part[part.find(word).unwrap_or(0).saturating_sub(80)..][..160]);
+            assert!(
+                !part.contains(word),
+                "`{word}` in {}",
+                &part[part.find(word).unwrap_or(0).saturating_sub(80)..][..160]
+            );
         }
     }
     let summary = between(&page, "<caption>Estimates and their limits", "</table>");
     assert_eq!(summary.matches("<tr class=\"row-").count(), 3);
-    assert!(summary.contains(assessment::FAILS) && summary.contains("15 of 16; 1 not assessed"), "{summary}");
+    assert!(
+        summary.contains(assessment::FAILS) && summary.contains("15 of 16; 1 not assessed"),
+        "{summary}"
+    );
     let groups = between(&page, ", limit 10 kN + 2&#x2f;3 · Q0", "</table>");
     assert_eq!(groups.matches("<tr class=\"row-").count(), 16);
     for figure in ["frequency-0", "regression-0-1", "pairs-0", "trace-0"] {
@@ -148,8 +232,9 @@ fn an_assessment_is_no_validation() {
     }
 }
 
-/// What the browser finds is written into the page's title by a probe that clicks, filters and counts. The policy would stop the
-/// probe, so it is taken out here: that hostile texts are inert must not hang on it alone.
+/// What the browser finds is written into the page's title by a probe that clicks, filters and
+/// counts. The policy would stop the probe, so it is taken out here: that hostile texts are inert
+/// must not hang on it alone.
 const PROBE: &str = r##"<script>
 const say = [];
 const table = document.querySelector("#summary table");
@@ -185,13 +270,18 @@ fn in_a_browser_the_script_runs_and_hostile_texts_do_not() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let page = page(&coach::certification());
     let (dom, said) = open(&browser, folder.path(), "report.html", &page);
-    assert!(dom.contains("<button type=\"button\" title=\"Sort by this column\">"), "the script runs under the page's own policy");
+    assert!(
+        dom.contains("<button type=\"button\" title=\"Sort by this column\">"),
+        "the script runs under the page's own policy"
+    );
     assert!(dom.contains("<option value=\"=4\">"));
     assert!(!said.contains("CONSOLE"), "{said}");
 
     let start = page.find("<meta http-equiv").unwrap_or_default();
     let end = start + page[start..].find('>').unwrap_or_default() + 1;
-    let open_page = format!("{}{}", &page[..start], &page[end..]).replace("<head>", WATCH).replace("</body>", PROBE);
+    let open_page = format!("{}{}", &page[..start], &page[end..])
+        .replace("<head>", WATCH)
+        .replace("</body>", PROBE);
     let (dom, said) = open(&browser, folder.path(), "probe.html", &open_page);
     let title = between(&dom, "<title>", "</title>");
     let expected = "up=0.02,0.09..–; down=0.83..–; sort=descending; nested=true; rows=7; marks=56; tip=S01, Y_1R; scripts=3; images=0; ran=0; errors=0";
@@ -202,7 +292,10 @@ fn browser() -> Option<PathBuf> {
     let names = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
     let path = std::env::var_os("PATH")?;
     let folders: Vec<PathBuf> = std::env::split_paths(&path).collect();
-    names.iter().flat_map(|name| folders.iter().map(move |folder| folder.join(name))).find(|file| file.is_file())
+    names
+        .iter()
+        .flat_map(|name| folders.iter().map(move |folder| folder.join(name)))
+        .find(|file| file.is_file())
 }
 
 /// The document after its scripts have run, and what the browser logged.
@@ -217,7 +310,10 @@ fn open(browser: &Path, folder: &Path, name: &str, page: &str) -> (String, Strin
         .arg(format!("file://{}", file.display()))
         .output()
         .expect("the browser can be started");
-    (String::from_utf8_lossy(&output.stdout).into_owned(), String::from_utf8_lossy(&output.stderr).into_owned())
+    (
+        String::from_utf8_lossy(&output.stdout).into_owned(),
+        String::from_utf8_lossy(&output.stderr).into_owned(),
+    )
 }
 
 fn between<'a>(text: &'a str, start: &str, end: &str) -> &'a str {

@@ -22,7 +22,12 @@ use fishplate::result::{Certification, Verdict};
 const RESULTS: &[u8] = b"{\"verdict\": \"not validated\"}\n";
 
 fn attached() -> Attachment<'static> {
-    Attachment { name: "results.json", mime: "application/json", bytes: RESULTS, description: "Results in full precision" }
+    Attachment {
+        name: "results.json",
+        mime: "application/json",
+        bytes: RESULTS,
+        description: "Results in full precision",
+    }
 }
 
 /// A report that compiled without a remark.
@@ -47,8 +52,15 @@ fn full() -> &'static Pdf {
 fn poppler(tool: &str, arguments: &[&str], pdf: &Pdf) -> Option<Vec<u8>> {
     let mut file = tempfile::NamedTempFile::new().expect("a temporary file");
     file.write_all(&pdf.bytes).expect("the temporary file can be written");
-    let (before, after): (Vec<&str>, Vec<&str>) = arguments.iter().partition(|argument| **argument != "-");
-    match Command::new(tool).args(before).arg(file.path()).args(after).stderr(Stdio::null()).output() {
+    let (before, after): (Vec<&str>, Vec<&str>) =
+        arguments.iter().partition(|argument| **argument != "-");
+    match Command::new(tool)
+        .args(before)
+        .arg(file.path())
+        .args(after)
+        .stderr(Stdio::null())
+        .output()
+    {
         Ok(output) => Some(output.stdout),
         Err(_) => {
             eprintln!("skipped: {tool} is not installed");
@@ -62,7 +74,8 @@ fn text(pdf: &Pdf) -> Option<String> {
     Some(String::from_utf8(text).expect("pdftotext writes UTF-8").replace('\u{200b}', ""))
 }
 
-/// The first attached file. Written to a folder: a program may not open `/dev/stdout` where that is a socket.
+/// The first attached file. Written to a folder: a program may not open `/dev/stdout` where that is
+/// a socket.
 fn detached(pdf: &Pdf) -> Option<Vec<u8>> {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("attached");
@@ -112,13 +125,22 @@ fn a_full_report_compiles_and_has_its_parts() {
 fn an_assessment_compiles_and_speaks_of_no_simulation() {
     let pdf = rendered(&assessment::certification());
     let Some(text) = text(&pdf) else { return };
-    for word in
-        ["Assessment of a vehicle by measured records", "REQUIREMENTS NOT MET", "Assessed values", "Test conditions", "15 of 16; 1 not"]
-    {
+    for word in [
+        "Assessment of a vehicle by measured records",
+        "REQUIREMENTS NOT MET",
+        "Assessed values",
+        "Test conditions",
+        "15 of 16; 1 not",
+    ] {
         assert!(text.contains(word), "{word} is missing");
     }
     let before = text.split("Verdict rule").next().unwrap_or_default();
-    assert!(!before.contains("alidat") && !text.contains("Pairs") && !text.contains("simulated against"), "{before}");
+    assert!(
+        !before.contains("alidat")
+            && !text.contains("Pairs")
+            && !text.contains("simulated against"),
+        "{before}"
+    );
 }
 
 #[test]
@@ -140,7 +162,8 @@ fn text_of_users_is_printed_as_it_is() {
     let Some(text) = text(&rendered(&found)) else { return };
     let text = dense(&text);
     // In a sentence of the program, a name between backticks is set in another font instead.
-    let times = text.matches(&dense(HOSTILE)).count() + text.matches(&dense(&HOSTILE.replace("`code`", "code"))).count();
+    let times = text.matches(&dense(HOSTILE)).count()
+        + text.matches(&dense(&HOSTILE.replace("`code`", "code"))).count();
     assert!(times >= 40, "printed {times} times");
     assert!(text.contains(&dense(LONG)), "a long name is wrapped, not lost");
     assert!(text.contains("⟨U+4E2DU+6587⟩"), "a sign without glyph is spelled out");
@@ -151,7 +174,14 @@ fn text_of_users_is_printed_as_it_is() {
 fn an_archive_can_keep_it() {
     let pdf = full();
     assert!(pdf.bytes.starts_with(b"%PDF-1.7"));
-    for word in ["pdfaid:part", "pdfaid:conformance", "pdfuaid:part", "/StructTreeRoot", "/Lang", "/Outlines"] {
+    for word in [
+        "pdfaid:part",
+        "pdfaid:conformance",
+        "pdfuaid:part",
+        "/StructTreeRoot",
+        "/Lang",
+        "/Outlines",
+    ] {
         assert!(holds(&pdf.bytes, word), "{word} is missing");
     }
     assert!(holds(&pdf.bytes, "2023-06-30T00:00:00"), "the date is that of issue");
@@ -162,7 +192,9 @@ fn a_report_without_a_date_of_issue_bears_none() {
     let mut found = certification::certification();
     found.campaign.report.clear();
     let pdf = rendered(&found);
-    for word in ["ModDate", "CreationDate", "xmp:CreateDate", "xmp:ModifyDate", "stEvt:when", "0001-01-01"] {
+    for word in
+        ["ModDate", "CreationDate", "xmp:CreateDate", "xmp:ModifyDate", "stEvt:when", "0001-01-01"]
+    {
         assert!(!holds(&pdf.bytes, word), "{word}");
     }
     assert!(pdf.pages > 30 && holds(&pdf.bytes, "AFRelationship"));
@@ -176,9 +208,14 @@ fn a_report_without_a_date_of_issue_bears_none() {
 #[test]
 fn what_a_report_is_known_by_stands_in_it() {
     let Some(text) = text(full()) else { return };
-    for word in
-        ["Identification of the report", "ISO/IEC 17025:2017", "Report R-2023-17, revision B", "not stated", "Notation", "page 2 of"]
-    {
+    for word in [
+        "Identification of the report",
+        "ISO/IEC 17025:2017",
+        "Report R-2023-17, revision B",
+        "not stated",
+        "Notation",
+        "page 2 of",
+    ] {
         assert!(text.contains(word), "`{word}` is missing");
     }
     assert!(text.contains("continued"), "tables that reach over pages say so");
@@ -210,7 +247,13 @@ fn missing_parts_leave_no_trace() {
         quantity.values.clear();
         quantity.holds = None;
         for statistic in &mut quantity.statistics {
-            (statistic.value, statistic.limit, statistic.normalised, statistic.interval, statistic.holds) = (None, None, None, None, None);
+            (
+                statistic.value,
+                statistic.limit,
+                statistic.normalised,
+                statistic.interval,
+                statistic.holds,
+            ) = (None, None, None, None, None);
         }
     }
     let mut bare = full();
@@ -224,7 +267,9 @@ fn missing_parts_leave_no_trace() {
 #[test]
 fn numbers_that_are_none_do_not_stop_it() {
     let mut found = certification::certification();
-    for (at, pair) in found.quantities.iter_mut().flat_map(|quantity| &mut quantity.values).enumerate() {
+    for (at, pair) in
+        found.quantities.iter_mut().flat_map(|quantity| &mut quantity.values).enumerate()
+    {
         pair.difference = [f64::NAN, f64::INFINITY, -0.0, 1e300, 1e-300][at % 5];
         pair.simulated = None;
     }

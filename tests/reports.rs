@@ -1,4 +1,5 @@
-//! Estimates without a limit, and values that no record can change: numbers, places in the results, consequences.
+//! Estimates without a limit, and values that no record can change: numbers, places in the results,
+//! consequences.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -27,15 +28,22 @@ fn compiled(text: &str) -> Compiled {
 
 fn certified(text: &str) -> Certification {
     let mut problems = Problems::default();
-    let campaign = Campaign::open(&coach(), &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
-    certify(&compiled(text), &campaign, Settings { traces: 1 }, &|_| {}).unwrap_or_else(|problems| panic!("{}", problems.render(false)))
+    let campaign = Campaign::open(&coach(), &mut problems)
+        .unwrap_or_else(|| panic!("{}", problems.render(false)));
+    certify(&compiled(text), &campaign, Settings { traces: 1 }, &|_| {})
+        .unwrap_or_else(|problems| panic!("{}", problems.render(false)))
 }
 
 /// Rows of the table of sections: zone, direction, length and radius.
 fn sections() -> Vec<(String, String, f64, Option<f64>)> {
     let table = fs::read_to_string(coach().join("sections.csv")).expect("a table");
     let mut lines = table.lines();
-    let head: Vec<&str> = lines.next().expect("a head").split(',').map(|name| name.split(" [").next().unwrap_or(name)).collect();
+    let head: Vec<&str> = lines
+        .next()
+        .expect("a head")
+        .split(',')
+        .map(|name| name.split(" [").next().unwrap_or(name))
+        .collect();
     let row = |line: &str| {
         let cells: Vec<&str> = line.split(',').collect();
         let cell = |name: &str| cells[head.iter().position(|known| *known == name).expect(name)];
@@ -84,36 +92,62 @@ fn numbers_of_the_sections_are_those_of_their_table() {
     for zone in ["1", "2", "3", "4"] {
         let of_zone = || rows.iter().filter(|(of, ..)| of == zone);
         let length: f64 = of_zone().map(|(_, _, length, _)| length).sum();
-        let one = named(&found.reported, "total_length").find(|one| one.scope == format!("zone {zone}")).expect("a zone");
+        let one = named(&found.reported, "total_length")
+            .find(|one| one.scope == format!("zone {zone}"))
+            .expect("a zone");
         assert!(near(one.value, length / 1000.0), "{one:?}");
-        assert_eq!((one.unit.as_str(), one.title.as_str(), one.count), ("km", "Total length", of_zone().count()));
+        assert_eq!(
+            (one.unit.as_str(), one.title.as_str(), one.count),
+            ("km", "Total length", of_zone().count())
+        );
         assert_eq!(one.group, [("zone".to_owned(), zone.to_owned())]);
-        let radii: Vec<f64> = of_zone().filter(|(_, direction, ..)| direction != "straight").filter_map(|(.., radius)| *radius).collect();
-        let one = named(&found.reported, "mean of radius").find(|one| one.scope == format!("zone {zone}"));
+        let radii: Vec<f64> = of_zone()
+            .filter(|(_, direction, ..)| direction != "straight")
+            .filter_map(|(.., radius)| *radius)
+            .collect();
+        let one = named(&found.reported, "mean of radius")
+            .find(|one| one.scope == format!("zone {zone}"));
         match one {
-            Some(one) => assert!(near(one.value, mean(&radii)) && one.condition.as_deref() == Some("direction is not straight"), "{one:?}"),
+            Some(one) => assert!(
+                near(one.value, mean(&radii))
+                    && one.condition.as_deref() == Some("direction is not straight"),
+                "{one:?}"
+            ),
             None => assert!(radii.is_empty(), "zone {zone}"),
         }
     }
     let right = rows.iter().filter(|(_, direction, ..)| direction == "right").count();
     let share = found.reported.last().expect("a share");
-    assert!(near(share.value, right as f64 / rows.len() as f64) && share.scope == "all", "{share:?}");
+    assert!(
+        near(share.value, right as f64 / rows.len() as f64) && share.scope == "all",
+        "{share:?}"
+    );
 }
 
 /// The numbers of a quantity, from the values of the result.
 #[test]
 fn numbers_of_a_quantity_are_those_of_its_values() {
     let found = certified(VARIANT);
-    let quantity = found.quantities.iter().find(|quantity| quantity.id == "Y_max").expect("a quantity");
+    let quantity =
+        found.quantities.iter().find(|quantity| quantity.id == "Y_max").expect("a quantity");
     for one in named(&quantity.reported, "maximum") {
-        let of = |key: &str| one.group.iter().find(|(known, _)| known == key).map(|(_, member)| member.clone()).expect("a key");
+        let of = |key: &str| {
+            one.group
+                .iter()
+                .find(|(known, _)| known == key)
+                .map(|(_, member)| member.clone())
+                .expect("a key")
+        };
         let (zone, wheelset) = (of("zone"), format!("Y_{}", of("wheelset")));
-        let inside = quantity.values.iter().filter(|pair| pair.zone.as_deref() == Some(&zone) && pair.signal.starts_with(&wheelset));
+        let inside = quantity.values.iter().filter(|pair| {
+            pair.zone.as_deref() == Some(&zone) && pair.signal.starts_with(&wheelset)
+        });
         let all: Vec<f64> = inside.map(|pair| pair.difference).collect();
         assert_eq!(one.count, all.len());
         assert!(near(one.value, all.iter().copied().fold(f64::NEG_INFINITY, f64::max)), "{one:?}");
     }
-    let groups: std::collections::BTreeSet<_> = quantity.values.iter().map(|pair| (&pair.zone, &pair.signal[..3])).collect();
+    let groups: std::collections::BTreeSet<_> =
+        quantity.values.iter().map(|pair| (&pair.zone, &pair.signal[..3])).collect();
     assert_eq!(named(&quantity.reported, "maximum").count(), groups.len());
     let all: Vec<f64> = quantity.values.iter().map(|pair| pair.difference).collect();
     let m = mean(&all);
@@ -123,20 +157,36 @@ fn numbers_of_a_quantity_are_those_of_its_values() {
     assert!(near(named(&quantity.reported, "n").next().expect("a count").value, quantity.n as f64));
 }
 
-/// They decide nothing: limits, verdict and reasons are those of the parent; in the results they stand beside the other keys.
+/// They decide nothing: limits, verdict and reasons are those of the parent; in the results they
+/// stand beside the other keys.
 #[test]
 fn reports_decide_nothing_and_stand_in_all_outputs() {
-    let (with, without) = (certified(VARIANT), certified("protocol variant \"The parent\"\n  extends  en14363-2016-annex-t\n"));
+    let (with, without) = (
+        certified(VARIANT),
+        certified("protocol variant \"The parent\"\n  extends  en14363-2016-annex-t\n"),
+    );
     assert_eq!((with.verdict, &with.reasons), (without.verdict, &without.reasons));
     assert_eq!(with.verdict, Verdict::Validated);
-    let read = |found: &Certification| serde_json::from_str::<Value>(&json::results(found)).expect("JSON");
+    let read =
+        |found: &Certification| serde_json::from_str::<Value>(&json::results(found)).expect("JSON");
     let (mut more, less) = (read(&with), read(&without));
     assert!(
-        less.get("reported").is_none() && less["quantities"].as_array().expect("a list").iter().all(|one| one.get("reported").is_none())
+        less.get("reported").is_none()
+            && less["quantities"]
+                .as_array()
+                .expect("a list")
+                .iter()
+                .all(|one| one.get("reported").is_none())
     );
     let first = &more["reported"][0];
-    assert_eq!((&first["keys"]["zone"], &first["estimate"], &first["unit"]), (&"1".into(), &"total_length".into(), &"km".into()));
-    assert!(first["value"].is_f64() && first["sections"].is_u64() && first["rule"]["line"] == 8, "{first}");
+    assert_eq!(
+        (&first["keys"]["zone"], &first["estimate"], &first["unit"]),
+        (&"1".into(), &"total_length".into(), &"km".into())
+    );
+    assert!(
+        first["value"].is_f64() && first["sections"].is_u64() && first["rule"]["line"] == 8,
+        "{first}"
+    );
     more.as_object_mut().expect("keys").remove("reported");
     for one in more["quantities"].as_array_mut().expect("a list") {
         one.as_object_mut().expect("keys").remove("reported");
@@ -146,7 +196,8 @@ fn reports_decide_nothing_and_stand_in_all_outputs() {
     let files = tables::tables(&with).expect("tables");
     let (_, bytes) = files.iter().find(|(name, _)| name.contains("reported")).expect("a table");
     let lines = String::from_utf8_lossy(bytes).lines().count();
-    let all = with.reported.len() + with.quantities.iter().map(|one| one.reported.len()).sum::<usize>();
+    let all =
+        with.reported.len() + with.quantities.iter().map(|one| one.reported.len()).sum::<usize>();
     assert_eq!(lines, 1 + all);
     let printed = view::view(&with);
     assert_eq!(printed.reported[0].keys, ["Zone"]);
@@ -164,7 +215,11 @@ fn a_report_without_a_number_says_why() {
         "protocol variant \"No radius on straight track\"\n  extends  en14363-2016-annex-t\n\nsections\n  report  mean of radius for each zone\n",
     );
     let one = found.reported.iter().find(|one| one.scope == "zone 1").expect("zone 1");
-    assert!(one.value.is_none() && one.reason.as_deref().is_some_and(|reason| reason.contains("radius")), "{one:?}");
+    assert!(
+        one.value.is_none()
+            && one.reason.as_deref().is_some_and(|reason| reason.contains("radius")),
+        "{one:?}"
+    );
     assert_eq!(found.verdict, Verdict::Validated);
     assert!(view::view(&found).reported[0].reasons[0].starts_with("Mean of radius, zone 1: "));
 }

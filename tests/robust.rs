@@ -1,4 +1,5 @@
-//! Whatever is written, reading and checking end, soon and in words: no panic, no overflow of the stack, no exponential time.
+//! Whatever is written, reading and checking end, soon and in words: no panic, no overflow of the
+//! stack, no exponential time.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -24,7 +25,12 @@ fn whole_way(source: &Arc<Source>) -> bool {
         assert!(problems.any_error(), "nothing is said against\n{}", source.text);
     }
     for problem in &problems.0 {
-        assert!(!problem.says.contains("error of the program"), "{}\n{}", problem.render(false), source.text);
+        assert!(
+            !problem.says.contains("error of the program"),
+            "{}\n{}",
+            problem.render(false),
+            source.text
+        );
         problem.render(false);
     }
     plan.is_some()
@@ -85,7 +91,8 @@ fn a_word_left_out_or_twice_or_exchanged_is_no_harm() {
         for at in (0..words.len() - 1).step_by(13) {
             let (before, after) = (words[..at].concat(), words[at + 2..].concat());
             let (this, next) = (words[at], words[at + 1]);
-            for change in [next.to_string(), format!("{next}{this}"), format!("{this}{this}{next}")] {
+            for change in [next.to_string(), format!("{next}{this}"), format!("{this}{this}{next}")]
+            {
                 whole_way(&Source::new("changed.fp", format!("{before}{change}{after}")));
             }
         }
@@ -104,7 +111,8 @@ fn protocol_with(phrase: &str) -> String {
     )
 }
 
-/// What could nest, or be read in two ways, over and over. Two megabytes of stack, as threads have, must do.
+/// What could nest, or be read in two ways, over and over. Two megabytes of stack, as threads have,
+/// must do.
 #[test]
 fn deep_and_long_phrases_end_soon() {
     let many = |piece: &str, count: usize| piece.repeat(count);
@@ -150,14 +158,24 @@ fn deep_and_long_phrases_end_soon() {
             phrases.push(format!("{}1", many(piece, count)));
         }
     }
-    phrases.extend([many("a+", 10_000) + "a", many("|", 20_000), many("(", 20_000), many("not ", 5_000) + "a", many("1 ", 10_000)]);
+    phrases.extend([
+        many("a+", 10_000) + "a",
+        many("|", 20_000),
+        many("(", 20_000),
+        many("not ", 5_000) + "a",
+        many("1 ", 10_000),
+    ]);
     for phrase in phrases {
         let begun = Instant::now();
         every_phrase(&phrase);
         whole_way(&Source::new("deep.fp", protocol_with(&phrase)));
         let taken = begun.elapsed();
         // Hundreds of times what it takes, and nothing to what exponential growth would.
-        assert!(taken < Duration::from_secs(5), "{taken:?} for {}", phrase.chars().take(60).collect::<String>());
+        assert!(
+            taken < Duration::from_secs(5),
+            "{taken:?} for {}",
+            phrase.chars().take(60).collect::<String>()
+        );
     }
 }
 
@@ -165,7 +183,8 @@ fn deep_and_long_phrases_end_soon() {
 #[test]
 fn definitions_that_double_each_other_up_are_refused() {
     for (kind, first) in [("define", "is  Q0 + 1 kN"), ("signal", "is  Y at side R")] {
-        let mut protocol = protocol_with("1").split("signal S").next().expect("a beginning").to_string();
+        let mut protocol =
+            protocol_with("1").split("signal S").next().expect("a beginning").to_string();
         protocol += &format!("{kind} x0\n  {first}\n\n");
         for level in 1..60 {
             protocol += &format!("{kind} x{level}\n  is  x{0} + x{0}\n\n", level - 1);
@@ -176,19 +195,26 @@ fn definitions_that_double_each_other_up_are_refused() {
     }
 }
 
-/// A long line of definitions, each of the one before, is followed as far as the stack surely holds.
+/// A long line of definitions, each of the one before, is followed as far as the stack surely
+/// holds.
 #[test]
 fn a_long_line_of_definitions_ends() {
-    for (kind, first, next) in
-        [("define", "is  Q0 + 1 kN", "x% + 1 kN"), ("signal", "is  Y at side R", "-(x% + 1 kN)"), ("parameter", "default  3", "x% + 1")]
-    {
+    for (kind, first, next) in [
+        ("define", "is  Q0 + 1 kN", "x% + 1 kN"),
+        ("signal", "is  Y at side R", "-(x% + 1 kN)"),
+        ("parameter", "default  3", "x% + 1"),
+    ] {
         for length in [20, 100, 1000] {
-            let mut protocol = protocol_with("1").split("signal S").next().expect("a beginning").to_string();
+            let mut protocol =
+                protocol_with("1").split("signal S").next().expect("a beginning").to_string();
             protocol += &format!("{kind} x0\n  {first}\n\n");
             let field = if kind == "parameter" { "default" } else { "is" };
             // From the last to the first, so that each is looked into before the one it is made of.
             for level in (1..length).rev() {
-                protocol += &format!("{kind} x{level}\n  {field}  {}\n\n", next.replace('%', &(level - 1).to_string()));
+                protocol += &format!(
+                    "{kind} x{level}\n  {field}  {}\n\n",
+                    next.replace('%', &(level - 1).to_string())
+                );
             }
             whole_way(&Source::new("line.fp", protocol));
         }
@@ -201,7 +227,8 @@ fn token() -> impl Strategy<Value = String> {
                  limits quantities hold holds true false simulated measured mean std median p99.85 p0.15 p105 each low-pass band-pass sliding rms resample order \
                  zero-phase causal remove magnitude correlation sprague-geers phase hysteresis maximum over side R L outer 1 2.5 3 kN m/s^2 Hz 1/m % 4a zone Y S F d \
                  radius Q0 vehicle.Q0 section.zone length start sqrt hypot sign ( ) | , + - * / ^2 ² <= >= < > = ; . § ä # \u{0} \" \\ 𝄞";
-    let words: Vec<String> = words.split(' ').filter(|word| !word.is_empty()).map(str::to_string).collect();
+    let words: Vec<String> =
+        words.split(' ').filter(|word| !word.is_empty()).map(str::to_string).collect();
     prop_oneof![9 => prop::sample::select(words), 1 => "[a-zA-Z0-9 .,|()+*/^<>=_-]{0,6}"]
 }
 

@@ -1,8 +1,9 @@
 //! The numbers of the shipped protocol, by what they do: each limit, and each edge from both sides.
 //!
-//! Source of the table: Goetz & Polach, "Verification and validation of simulations in a rail vehicle
-//! certification context", Table 1 and sections 3.1 f. (limits, pairs, sections, full curve, 70 m). Radii and the
-//! other lengths of the zones have no source at hand, as the protocol says: here they only cannot change unseen.
+//! Source of the table: Goetz & Polach, "Verification and validation of simulations in a rail
+//! vehicle certification context", Table 1 and sections 3.1 f. (limits, pairs, sections, full
+//! curve, 70 m). Radii and the other lengths of the zones have no source at hand, as the protocol
+//! says: here they only cannot change unseen.
 
 mod common {
     pub mod campaign;
@@ -25,7 +26,8 @@ use fishplate::study::case::Case;
 
 const ANNEX_T: &str = "en14363-2016-annex-t";
 
-/// The protocol without its plausibility rules, which the made-up signals of [`tiny`] do not satisfy.
+/// The protocol without its plausibility rules, which the made-up signals of [`tiny`] do not
+/// satisfy.
 fn numbers_alone() -> String {
     numbers_and("")
 }
@@ -35,7 +37,10 @@ fn numbers_and(kept: &str) -> String {
     let shipped = library::shipped(ANNEX_T).expect("the protocol");
     let rules = shipped.text.lines().filter_map(|line| line.strip_prefix("plausibility "));
     let names = rules.map(|rule| rule.split(' ').next().unwrap_or_default());
-    let removed: String = names.filter(|name| *name != kept).map(|name| format!("  plausibility  {name}\n")).collect();
+    let removed: String = names
+        .filter(|name| *name != kept)
+        .map(|name| format!("  plausibility  {name}\n"))
+        .collect();
     format!("protocol numbers-alone \"Numbers alone\"\n  extends  {ANNEX_T}\n\nremove\n{removed}")
 }
 
@@ -46,7 +51,8 @@ fn run(folder: &Path, set: &[&str]) -> Certification {
 fn run_by(text: &str, folder: &Path, set: &[&str]) -> Certification {
     let protocol = folder.join("protocol.fp");
     fs::write(&protocol, text).expect("written");
-    certified(folder, &protocol.display().to_string(), set).unwrap_or_else(|problems| panic!("{}", problems.render(false)))
+    certified(folder, &protocol.display().to_string(), set)
+        .unwrap_or_else(|problems| panic!("{}", problems.render(false)))
 }
 
 /// Row of the first section of each zone in the table of [`tiny`], and its name.
@@ -82,10 +88,14 @@ fn radii_of_the_zones() {
 /// Very large radii belong to zone 1 up to a cant deficiency of 40 mm.
 #[test]
 fn curves_of_zone_1() {
-    for (radius, deficiency, used) in [("2000", "40", true), ("2000", "40.001", false), ("600", "40", false)] {
+    for (radius, deficiency, used) in
+        [("2000", "40", true), ("2000", "40.001", false), ("600", "40", false)]
+    {
         let folder = tiny();
         let table = folder.path().join("sections.csv");
-        for (column, value) in [("direction", "right"), ("radius [m]", radius), ("cant deficiency [mm]", deficiency)] {
+        for (column, value) in
+            [("direction", "right"), ("radius [m]", radius), ("cant deficiency [mm]", deficiency)]
+        {
             cell(&table, 1, column, value);
         }
         let section = run(folder.path(), &[]).sections.remove(0);
@@ -125,13 +135,17 @@ fn limits() {
     let ids: Vec<&str> = found.quantities.iter().map(|quantity| quantity.id.as_str()).collect();
     assert_eq!(ids, wanted.map(|(id, _)| id));
     for (quantity, (id, std)) in found.quantities.iter().zip(wanted) {
-        let limits: Vec<(&str, f64)> =
-            quantity.statistics.iter().map(|statistic| (statistic.name.as_str(), statistic.limit.expect("a limit"))).collect();
+        let limits: Vec<(&str, f64)> = quantity
+            .statistics
+            .iter()
+            .map(|statistic| (statistic.name.as_str(), statistic.limit.expect("a limit")))
+            .collect();
         let [("std", first), ("mean", second)] = limits[..] else { panic!("{id}: {limits:?}") };
         assert!((first / std - 1.0).abs() < 1e-12, "{id}: {first}");
         assert!((second / (std * 2.0 / 3.0) - 1.0).abs() < 1e-12, "{id}: {second}");
         // Twelve sections; four wheels, else two wheelsets or two running gears.
-        let signals = if ["Y_", "Q_", "YQ"].iter().any(|start| id.starts_with(start)) { 4 } else { 2 };
+        let signals =
+            if ["Y_", "Q_", "YQ"].iter().any(|start| id.starts_with(start)) { 4 } else { 2 };
         assert_eq!(quantity.statistics[0].count, 12 * signals, "{id}");
     }
 }
@@ -154,7 +168,8 @@ fn numbers_of_sections_and_pairs() {
     assert_eq!(told.count(), 6, "{:?}", found.reasons);
 }
 
-/// A curve is full where its curvature stays within 2 % and 0.00001 1/m: at 500 m radius 0.00005 1/m.
+/// A curve is full where its curvature stays within 2 % and 0.00001 1/m: at 500 m radius 0.00005
+/// 1/m.
 #[test]
 fn full_curves() {
     for (range, used) in [(4.9e-5, true), (5.1e-5, false)] {
@@ -185,8 +200,8 @@ fn full_curves() {
     }
 }
 
-/// Values of a section that is refused are in no statistic, neither of the verdict nor of a study: not even where it is
-/// refused for what its record holds, when its values are known already.
+/// Values of a section that is refused are in no statistic, neither of the verdict nor of a study:
+/// not even where it is refused for what its record holds, when its values are known already.
 #[test]
 fn refused_sections_are_not_pooled() {
     let folder = tiny();
@@ -201,10 +216,11 @@ fn refused_sections_are_not_pooled() {
     for (kind, factor) in [("measurement", 1.0), ("simulation", 100.0)] {
         let text = fs::read_to_string(path.join(kind).join("S10.csv")).expect("readable");
         let scaled = text.lines().enumerate().map(|(at, line)| {
-            let cells = line.split(',').enumerate().map(|(column, cell)| match cell.parse::<f64>() {
-                Ok(number) if at > 0 && column > 1 => (number * factor).to_string(),
-                _ => cell.to_string(),
-            });
+            let cells =
+                line.split(',').enumerate().map(|(column, cell)| match cell.parse::<f64>() {
+                    Ok(number) if at > 0 && column > 1 => (number * factor).to_string(),
+                    _ => cell.to_string(),
+                });
             cells.collect::<Vec<_>>().join(",") + "\n"
         });
         fs::write(path.join(kind).join("S13.csv"), scaled.collect::<String>()).expect("written");
@@ -226,11 +242,16 @@ fn refused_sections_are_not_pooled() {
     let family = family::read(&source, &library::parent, &mut problems);
     let compiled = compile(family, &Overrides::new(), &mut problems).expect("a plan");
     let campaign = Campaign::open(path, &mut problems).expect("a campaign");
-    let evaluated = evaluate(&compiled.plan, &compiled.graph, &campaign, &Shifts::NONE, &|_| {}).expect("values");
+    let evaluated = evaluate(&compiled.plan, &compiled.graph, &campaign, &Shifts::NONE, &|_| {})
+        .expect("values");
     let pool = evaluated[0].pool(&compiled.plan);
     assert!(!pool.sections[12].used);
     for quantity in &pool.quantities {
-        assert!(quantity.values[12].is_empty() && !quantity.values[11].is_empty(), "{}", quantity.id);
+        assert!(
+            quantity.values[12].is_empty() && !quantity.values[11].is_empty(),
+            "{}",
+            quantity.id
+        );
     }
     let case = Case::of(&pool, None).expect("enough sections");
     assert_eq!(case.strata[3].members, [9, 10, 11]);

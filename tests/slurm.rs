@@ -14,8 +14,9 @@ use std::process::Command;
 use common::program::{Ran, fishplate, ran};
 use tempfile::TempDir;
 
-/// Runs a job as `sbatch` does: the options of the job file and of the command line, a task for each number of the array with the variables
-/// that Slurm sets, and the number of the job on standard output. A task that `KILLED` names is killed as soon as it has started.
+/// Runs a job as `sbatch` does: the options of the job file and of the command line, a task for
+/// each number of the array with the variables that Slurm sets, and the number of the job on
+/// standard output. A task that `KILLED` names is killed as soon as it has started.
 const SBATCH: &str = r##"#!/bin/sh
 array= ; script=
 for word in "$@"; do
@@ -67,15 +68,25 @@ impl Cluster {
     /// A command with the stand-in and the program on the path.
     fn command(&self, words: &[&str]) -> Command {
         let program = Path::new(env!("CARGO_BIN_EXE_fishplate")).parent().expect("a folder");
-        let path = format!("{}:{}:{}", self.0.path().display(), program.display(), std::env::var("PATH").unwrap_or_default());
+        let path = format!(
+            "{}:{}:{}",
+            self.0.path().display(),
+            program.display(),
+            std::env::var("PATH").unwrap_or_default()
+        );
         let mut command = Command::new(words[0]);
         command.args(&words[1..]).env("PATH", path).env("JOBS", self.0.path());
         command
     }
 
     fn submit(&self, campaign: &str, killed: &str) -> Ran {
-        let (values, report) = (self.place("values").display().to_string(), self.place("report").display().to_string());
-        ran(self.command(&["examples/slurm/submit.sh", campaign, &values, &report, "4"]).env("KILLED", killed))
+        let (values, report) = (
+            self.place("values").display().to_string(),
+            self.place("report").display().to_string(),
+        );
+        ran(self
+            .command(&["examples/slurm/submit.sh", campaign, &values, &report, "4"])
+            .env("KILLED", killed))
     }
 
     fn text(&self, name: &str) -> String {
@@ -97,12 +108,17 @@ fn an_array_of_jobs_makes_the_report_of_certify() {
     let whole = certified(&cluster, "examples/coach-good");
     for name in ["results.json", "report.pdf", "report.html", "statement.json"] {
         let read = |folder: &Path| fs::read(folder.join(name)).expect("written");
-        assert!(read(&whole) == read(&cluster.place("report")), "{name}: {}", cluster.text("2-0.out"));
+        assert!(
+            read(&whole) == read(&cluster.place("report")),
+            "{name}: {}",
+            cluster.text("2-0.out")
+        );
     }
     assert_eq!(cluster.text("2-0.code").trim(), "0");
 }
 
-/// A task that is killed leaves no file; the report says what is missing. Repeated alone, it gives the same report.
+/// A task that is killed leaves no file; the report says what is missing. Repeated alone, it gives
+/// the same report.
 #[test]
 fn a_task_that_is_killed_is_told_and_repeated() {
     let cluster = Cluster::new();
@@ -116,11 +132,18 @@ fn a_task_that_is_killed_is_told_and_repeated() {
     let (values, report) = (cluster.place("values"), cluster.place("report"));
     let again = |words: &[&str]| {
         let mut command = cluster.command(words);
-        let ran = ran(command.env("CAMPAIGN", "examples/coach-good").env("VALUES", &values).env("REPORT", &report).env("PARTS", "4"));
+        let ran = ran(command
+            .env("CAMPAIGN", "examples/coach-good")
+            .env("VALUES", &values)
+            .env("REPORT", &report)
+            .env("PARTS", "4"));
         assert_eq!(ran.code, 0, "{}", ran.stderr);
     };
     again(&["sbatch", "--array=2-2", "examples/slurm/reduce.sbatch"]);
     again(&["sbatch", "examples/slurm/judge.sbatch"]);
     let whole = certified(&cluster, "examples/coach-good");
-    assert!(fs::read(report.join("report.pdf")).expect("a report") == fs::read(whole.join("report.pdf")).expect("a report"));
+    assert!(
+        fs::read(report.join("report.pdf")).expect("a report")
+            == fs::read(whole.join("report.pdf")).expect("a report")
+    );
 }

@@ -1,4 +1,5 @@
-//! Studies of selections against independent sources: a reference program, every selection one by one, closed forms.
+//! Studies of selections against independent sources: a reference program, every selection one by
+//! one, closed forms.
 
 mod common {
     pub mod pools;
@@ -21,10 +22,12 @@ fn close(found: Option<Spread>, expected: Option<Spread>, what: &str) {
     match (found, expected) {
         (None, None) => {}
         (Some(a), Some(b)) => {
-            let pairs = [(a.min, b.min), (a.q1, b.q1), (a.median, b.median), (a.q3, b.q3), (a.max, b.max)];
-            // Where the values of a selection are all the same, sums leave a variance of some 1e-16 of their squares in place of 0,
-            // and its root is 1e-8 of the values, which are up to 2.3 limits here; a quartile between such a value and the next takes
-            // part in it. Only there is so much room.
+            let pairs =
+                [(a.min, b.min), (a.q1, b.q1), (a.median, b.median), (a.q3, b.q3), (a.max, b.max)];
+            // Where the values of a selection are all the same, sums leave a variance of some 1e-16
+            // of their squares in place of 0, and its root is 1e-8 of the values, which are up to
+            // 2.3 limits here; a quartile between such a value and the next takes part in it. Only
+            // there is so much room.
             let room = if b.min.abs() < 1e-7 { 1e-7 } else { 1e-12 };
             let near = |(a, b): (f64, f64)| (a - b).abs() <= room * (1.0 + b.abs());
             assert!(pairs.into_iter().all(near), "{what}: {a:?} and {b:?}");
@@ -45,18 +48,34 @@ fn agree(case: &Case) {
     let mut at = 0;
     for quantity in &found.quantities {
         for statistic in &quantity.statistics {
-            let values: Vec<f64> = judged.iter().filter_map(|(_, all)| all[at].normalised).collect();
+            let values: Vec<f64> =
+                judged.iter().filter_map(|(_, all)| all[at].normalised).collect();
             close(statistic.spread, sorted(values), &format!("{} {}", quantity.id, statistic.name));
-            let failing = judged.iter().filter(|(_, all)| all[at].normalised.is_some() && !all[at].holds).count();
-            assert_eq!((statistic.failing * all.len() as f64).round() as usize, failing, "{} {}", quantity.id, statistic.name);
+            let failing = judged
+                .iter()
+                .filter(|(_, all)| all[at].normalised.is_some() && !all[at].holds)
+                .count();
+            assert_eq!(
+                (statistic.failing * all.len() as f64).round() as usize,
+                failing,
+                "{} {}",
+                quantity.id,
+                statistic.name
+            );
             at += 1;
         }
     }
     for one in &found.sections {
-        let section = case.sections.iter().position(|name| *name == one.section).expect("a section");
+        let section =
+            case.sections.iter().position(|name| *name == one.section).expect("a section");
         let of = |wanted: bool| {
-            let some: Vec<_> = all.iter().zip(&judged).filter(|(selection, _)| selection.contains(&section) == wanted).collect();
-            let good = some.iter().filter(|(_, (verdict, _))| *verdict == Verdict::Validated).count();
+            let some: Vec<_> = all
+                .iter()
+                .zip(&judged)
+                .filter(|(selection, _)| selection.contains(&section) == wanted)
+                .collect();
+            let good =
+                some.iter().filter(|(_, (verdict, _))| *verdict == Verdict::Validated).count();
             (!some.is_empty()).then(|| good as f64 / some.len() as f64)
         };
         assert_eq!((one.with, one.without), (of(true), of(false)), "{}", one.section);
@@ -66,13 +85,17 @@ fn agree(case: &Case) {
 fn peer(name: &str) -> (Case, serde_json::Value) {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/cases/combinations");
     let text = fs::read_to_string(folder.join(format!("{name}.csv"))).expect("differences");
-    let expected = serde_json::from_str(&fs::read_to_string(folder.join(format!("{name}.json"))).expect("a result")).expect("JSON");
+    let expected = serde_json::from_str(
+        &fs::read_to_string(folder.join(format!("{name}.json"))).expect("a result"),
+    )
+    .expect("JSON");
     let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split(',').collect()).collect();
     let mut names: Vec<&str> = rows.iter().map(|row| row[0]).collect();
     names.dedup();
     names.sort_unstable();
     names.dedup();
-    let zone = |section: &str| rows.iter().find(|row| row[0] == section).map(|row| row[1].to_string());
+    let zone =
+        |section: &str| rows.iter().find(|row| row[0] == section).map(|row| row[1].to_string());
     let mut ids: Vec<&str> = Vec::new();
     rows.iter().for_each(|row| {
         if !ids.contains(&row[2]) {
@@ -81,17 +104,30 @@ fn peer(name: &str) -> (Case, serde_json::Value) {
     });
     let quantities = ids.iter().map(|id| {
         let of = |section: &str| {
-            rows.iter().filter(|row| row[0] == section && row[2] == *id).map(|row| row[4].parse().expect("a number")).collect()
+            rows.iter()
+                .filter(|row| row[0] == section && row[2] == *id)
+                .map(|row| row[4].parse().expect("a number"))
+                .collect()
         };
-        let bound: f64 = rows.iter().find(|row| row[2] == *id).expect("a row")[5].parse().expect("a limit");
-        let limits = vec![limit("std", bound, 1, names.len()), limit("mean", bound * 2.0 / 3.0, 1, names.len())];
+        let bound: f64 =
+            rows.iter().find(|row| row[2] == *id).expect("a row")[5].parse().expect("a limit");
+        let limits = vec![
+            limit("std", bound, 1, names.len()),
+            limit("mean", bound * 2.0 / 3.0, 1, names.len()),
+        ];
         quantity(id, names.iter().map(|section| of(section)).collect(), limits)
     });
     let pool = Pool {
         sections: names
             .iter()
             .enumerate()
-            .map(|(site, name)| Section { name: (*name).into(), zone: zone(name), site, used: true, reason: None })
+            .map(|(site, name)| Section {
+                name: (*name).into(),
+                zone: zone(name),
+                site,
+                used: true,
+                reason: None,
+            })
             .collect(),
         zones: zones(&[3, 3, 3, 3]),
         minimum: 12,
@@ -112,18 +148,28 @@ fn the_reference_program_says_the_same() {
             for statistic in &quantity.statistics {
                 let expected = &expected["quantities"][&quantity.id][&statistic.name];
                 let spread = statistic.spread.expect("values");
-                for (key, value) in
-                    [("min", spread.min), ("q25", spread.q1), ("q50", spread.median), ("q75", spread.q3), ("max", spread.max)]
-                {
+                for (key, value) in [
+                    ("min", spread.min),
+                    ("q25", spread.q1),
+                    ("q50", spread.median),
+                    ("q75", spread.q3),
+                    ("max", spread.max),
+                ] {
                     let wanted = expected[key].as_f64().expect("a number");
-                    assert!((value - wanted).abs() <= 1e-12, "{name} {} {} {key}: {value} and {wanted}", quantity.id, statistic.name);
+                    assert!(
+                        (value - wanted).abs() <= 1e-12,
+                        "{name} {} {} {key}: {value} and {wanted}",
+                        quantity.id,
+                        statistic.name
+                    );
                 }
             }
         }
     }
 }
 
-const STATISTICS: [&str; 10] = ["mean", "std", "rms", "maximum", "minimum", "peak", "each", "p90", "median", "range"];
+const STATISTICS: [&str; 10] =
+    ["mean", "std", "rms", "maximum", "minimum", "peak", "each", "p90", "median", "range"];
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
@@ -176,14 +222,21 @@ fn all_values_equal_are_one_value() {
         sections: sections(&[4, 4, 4, 4]),
         zones: zones(&[3, 3, 3, 3]),
         minimum: 12,
-        quantities: vec![quantity("q", values, vec![limit("mean", 0.3, 1, 16), limit("std", 1.0, 1, 16)])],
+        quantities: vec![quantity(
+            "q",
+            values,
+            vec![limit("mean", 0.3, 1, 16), limit("std", 1.0, 1, 16)],
+        )],
         rule: Some(Rule::EveryLimit),
     };
     let found = enumerate::all(&Case::of(&pool, None).expect("a case"));
     // A value equal to its limit passes.
     assert_eq!((found.share.validated, found.share.looked_at), (256, 256));
     let mean = found.quantities[0].statistics[0].spread.expect("values");
-    assert!((mean.min - 1.0).abs() < 1e-12 && (mean.max - 1.0).abs() < 1e-12 && mean.outliers == 0, "{mean:?}");
+    assert!(
+        (mean.min - 1.0).abs() < 1e-12 && (mean.max - 1.0).abs() < 1e-12 && mean.outliers == 0,
+        "{mean:?}"
+    );
 }
 
 /// What sums cannot tell from zero is some 1e-8 of the values, here no more than 2e-8 of the limit.
@@ -209,7 +262,12 @@ fn what_is_drawn_agrees_with_what_is_counted() {
     let exact = enumerate::all(&case);
     let drawn = sampling::some(&case, &Settings { most: 0.0, width: 0.01, seed: 3 });
     let (low, high) = drawn.share.interval.expect("an interval");
-    assert!(high - low <= 0.01 && low <= exact.share.share && exact.share.share <= high, "{:?} {:?}", drawn.share, exact.share);
+    assert!(
+        high - low <= 0.01 && low <= exact.share.share && exact.share.share <= high,
+        "{:?} {:?}",
+        drawn.share,
+        exact.share
+    );
     for (drawn, exact) in drawn.quantities.iter().zip(&exact.quantities) {
         for (drawn, exact) in drawn.statistics.iter().zip(&exact.statistics) {
             let (a, b) = (drawn.spread.expect("values"), exact.spread.expect("values"));
@@ -218,7 +276,12 @@ fn what_is_drawn_agrees_with_what_is_counted() {
                 close(Some(a), Some(b), "mean");
                 assert!(a.exact && a.outliers == b.outliers);
             } else {
-                assert!(!a.exact && (a.median - b.median).abs() < 0.02 && a.min >= b.min - 1e-12 && a.max <= b.max + 1e-12);
+                assert!(
+                    !a.exact
+                        && (a.median - b.median).abs() < 0.02
+                        && a.min >= b.min - 1e-12
+                        && a.max <= b.max + 1e-12
+                );
             }
         }
     }
@@ -267,7 +330,13 @@ fn one_bad_section_is_the_one_to_remove() {
 
 #[test]
 fn too_few_sections_are_told() {
-    let pool = Pool { sections: sections(&[2]), zones: zones(&[3]), minimum: 3, quantities: Vec::new(), rule: Some(Rule::EveryLimit) };
+    let pool = Pool {
+        sections: sections(&[2]),
+        zones: zones(&[3]),
+        minimum: 3,
+        quantities: Vec::new(),
+        rule: Some(Rule::EveryLimit),
+    };
     let says = Case::of(&pool, None).expect_err("too few");
     assert_eq!(says, "zone 1 has 2 usable sections, and a selection takes 3");
     assert!(Case::of(&pool, Some(2)).is_ok());

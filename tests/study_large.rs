@@ -1,4 +1,5 @@
-//! What is said of campaigns with too many selections to look at, and of sections given up, against other ways to the same.
+//! What is said of campaigns with too many selections to look at, and of sections given up, against
+//! other ways to the same.
 
 mod common {
     pub mod pools;
@@ -13,7 +14,8 @@ use fishplate::study::random::Random;
 use fishplate::study::{Settings, extremes, greedy, reduced, selections};
 use proptest::prelude::*;
 
-/// Sections of each zone, how many are taken, and the values of a section for each quantity, by number of section and quantity.
+/// Sections of each zone, how many are taken, and the values of a section for each quantity, by
+/// number of section and quantity.
 fn case(
     counts: &[usize],
     takes: &[usize],
@@ -26,7 +28,13 @@ fn case(
         let of_sections = (0..all).map(|section| values(section, number)).collect();
         quantity(&format!("q{number}"), of_sections, vec![limit(name, *bound, 1, all)])
     });
-    let pool = Pool { quantities: quantities.collect(), sections: sections(counts), zones: zones(takes), minimum: 1, rule: Some(rule) };
+    let pool = Pool {
+        quantities: quantities.collect(),
+        sections: sections(counts),
+        zones: zones(takes),
+        minimum: 1,
+        rule: Some(rule),
+    };
     Case::of(&pool, None).expect("a case")
 }
 
@@ -35,14 +43,22 @@ fn even(random: &mut Random) -> f64 {
     random.below(2_000_001) as f64 / 1e6 - 1.0
 }
 
-/// Forty sections in each of four zones, three taken: 9.5e15 selections. Values are whole numbers, so that every sum is counted
-/// by whole numbers, too: how many triples of a zone have it, then of the zones together.
+/// Forty sections in each of four zones, three taken: 9.5e15 selections. Values are whole numbers,
+/// so that every sum is counted by whole numbers, too: how many triples of a zone have it, then of
+/// the zones together.
 #[test]
 fn quartiles_of_means_of_1e16_selections_are_where_whole_numbers_put_them() {
     let mut random = Random::new(3, 0);
-    let whole: Vec<Vec<u64>> = (0..4).map(|zone| (0..40).map(|_| random.below(9 + 4 * zone) as u64).collect()).collect();
+    let whole: Vec<Vec<u64>> =
+        (0..4).map(|zone| (0..40).map(|_| random.below(9 + 4 * zone) as u64).collect()).collect();
     let value = |section: usize, _: usize| vec![whole[section / 40][section % 40] as f64 - 5.0];
-    let case = case(&[40; 4], &[3; 4], &[("mean", 2.0), ("maximum", 16.0), ("std", 4.6)], Rule::EveryLimit, value);
+    let case = case(
+        &[40; 4],
+        &[3; 4],
+        &[("mean", 2.0), ("maximum", 16.0), ("std", 4.6)],
+        Rule::EveryLimit,
+        value,
+    );
     let mut sums: Vec<u128> = vec![1];
     for zone in &whole {
         let mut more = vec![0_u128; sums.len() + 60];
@@ -80,8 +96,13 @@ fn quartiles_of_means_of_1e16_selections_are_where_whole_numbers_put_them() {
         assert!((quartile - true_one).abs() <= within, "{quartile} and {true_one}, {within}");
     }
     let ends: Vec<usize> =
-        [sums.iter().position(|count| *count > 0), sums.iter().rposition(|count| *count > 0)].into_iter().flatten().collect();
-    assert!((spread.min - mean(ends[0])).abs() < 1e-12 && (spread.max - mean(ends[1])).abs() < 1e-12);
+        [sums.iter().position(|count| *count > 0), sums.iter().rposition(|count| *count > 0)]
+            .into_iter()
+            .flatten()
+            .collect();
+    assert!(
+        (spread.min - mean(ends[0])).abs() < 1e-12 && (spread.max - mean(ends[1])).abs() < 1e-12
+    );
     // The largest of twelve values, from the share of choices whose values are all up to a bound.
     let largest = found.quantities[1].statistics[0].spread.expect("values");
     let upto = |bound: f64| -> f64 {
@@ -95,24 +116,47 @@ fn quartiles_of_means_of_1e16_selections_are_where_whole_numbers_put_them() {
     };
     assert!(largest.exact);
     for (quartile, share) in [(largest.q1, 0.25), (largest.median, 0.5), (largest.q3, 0.75)] {
-        assert!(upto(16.0 * quartile + 0.5) > share && upto(16.0 * quartile - 0.5) <= share, "{quartile}");
+        assert!(
+            upto(16.0 * quartile + 0.5) > share && upto(16.0 * quartile - 0.5) <= share,
+            "{quartile}"
+        );
     }
-    // What is left is drawn, until the interval is as narrow as wanted, and the report says which is which.
+    // What is left is drawn, until the interval is as narrow as wanted, and the report says which
+    // is which.
     assert!(
-        !found.share.exact && found.quantities[2].statistics[0].spread.is_some_and(|spread| !spread.exact && spread.intervals.is_some())
+        !found.share.exact
+            && found.quantities[2].statistics[0]
+                .spread
+                .is_some_and(|spread| !spread.exact && spread.intervals.is_some())
     );
     let (low, high) = found.share.interval.expect("an interval");
     assert!(high - low <= 0.005 && found.share.looked_at > 32_768, "{:?}", found.share);
-    assert!(found.methods.iter().any(|says| says.contains("no wider than 0.005")), "{:?}", found.methods);
-    assert!(found.methods.iter().any(|says| says.starts_with("1 of 3 statistics, which are means")), "{:?}", found.methods);
-    assert!(found.methods.iter().any(|says| says.starts_with("1 of 3 statistics are nevertheless exact")), "{:?}", found.methods);
+    assert!(
+        found.methods.iter().any(|says| says.contains("no wider than 0.005")),
+        "{:?}",
+        found.methods
+    );
+    assert!(
+        found.methods.iter().any(|says| says.starts_with("1 of 3 statistics, which are means")),
+        "{:?}",
+        found.methods
+    );
+    assert!(
+        found
+            .methods
+            .iter()
+            .any(|says| says.starts_with("1 of 3 statistics are nevertheless exact")),
+        "{:?}",
+        found.methods
+    );
 }
 
 /// A width that cannot be had is told.
 #[test]
 fn drawing_ends_somewhere() {
     let mut random = Random::new(5, 0);
-    let case = case(&[30; 2], &[3; 2], &[("std", 0.6)], Rule::EveryLimit, |_, _| vec![even(&mut random)]);
+    let case =
+        case(&[30; 2], &[3; 2], &[("std", 0.6)], Rule::EveryLimit, |_, _| vec![even(&mut random)]);
     let found = selections(&case, &Settings { most: 0.0, width: 1e-6, seed: 1 });
     assert_eq!(found.share.looked_at, 1 << 22);
     assert!(found.methods[0].contains("more than the required 0.000001"), "{:?}", found.methods);
@@ -121,7 +165,8 @@ fn drawing_ends_somewhere() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// Means, root mean squares and largest values without forming selections, against all selections.
+    /// Means, root mean squares and largest values without forming selections, against all
+    /// selections.
     #[test]
     fn what_is_known_without_selections_is_so(
         shape in prop::collection::vec((1_usize..4, 0_usize..5), 1..4),
@@ -209,18 +254,24 @@ proptest! {
     }
 }
 
-/// The highest standard deviation that the kept sections keep, against every choice of as many. The choice weighs the other
-/// deviations, too, and is improved one section at a time, so that it need not be the best: nine in ten are within 0.01 of it, and
-/// none of three hundred is further off than 0.05.
+/// The highest standard deviation that the kept sections keep, against every choice of as many. The
+/// choice weighs the other deviations, too, and is improved one section at a time, so that it need
+/// not be the best: nine in ten are within 0.01 of it, and none of three hundred is further off
+/// than 0.05.
 #[test]
 fn reduction_keeps_the_highest_deviation_nearly_as_well_as_any_choice() {
     let mut worse: Vec<f64> = (0..300)
         .map(|seed| {
             let mut random = Random::new(seed, 0);
             let statistics = [("std", 0.6), ("std", 0.5), ("std", 0.8)];
-            let case = case(&[6, 7], &[2, 2], &statistics, Rule::EveryLimit, |_, _| vec![even(&mut random), even(&mut random)]);
-            let highest =
-                |sections: &[usize]| case.measures().filter_map(|(_, measure)| measure.over(sections.iter().copied())).fold(0.0, f64::max);
+            let case = case(&[6, 7], &[2, 2], &statistics, Rule::EveryLimit, |_, _| {
+                vec![even(&mut random), even(&mut random)]
+            });
+            let highest = |sections: &[usize]| {
+                case.measures()
+                    .filter_map(|(_, measure)| measure.over(sections.iter().copied()))
+                    .fold(0.0, f64::max)
+            };
             let all = highest(&case.usable());
             let (smaller, reduction) = reduced(&case, 4);
             assert!(smaller.strata.iter().all(|stratum| stratum.members.len() == 4), "seed {seed}");
@@ -228,7 +279,10 @@ fn reduction_keeps_the_highest_deviation_nearly_as_well_as_any_choice() {
             assert!((listed - highest(&smaller.usable())).abs() < 1e-12, "seed {seed}");
             let mut four = case.clone();
             four.strata.iter_mut().for_each(|stratum| stratum.take = 4);
-            let best = every(&four).iter().map(|selection| (highest(selection) - all).abs()).fold(f64::INFINITY, f64::min);
+            let best = every(&four)
+                .iter()
+                .map(|selection| (highest(selection) - all).abs())
+                .fold(f64::INFINITY, f64::min);
             (highest(&smaller.usable()) - all).abs() - best
         })
         .collect();
@@ -241,13 +295,19 @@ fn reduction_keeps_the_highest_deviation_nearly_as_well_as_any_choice() {
 fn nine_of_forty_keep_the_highest_deviation() {
     let mut random = Random::new(11, 0);
     let statistics = [("std", 0.55), ("std", 0.7), ("mean", 0.5)];
-    let case = case(&[40; 4], &[3; 4], &statistics, Rule::EveryLimit, |_, _| vec![even(&mut random), even(&mut random)]);
+    let case = case(&[40; 4], &[3; 4], &statistics, Rule::EveryLimit, |_, _| {
+        vec![even(&mut random), even(&mut random)]
+    });
     let (smaller, reduction) = reduced(&case, 9);
     assert!(smaller.strata.iter().all(|stratum| stratum.members.len() == 9));
-    let highest = |of: fn(&(String, f64, f64)) -> f64| reduction.scatter.iter().map(of).fold(0.0, f64::max);
+    let highest =
+        |of: fn(&(String, f64, f64)) -> f64| reduction.scatter.iter().map(of).fold(0.0, f64::max);
     let (all, kept) = (highest(|one| one.1), highest(|one| one.2));
     assert!((all - kept).abs() < 0.005, "{all} and {kept}");
-    assert_eq!((case.judge(&case.usable()).0, smaller.judge(&smaller.usable()).0), (Verdict::NotValidated, Verdict::NotValidated));
+    assert_eq!(
+        (case.judge(&case.usable()).0, smaller.judge(&smaller.usable()).0),
+        (Verdict::NotValidated, Verdict::NotValidated)
+    );
 }
 
 /// Five bad sections among 160 are more than can be tried, and are found all the same.
@@ -255,14 +315,21 @@ fn nine_of_forty_keep_the_highest_deviation() {
 fn a_set_too_large_to_be_tried_is_found() {
     let bad = [3, 50, 51, 90, 155];
     let mut random = Random::new(17, 0);
-    let case = case(&[40; 4], &[3; 4], &[("std", 0.6), ("mean", 0.5)], Rule::EveryLimit, |section, _| {
-        let size = if bad.contains(&section) { 9.0 } else { 0.3 };
-        vec![size * even(&mut random).signum(), size * even(&mut random)]
-    });
-    let found = selections(&case, &Settings { width: 0.5, ..Settings::default() }).removal.expect("looked for");
+    let case =
+        case(&[40; 4], &[3; 4], &[("std", 0.6), ("mean", 0.5)], Rule::EveryLimit, |section, _| {
+            let size = if bad.contains(&section) { 9.0 } else { 0.3 };
+            vec![size * even(&mut random).signum(), size * even(&mut random)]
+        });
+    let found = selections(&case, &Settings { width: 0.5, ..Settings::default() })
+        .removal
+        .expect("looked for");
     assert_eq!((found.verdict, found.count, found.complete), (Verdict::NotValidated, 0, false));
     let larger = found.larger.expect("a set");
     let kept: Vec<usize> = (0..160).filter(|at| !larger.contains(&case.sections[*at])).collect();
     assert_eq!(case.judge(&kept).0, Verdict::Validated);
-    assert!(larger.len() <= 12 && bad.iter().filter(|at| larger.contains(&case.sections[**at])).count() >= 4, "{larger:?}");
+    assert!(
+        larger.len() <= 12
+            && bad.iter().filter(|at| larger.contains(&case.sections[**at])).count() >= 4,
+        "{larger:?}"
+    );
 }

@@ -1,4 +1,5 @@
-//! Both surfaces of the language: what they refuse and how it is said, what they print, and that nothing is lost between.
+//! Both surfaces of the language: what they refuse and how it is said, what they print, and that
+//! nothing is lost between.
 //!
 //! Expected output lies beside each case as `<case>.out`; `UPDATE_EXPECT=1 cargo test` rewrites it.
 
@@ -18,9 +19,12 @@ fn root() -> PathBuf {
 
 /// Protocol files of a folder, in order of their names.
 fn files(folder: &str) -> Vec<PathBuf> {
-    let mut files: Vec<PathBuf> =
-        fs::read_dir(root().join(folder)).map(|entries| entries.filter_map(|entry| Some(entry.ok()?.path())).collect()).unwrap_or_default();
-    files.retain(|path| path.extension().is_some_and(|extension| extension == "fp" || extension == "yaml"));
+    let mut files: Vec<PathBuf> = fs::read_dir(root().join(folder))
+        .map(|entries| entries.filter_map(|entry| Some(entry.ok()?.path())).collect())
+        .unwrap_or_default();
+    files.retain(|path| {
+        path.extension().is_some_and(|extension| extension == "fp" || extension == "yaml")
+    });
     files.sort();
     files
 }
@@ -90,7 +94,11 @@ fn good_files_print_canonically() {
     for path in files("tests/cases/syntax/good") {
         let text = fs::read_to_string(&path).expect("a readable case");
         let document = clean(&name(&path), &text);
-        let printed = if name(&path).ends_with(".yaml") { print_yaml(&document) } else { print_text(&document) };
+        let printed = if name(&path).ends_with(".yaml") {
+            print_yaml(&document)
+        } else {
+            print_text(&document)
+        };
         if name(&path).starts_with("untidy") {
             compare_or_update(&path, &printed);
         } else {
@@ -103,7 +111,10 @@ fn good_files_print_canonically() {
 #[test]
 fn shipped_protocols_are_clean_and_convert() {
     for path in files("protocols") {
-        keeps_everything(&clean(&name(&path), &fs::read_to_string(&path).expect("a readable protocol")));
+        keeps_everything(&clean(
+            &name(&path),
+            &fs::read_to_string(&path).expect("a readable protocol"),
+        ));
     }
 }
 
@@ -126,7 +137,8 @@ fn both_forms_say_the_same() {
     let folder = root().join("tests/cases/syntax/good");
     for case in ["wheel_forces", "families"] {
         let text = fs::read_to_string(folder.join(format!("{case}.fp"))).expect("a readable case");
-        let yaml = fs::read_to_string(folder.join(format!("{case}.yaml"))).expect("a readable case");
+        let yaml =
+            fs::read_to_string(folder.join(format!("{case}.yaml"))).expect("a readable case");
         assert_eq!(print_yaml(&clean("a.fp", &text)), yaml);
         assert_eq!(print_text(&clean("a.yaml", &yaml)), text);
     }
@@ -135,7 +147,8 @@ fn both_forms_say_the_same() {
 /// The page on the two forms shows one protocol in both.
 #[test]
 fn the_manual_shows_what_is_read() {
-    let page = fs::read_to_string(root().join("docs/language-surfaces.md")).expect("a readable page");
+    let page =
+        fs::read_to_string(root().join("docs/language-surfaces.md")).expect("a readable page");
     let block = |language: &str| {
         let (_, rest) = page.split_once(&format!("```{language}\n")).expect("an example");
         rest.split_once("```").expect("its end").0.to_owned()
@@ -147,10 +160,12 @@ fn the_manual_shows_what_is_read() {
 
 #[test]
 fn line_ends_and_marks_of_editors_do_not_matter() {
-    let text = fs::read_to_string(root().join("tests/cases/syntax/good/wheel_forces.fp")).expect("a readable case");
+    let text = fs::read_to_string(root().join("tests/cases/syntax/good/wheel_forces.fp"))
+        .expect("a readable case");
     let document = clean("a.fp", &format!("\u{feff}{}", text.replace('\n', "\r\n")));
     assert_eq!(print_text(&document), text);
-    let yaml = fs::read_to_string(root().join("tests/cases/syntax/good/wheel_forces.yaml")).expect("a readable case");
+    let yaml = fs::read_to_string(root().join("tests/cases/syntax/good/wheel_forces.yaml"))
+        .expect("a readable case");
     let document = clean("a.yaml", &format!("\u{feff}{}", yaml.replace('\n', "\r\n")));
     assert_eq!(print_yaml(&document), yaml);
 }
@@ -168,7 +183,10 @@ fn places_are_exact() {
     let edition = &block.field("edition").expect("the edition").value;
     assert_eq!((edition.exact, edition.place(3..8).text()), (true, "14363"));
     let title = block.title.as_ref().expect("a title");
-    assert_eq!((title.exact, title.text.as_str(), title.span.text()), (false, "A \" title", "\"A \\\" title\""));
+    assert_eq!(
+        (title.exact, title.text.as_str(), title.span.text()),
+        (false, "A \" title", "\"A \\\" title\"")
+    );
 
     let yaml = "protocol:\n  name: p\nzones:\n  1:\n    minimum sections: 1.50\n    where: 'a is b'\nparameters:\n  x: {default: no}\n";
     let document = clean("a.yaml", yaml);
@@ -177,16 +195,20 @@ fn places_are_exact() {
     assert_eq!((minimum.text.as_str(), minimum.exact, minimum.span.text()), ("1.50", true, "1.50"));
     let condition = &zone.field("where").expect("the condition").value;
     assert_eq!(condition.place(2..4).text(), "is");
-    let parameter = document.blocks.iter().find(|block| block.kind.text == "parameter").expect("a parameter");
+    let parameter =
+        document.blocks.iter().find(|block| block.kind.text == "parameter").expect("a parameter");
     assert_eq!(parameter.field("default").expect("its default").value.text, "no");
 }
 
 #[test]
 fn no_prefix_and_no_lost_character_brings_the_readers_down() {
-    for path in files("tests/cases/syntax/good").into_iter().chain(files("tests/cases/syntax/bad")) {
+    for path in files("tests/cases/syntax/good").into_iter().chain(files("tests/cases/syntax/bad"))
+    {
         let text = fs::read_to_string(&path).expect("a readable case");
         for (at, c) in text.char_indices() {
-            for damaged in [text[..at].to_owned(), format!("{}{}", &text[..at], &text[at + c.len_utf8()..])] {
+            for damaged in
+                [text[..at].to_owned(), format!("{}{}", &text[..at], &text[at + c.len_utf8()..])]
+            {
                 let (document, problems) = read(&Source::new(name(&path), damaged));
                 problems.render(false);
                 // What was read in spite of the damage can be printed.
@@ -242,7 +264,8 @@ mod round_trip {
         prop_oneof![
             vec(pieces, 1..12).prop_map(|pieces| pieces.concat()),
             "\\PC{1,20}",
-            select(vec!["null", "~", "no", "2026-01-01", "1e5", "-", "?", "a:", "=", "<<"]).prop_map(str::to_owned),
+            select(vec!["null", "~", "no", "2026-01-01", "1e5", "-", "?", "a:", "=", "<<"])
+                .prop_map(str::to_owned),
         ]
         .prop_filter("blank text is no text", |text| !text.trim().is_empty())
     }
@@ -286,8 +309,15 @@ mod round_trip {
     }
 
     fn comments() -> impl Strategy<Value = Comments> {
-        let line = || select(vec!["", "a comment", "# twice", "key: value", "  indented", "\"open", "- item"]).prop_map(str::to_owned);
-        (vec(line(), 0..2), option::weighted(0.2, line())).prop_map(|(before, beside)| Comments { before, beside, after: Vec::new() })
+        let line = || {
+            select(vec!["", "a comment", "# twice", "key: value", "  indented", "\"open", "- item"])
+                .prop_map(str::to_owned)
+        };
+        (vec(line(), 0..2), option::weighted(0.2, line())).prop_map(|(before, beside)| Comments {
+            before,
+            beside,
+            after: Vec::new(),
+        })
     }
 
     fn field(key: &'static Key) -> BoxedStrategy<Field> {
@@ -295,7 +325,13 @@ mod round_trip {
             Sort::Text => prose().boxed(),
             Sort::Phrase => phrase().boxed(),
         };
-        (value, comments()).prop_map(|(value, comments)| Field { key: text(key.word.to_owned()), value: text(value), comments }).boxed()
+        (value, comments())
+            .prop_map(|(value, comments)| Field {
+                key: text(key.word.to_owned()),
+                value: text(value),
+                comments,
+            })
+            .boxed()
     }
 
     fn block(kind: &'static Kind) -> impl Strategy<Value = Block> {
@@ -314,26 +350,49 @@ mod round_trip {
             }
             keys.into_iter().map(field).collect::<Vec<_>>()
         });
-        (name, option::of(prose()), fields, comments(), vec(select(vec!["after", ""]).prop_map(str::to_owned), 0..2)).prop_map(
-            |(name, title, fields, mut comments, after)| {
+        (
+            name,
+            option::of(prose()),
+            fields,
+            comments(),
+            vec(select(vec!["after", ""]).prop_map(str::to_owned), 0..2),
+        )
+            .prop_map(|(name, title, fields, mut comments, after)| {
                 comments.after = after;
                 let name = kind.named.then(|| text(name.to_owned()));
-                Block { kind: text(kind.word.to_owned()), name, title: title.map(text), fields, comments }
-            },
-        )
+                Block {
+                    kind: text(kind.word.to_owned()),
+                    name,
+                    title: title.map(text),
+                    fields,
+                    comments,
+                }
+            })
     }
 
     fn document() -> impl Strategy<Value = Document> {
-        vec(select((0..KINDS.len()).collect::<Vec<_>>()).prop_flat_map(|kind| block(&KINDS[kind])), 0..6).prop_map(|made| {
+        vec(
+            select((0..KINDS.len()).collect::<Vec<_>>()).prop_flat_map(|kind| block(&KINDS[kind])),
+            0..6,
+        )
+        .prop_map(|made| {
             let mut blocks: Vec<Block> = Vec::new();
             for block in made {
                 let kind = |block: &Block| of_block(block).expect("a kind");
-                let same = |known: &Block| kind(known).group == kind(&block).group && (kind(known).single || known.name == block.name);
+                let same = |known: &Block| {
+                    kind(known).group == kind(&block).group
+                        && (kind(known).single || known.name == block.name)
+                };
                 if !blocks.iter().any(same) {
                     blocks.push(block);
                 }
             }
-            Document { source: Source::new("made", ""), leading: Vec::new(), blocks, trailing: Vec::new() }
+            Document {
+                source: Source::new("made", ""),
+                leading: Vec::new(),
+                blocks,
+                trailing: Vec::new(),
+            }
         })
     }
 
@@ -343,7 +402,9 @@ mod round_trip {
         for block in &document.blocks {
             letters.extend(block.title.iter().map(|title| title.text.clone()));
             let kind = of_block(block).expect("a kind");
-            let prose = block.fields.iter().filter(|field| kind.key(&field.key.text).is_some_and(|key| key.sort == Sort::Text));
+            let prose = block.fields.iter().filter(|field| {
+                kind.key(&field.key.text).is_some_and(|key| key.sort == Sort::Text)
+            });
             letters.extend(prose.map(|field| field.value.text.clone()));
         }
         letters
@@ -406,17 +467,23 @@ mod schema_of_yaml {
         if std::env::var_os("UPDATE_EXPECT").is_some() {
             fs::write(&file, &made).expect("a writable schema");
         }
-        assert!(fs::read_to_string(&file).unwrap_or_default() == made, "protocols/protocol.schema.json is not up to date");
+        assert!(
+            fs::read_to_string(&file).unwrap_or_default() == made,
+            "protocols/protocol.schema.json is not up to date"
+        );
     }
 
     #[test]
     fn good_protocols_satisfy_it() {
         let validator = validator();
         for path in files("tests/cases/syntax/good").into_iter().chain(files("protocols")) {
-            let document = clean(&name(&path), &fs::read_to_string(&path).expect("a readable case"));
+            let document =
+                clean(&name(&path), &fs::read_to_string(&path).expect("a readable case"));
             let yaml = print_yaml(&document);
-            let errors: Vec<String> =
-                validator.iter_errors(&json(&yaml)).map(|error| format!("{}: {error}", error.instance_path)).collect();
+            let errors: Vec<String> = validator
+                .iter_errors(&json(&yaml))
+                .map(|error| format!("{}: {error}", error.instance_path))
+                .collect();
             assert!(errors.is_empty(), "{}: {errors:#?}", path.display());
         }
     }
@@ -434,7 +501,9 @@ mod schema_of_yaml {
             "wrong_shape",
             "not_a_map",
         ] {
-            let yaml = fs::read_to_string(root().join(format!("tests/cases/syntax/bad/{case}.yaml"))).expect("a readable case");
+            let yaml =
+                fs::read_to_string(root().join(format!("tests/cases/syntax/bad/{case}.yaml")))
+                    .expect("a readable case");
             assert!(!validator.is_valid(&json(&yaml)), "{case}");
         }
     }

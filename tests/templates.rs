@@ -1,5 +1,5 @@
-//! The PDF's templates take texts of users as data: none of them may turn text into markup or code, or read what the
-//! report was not given.
+//! The PDF's templates take texts of users as data: none of them may turn text into markup or code,
+//! or read what the report was not given.
 
 use std::fs;
 use std::path::{Path, PathBuf};

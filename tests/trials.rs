@@ -1,5 +1,5 @@
-//! Protocols that users wrote down before the language could say them: each passes the check (tests/check) and runs on a
-//! campaign that has its records.
+//! Protocols that users wrote down before the language could say them: each passes the check
+//! (tests/check) and runs on a campaign that has its records.
 
 mod common {
     pub mod program;
@@ -24,7 +24,8 @@ const TRIALS: [(&str, &str, &[&str]); 10] = [
     ("trial_k_own_rules", "coach", &[]),
 ];
 
-/// Trial e asks for channels (roll, cant, twist, a door) that no shipped campaign has. It is checked only.
+/// Trial e asks for channels (roll, cant, twist, a door) that no shipped campaign has. It is
+/// checked only.
 #[test]
 fn each_trial_runs_where_its_records_exist() {
     for (protocol, campaign, named) in TRIALS {
@@ -44,8 +45,14 @@ fn each_trial_runs_where_its_records_exist() {
         let text = fs::read_to_string(folder.join("results.json")).expect("results.json");
         let found: Value = serde_json::from_str(&text).expect("JSON");
         let quantities = found["quantities"].as_array().expect("quantities");
-        let with_values = |quantity: &&Value| quantity["values"].as_array().is_some_and(|values| !values.is_empty());
-        let have: Vec<&str> = quantities.iter().filter(with_values).filter_map(|quantity| quantity["id"].as_str()).collect();
+        let with_values = |quantity: &&Value| {
+            quantity["values"].as_array().is_some_and(|values| !values.is_empty())
+        };
+        let have: Vec<&str> = quantities
+            .iter()
+            .filter(with_values)
+            .filter_map(|quantity| quantity["id"].as_str())
+            .collect();
         assert!(!have.is_empty(), "{protocol}: no quantity has a value");
         for name in named {
             assert!(have.contains(name), "{protocol}: `{name}` has no value, only {have:?}");

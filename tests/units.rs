@@ -1,13 +1,14 @@
 //! Every unit symbol against an independent table.
 //!
-//! Factors: BIPM, "The International System of Units", 9th edition, tables 4, 7 and 8, and NIST Special Publication 811
-//! (2008), appendix B.8; both give these values as exact.
+//! Factors: BIPM, "The International System of Units", 9th edition, tables 4, 7 and 8, and NIST
+//! Special Publication 811 (2008), appendix B.8; both give these values as exact.
 
 use fishplate::units::{Dimension, SYMBOLS, Unit};
 
 const PI: f64 = std::f64::consts::PI;
 
-/// Symbol; how many of the SI unit one is, as a numerator and a denominator; exponents of m, kg, s, K, A, and of degrees Celsius.
+/// Symbol; how many of the SI unit one is, as a numerator and a denominator; exponents of m, kg, s,
+/// K, A, and of degrees Celsius.
 const TABLE: [(&str, f64, f64, [i8; 6]); 149] = [
     ("-", 1.0, 1.0, [0, 0, 0, 0, 0, 0]),
     ("1", 1.0, 1.0, [0, 0, 0, 0, 0, 0]),
@@ -176,7 +177,11 @@ fn factors_and_dimensions_are_those_of_the_table() {
         let factor = numerator / denominator;
         let near = |found: f64, wanted: f64| (found / wanted - 1.0).abs() < 5e-16;
         assert!(near(unit.to_si(1.0), factor), "{symbol}: {} is not {factor}", unit.to_si(1.0));
-        assert!(near(unit.from_si(1.0), denominator / numerator), "{symbol}: {}", unit.from_si(1.0));
+        assert!(
+            near(unit.from_si(1.0), denominator / numerator),
+            "{symbol}: {}",
+            unit.from_si(1.0)
+        );
     }
 }
 
@@ -196,14 +201,30 @@ fn compound_units() {
     }
 }
 
-/// Prefixes that would make a symbol mean two things are unknown units, and those that are known keep their meaning.
+/// Prefixes that would make a symbol mean two things are unknown units, and those that are known
+/// keep their meaning.
 #[test]
 fn ambiguous_prefixes_are_refused() {
-    for symbol in ["Mm", "Ms", "Mg", "Gg", "kh", "mt", "kt", "mft", "mdeg", "krpm", "k%", "das", "cN", "hm", "PN", "fm", "mkg", "kdegC"] {
+    for symbol in [
+        "Mm", "Ms", "Mg", "Gg", "kh", "mt", "kt", "mft", "mdeg", "krpm", "k%", "das", "cN", "hm",
+        "PN", "fm", "mkg", "kdegC",
+    ] {
         assert!(Unit::parse(symbol).is_err(), "{symbol}");
     }
-    for (symbol, si) in [("min", 60.0), ("ft", 0.3048), ("mN", 1e-3), ("MN", 1e6), ("mNm", 1e-3), ("mA", 1e-3), ("kV", 1e3), ("ml", 1e-6)] {
-        assert!((Unit::parse(symbol).expect("known").to_si(1.0) / si - 1.0).abs() < 1e-15, "{symbol}");
+    for (symbol, si) in [
+        ("min", 60.0),
+        ("ft", 0.3048),
+        ("mN", 1e-3),
+        ("MN", 1e6),
+        ("mNm", 1e-3),
+        ("mA", 1e-3),
+        ("kV", 1e3),
+        ("ml", 1e-6),
+    ] {
+        assert!(
+            (Unit::parse(symbol).expect("known").to_si(1.0) / si - 1.0).abs() < 1e-15,
+            "{symbol}"
+        );
     }
 }
 
@@ -211,7 +232,8 @@ fn ambiguous_prefixes_are_refused() {
 #[test]
 fn electric_units_fit_together() {
     let same = |a: &str, b: &str| {
-        let [a, b] = [a, b].map(|text| Unit::parse(text).unwrap_or_else(|error| panic!("{text}: {error:?}")));
+        let [a, b] = [a, b]
+            .map(|text| Unit::parse(text).unwrap_or_else(|error| panic!("{text}: {error:?}")));
         assert_eq!(a.dimension, b.dimension, "{a} and {b}");
         assert!((a.factor / b.factor - 1.0).abs() < 1e-15, "{a} and {b}");
     };

@@ -31,25 +31,40 @@ fn compiled(name: &str, text: &str) -> Compiled {
 
 fn certified(protocol: &Compiled, campaign: &Path) -> Certification {
     let mut problems = Problems::default();
-    let campaign = Campaign::open(campaign, &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
-    certify(protocol, &campaign, Settings { traces: 1 }, &|_| {}).unwrap_or_else(|problems| panic!("{}", problems.render(false)))
+    let campaign = Campaign::open(campaign, &mut problems)
+        .unwrap_or_else(|| panic!("{}", problems.render(false)));
+    certify(protocol, &campaign, Settings { traces: 1 }, &|_| {})
+        .unwrap_or_else(|problems| panic!("{}", problems.render(false)))
 }
 
 fn assessment() -> String {
     fs::read_to_string(root().join("tests/cases/values/assessment.fp")).expect("a protocol")
 }
 
-fn of_group<'a>(found: &'a Certification, quantity: &str, name: &str, zone: &str, wheelset: &str) -> Option<&'a StatisticResult> {
+fn of_group<'a>(
+    found: &'a Certification,
+    quantity: &str,
+    name: &str,
+    zone: &str,
+    wheelset: &str,
+) -> Option<&'a StatisticResult> {
     let quantity = found.quantities.iter().find(|known| known.id == quantity).expect("a quantity");
-    let has = |group: &[(String, String)], key: &str, of: &str| group.iter().any(|(known, member)| known == key && member == of);
-    quantity.statistics.iter().find(|one| one.name == name && has(&one.group, "zone", zone) && has(&one.group, "wheelset", wheelset))
+    let has = |group: &[(String, String)], key: &str, of: &str| {
+        group.iter().any(|(known, member)| known == key && member == of)
+    };
+    quantity.statistics.iter().find(|one| {
+        one.name == name && has(&one.group, "zone", zone) && has(&one.group, "wheelset", wheelset)
+    })
 }
 
-/// Estimates of each zone and wheelset against NumPy and SciPy, 1e-9 relative; see `cases/values/assessment.py`.
+/// Estimates of each zone and wheelset against NumPy and SciPy, 1e-9 relative; see
+/// `cases/values/assessment.py`.
 #[test]
 fn an_assessment_agrees_with_scipy() {
-    let found = certified(&compiled("assessment.fp", &assessment()), &root().join("examples/coach-good"));
-    let expected = fs::read_to_string(root().join("tests/cases/values/assessment.json")).expect("expected numbers");
+    let found =
+        certified(&compiled("assessment.fp", &assessment()), &root().join("examples/coach-good"));
+    let expected = fs::read_to_string(root().join("tests/cases/values/assessment.json"))
+        .expect("expected numbers");
     let expected: Vec<Value> = serde_json::from_str(&expected).expect("JSON");
     let (mut numbers, mut without) = (0, 0);
     for one in &expected {
@@ -57,15 +72,24 @@ fn an_assessment_agrees_with_scipy() {
         let quantity = text("quantity").replace("_max", "");
         let (estimate, zone, wheelset) = (text("estimate"), text("zone"), text("wheelset"));
         let place = format!("{quantity} {estimate} zone {zone} wheelset {wheelset}");
-        let result = of_group(&found, &quantity, &estimate, &zone, &wheelset).unwrap_or_else(|| panic!("{place} is missing"));
+        let result = of_group(&found, &quantity, &estimate, &zone, &wheelset)
+            .unwrap_or_else(|| panic!("{place} is missing"));
         match (one["value"].as_f64(), result.value) {
             (Some(want), Some(value)) => {
-                assert!((value - want).abs() <= 1e-9 * want.abs(), "{place}: {value} in place of {want}");
+                assert!(
+                    (value - want).abs() <= 1e-9 * want.abs(),
+                    "{place}: {value} in place of {want}"
+                );
                 numbers += 1;
             }
             (None, None) => {
                 let reason = result.reason.as_deref().expect("a reason");
-                assert!(reason.contains("does not vary") || reason.contains("collinear") || reason.contains("values"), "{place}: {reason}");
+                assert!(
+                    reason.contains("does not vary")
+                        || reason.contains("collinear")
+                        || reason.contains("values"),
+                    "{place}: {reason}"
+                );
                 without += 1;
             }
             (want, value) => panic!("{place}: {value:?} in place of {want:?}"),
@@ -74,10 +98,15 @@ fn an_assessment_agrees_with_scipy() {
     assert!(numbers >= 100 && without >= 10, "{numbers} {without}");
     // A regression that has no number is a reason, never a verdict.
     assert_eq!(found.verdict, Verdict::NotAssessable);
-    assert!(found.reasons.iter().any(|reason| reason.contains("Two-dimensional estimate")), "{:?}", found.reasons);
+    assert!(
+        found.reasons.iter().any(|reason| reason.contains("Two-dimensional estimate")),
+        "{:?}",
+        found.reasons
+    );
 }
 
-/// An assessment reads one record: the campaign need not have the other, and its numbers are the same.
+/// An assessment reads one record: the campaign need not have the other, and its numbers are the
+/// same.
 #[test]
 fn an_assessment_needs_no_simulation() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -89,19 +118,30 @@ fn an_assessment_needs_no_simulation() {
         fs::create_dir(folder.path().join(part)).expect("a folder");
         for entry in fs::read_dir(from.join(part)).expect("records") {
             let path = entry.expect("an entry").path();
-            fs::copy(&path, folder.path().join(part).join(path.file_name().expect("a name"))).expect("a copy");
+            fs::copy(&path, folder.path().join(part).join(path.file_name().expect("a name")))
+                .expect("a copy");
         }
     }
     let campaign = fs::read_to_string(from.join("campaign.yaml")).expect("a campaign");
-    let without: String = campaign.lines().filter(|line| !line.starts_with("simulation:")).map(|line| format!("{line}\n")).collect();
+    let without: String = campaign
+        .lines()
+        .filter(|line| !line.starts_with("simulation:"))
+        .map(|line| format!("{line}\n"))
+        .collect();
     assert_ne!(campaign, without);
     fs::write(folder.path().join("campaign.yaml"), without).expect("written");
     let protocol = compiled("assessment.fp", &assessment());
     let (alone, both) = (certified(&protocol, folder.path()), certified(&protocol, &from));
     for (a, b) in alone.quantities.iter().zip(&both.quantities) {
-        let numbers = |statistics: &[StatisticResult]| statistics.iter().map(|one| (one.value, one.limit, one.holds)).collect::<Vec<_>>();
+        let numbers = |statistics: &[StatisticResult]| {
+            statistics.iter().map(|one| (one.value, one.limit, one.holds)).collect::<Vec<_>>()
+        };
         assert_eq!(numbers(&a.statistics), numbers(&b.statistics), "{}", a.id);
-        assert!(a.from.as_deref() == Some("measured") && !a.has_sides && a.values.iter().all(|value| value.simulated.is_none()));
+        assert!(
+            a.from.as_deref() == Some("measured")
+                && !a.has_sides
+                && a.values.iter().all(|value| value.simulated.is_none())
+        );
     }
     assert_eq!((alone.verdict, alone.reasons), (both.verdict, both.reasons));
 }
@@ -111,7 +151,10 @@ const HEAD: &str = "protocol small \"Small\"\n  extends  en14363-2016-annex-t\n\
 /// Of one quantity in place of all others.
 fn small(quantity: &str) -> Compiled {
     let shipped = library::shipped("en14363-2016-annex-t").expect("a shipped protocol");
-    let names = shipped.text.lines().filter_map(|line| line.strip_prefix("quantity ")?.split(' ').next().map(str::to_string));
+    let names = shipped
+        .text
+        .lines()
+        .filter_map(|line| line.strip_prefix("quantity ")?.split(' ').next().map(str::to_string));
     let removed: String = names.map(|name| format!("  quantity  {name}\n")).collect();
     compiled("small.fp", &format!("{HEAD}remove\n{removed}\n{quantity}"))
 }
@@ -131,26 +174,37 @@ fn groups_partition_the_values() {
     );
     let found = certified(&protocol, &root().join("examples/coach-good"));
     let values = &found.quantities[0].values;
-    let of = |name: &str| statistics(&found).iter().filter(|one| one.name == name).collect::<Vec<_>>();
+    let of =
+        |name: &str| statistics(&found).iter().filter(|one| one.name == name).collect::<Vec<_>>();
     let counted = |name: &str| of(name).iter().map(|one| one.count).sum::<usize>();
     assert_eq!((of("p50").len(), counted("p50")), (4, values.len()));
     assert_eq!((of("p60").len(), counted("p60")), (13, values.len()));
-    let zones_2_3 = values.iter().filter(|value| matches!(value.zone.as_deref(), Some("2" | "3"))).count();
+    let zones_2_3 =
+        values.iter().filter(|value| matches!(value.zone.as_deref(), Some("2" | "3"))).count();
     assert_eq!((of("p70").len(), counted("p70")), (2, zones_2_3));
     // Zone 1 is straight: a group that the condition empties vanishes.
     let scopes: Vec<&str> = of("p80").iter().map(|one| one.scope.as_str()).collect();
-    assert_eq!(scopes, ["zone 2, direction is not straight", "zone 3, direction is not straight", "zone 4, direction is not straight"]);
+    assert_eq!(
+        scopes,
+        [
+            "zone 2, direction is not straight",
+            "zone 3, direction is not straight",
+            "zone 4, direction is not straight"
+        ]
+    );
     assert_eq!(of("n")[0].value, Some(13.0));
     let length: f64 = found.sections.iter().map(|section| section.length).sum();
     let total = of("total of length")[0];
     assert!((total.value.expect("a length") - length).abs() < 1e-9 * length && total.unit == "m");
-    let low = values.iter().filter(|value| value.difference <= 60.0).count() as f64 / values.len() as f64;
+    let low =
+        values.iter().filter(|value| value.difference <= 60.0).count() as f64 / values.len() as f64;
     assert_eq!(of("share where value <= 60 kN")[0].value, Some(low));
     assert_eq!(of("share of sections where direction is straight")[0].value, Some(3.0 / 13.0));
     assert_eq!(found.verdict, Verdict::Validated, "{:?}", found.reasons);
 }
 
-/// A position that is recorded, in a zone that has none of its values: not assessable, not left out.
+/// A position that is recorded, in a zone that has none of its values: not assessable, not left
+/// out.
 #[test]
 fn a_group_that_should_be_there_is_missed() {
     let protocol = small(
@@ -159,11 +213,13 @@ fn a_group_that_should_be_there_is_missed() {
     );
     let found = certified(&protocol, &root().join("examples/coach-good"));
     assert_eq!(found.verdict, Verdict::NotAssessable);
-    let missed = statistics(&found).iter().find(|one| one.scope == "zone 2, wheelset 2").expect("the group");
+    let missed =
+        statistics(&found).iter().find(|one| one.scope == "zone 2, wheelset 2").expect("the group");
     assert_eq!((missed.value, missed.reason.as_deref()), (None, Some("no value is available")));
 }
 
-/// What an estimate cannot be had of is a reason: one value, equal values, too few for a regression.
+/// What an estimate cannot be had of is a reason: one value, equal values, too few for a
+/// regression.
 #[test]
 fn too_few_values_are_a_reason() {
     let protocol = small(
@@ -175,14 +231,20 @@ fn too_few_values_are_a_reason() {
     assert!(statistics(&found).iter().all(|one| one.value.is_none() && one.holds.is_none()));
     let reason = |at: usize| statistics(&found)[at].reason.as_deref().expect("a reason");
     assert_eq!(reason(0), "not defined for 1 value");
-    let of =
-        |word: &str| statistics(&found).iter().find(|one| one.name.starts_with(word)).and_then(|one| one.reason.clone()).expect("a reason");
+    let of = |word: &str| {
+        statistics(&found)
+            .iter()
+            .find(|one| one.name.starts_with(word))
+            .and_then(|one| one.reason.clone())
+            .expect("a reason")
+    };
     assert!(of("prediction").contains("3 values"), "{}", of("prediction"));
     assert!(of("regression").contains("collinear"), "{}", of("regression"));
     assert!(of("upper").contains("site"), "{}", of("upper"));
 }
 
-/// A study of sections evaluates an estimate over every selection, and takes a repeat with the section that it repeats.
+/// A study of sections evaluates an estimate over every selection, and takes a repeat with the
+/// section that it repeats.
 #[test]
 fn a_study_takes_estimates_and_repeats() {
     use fishplate::run::{Shifts, evaluate};
@@ -193,15 +255,19 @@ fn a_study_takes_estimates_and_repeats() {
          limit   (mean + 2.2 * std) 90 kN\n  limit   (regression over cant_deficiency at 100 mm) 500 kN\n",
     );
     let mut problems = Problems::default();
-    let campaign = Campaign::open(&root().join("examples/coach-good"), &mut problems).expect("a campaign");
-    let all = evaluate(&protocol.plan, &protocol.graph, &campaign, &Shifts::NONE, &|_| {}).expect("values").swap_remove(0);
+    let campaign =
+        Campaign::open(&root().join("examples/coach-good"), &mut problems).expect("a campaign");
+    let all = evaluate(&protocol.plan, &protocol.graph, &campaign, &Shifts::NONE, &|_| {})
+        .expect("values")
+        .swap_remove(0);
     let pool = all.pool(&protocol.plan);
     let case = Case::of(&pool, None).expect("a case");
     let found = selections(&case, &StudySettings::default());
     // Zones of 3, 3, 3 and 4 sections, 3 of each.
     assert_eq!(found.combinations, 4.0);
     let value = |sections: &[usize]| {
-        let values: Vec<f64> = sections.iter().flat_map(|&at| case.quantities[0].values[at].iter().copied()).collect();
+        let values: Vec<f64> =
+            sections.iter().flat_map(|&at| case.quantities[0].values[at].iter().copied()).collect();
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
         (mean + 2.2 * (squares / (values.len() as f64 - 1.0)).sqrt()) / 90.0
@@ -211,7 +277,8 @@ fn a_study_takes_estimates_and_repeats() {
         .members
         .iter()
         .map(|left_out| {
-            let chosen: Vec<usize> = case.usable().into_iter().filter(|at| at != left_out).collect();
+            let chosen: Vec<usize> =
+                case.usable().into_iter().filter(|at| at != left_out).collect();
             let found = measure.over(chosen.iter().copied()).expect("a value");
             assert!((found - value(&chosen)).abs() < 1e-12 * found, "{found}");
             found
@@ -225,13 +292,17 @@ fn a_study_takes_estimates_and_repeats() {
     let refused = Case::of(&repeated, None).expect_err("zone 1 has two sites");
     assert!(refused.contains("zone 1 has 2 usable sites"), "{refused}");
     let merged = Case::of(&repeated, Some(2)).expect("a case");
-    assert_eq!((merged.strata[0].members.as_slice(), merged.quantities[0].values[0].len()), ([0, 2].as_slice(), 2));
-    let found = merged.quantities[0].measures[0].over(merged.usable().into_iter()).expect("a value");
+    assert_eq!(
+        (merged.strata[0].members.as_slice(), merged.quantities[0].values[0].len()),
+        ([0, 2].as_slice(), 2)
+    );
+    let found =
+        merged.quantities[0].measures[0].over(merged.usable().into_iter()).expect("a value");
     assert!((found - value(&(0..13).collect::<Vec<_>>())).abs() < 1e-12 * found, "{found}");
 }
 
-/// Estimates over selections against every selection by itself: from sums, of one zone, of all. Where selections are drawn at random,
-/// those of one zone are exact all the same.
+/// Estimates over selections against every selection by itself: from sums, of one zone, of all.
+/// Where selections are drawn at random, those of one zone are exact all the same.
 #[test]
 fn a_study_evaluates_estimates_of_groups_for_each_choice_of_their_sections() {
     use fishplate::run::{Shifts, evaluate};
@@ -244,8 +315,11 @@ fn a_study_evaluates_estimates_of_groups_for_each_choice_of_their_sections() {
          limit   median 80 kN for each zone\n",
     );
     let mut problems = Problems::default();
-    let campaign = Campaign::open(&root().join("examples/coach-good"), &mut problems).expect("a campaign");
-    let all = evaluate(&protocol.plan, &protocol.graph, &campaign, &Shifts::NONE, &|_| {}).expect("values").swap_remove(0);
+    let campaign =
+        Campaign::open(&root().join("examples/coach-good"), &mut problems).expect("a campaign");
+    let all = evaluate(&protocol.plan, &protocol.graph, &campaign, &Shifts::NONE, &|_| {})
+        .expect("values")
+        .swap_remove(0);
     let case = Case::of(&all.pool(&protocol.plan), Some(2)).expect("a case");
     let selections = common::pools::every(&case);
     // Two of 3, 3, 3 and 4 sections.
@@ -257,17 +331,38 @@ fn a_study_evaluates_estimates_of_groups_for_each_choice_of_their_sections() {
     let drawn = sampling::some(&case, &StudySettings { most: 0.0, width: 0.2, seed: 1 });
     let statistics = &counted.quantities[0].statistics;
     assert_eq!(statistics.len(), 1 + 4 + 1 + 1 + 4);
-    for (at, (counted, drawn)) in statistics.iter().zip(&drawn.quantities[0].statistics).enumerate() {
+    for (at, (counted, drawn)) in statistics.iter().zip(&drawn.quantities[0].statistics).enumerate()
+    {
         let values: Vec<f64> = judged.iter().filter_map(|(_, all)| all[at].normalised).collect();
-        let failing = judged.iter().filter(|(_, all)| all[at].normalised.is_some() && !all[at].holds).count();
-        assert_eq!((counted.failing * judged.len() as f64).round() as usize, failing, "{} {}", counted.title, counted.scope);
+        let failing =
+            judged.iter().filter(|(_, all)| all[at].normalised.is_some() && !all[at].holds).count();
+        assert_eq!(
+            (counted.failing * judged.len() as f64).round() as usize,
+            failing,
+            "{} {}",
+            counted.title,
+            counted.scope
+        );
         let wanted = common::pools::sorted(values).expect("values");
         let (found, again) = (counted.spread.expect("values"), drawn.spread.expect("values"));
         let parts = [(found, wanted), (again, wanted)];
         for (found, wanted) in parts {
-            let pairs = [(found.min, wanted.min), (found.q1, wanted.q1), (found.median, wanted.median), (found.max, wanted.max)];
-            assert!(pairs.iter().all(|(a, b)| (a - b).abs() <= 1e-12 * b.abs()), "{} {}: {pairs:?}", counted.title, counted.scope);
-            assert_eq!((found.count, found.outliers, found.exact), (wanted.count, wanted.outliers, true));
+            let pairs = [
+                (found.min, wanted.min),
+                (found.q1, wanted.q1),
+                (found.median, wanted.median),
+                (found.max, wanted.max),
+            ];
+            assert!(
+                pairs.iter().all(|(a, b)| (a - b).abs() <= 1e-12 * b.abs()),
+                "{} {}: {pairs:?}",
+                counted.title,
+                counted.scope
+            );
+            assert_eq!(
+                (found.count, found.outliers, found.exact),
+                (wanted.count, wanted.outliers, true)
+            );
         }
     }
 }
@@ -294,15 +389,25 @@ fn order_and_units_change_nothing() {
         all.sort_by(|a, b| (&a.0, &a.1).cmp(&(&b.0, &b.1)));
         all
     };
-    let (plain, turned, newton) = (found("kN", "wheelset and side"), found("kN", "side and wheelset"), found("N", "wheelset and side"));
+    let (plain, turned, newton) = (
+        found("kN", "wheelset and side"),
+        found("kN", "side and wheelset"),
+        found("N", "wheelset and side"),
+    );
     assert_eq!(plain.len(), 8);
     assert_eq!(plain, turned);
     for (a, b) in plain.iter().zip(&newton) {
-        assert!((a.2 * 1000.0 - b.2).abs() <= 1e-12 * b.2 && (a.3 * 1000.0 - b.3).abs() <= 1e-12 * b.3 && a.4 == b.4, "{a:?} {b:?}");
+        assert!(
+            (a.2 * 1000.0 - b.2).abs() <= 1e-12 * b.2
+                && (a.3 * 1000.0 - b.3).abs() <= 1e-12 * b.3
+                && a.4 == b.4,
+            "{a:?} {b:?}"
+        );
     }
 }
 
-/// A condition that cannot be told, or that no section meets, is a reason: its limit does not vanish.
+/// A condition that cannot be told, or that no section meets, is a reason: its limit does not
+/// vanish.
 #[test]
 fn a_limit_does_not_vanish() {
     let protocol = small(
@@ -310,9 +415,18 @@ fn a_limit_does_not_vanish() {
          limit   p60 500 kN for each wheelset where speed > 5000 km/h\n  limit   p70 500 kN for zone 1 and each wheelset where radius < 600 m\n",
     );
     let found = certified(&protocol, &root().join("examples/coach-good"));
-    let of = |name: &str| statistics(&found).iter().find(|one| one.name == name).unwrap_or_else(|| panic!("{name} is missing"));
+    let of = |name: &str| {
+        statistics(&found)
+            .iter()
+            .find(|one| one.name == name)
+            .unwrap_or_else(|| panic!("{name} is missing"))
+    };
     assert_eq!(of("p60").reason.as_deref(), Some("no value is available"));
-    assert!(of("p70").reason.as_deref().expect("a reason").contains("cannot be determined"), "{:?}", of("p70").reason);
+    assert!(
+        of("p70").reason.as_deref().expect("a reason").contains("cannot be determined"),
+        "{:?}",
+        of("p70").reason
+    );
     assert_eq!(found.verdict, Verdict::NotAssessable);
 }
 
@@ -331,29 +445,45 @@ fn groups_are_no_further_limits() {
 }
 
 fn numbers(name: &str) -> Vec<Value> {
-    let text = fs::read_to_string(root().join("tests/cases/values").join(name)).expect("expected numbers");
+    let text =
+        fs::read_to_string(root().join("tests/cases/values").join(name)).expect("expected numbers");
     serde_json::from_str(&text).expect("JSON")
 }
 
-/// Metrics in expressions, coherence, numbers of both sides' samples, derivative, integral, shift and slope over a signal: against
-/// an independent program (12 digits) and NumPy (`cases/values/both_sides.py`), 1e-9 relative.
+/// Metrics in expressions, coherence, numbers of both sides' samples, derivative, integral, shift
+/// and slope over a signal: against an independent program (12 digits) and NumPy
+/// (`cases/values/both_sides.py`), 1e-9 relative.
 #[test]
 fn numbers_of_both_sides_agree_with_numpy() {
-    let protocol = fs::read_to_string(root().join("tests/cases/values/both_sides.fp")).expect("a protocol");
-    let found = certified(&compiled("both_sides.fp", &protocol), &root().join("examples/coach-good"));
+    let protocol =
+        fs::read_to_string(root().join("tests/cases/values/both_sides.fp")).expect("a protocol");
+    let found =
+        certified(&compiled("both_sides.fp", &protocol), &root().join("examples/coach-good"));
     let value_of = |quantity: &str, section: &str, signal: &str| {
-        let known = found.quantities.iter().find(|known| known.id == quantity).unwrap_or_else(|| panic!("no {quantity}"));
+        let known = found
+            .quantities
+            .iter()
+            .find(|known| known.id == quantity)
+            .unwrap_or_else(|| panic!("no {quantity}"));
         let factor = fishplate::units::Unit::parse(&known.unit).expect("a unit").factor;
-        let value = known.values.iter().find(|value| value.section == section && value.signal == signal);
-        let value = value.unwrap_or_else(|| panic!("{quantity} {section} {signal} is missing: {:?}", found.reasons));
-        (value.difference * factor, value.simulated.map(|side| side * factor), value.measured.map(|side| side * factor))
+        let value =
+            known.values.iter().find(|value| value.section == section && value.signal == signal);
+        let value = value.unwrap_or_else(|| {
+            panic!("{quantity} {section} {signal} is missing: {:?}", found.reasons)
+        });
+        (
+            value.difference * factor,
+            value.simulated.map(|side| side * factor),
+            value.measured.map(|side| side * factor),
+        )
     };
     let near = |place: &str, value: f64, want: f64, scale: f64| {
         assert!((value - want).abs() <= 1e-9 * scale.abs(), "{place}: {value} in place of {want}");
     };
     let mut compared = 0;
     for one in numbers("both_sides_filtered.json") {
-        let (section, signal) = (one["section"].as_str().expect("a text"), one["signal"].as_str().expect("a text"));
+        let (section, signal) =
+            (one["section"].as_str().expect("a text"), one["signal"].as_str().expect("a text"));
         let want = |key: &str| one[key].as_f64().unwrap_or_else(|| panic!("no {key}"));
         let channel = &signal[..1];
         let mut all: Vec<(String, f64)> = ["1_2", "2_4", "4_8", "8_16"]
@@ -371,7 +501,12 @@ fn numbers_of_both_sides_agree_with_numpy() {
         all.push(("rating".into(), 0.4 * want("correlation") + 0.6 * (1.0 - want("theil_U1"))));
         for (quantity, want) in all {
             let quantity = format!("{channel}_{quantity}");
-            near(&format!("{quantity} {section} {signal}"), value_of(&quantity, section, signal).0, want, want);
+            near(
+                &format!("{quantity} {section} {signal}"),
+                value_of(&quantity, section, signal).0,
+                want,
+                want,
+            );
             compared += 1;
         }
     }
@@ -389,11 +524,15 @@ fn numbers_of_both_sides_agree_with_numpy() {
             compared += 1;
             continue;
         }
-        let (value, simulated, measured) = value_of(text("quantity"), text("section"), text("signal"));
+        let (value, simulated, measured) =
+            value_of(text("quantity"), text("section"), text("signal"));
         let place = format!("{} {} {}", text("quantity"), text("section"), text("signal"));
         // A difference of two sums over a record loses the digits of these.
-        let scale = one["measured"].as_f64().or(one["value"].as_f64()).expect("a number").abs().max(1e-3);
-        for (key, value) in [("simulated", simulated), ("measured", measured), ("value", Some(value))] {
+        let scale =
+            one["measured"].as_f64().or(one["value"].as_f64()).expect("a number").abs().max(1e-3);
+        for (key, value) in
+            [("simulated", simulated), ("measured", measured), ("value", Some(value))]
+        {
             if let (Some(want), Some(value)) = (one[key].as_f64(), value) {
                 near(&place, value, want, scale);
                 compared += 1;
@@ -403,9 +542,11 @@ fn numbers_of_both_sides_agree_with_numpy() {
     assert!(compared > 2000, "{compared}");
 }
 
-/// Numbers of NumPy, SciPy and `objective-rating-metrics` 1.3: protocol > section > signal > quantity; see `cases/values/metrics.py`.
+/// Numbers of NumPy, SciPy and `objective-rating-metrics` 1.3: protocol > section > signal >
+/// quantity; see `cases/values/metrics.py`.
 fn expected_metrics() -> Value {
-    let text = fs::read_to_string(root().join("tests/cases/values/metrics.json")).expect("expected numbers");
+    let text = fs::read_to_string(root().join("tests/cases/values/metrics.json"))
+        .expect("expected numbers");
     serde_json::from_str(&text).expect("JSON")
 }
 
@@ -414,10 +555,26 @@ fn shipped(name: &str) -> Compiled {
 }
 
 /// In SI, of a quantity, section, signal and, where there are several, record.
-fn value_of(found: &Certification, quantity: &str, section: &str, signal: &str, record: Option<&str>) -> f64 {
-    let of = found.quantities.iter().find(|known| known.id == quantity).unwrap_or_else(|| panic!("no quantity {quantity}"));
-    let is = |value: &&PairValue| value.section == section && value.signal == signal && value.record.as_deref() == record;
-    let value = of.values.iter().find(is).unwrap_or_else(|| panic!("{quantity} has no value of {section} {signal}"));
+fn value_of(
+    found: &Certification,
+    quantity: &str,
+    section: &str,
+    signal: &str,
+    record: Option<&str>,
+) -> f64 {
+    let of = found
+        .quantities
+        .iter()
+        .find(|known| known.id == quantity)
+        .unwrap_or_else(|| panic!("no quantity {quantity}"));
+    let is = |value: &&PairValue| {
+        value.section == section && value.signal == signal && value.record.as_deref() == record
+    };
+    let value = of
+        .values
+        .iter()
+        .find(is)
+        .unwrap_or_else(|| panic!("{quantity} has no value of {section} {signal}"));
     let factor = if of.unit == "kN" { 1000.0 } else { 1.0 };
     value.difference * factor
 }
@@ -426,7 +583,10 @@ fn value_of(found: &Certification, quantity: &str, section: &str, signal: &str, 
 fn agree(value: f64, expected: &Value, what: &str) {
     let expected = expected.as_f64().expect("a number");
     // The numbers are written with 12 digits; a probability of 1e-30 is a zero.
-    assert!((value - expected).abs() <= 1e-9 * expected.abs() + 1e-12, "{what}: {value}, not {expected}");
+    assert!(
+        (value - expected).abs() <= 1e-9 * expected.abs() + 1e-12,
+        "{what}: {value}, not {expected}"
+    );
 }
 
 /// Every metric of the shipped protocols, 1e-9 relative.
@@ -439,15 +599,29 @@ fn shipped_metrics_agree_with_scipy() {
         for (section, signals) in expected[protocol].as_object().expect("sections") {
             for (signal, quantities) in signals.as_object().expect("signals") {
                 for (quantity, number) in quantities.as_object().expect("quantities") {
-                    agree(value_of(&found, quantity, section, signal, None), number, &format!("{quantity} {section} {signal}"));
+                    agree(
+                        value_of(&found, quantity, section, signal, None),
+                        number,
+                        &format!("{quantity} {section} {signal}"),
+                    );
                     numbers += 1;
                 }
             }
         }
         assert!(numbers >= least, "{numbers} numbers of {protocol}");
-        let unverified = |id: &str| found.quantities.iter().find(|of| of.id == id).expect("a quantity").comparison.contains("unverified");
+        let unverified = |id: &str| {
+            found
+                .quantities
+                .iter()
+                .find(|of| of.id == id)
+                .expect("a quantity")
+                .comparison
+                .contains("unverified")
+        };
         if protocol == "metrics-side-by-side" {
-            assert!(unverified("Y_cora") && unverified("az_cora_size") && !unverified("Y_iso18571"));
+            assert!(
+                unverified("Y_cora") && unverified("az_cora_size") && !unverified("Y_iso18571")
+            );
         }
         // Limits that are no one's say so.
         assert!(
@@ -457,7 +631,12 @@ fn shipped_metrics_agree_with_scipy() {
                 .flat_map(|of| &of.statistics)
                 .all(|one| one.limit_text.ends_with("to be confirmed against the standard"))
         );
-        assert!(found.notes.iter().any(|note| note.starts_with("To be confirmed against the standard: `")));
+        assert!(
+            found
+                .notes
+                .iter()
+                .any(|note| note.starts_with("To be confirmed against the standard: `"))
+        );
     }
 }
 
@@ -467,16 +646,31 @@ fn misfits_are_judged_by_repeats_and_model() {
     let expected = expected_metrics();
     let found = certified(&shipped("kraft"), &root().join("examples/repeats"));
     assert_eq!(found.verdict, Verdict::NotValidated);
-    for (section, signals) in expected["kraft"].as_object().expect("sections").iter().filter(|(section, _)| *section != "index") {
+    for (section, signals) in expected["kraft"]
+        .as_object()
+        .expect("sections")
+        .iter()
+        .filter(|(section, _)| *section != "index")
+    {
         for (signal, quantities) in signals.as_object().expect("signals") {
             for (quantity, number) in quantities.as_object().expect("quantities") {
-                let (quantity, record) = quantity.split_once(", ").map_or((quantity.as_str(), None), |(name, record)| (name, Some(record)));
-                agree(value_of(&found, quantity, section, signal, record), number, &format!("{quantity} {section} {signal}"));
+                let (quantity, record) = quantity
+                    .split_once(", ")
+                    .map_or((quantity.as_str(), None), |(name, record)| (name, Some(record)));
+                agree(
+                    value_of(&found, quantity, section, signal, record),
+                    number,
+                    &format!("{quantity} {section} {signal}"),
+                );
             }
         }
     }
     for (name, of) in expected["kraft"]["index"].as_object().expect("quantities") {
-        let quantity = found.quantities.iter().find(|known| known.id == format!("{name}_misfit")).expect("a quantity");
+        let quantity = found
+            .quantities
+            .iter()
+            .find(|known| known.id == format!("{name}_misfit"))
+            .expect("a quantity");
         assert_eq!(quantity.statistics.len(), 2, "one for each model");
         for one in &quantity.statistics {
             let (_, record) = one.group.iter().find(|(key, _)| key == "record").expect("a record");
@@ -485,7 +679,12 @@ fn misfits_are_judged_by_repeats_and_model() {
         }
         let svg = figure::frequency(quantity, &Zones::of(&found));
         assert_eq!(svg.matches("class=\"curve\"").count(), 2, "a curve for each model");
-        assert!(svg.contains("reference (") && svg.contains("soft_guidance (") && !svg.contains("limit 0.8"), "{svg}");
+        assert!(
+            svg.contains("reference (")
+                && svg.contains("soft_guidance (")
+                && !svg.contains("limit 0.8"),
+            "{svg}"
+        );
     }
     // Without sections measured again there is no index, and no verdict.
     let found = certified(&shipped("kraft"), &root().join("examples/coach-good"));

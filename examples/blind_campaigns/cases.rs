@@ -1,5 +1,6 @@
-//! Hidden effects by campaign. Four sets with separate seeds: `derive` for the choice of thresholds, `score` for the scores, `doubt` for
-//! the scores of cases without a cause in the catalogue, `test` for the tests.
+//! Hidden effects by campaign. Four sets with separate seeds: `derive` for the choice of
+//! thresholds, `score` for the scores, `doubt` for the scores of cases without a cause in the
+//! catalogue, `test` for the tests.
 
 use fishplate::model::{TrackTable, Vehicle};
 
@@ -104,7 +105,9 @@ impl Outside {
     /// Offset and factor of a channel in a section.
     pub fn on_channel(self, channel: &str, section: usize) -> (f64, f64) {
         match self {
-            Self::Drift if channel.starts_with("Y_3") || channel.starts_with("Y_4") => (0.6 * section as f64, 1.0),
+            Self::Drift if channel.starts_with("Y_3") || channel.starts_with("Y_4") => {
+                (0.6 * section as f64, 1.0)
+            }
             Self::FadingGain if channel.starts_with('Q') => (0.0, 1.0 - 0.012 * section as f64),
             _ => (0.0, 1.0),
         }
@@ -114,14 +117,20 @@ impl Outside {
 type Row = (&'static str, &'static Design, &'static [&'static str], Option<Outside>);
 
 fn numbered(rows: Vec<Row>) -> Vec<Case> {
-    let case =
-        |(at, (kind, design, effects, outside)): (usize, Row)| Case { number: at + 1, kind, design, effects: effects.to_vec(), outside };
+    let case = |(at, (kind, design, effects, outside)): (usize, Row)| Case {
+        number: at + 1,
+        kind,
+        design,
+        effects: effects.to_vec(),
+        outside,
+    };
     rows.into_iter().enumerate().map(case).collect()
 }
 
 fn derive() -> Vec<Case> {
     let nothing = [&COACH, &WAGON, &RAILCAR, &COACH, &WAGON, &RAILCAR, &COACH, &WAGON];
-    let mut rows: Vec<Row> = nothing.into_iter().map(|design| ("none", design, &[][..], None)).collect();
+    let mut rows: Vec<Row> =
+        nothing.into_iter().map(|design| ("none", design, &[][..], None)).collect();
     let singles: [(&Design, &[&str]); 14] = [
         (&COACH, &["friction=~0.22"]),
         (&WAGON, &["friction=~0.52"]),
@@ -147,9 +156,15 @@ fn derive() -> Vec<Case> {
         (&COACH, &["worn_profile.profile.conicity_scale=~1.8", "sync_shift=~5"]),
     ];
     rows.extend(pairs.into_iter().map(|(design, effects)| ("pair", design, effects, None)));
-    let outside =
-        [(&COACH, Outside::Drift), (&RAILCAR, Outside::SoftLateral), (&COACH, Outside::StiffSecondary), (&RAILCAR, Outside::Joints)];
-    rows.extend(outside.into_iter().map(|(design, outside)| ("outside", design, &[][..], Some(outside))));
+    let outside = [
+        (&COACH, Outside::Drift),
+        (&RAILCAR, Outside::SoftLateral),
+        (&COACH, Outside::StiffSecondary),
+        (&RAILCAR, Outside::Joints),
+    ];
+    rows.extend(
+        outside.into_iter().map(|(design, outside)| ("outside", design, &[][..], Some(outside))),
+    );
     numbered(rows)
 }
 
@@ -164,7 +179,13 @@ fn score() -> Vec<Case> {
         (&COACH, &["worn_profile.profile.worn_share=~0.8"]),
         (&COACH, &["worn_profile.profile.conicity_scale=~2"]),
         (&WAGON, &["worn_profile.profile.conicity_scale=~2"]),
-        (&COACH, &["body_bending.body_bending.frequency=~9", "body_bending.body_bending.modal_mass=~8000"]),
+        (
+            &COACH,
+            &[
+                "body_bending.body_bending.frequency=~9",
+                "body_bending.body_bending.modal_mass=~8000",
+            ],
+        ),
         (&COACH, &["bumpstop_gap=~0.012"]),
         (&COACH, &["yaw_damper_loss=~0.2"]),
         (&RAILCAR, &["centre_friction=~9000"]),
@@ -218,8 +239,11 @@ fn score() -> Vec<Case> {
         (&COACH, Outside::StickingBoxes),
         (&COACH, Outside::FadingGain),
     ];
-    rows.extend(outside.into_iter().map(|(design, outside)| ("outside", design, &[][..], Some(outside))));
-    // A cause that fits one quantity only: friction for the outer leading wheel, a gain for all vertical forces, wind for right curves.
+    rows.extend(
+        outside.into_iter().map(|(design, outside)| ("outside", design, &[][..], Some(outside))),
+    );
+    // A cause that fits one quantity only: friction for the outer leading wheel, a gain for all
+    // vertical forces, wind for right curves.
     let traps: [(&Design, &[&str]); 4] = [
         (&COACH, &["primary_yaw_stiffness=~2.4"]),
         (&WAGON, &["payload=~6000"]),
@@ -230,7 +254,8 @@ fn score() -> Vec<Case> {
     numbered(rows)
 }
 
-/// No effect, and all causes outside the catalogue, on every vehicle; small shares need more campaigns than `score` has.
+/// No effect, and all causes outside the catalogue, on every vehicle; small shares need more
+/// campaigns than `score` has.
 fn doubt() -> Vec<Case> {
     let designs = [&COACH, &RAILCAR, &WAGON];
     let mut rows: Vec<Row> = (0..24).map(|n| ("none", designs[n % 3], &[][..], None)).collect();

@@ -14,8 +14,13 @@ pub fn catalogue() -> Result<Catalogue, String> {
     let known = &fishplate::library::CATALOGUES[0];
     let find = |name: &str, _: &Source| Err(Box::new(Problem::error("unknown", name)));
     let mut problems = Problems::default();
-    read(&Source::new(known.name, known.text), &find, &fishplate::simulate::model_parameters(), &mut problems)
-        .ok_or_else(|| "the catalogue cannot be read".to_string())
+    read(
+        &Source::new(known.name, known.text),
+        &find,
+        &fishplate::simulate::model_parameters(),
+        &mut problems,
+    )
+    .ok_or_else(|| "the catalogue cannot be read".to_string())
 }
 
 /// Effects as on a command line.
@@ -23,7 +28,9 @@ pub fn catalogue() -> Result<Catalogue, String> {
 /// # Errors
 /// An effect is not valid; a message.
 pub fn chosen(catalogue: &Catalogue, texts: &[String]) -> Result<Vec<Applied>, String> {
-    choose(catalogue, texts).map_err(|problems| problems.iter().map(|problem| problem.says.clone()).collect::<Vec<_>>().join("; "))
+    choose(catalogue, texts).map_err(|problems| {
+        problems.iter().map(|problem| problem.says.clone()).collect::<Vec<_>>().join("; ")
+    })
 }
 
 /// An effect in the form of `truth.json`.
@@ -34,7 +41,9 @@ pub fn told(applied: &Applied) -> Value {
     }
     for (name, value) in applied.values.iter().filter(|_| applied.effect != "channel_swap") {
         if name.contains("<channel>") {
-            applied.channels.iter().for_each(|channel| drop(parameters.insert(name.replace("<channel>", channel), json!(value))));
+            applied.channels.iter().for_each(|channel| {
+                drop(parameters.insert(name.replace("<channel>", channel), json!(value)))
+            });
         } else {
             parameters.insert(name.clone(), json!(value));
         }
@@ -42,7 +51,16 @@ pub fn told(applied: &Applied) -> Value {
     let mut effect = json!({"name": applied.effect, "parameters": parameters});
     if let Some(confined) = &applied.confined {
         let (key, value) = match confined.column.as_str() {
-            "zone" => ("zones", json!(confined.values.iter().filter_map(|value| value.parse::<i64>().ok()).collect::<Vec<_>>())),
+            "zone" => (
+                "zones",
+                json!(
+                    confined
+                        .values
+                        .iter()
+                        .filter_map(|value| value.parse::<i64>().ok())
+                        .collect::<Vec<_>>()
+                ),
+            ),
             "section" => ("sections", json!(confined.values)),
             _ => ("direction", json!(confined.values[0])),
         };

@@ -7,7 +7,8 @@ use crate::vehicles::Design;
 
 /// Distance of the points of a track table in m.
 const STEP: f64 = 0.25;
-/// Spectra of ORE B 176, in m rad, and their corners in rad/m: S = A Oc^2 / ((W^2 + Or^2) (W^2 + Oc^2)).
+/// Spectra of ORE B 176, in m rad, and their corners in rad/m: S = A Oc^2 / ((W^2 + Or^2) (W^2 +
+/// Oc^2)).
 const VERTICAL: f64 = 4.032e-7;
 const LATERAL: f64 = 2.119e-7;
 const CORNERS: (f64, f64) = (0.8246, 0.0206);
@@ -56,20 +57,43 @@ pub fn stretches(design: &Design, per_zone: usize, random: &mut Gauss) -> Vec<St
         let radii = [(0.0, 0.0), (800.0, 2000.0), (405.0, 595.0), (255.0, 395.0)][zone - 1];
         for n in 0..per_zone {
             let name = format!("S{:02}", all.len() + 1);
-            let between = |random: &mut Gauss, (low, high): (f64, f64)| low + (high - low) * random.uniform();
+            let between =
+                |random: &mut Gauss, (low, high): (f64, f64)| low + (high - low) * random.uniform();
             if zone == 1 {
                 let speed = between(random, (0.8 * design.speeds.1, design.speeds.1));
-                all.push(Stretch { name, zone, start: 100.0, end: 350.0, radius: None, left: false, cant: 0.0, deficiency: 0.0, speed });
+                all.push(Stretch {
+                    name,
+                    zone,
+                    start: 100.0,
+                    end: 350.0,
+                    radius: None,
+                    left: false,
+                    cant: 0.0,
+                    deficiency: 0.0,
+                    speed,
+                });
                 continue;
             }
             let radius = (between(random, radii) / 5.0).round() * 5.0;
-            let cant = [0.0, 50.0, 95.0, 95.0][zone - 1] + 5.0 * (between(random, (-5.0, 5.0))).round();
+            let cant =
+                [0.0, 50.0, 95.0, 95.0][zone - 1] + 5.0 * (between(random, (-5.0, 5.0))).round();
             let wanted = between(random, (0.45 * design.deficiency, design.deficiency));
-            let speed = (3.6 * (9.81 * radius * (wanted + cant) / 1500.0).sqrt()).clamp(design.speeds.0, design.speeds.1);
+            let speed = (3.6 * (9.81 * radius * (wanted + cant) / 1500.0).sqrt())
+                .clamp(design.speeds.0, design.speeds.1);
             let deficiency = 1500.0 * (speed / 3.6).powi(2) / (9.81 * radius) - cant;
             let start = 40.0 + ramp(cant) + 30.0;
             let long = if zone == 4 { 80.0 } else { 110.0 };
-            all.push(Stretch { name, zone, start, end: start + long, radius: Some(radius), left: n % 2 == 1, cant, deficiency, speed });
+            all.push(Stretch {
+                name,
+                zone,
+                start,
+                end: start + long,
+                radius: Some(radius),
+                left: n % 2 == 1,
+                cant,
+                deficiency,
+                speed,
+            });
         }
     }
     all
@@ -94,14 +118,24 @@ impl Irregularities {
             .map(|n| {
                 let from = low * ratio.powi(n as i32);
                 let (wave, width) = (from * ratio.sqrt(), from * (ratio - 1.0));
-                let spectrum = |a: f64| a * CORNERS.0.powi(2) / ((wave.powi(2) + CORNERS.1.powi(2)) * (wave.powi(2) + CORNERS.0.powi(2)));
+                let spectrum = |a: f64| {
+                    a * CORNERS.0.powi(2)
+                        / ((wave.powi(2) + CORNERS.1.powi(2)) * (wave.powi(2) + CORNERS.0.powi(2)))
+                };
                 let amplitude = |a: f64| 1e3 * (2.0 * spectrum(a) * width).sqrt();
                 let (vertical, lateral) = (amplitude(1.5 * VERTICAL), amplitude(1.5 * LATERAL));
                 let mut phase = || std::f64::consts::TAU * random.uniform();
-                (wave, [lateral, vertical, 0.8 * vertical, 0.4 * lateral], [phase(), phase(), phase(), phase()])
+                (
+                    wave,
+                    [lateral, vertical, 0.8 * vertical, 0.4 * lateral],
+                    [phase(), phase(), phase(), phase()],
+                )
             })
             .collect();
-        Self { waves, modulation: (0.02 + 0.03 * random.uniform(), std::f64::consts::TAU * random.uniform()) }
+        Self {
+            waves,
+            modulation: (0.02 + 0.03 * random.uniform(), std::f64::consts::TAU * random.uniform()),
+        }
     }
 
     /// Alignment, level, cross level and gauge in mm.

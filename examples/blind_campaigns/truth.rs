@@ -1,7 +1,10 @@
 //! The truth: deviations within the tolerances, and the effects.
 
 use fishplate::effects::{Channel, Gauss, Signals};
-use fishplate::model::{CHANNELS, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, Window, simulate_with};
+use fishplate::model::{
+    CHANNELS, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, Window,
+    simulate_with,
+};
 
 use crate::cases::Outside;
 use crate::line::Stretch;
@@ -70,9 +73,17 @@ impl Declared {
     }
 }
 
-const STIFFNESSES: [&str; 7] =
-    ["primary.kx", "primary.ky", "primary.kz", "secondary.kx", "secondary.ky", "secondary.kz", "secondary.anti_roll_stiffness"];
-const DAMPINGS: [&str; 5] = ["primary.cz", "primary.cy", "secondary.cz", "secondary.cy", "secondary.yaw_damper_damping"];
+const STIFFNESSES: [&str; 7] = [
+    "primary.kx",
+    "primary.ky",
+    "primary.kz",
+    "secondary.kx",
+    "secondary.ky",
+    "secondary.kz",
+    "secondary.anti_roll_stiffness",
+];
+const DAMPINGS: [&str; 5] =
+    ["primary.cz", "primary.cy", "secondary.cz", "secondary.cy", "secondary.yaw_damper_damping"];
 const MASSES: [&str; 7] = [
     "car_body.mass",
     "car_body.inertia_roll",
@@ -104,10 +115,15 @@ impl World {
     pub fn draw(random: &mut Gauss) -> Self {
         let declared = &DECLARED;
         let mut factors = Vec::new();
-        for (keys, sd) in [(&STIFFNESSES[..], declared.stiffness), (&DAMPINGS[..], declared.damping), (&MASSES[..], declared.masses)] {
+        for (keys, sd) in [
+            (&STIFFNESSES[..], declared.stiffness),
+            (&DAMPINGS[..], declared.damping),
+            (&MASSES[..], declared.masses),
+        ] {
             keys.iter().for_each(|key| factors.push((*key, (sd * random.next()).exp())));
         }
-        let between = |random: &mut Gauss, low: f64, high: f64| low + (high - low) * random.uniform();
+        let between =
+            |random: &mut Gauss, low: f64, high: f64| low + (high - low) * random.uniform();
         Self {
             factors,
             conicity: (declared.conicity * random.next()).exp(),
@@ -121,13 +137,24 @@ impl World {
             bending: (between(random, 11.5, 14.0), between(random, 25_000.0, 45_000.0)),
             bend_of_profile: [0.02 * random.next(), 0.02 * random.next()],
             gains: (0..CHANNELS.len()).map(|_| 1.0 + declared.gain * random.next()).collect(),
-            offsets: CHANNELS.iter().map(|(name, _)| declared.offset[kind(name)] * random.next()).collect(),
+            offsets: CHANNELS
+                .iter()
+                .map(|(name, _)| declared.offset[kind(name)] * random.next())
+                .collect(),
         }
     }
 
-    fn vehicle(&self, nominal: &Vehicle, settings: &[(String, f64)], friction: f64, outside: Option<Outside>) -> Result<Vehicle, String> {
+    fn vehicle(
+        &self,
+        nominal: &Vehicle,
+        settings: &[(String, f64)],
+        friction: f64,
+        outside: Option<Outside>,
+    ) -> Result<Vehicle, String> {
         let mut vehicle = nominal.clone();
-        let set = |vehicle: &mut Vehicle, key: &str, value: f64| vehicle.set(key, value).map_err(|_| format!("{key} = {value}"));
+        let set = |vehicle: &mut Vehicle, key: &str, value: f64| {
+            vehicle.set(key, value).map_err(|_| format!("{key} = {value}"))
+        };
         for (key, value) in settings {
             set(&mut vehicle, key, *value)?;
         }
@@ -171,8 +198,8 @@ impl World {
             for (i, displacement) in table.displacement.iter().enumerate() {
                 for (side, sign) in [(0, 1.0), (1, -1.0)] {
                     let u = sign * displacement;
-                    bent.radius_deviation[side][i] +=
-                        self.bend_of_profile[0] * (u / 2.5).sin() + self.bend_of_profile[1] * (u / 4.0).tanh();
+                    bent.radius_deviation[side][i] += self.bend_of_profile[0] * (u / 2.5).sin()
+                        + self.bend_of_profile[1] * (u / 4.0).tanh();
                     bent.contact_angle[side][i] *= 1.0 + self.bend_of_profile[1];
                 }
                 if outside == Some(Outside::WheelRadii) {
@@ -181,26 +208,40 @@ impl World {
             }
             bent
         };
-        Profile::new(&bent(table), worn.map(bent).as_ref(), vehicle).ok_or_else(|| "no profile".to_string())
+        Profile::new(&bent(table), worn.map(bent).as_ref(), vehicle)
+            .ok_or_else(|| "no profile".to_string())
     }
 
     /// The true track, which differs from the recorded one.
-    fn track(&self, measured: &TrackTable, random: &mut Gauss, outside: Option<Outside>) -> TrackTable {
+    fn track(
+        &self,
+        measured: &TrackTable,
+        random: &mut Gauss,
+        outside: Option<Outside>,
+    ) -> TrackTable {
         let declared = &DECLARED;
         let mut track = measured.clone();
         let scatter = self.irregularity * (declared.irregularity * random.next()).exp();
-        let full = measured.curvature.iter().fold(0.0_f64, |most, kappa| most.max(kappa.abs())).max(1e-9);
-        let (cant, bend) = (declared.cant * random.next(), 1.0 + declared.curvature * random.next());
+        let full =
+            measured.curvature.iter().fold(0.0_f64, |most, kappa| most.max(kappa.abs())).max(1e-9);
+        let (cant, bend) =
+            (declared.cant * random.next(), 1.0 + declared.curvature * random.next());
         for i in 0..track.distance.len() {
             track.cant[i] += cant * measured.curvature[i] / full;
             track.curvature[i] *= bend;
         }
         let lateral = self.lateral * scatter;
-        for (column, factor) in
-            [(&mut track.alignment, lateral), (&mut track.level, scatter), (&mut track.cross_level, scatter), (&mut track.gauge, lateral)]
-        {
+        for (column, factor) in [
+            (&mut track.alignment, lateral),
+            (&mut track.level, scatter),
+            (&mut track.cross_level, scatter),
+            (&mut track.gauge, lateral),
+        ] {
             let rest = residual(column.len(), random);
-            column.iter_mut().zip(rest).for_each(|(value, rest)| *value = factor * *value + declared.residual * rest);
+            column
+                .iter_mut()
+                .zip(rest)
+                .for_each(|(value, rest)| *value = factor * *value + declared.residual * rest);
         }
         track.gauge.iter_mut().for_each(|gauge| *gauge += self.clearance);
         if let Some(outside) = outside {
@@ -214,22 +255,41 @@ impl World {
     /// # Errors
     /// The run fails.
     pub fn record(&self, made: &Making<'_>, random: &mut Gauss) -> Result<Signals, String> {
-        let vehicle = self.vehicle(made.nominal, made.settings, DECLARED.friction * random.next(), made.outside)?;
+        let vehicle = self.vehicle(
+            made.nominal,
+            made.settings,
+            DECLARED.friction * random.next(),
+            made.outside,
+        )?;
         let profile = self.profile(made.profile, made.worn, &vehicle, made.outside)?;
         let track = self.track(made.track, random, made.outside);
-        let speed = made.stretch.speed / 3.6 * (1.0 + 0.002 * random.next()) * made.outside.map_or(1.0, Outside::speed);
+        let speed = made.stretch.speed / 3.6
+            * (1.0 + 0.002 * random.next())
+            * made.outside.map_or(1.0, Outside::speed);
         let around = Window::around(made.stretch.start, made.stretch.end);
         let window = Window { from: around.from - made.shift, to: around.to - made.shift };
         let setup = Setup { vehicle: &vehicle, profile: &profile, track: &track, speed };
-        let record = simulate_with(&setup, window, Some(2)).map_err(|failure| failure.to_string())?;
-        let channels = CHANNELS.iter().zip(record.channels).map(|((name, _), values)| Channel { name: (*name).to_string(), values });
-        Ok(Signals { axis: record.distance, over_time: false, rate: SAMPLING_RATE, channels: channels.collect() })
+        let record =
+            simulate_with(&setup, window, Some(2)).map_err(|failure| failure.to_string())?;
+        let channels = CHANNELS
+            .iter()
+            .zip(record.channels)
+            .map(|((name, _), values)| Channel { name: (*name).to_string(), values });
+        Ok(Signals {
+            axis: record.distance,
+            over_time: false,
+            rate: SAMPLING_RATE,
+            channels: channels.collect(),
+        })
     }
 
     /// Applies gain and offset of every channel, within their tolerances.
     pub fn calibrate(&self, signals: &mut Signals) {
         for (at, channel) in signals.channels.iter_mut().enumerate() {
-            channel.values.iter_mut().for_each(|value| *value = self.gains[at] * *value + self.offsets[at]);
+            channel
+                .values
+                .iter_mut()
+                .for_each(|value| *value = self.gains[at] * *value + self.offsets[at]);
         }
     }
 }

@@ -15,8 +15,14 @@ pub struct Design {
     differs: &'static [(&'static str, f64)],
 }
 
-pub const COACH: Design =
-    Design { name: "Coach", category: "passenger", secondary_suspension: true, speeds: (60.0, 160.0), deficiency: 105.0, differs: &[] };
+pub const COACH: Design = Design {
+    name: "Coach",
+    category: "passenger",
+    secondary_suspension: true,
+    speeds: (60.0, 160.0),
+    deficiency: 105.0,
+    differs: &[],
+};
 
 pub const RAILCAR: Design = Design {
     name: "Railcar",
@@ -99,7 +105,10 @@ impl Design {
     /// The example cannot be read.
     pub fn vehicle(&self) -> Result<Vehicle, String> {
         let mut vehicle = nominal()?;
-        self.differs.iter().try_for_each(|(key, value)| vehicle.set(key, *value)).map_err(|_| "a value is not admissible")?;
+        self.differs
+            .iter()
+            .try_for_each(|(key, value)| vehicle.set(key, *value))
+            .map_err(|_| "a value is not admissible")?;
         Ok(vehicle)
     }
 }
@@ -111,9 +120,12 @@ pub fn example() -> &'static Path {
 
 fn nominal() -> Result<Vehicle, String> {
     let path = example().join("vehicle.yaml");
-    let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let text =
+        std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
     let source = fishplate::source::Source::new("vehicle.yaml", text);
-    let tree = fishplate::yaml::load(&source, &mut fishplate::problem::Problems::default()).ok_or("vehicle.yaml is no YAML")?;
-    let number = |key: &str| tree.lookup(key).and_then(|node| fishplate::simulate::number_of(node, key));
+    let tree = fishplate::yaml::load(&source, &mut fishplate::problem::Problems::default())
+        .ok_or("vehicle.yaml is no YAML")?;
+    let number =
+        |key: &str| tree.lookup(key).and_then(|node| fishplate::simulate::number_of(node, key));
     Vehicle::from_values(number).map_err(|_| "vehicle.yaml lacks something".to_string())
 }

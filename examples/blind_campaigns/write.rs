@@ -7,7 +7,9 @@ use fishplate::data::table::Cell;
 use fishplate::data::write::Outputs;
 use fishplate::disk::SetKind;
 use fishplate::effects::{Applied, Catalogue, Channel, Gauss, Signals};
-use fishplate::model::{CHANNELS, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, Window, simulate};
+use fishplate::model::{
+    CHANNELS, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, Window, simulate,
+};
 use fishplate::simulate::{Fact, Plan, Section, record_file};
 use fishplate::source::Source;
 use fishplate::units::Unit;
@@ -41,12 +43,18 @@ fn make(out: &Path, set: &Set, case: &Case, draw: u64) -> Result<(), String> {
     let world = World::draw(&mut random);
     let name = format!("{}-{:02}", set.name, case.number);
     let mut outputs = Outputs::of(SetKind::Campaign, out.join(&name));
-    let mut add = |inside: &str, bytes: &[u8]| outputs.add(inside, bytes).map_err(|problem| problem.says);
-    let mut table = String::from("section,zone [-],start [m],end [m],radius [m],direction,cant [mm],cant deficiency [mm],speed [km/h]\n");
-    for (at, stretch) in stretches(case.design, set.sections_per_zone, &mut random).iter().enumerate() {
+    let mut add =
+        |inside: &str, bytes: &[u8]| outputs.add(inside, bytes).map_err(|problem| problem.says);
+    let mut table = String::from(
+        "section,zone [-],start [m],end [m],radius [m],direction,cant [mm],cant deficiency [mm],speed [km/h]\n",
+    );
+    for (at, stretch) in
+        stretches(case.design, set.sections_per_zone, &mut random).iter().enumerate()
+    {
         let irregularities = Irregularities::draw(&mut random);
         let track = measured(stretch, &irregularities);
-        let plan = Plan::new(&catalogue, &effects, &section(stretch), None).map_err(|problem| problem.says)?;
+        let plan = Plan::new(&catalogue, &effects, &section(stretch), None)
+            .map_err(|problem| problem.says)?;
         let making = Making {
             nominal: &nominal,
             profile: &new,
@@ -57,7 +65,9 @@ fn make(out: &Path, set: &Set, case: &Case, draw: u64) -> Result<(), String> {
             shift: plan.shift(),
             outside: case.outside,
         };
-        let mut signals = world.record(&making, &mut random).map_err(|why| format!("section {}: {why}", stretch.name))?;
+        let mut signals = world
+            .record(&making, &mut random)
+            .map_err(|why| format!("section {}: {why}", stretch.name))?;
         world.calibrate(&mut signals);
         plan.operate(&mut signals, &section(stretch)).map_err(|problem| problem.says)?;
         noise(&mut signals, &mut random);
@@ -68,11 +78,19 @@ fn make(out: &Path, set: &Set, case: &Case, draw: u64) -> Result<(), String> {
             }
         }
         let unit = |name: &str| {
-            Unit::parse(CHANNELS.iter().find(|(known, _)| *known == name).map_or("-", |(_, unit)| unit)).unwrap_or_else(|_| Unit::one())
+            Unit::parse(
+                CHANNELS.iter().find(|(known, _)| *known == name).map_or("-", |(_, unit)| unit),
+            )
+            .unwrap_or_else(|_| Unit::one())
         };
-        let bytes = |signals: &Signals| record_file(Format::Csv, signals, &unit).map_err(|problem| problem.says);
+        let bytes = |signals: &Signals| {
+            record_file(Format::Csv, signals, &unit).map_err(|problem| problem.says)
+        };
         add(&format!("measurement/{}.csv", stretch.name), &bytes(&signals)?)?;
-        add(&format!("simulation/{}.csv", stretch.name), &bytes(&simulated(&nominal, &new, &track, stretch)?)?)?;
+        add(
+            &format!("simulation/{}.csv", stretch.name),
+            &bytes(&simulated(&nominal, &new, &track, stretch)?)?,
+        )?;
         add(&format!("track/{}.csv", stretch.name), track_text(&track).as_bytes())?;
         table += &row(stretch);
     }
@@ -93,7 +111,9 @@ fn drawn(catalogue: &Catalogue, case: &Case, random: &mut Gauss) -> Result<Vec<A
             texts.push((*effect).to_string());
             continue;
         };
-        let (number, rest) = after.split_once(' ').map_or((after, String::new()), |(number, rest)| (number, format!(" {rest}")));
+        let (number, rest) = after
+            .split_once(' ')
+            .map_or((after, String::new()), |(number, rest)| (number, format!(" {rest}")));
         let number: f64 = number.parse().map_err(|_| format!("`{number}` is not a number"))?;
         texts.push(format!("{before}{:.5}{rest}", number * (0.85 + 0.3 * random.uniform())));
     }
@@ -103,18 +123,41 @@ fn drawn(catalogue: &Catalogue, case: &Case, random: &mut Gauss) -> Result<Vec<A
 /// The section, for the confinements of the catalogue.
 fn section(stretch: &Stretch) -> Section {
     let fact = |name: &str, text: String| Fact { name: name.to_string(), text, unit: None };
-    let facts = vec![fact("zone", stretch.zone.to_string()), fact("direction", stretch.direction().to_string())];
+    let facts = vec![
+        fact("zone", stretch.zone.to_string()),
+        fact("direction", stretch.direction().to_string()),
+    ];
     let cell = Cell::new(stretch.name.clone(), Source::new("sections.csv", "").whole());
-    Section { cell, start: stretch.start, end: stretch.end, speed: Some(stretch.speed / 3.6), facts }
+    Section {
+        cell,
+        start: stretch.start,
+        end: stretch.end,
+        speed: Some(stretch.speed / 3.6),
+        facts,
+    }
 }
 
 /// The record of the simulation, without any effect, on the measured track.
-fn simulated(vehicle: &Vehicle, table: &ProfileTable, track: &TrackTable, stretch: &Stretch) -> Result<Signals, String> {
+fn simulated(
+    vehicle: &Vehicle,
+    table: &ProfileTable,
+    track: &TrackTable,
+    stretch: &Stretch,
+) -> Result<Signals, String> {
     let profile = Profile::new(table, None, vehicle).ok_or("no profile")?;
     let setup = Setup { vehicle, profile: &profile, track, speed: stretch.speed / 3.6 };
-    let record = simulate(&setup, Window::around(stretch.start, stretch.end)).map_err(|failure| failure.to_string())?;
-    let channels = CHANNELS.iter().zip(record.channels).map(|((name, _), values)| Channel { name: (*name).to_string(), values });
-    Ok(Signals { axis: record.distance, over_time: false, rate: SAMPLING_RATE, channels: channels.collect() })
+    let record = simulate(&setup, Window::around(stretch.start, stretch.end))
+        .map_err(|failure| failure.to_string())?;
+    let channels = CHANNELS
+        .iter()
+        .zip(record.channels)
+        .map(|((name, _), values)| Channel { name: (*name).to_string(), values });
+    Ok(Signals {
+        axis: record.distance,
+        over_time: false,
+        rate: SAMPLING_RATE,
+        channels: channels.collect(),
+    })
 }
 
 fn copied(name: &str) -> Result<String, String> {
@@ -123,24 +166,40 @@ fn copied(name: &str) -> Result<String, String> {
 
 fn profile(name: &str) -> Result<ProfileTable, String> {
     let text = copied(name)?;
-    let rows: Vec<Vec<f64>> =
-        text.lines().skip(1).map(|line| line.split(',').filter_map(|cell| cell.trim().parse().ok()).collect()).collect();
-    let column = |at: usize| rows.iter().filter_map(|row| row.get(at).copied()).collect::<Vec<f64>>();
-    Ok(ProfileTable { displacement: column(0), radius_deviation: [column(1), column(2)], contact_angle: [column(3), column(4)] })
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').filter_map(|cell| cell.trim().parse().ok()).collect())
+        .collect();
+    let column =
+        |at: usize| rows.iter().filter_map(|row| row.get(at).copied()).collect::<Vec<f64>>();
+    Ok(ProfileTable {
+        displacement: column(0),
+        radius_deviation: [column(1), column(2)],
+        contact_angle: [column(3), column(4)],
+    })
 }
 
 fn row(stretch: &Stretch) -> String {
     let Stretch { name, zone, start, end, cant, deficiency, speed, .. } = stretch;
     let radius = stretch.radius.map_or(String::new(), |radius| format!("{radius}"));
-    format!("{name},{zone},{start:.2},{end:.2},{radius},{},{cant:.0},{deficiency:.1},{speed:.1}\n", stretch.direction())
+    format!(
+        "{name},{zone},{start:.2},{end:.2},{radius},{},{cant:.0},{deficiency:.1},{speed:.1}\n",
+        stretch.direction()
+    )
 }
 
 fn track_text(track: &TrackTable) -> String {
-    let mut text = String::from("distance [m],curvature [1/m],cant [mm],alignment [mm],level [mm],cross level [mm],gauge [mm]\n");
+    let mut text = String::from(
+        "distance [m],curvature [1/m],cant [mm],alignment [mm],level [mm],cross level [mm],gauge [mm]\n",
+    );
     for i in 0..track.distance.len() {
         let (distance, curvature, cant) = (track.distance[i], track.curvature[i], track.cant[i]);
-        let (alignment, level, cross, gauge) = (track.alignment[i], track.level[i], track.cross_level[i], track.gauge[i]);
-        text += &format!("{distance:.2},{curvature:.9},{cant:.4},{alignment:.3},{level:.3},{cross:.3},{gauge:.3}\n");
+        let (alignment, level, cross, gauge) =
+            (track.alignment[i], track.level[i], track.cross_level[i], track.gauge[i]);
+        text += &format!(
+            "{distance:.2},{curvature:.9},{cant:.4},{alignment:.3},{level:.3},{cross:.3},{gauge:.3}\n"
+        );
     }
     text
 }
@@ -158,7 +217,8 @@ fn vehicle_text(case: &Case, vehicle: &Vehicle) -> String {
     let mut group = "";
     for parameter in fishplate::model::PARAMETERS {
         let value = vehicle.get(parameter.key).unwrap_or(0.0);
-        let unit = if parameter.unit == "-" { String::new() } else { format!(" {}", parameter.unit) };
+        let unit =
+            if parameter.unit == "-" { String::new() } else { format!(" {}", parameter.unit) };
         match parameter.key.split_once('.') {
             None => text += &format!("{}: {value:e}{unit}\n", parameter.key),
             Some((own, name)) => {
@@ -166,7 +226,11 @@ fn vehicle_text(case: &Case, vehicle: &Vehicle) -> String {
                     text += &format!("{own}:\n");
                     group = own;
                 }
-                let value = if parameter.key == "out_of_roundness.side" { "both".to_string() } else { format!("{value:e}{unit}") };
+                let value = if parameter.key == "out_of_roundness.side" {
+                    "both".to_string()
+                } else {
+                    format!("{value:e}{unit}")
+                };
                 text += &format!("  {name}: {value}\n");
             }
         }

@@ -21,19 +21,33 @@ fn fault(name: &'static str, put: impl Fn(&mut Folder) -> Told + Sync + 'static)
     Fault { name, put: Box::new(put) }
 }
 
-fn of_vehicle(name: &'static str, key: &'static str, value: impl Fn(f64) -> String + Sync + 'static) -> Fault {
+fn of_vehicle(
+    name: &'static str,
+    key: &'static str,
+    value: impl Fn(f64) -> String + Sync + 'static,
+) -> Fault {
     fault(name, move |folder| {
-        let number = |old: &str| old.split_whitespace().next().and_then(|first| first.parse().ok()).unwrap_or(0.0);
+        let number = |old: &str| {
+            old.split_whitespace().next().and_then(|first| first.parse().ok()).unwrap_or(0.0)
+        };
         folder.vehicle(key, |old| value(number(old)));
         Told { sections: Vec::new(), channels: &[] }
     })
 }
 
 /// Channels multiplied by a factor in all sections.
-fn scaled(name: &'static str, side: Side, begins: &'static [&'static str], factor: f64, told: &'static [&'static str]) -> Fault {
+fn scaled(
+    name: &'static str,
+    side: Side,
+    begins: &'static [&'static str],
+    factor: f64,
+    told: &'static [&'static str],
+) -> Fault {
     fault(name, move |folder| {
         let sections = folder.sections("");
-        folder.channels(side, &sections, begins, |values| values.iter().map(|value| value * factor).collect());
+        folder.channels(side, &sections, begins, |values| {
+            values.iter().map(|value| value * factor).collect()
+        });
         Told { sections: Vec::new(), channels: told }
     })
 }
@@ -84,12 +98,22 @@ fn mean(values: &[f64]) -> f64 {
 fn held_from(from: f64, to: f64) -> impl Fn(&[f64]) -> Vec<f64> + Sync {
     move |values| {
         let (a, b) = ((from * values.len() as f64) as usize, (to * values.len() as f64) as usize);
-        values.iter().enumerate().map(|(at, value)| if (a..b).contains(&at) { values[a] } else { *value }).collect()
+        values
+            .iter()
+            .enumerate()
+            .map(|(at, value)| if (a..b).contains(&at) { values[a] } else { *value })
+            .collect()
     }
 }
 
 fn drifting(by: f64) -> impl Fn(&[f64]) -> Vec<f64> + Sync {
-    move |values| values.iter().enumerate().map(|(at, value)| value + by * at as f64 / values.len() as f64).collect()
+    move |values| {
+        values
+            .iter()
+            .enumerate()
+            .map(|(at, value)| value + by * at as f64 / values.len() as f64)
+            .collect()
+    }
 }
 
 fn clipped(at: f64) -> impl Fn(&[f64]) -> Vec<f64> + Sync {
@@ -105,10 +129,14 @@ fn coarse(step: f64) -> impl Fn(&[f64]) -> Vec<f64> + Sync {
 
 /// White noise with twice the range of the signal, as of an open input.
 fn hiss(values: &[f64]) -> Vec<f64> {
-    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(*value), high.max(*value))
+        });
     let mut state = 3_u64;
     let mut uniform = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
     values.iter().map(|_| (high - low) * (2.0 * uniform() - 1.0)).collect()
@@ -119,7 +147,8 @@ fn copied(folder: &mut Folder, side: Side, sections: &[String], from: &str, to: 
     for kind in side.folders() {
         for section in sections {
             let table = folder.tables.get_mut(&format!("{kind}/{section}.csv")).expect("a record");
-            let (from, to) = (table.column(from).expect("a channel"), table.column(to).expect("a channel"));
+            let (from, to) =
+                (table.column(from).expect("a channel"), table.column(to).expect("a channel"));
             for row in &mut table.rows {
                 row[to] = row[from].clone();
             }
@@ -137,7 +166,12 @@ fn exchanged(folder: &mut Folder, side: Side, sections: &[String], a: &str, b: &
     }
 }
 
-fn along(name: &'static str, side: Side, column: &'static str, change: impl Fn(&[f64]) -> Vec<f64> + Sync + 'static) -> Fault {
+fn along(
+    name: &'static str,
+    side: Side,
+    column: &'static str,
+    change: impl Fn(&[f64]) -> Vec<f64> + Sync + 'static,
+) -> Fault {
     fault(name, move |folder| {
         let sections = folder.sections("");
         folder.channels(side, &sections, &[column], &change);
@@ -162,7 +196,12 @@ fn record(folder: &mut Folder, from: &str, to: &str) {
 }
 
 /// A cell of the table of sections in the second section of a zone.
-fn in_table(name: &'static str, zone: &'static str, column: &'static str, change: impl Fn(&str) -> String + Sync + 'static) -> Fault {
+fn in_table(
+    name: &'static str,
+    zone: &'static str,
+    column: &'static str,
+    change: impl Fn(&str) -> String + Sync + 'static,
+) -> Fault {
     fault(name, move |folder| {
         let section = folder.sections(zone)[1].clone();
         let cell = folder.cell(&section, column);
@@ -268,7 +307,13 @@ fn signs() -> Vec<Fault> {
         fault("left and right vertical forces exchanged on both sides", |folder| {
             let sections = folder.sections("");
             for wheelset in 1..=4 {
-                exchanged(folder, Side::Both, &sections, &format!("Q_{wheelset}R"), &format!("Q_{wheelset}L"));
+                exchanged(
+                    folder,
+                    Side::Both,
+                    &sections,
+                    &format!("Q_{wheelset}R"),
+                    &format!("Q_{wheelset}L"),
+                );
             }
             Told { sections: Vec::new(), channels: OF_Q }
         }),
@@ -290,7 +335,13 @@ fn signs() -> Vec<Fault> {
         fault("left and right guiding forces exchanged on both sides", |folder| {
             let sections = folder.sections("");
             for wheelset in 1..=4 {
-                exchanged(folder, Side::Both, &sections, &format!("Y_{wheelset}R"), &format!("Y_{wheelset}L"));
+                exchanged(
+                    folder,
+                    Side::Both,
+                    &sections,
+                    &format!("Y_{wheelset}R"),
+                    &format!("Y_{wheelset}L"),
+                );
             }
             Told { sections: Vec::new(), channels: OF_Y }
         }),
@@ -303,7 +354,9 @@ fn channels() -> Vec<Fault> {
     vec![
         fault("all channels 1 on both sides", |folder| {
             let sections = folder.sections("");
-            folder.channels(Side::Both, &sections, &["Y", "Q", "a"], |values| vec![1.0; values.len()]);
+            folder.channels(Side::Both, &sections, &["Y", "Q", "a"], |values| {
+                vec![1.0; values.len()]
+            });
             Told { sections, channels: &["Y_1R", "Q_1R"] }
         }),
         in_section("Y_1R measured dead at 0", one, "4", "Y_1R", constant(0.0)),
@@ -330,8 +383,11 @@ fn channels() -> Vec<Fault> {
 
 fn clocks_and_distances() -> Vec<Fault> {
     let (both, one, other) = (Side::Both, Side::Measurement, Side::Simulation);
-    let times = |factor: f64| move |values: &[f64]| values.iter().map(|value| value * factor).collect::<Vec<f64>>();
-    let plus = |by: f64| move |values: &[f64]| values.iter().map(|value| value + by).collect::<Vec<f64>>();
+    let times = |factor: f64| {
+        move |values: &[f64]| values.iter().map(|value| value * factor).collect::<Vec<f64>>()
+    };
+    let plus =
+        |by: f64| move |values: &[f64]| values.iter().map(|value| value + by).collect::<Vec<f64>>();
     vec![
         along("clock fast by a fifth on both sides", both, "time", times(1.2)),
         along("clock twice as fast in the measurement", one, "time", times(2.0)),
@@ -348,18 +404,23 @@ fn clocks_and_distances() -> Vec<Fault> {
 
 fn copies() -> Vec<Fault> {
     let (both, one, other) = (Side::Both, Side::Measurement, Side::Simulation);
-    let channel = |name, side: Side, from: &'static str, to: &'static str, told: &'static [&'static str]| {
-        fault(name, move |folder: &mut Folder| {
-            let sections = folder.sections("");
-            copied(folder, side, &sections, from, to);
-            Told { sections, channels: told }
-        })
-    };
+    let channel =
+        |name, side: Side, from: &'static str, to: &'static str, told: &'static [&'static str]| {
+            fault(name, move |folder: &mut Folder| {
+                let sections = folder.sections("");
+                copied(folder, side, &sections, from, to);
+                Told { sections, channels: told }
+            })
+        };
     let section = |name, side: Side| {
         fault(name, move |folder: &mut Folder| {
             let all = folder.sections("4");
             for kind in side.folders() {
-                record(folder, &format!("{kind}/{}.csv", all[0]), &format!("{kind}/{}.csv", all[1]));
+                record(
+                    folder,
+                    &format!("{kind}/{}.csv", all[0]),
+                    &format!("{kind}/{}.csv", all[1]),
+                );
             }
             for column in ["start", "end"] {
                 let value = folder.cell(&all[0], column).clone();
@@ -378,7 +439,11 @@ fn copies() -> Vec<Fault> {
         fault("the measurement is a copy of the simulation", |folder| {
             let sections = folder.sections("");
             for section in &sections {
-                record(folder, &format!("simulation/{section}.csv"), &format!("measurement/{section}.csv"));
+                record(
+                    folder,
+                    &format!("simulation/{section}.csv"),
+                    &format!("measurement/{section}.csv"),
+                );
             }
             Told { sections, channels: &["Y_1R"] }
         }),
@@ -386,7 +451,8 @@ fn copies() -> Vec<Fault> {
             let section = folder.sections("3")[1].clone();
             let simulated = folder.tables[&format!("simulation/{section}.csv")].clone();
             let values = simulated.numbers(simulated.column("Q_1R").expect("a channel"));
-            let measured = folder.tables.get_mut(&format!("measurement/{section}.csv")).expect("a record");
+            let measured =
+                folder.tables.get_mut(&format!("measurement/{section}.csv")).expect("a record");
             let column = measured.column("Q_1R").expect("a channel");
             measured.set(column, &values);
             Told { sections: vec![section], channels: &["Q_1R"] }
@@ -395,10 +461,19 @@ fn copies() -> Vec<Fault> {
             let all = folder.sections("2");
             for other in &all[1..3] {
                 for kind in ["simulation", "measurement", "track"] {
-                    record(folder, &format!("{kind}/{}.csv", all[0]), &format!("{kind}/{other}.csv"));
+                    record(
+                        folder,
+                        &format!("{kind}/{}.csv", all[0]),
+                        &format!("{kind}/{other}.csv"),
+                    );
                 }
                 let columns = folder.tables["sections.csv"].header.len();
-                let first = folder.tables["sections.csv"].rows.iter().find(|row| row[0] == all[0]).expect("a section").clone();
+                let first = folder.tables["sections.csv"]
+                    .rows
+                    .iter()
+                    .find(|row| row[0] == all[0])
+                    .expect("a section")
+                    .clone();
                 let table = folder.tables.get_mut("sections.csv").expect("a table");
                 let row = table.rows.iter_mut().find(|row| row[0] == *other).expect("a section");
                 row[1..columns].clone_from_slice(&first[1..columns]);
@@ -408,7 +483,11 @@ fn copies() -> Vec<Fault> {
         fault("two sections overlap by half", |folder| {
             let all = folder.sections("1");
             for kind in ["simulation", "measurement", "track"] {
-                record(folder, &format!("{kind}/{}.csv", all[0]), &format!("{kind}/{}.csv", all[1]));
+                record(
+                    folder,
+                    &format!("{kind}/{}.csv", all[0]),
+                    &format!("{kind}/{}.csv", all[1]),
+                );
             }
             let columns = folder.tables["sections.csv"].header.len();
             let table = folder.tables.get_mut("sections.csv").expect("a table");
@@ -422,23 +501,33 @@ fn copies() -> Vec<Fault> {
 
 fn tables() -> Vec<Fault> {
     vec![
-        in_table("radius 10 % too large", "4", "radius", |text| number(text, |radius| 1.1 * radius)),
-        in_table("radius of a large curve halved", "2", "radius", |text| number(text, |radius| 0.5 * radius)),
-        in_table("direction turned", "3", "direction", |text| if text == "right" { "left".into() } else { "right".into() }),
+        in_table("radius 10 % too large", "4", "radius", |text| {
+            number(text, |radius| 1.1 * radius)
+        }),
+        in_table("radius of a large curve halved", "2", "radius", |text| {
+            number(text, |radius| 0.5 * radius)
+        }),
+        in_table("direction turned", "3", "direction", |text| {
+            if text == "right" { "left".into() } else { "right".into() }
+        }),
         in_table("straight for a curve", "2", "direction", |_| "straight".into()),
         in_table("zone 3 for zone 4", "4", "zone", |_| "3".into()),
         in_table("zone 1 for zone 2", "2", "zone", |_| "1".into()),
         in_table("cant 50 mm too large", "3", "cant", |text| number(text, |cant| cant + 50.0)),
-        in_table("cant deficiency 40 mm too large", "4", "cant deficiency", |text| number(text, |cant| cant + 40.0)),
+        in_table("cant deficiency 40 mm too large", "4", "cant deficiency", |text| {
+            number(text, |cant| cant + 40.0)
+        }),
         in_table("speed 15 % too large", "3", "speed", |text| number(text, |speed| 1.15 * speed)),
         in_table("speed in m/s", "1", "speed", |text| number(text, |speed| speed / 3.6)),
         fault("track file of another zone", |folder| {
-            let (curve, straight) = (folder.sections("4")[1].clone(), folder.sections("1")[1].clone());
+            let (curve, straight) =
+                (folder.sections("4")[1].clone(), folder.sections("1")[1].clone());
             record(folder, &format!("track/{straight}.csv"), &format!("track/{curve}.csv"));
             Told { sections: vec![curve], channels: &[] }
         }),
         fault("track file of a curve for a straight section", |folder| {
-            let (curve, straight) = (folder.sections("4")[1].clone(), folder.sections("1")[1].clone());
+            let (curve, straight) =
+                (folder.sections("4")[1].clone(), folder.sections("1")[1].clone());
             record(folder, &format!("track/{curve}.csv"), &format!("track/{straight}.csv"));
             Told { sections: vec![straight], channels: &[] }
         }),

@@ -37,7 +37,8 @@ pub struct Folder {
 
 impl Table {
     fn parse(text: &str) -> Self {
-        let mut lines = text.lines().map(|line| line.split(',').map(str::to_string).collect::<Vec<_>>());
+        let mut lines =
+            text.lines().map(|line| line.split(',').map(str::to_string).collect::<Vec<_>>());
         Self { header: lines.next().unwrap_or_default(), rows: lines.collect() }
     }
 
@@ -57,7 +58,8 @@ impl Table {
 
     /// Writes numbers with the decimals of the column.
     pub fn set(&mut self, column: usize, values: &[f64]) {
-        let decimals = self.rows.first().and_then(|row| row[column].split('.').nth(1)).map_or(0, str::len);
+        let decimals =
+            self.rows.first().and_then(|row| row[column].split('.').nth(1)).map_or(0, str::len);
         for (row, value) in self.rows.iter_mut().zip(values) {
             row[column] = format!("{value:.decimals$}");
         }
@@ -88,7 +90,8 @@ impl Folder {
 
     pub fn write(&self, path: &Path) {
         let files = self.tables.iter().map(|(name, table)| (name, table.text()));
-        for (name, text) in files.chain(self.texts.iter().map(|(name, text)| (name, text.clone()))) {
+        for (name, text) in files.chain(self.texts.iter().map(|(name, text)| (name, text.clone())))
+        {
             let file = path.join(name);
             fs::create_dir_all(file.parent().expect("below the folder")).expect("a folder");
             fs::write(file, text).expect("written");
@@ -99,7 +102,12 @@ impl Folder {
     pub fn sections(&self, zone: &str) -> Vec<String> {
         let table = &self.tables["sections.csv"];
         let of_zone = table.column("zone").expect("a zone");
-        table.rows.iter().filter(|row| zone.is_empty() || row[of_zone] == zone).map(|row| row[0].clone()).collect()
+        table
+            .rows
+            .iter()
+            .filter(|row| zone.is_empty() || row[of_zone] == zone)
+            .map(|row| row[0].clone())
+            .collect()
     }
 
     /// A cell of the table of sections.
@@ -111,12 +119,20 @@ impl Folder {
     }
 
     /// Changes channels that begin with one of the names, in the records of some sections.
-    pub fn channels(&mut self, side: Side, sections: &[String], begins: &[&str], change: impl Fn(&[f64]) -> Vec<f64>) {
+    pub fn channels(
+        &mut self,
+        side: Side,
+        sections: &[String],
+        begins: &[&str],
+        change: impl Fn(&[f64]) -> Vec<f64>,
+    ) {
         for folder in side.folders() {
             for section in sections {
-                let table = self.tables.get_mut(&format!("{folder}/{section}.csv")).expect("a record");
+                let table =
+                    self.tables.get_mut(&format!("{folder}/{section}.csv")).expect("a record");
                 for column in 0..table.header.len() {
-                    let name = table.header[column].split(" [").next().unwrap_or_default().to_string();
+                    let name =
+                        table.header[column].split(" [").next().unwrap_or_default().to_string();
                     if begins.iter().any(|begin| name.starts_with(begin)) {
                         let changed = change(&table.numbers(column));
                         table.set(column, &changed);

@@ -35,7 +35,9 @@ pub fn certified(path: &Path) -> Outcome {
     let family = family::read(&source, &library::parent, &mut problems);
     let compiled = compile(family, &Overrides::new(), &mut problems);
     let campaign = Campaign::open(path, &mut problems);
-    let (Some(compiled), Some(campaign), false) = (compiled, campaign, problems.any_error()) else { return Outcome::Refused(problems) };
+    let (Some(compiled), Some(campaign), false) = (compiled, campaign, problems.any_error()) else {
+        return Outcome::Refused(problems);
+    };
     match certify(&compiled, &campaign, Settings { traces: 0 }, &|_| {}) {
         Ok(found) => Outcome::Done(Box::new(found)),
         Err(problems) => Outcome::Refused(problems),
@@ -51,23 +53,42 @@ pub fn score(sound: &Folder, fault: &Fault) -> Score {
     match certified(place.path()) {
         Outcome::Refused(problems) => {
             let says = problems.0.first().map_or(String::new(), |problem| problem.says.clone());
-            Score { fault: fault.name, told: true, validated: false, says: format!("refused: {says}") }
+            Score {
+                fault: fault.name,
+                told: true,
+                validated: false,
+                says: format!("refused: {says}"),
+            }
         }
         Outcome::Done(found) => {
-            let checks = found.sections.iter().filter(|section| !section.used && told.sections.contains(&section.section));
-            let checked = checks.filter_map(|section| section.reason.clone()).next().filter(|_| told.channels.is_empty());
+            let checks = found
+                .sections
+                .iter()
+                .filter(|section| !section.used && told.sections.contains(&section.section));
+            let checked = checks
+                .filter_map(|section| section.reason.clone())
+                .next()
+                .filter(|_| told.channels.is_empty());
             let finding = found.findings.iter().find(|finding| names(finding, &told));
-            let says = finding.map(|finding| format!("[{}] {}", finding.code, finding.says)).or(checked);
+            let says =
+                finding.map(|finding| format!("[{}] {}", finding.code, finding.says)).or(checked);
             let validated = found.verdict == Verdict::Validated;
-            Score { fault: fault.name, told: says.is_some(), validated, says: says.unwrap_or_default() }
+            Score {
+                fault: fault.name,
+                told: says.is_some(),
+                validated,
+                says: says.unwrap_or_default(),
+            }
         }
     }
 }
 
 fn names(finding: &Finding, told: &Told) -> bool {
     let section = finding.section.as_ref();
-    let right_section = told.sections.is_empty() || section.is_some_and(|section| told.sections.contains(section));
+    let right_section =
+        told.sections.is_empty() || section.is_some_and(|section| told.sections.contains(section));
     let channel = finding.channel.as_deref().unwrap_or_default();
-    let right_channel = told.channels.is_empty() || told.channels.iter().any(|name| channel.contains(name) || finding.says.contains(name));
+    let right_channel = told.channels.is_empty()
+        || told.channels.iter().any(|name| channel.contains(name) || finding.says.contains(name));
     right_section && right_channel
 }

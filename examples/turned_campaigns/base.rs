@@ -35,32 +35,44 @@ impl Base {
         let truth = folder.join("truth.json");
         let hidden = match std::fs::read_to_string(&truth) {
             Ok(text) => {
-                let truth: Value = serde_json::from_str(&text).map_err(|error| format!("{}: {error}", truth.display()))?;
+                let truth: Value = serde_json::from_str(&text)
+                    .map_err(|error| format!("{}: {error}", truth.display()))?;
                 let effects = truth["effects"].as_array().cloned().unwrap_or_default();
                 effects.iter().map(|effect| applied(catalogue, effect)).collect::<Option<Vec<_>>>()
             }
             Err(_) => Some(Vec::new()),
         };
-        let plan = hidden.and_then(|hidden| Plan::new(catalogue, &hidden, &Section::nowhere(), None).ok());
-        let can_go =
-            |(operator, ..): &(Operator, f64, Vec<String>)| matches!(operator, Operator::Gain | Operator::Offset | Operator::Polarity);
-        let plan = plan.filter(|plan| plan.formulas.is_empty() && plan.operators.iter().all(can_go));
-        let Plan { settings, operators: chain, .. } = plan.ok_or_else(|| format!("{shown} hides what cannot be taken off"))?;
-        let mut vehicle =
-            Vehicle::from_values(|key| campaign.vehicle.lookup(key).and_then(|node| fishplate::simulate::number_of(node, key)))
-                .map_err(|_| format!("{shown}: the vehicle file is not whole"))?;
+        let plan =
+            hidden.and_then(|hidden| Plan::new(catalogue, &hidden, &Section::nowhere(), None).ok());
+        let can_go = |(operator, ..): &(Operator, f64, Vec<String>)| {
+            matches!(operator, Operator::Gain | Operator::Offset | Operator::Polarity)
+        };
+        let plan =
+            plan.filter(|plan| plan.formulas.is_empty() && plan.operators.iter().all(can_go));
+        let Plan { settings, operators: chain, .. } =
+            plan.ok_or_else(|| format!("{shown} hides what cannot be taken off"))?;
+        let mut vehicle = Vehicle::from_values(|key| {
+            campaign.vehicle.lookup(key).and_then(|node| fishplate::simulate::number_of(node, key))
+        })
+        .map_err(|_| format!("{shown}: the vehicle file is not whole"))?;
         for (key, value) in &settings {
-            vehicle.set(key, *value).map_err(|_| format!("{shown}: the vehicle has no `{key}` of {value}"))?;
+            vehicle
+                .set(key, *value)
+                .map_err(|_| format!("{shown}: the vehicle has no `{key}` of {value}"))?;
         }
         Ok(Self { campaign, sections, vehicle, settings, chain })
     }
 
     /// The record of a section without the effects of its truth, in the units of the model.
     pub fn measured(&self, simulator: &Builtin<'_>, section: &Section) -> Result<Signals, String> {
-        let (mut signals, units, _) = recorded(&self.campaign, RecordKind::Measurement, section).map_err(|found| all(&Problems(found)))?;
-        in_units(&mut signals, &units, &|channel| simulator.unit(channel)).map_err(|problem| problem.says)?;
+        let (mut signals, units, _) = recorded(&self.campaign, RecordKind::Measurement, section)
+            .map_err(|found| all(&Problems(found)))?;
+        in_units(&mut signals, &units, &|channel| simulator.unit(channel))
+            .map_err(|problem| problem.says)?;
         for (operator, value, channels) in &self.chain {
-            for channel in signals.channels.iter_mut().filter(|channel| channels.contains(&channel.name)) {
+            for channel in
+                signals.channels.iter_mut().filter(|channel| channels.contains(&channel.name))
+            {
                 let without = |recorded: f64| match operator {
                     Operator::Offset => recorded - value,
                     _ => recorded / value,
@@ -72,9 +84,16 @@ impl Base {
     }
 
     /// The simulation of a section with further parameters set.
-    pub fn simulated(&self, simulator: &Builtin<'_>, section: &Section, further: &[(String, f64)]) -> Result<Signals, String> {
+    pub fn simulated(
+        &self,
+        simulator: &Builtin<'_>,
+        section: &Section,
+        further: &[(String, f64)],
+    ) -> Result<Signals, String> {
         let settings: Vec<(String, f64)> = self.settings.iter().chain(further).cloned().collect();
-        simulator.run(&Task { section, settings: &settings, shift: 0.0, inside_only: false }).map_err(|problem: Problem| problem.says)
+        simulator
+            .run(&Task { section, settings: &settings, shift: 0.0, inside_only: false })
+            .map_err(|problem: Problem| problem.says)
     }
 
     /// A parameter of the vehicle as measured.
@@ -84,12 +103,17 @@ impl Base {
 
     /// Whether the vehicle has a secondary suspension.
     pub fn sprung(&self) -> bool {
-        self.campaign.vehicle.lookup("secondary_suspension").and_then(|node| node.scalar_text()) == Some("true")
+        self.campaign.vehicle.lookup("secondary_suspension").and_then(|node| node.scalar_text())
+            == Some("true")
     }
 
     /// One declared standard deviation; 0 if the campaign declares none.
     pub fn declared(&self, name: &str) -> f64 {
-        let declared = self.campaign.tree.get("declared_tolerances").and_then(|tolerances| tolerances.get(name));
+        let declared = self
+            .campaign
+            .tree
+            .get("declared_tolerances")
+            .and_then(|tolerances| tolerances.get(name));
         declared.and_then(fishplate::yaml::Node::number).unwrap_or(0.0)
     }
 }
@@ -102,9 +126,13 @@ fn applied(catalogue: &Catalogue, effect: &Value) -> Option<Applied> {
     }
     let (mut values, mut channels) = (Vec::new(), Vec::new());
     for (name, value) in effect["parameters"].as_object()? {
-        let (name, channel) = known.parameters.iter().find_map(|parameter| match parameter.name.split_once("<channel>") {
-            Some((before, _)) => name.strip_prefix(before).map(|channel| (parameter.name.clone(), Some(channel.to_string()))),
-            None => (parameter.name == *name).then(|| (name.clone(), None)),
+        let (name, channel) = known.parameters.iter().find_map(|parameter| {
+            match parameter.name.split_once("<channel>") {
+                Some((before, _)) => name
+                    .strip_prefix(before)
+                    .map(|channel| (parameter.name.clone(), Some(channel.to_string()))),
+                None => (parameter.name == *name).then(|| (name.clone(), None)),
+            }
         })?;
         values.push((name, value.as_f64()?));
         channels.extend(channel);

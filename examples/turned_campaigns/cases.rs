@@ -1,4 +1,5 @@
-//! Hidden effects by campaign: 36 single effects, ten without an effect, 20 causes outside the catalogue, ten pairs.
+//! Hidden effects by campaign: 36 single effects, ten without an effect, 20 causes outside the
+//! catalogue, ten pairs.
 
 use fishplate::effects::Catalogue;
 
@@ -87,7 +88,12 @@ pub fn drawn(bases: &[Base], catalogue: &Catalogue, seed: u64) -> Vec<Case> {
             continue;
         }
         let base = among[draw.below(among.len())];
-        cases.push(Case { base, kind: "single", hidden: single(draw, &bases[base], catalogue), fault: None });
+        cases.push(Case {
+            base,
+            kind: "single",
+            hidden: single(draw, &bases[base], catalogue),
+            fault: None,
+        });
     }
     for _ in 0..10 {
         let base = draw.below(bases.len());
@@ -105,7 +111,9 @@ pub fn drawn(bases: &[Base], catalogue: &Catalogue, seed: u64) -> Vec<Case> {
     for pair in draw.some(PAIRS.to_vec(), 10) {
         let base = sprung[draw.below(sprung.len())];
         let mut hidden = Hidden::default();
-        for (_, _, single) in pair.iter().filter_map(|name| SINGLES.iter().find(|(known, ..)| known == name)) {
+        for (_, _, single) in
+            pair.iter().filter_map(|name| SINGLES.iter().find(|(known, ..)| known == name))
+        {
             let one = single(draw, &bases[base], catalogue);
             hidden.effects.extend(one.effects);
             hidden.vehicle.extend(one.vehicle);
@@ -124,7 +132,8 @@ fn moved(effect: String, vehicle: &[(&str, f64)]) -> Hidden {
 
 /// The vehicle file has a larger value, of which the measured vehicle has a share.
 fn left(base: &Base, effect: &str, share: f64, keys: &[&str]) -> Hidden {
-    let vehicle: Vec<(&str, f64)> = keys.iter().map(|key| (*key, base.value(key) / share)).collect();
+    let vehicle: Vec<(&str, f64)> =
+        keys.iter().map(|key| (*key, base.value(key) / share)).collect();
     moved(format!("{effect}={share}"), &vehicle)
 }
 
@@ -141,19 +150,29 @@ fn operated(effect: String) -> Hidden {
 fn friction(draw: &mut Draw, base: &Base, _: &Catalogue) -> Hidden {
     let truth = base.vehicle.friction;
     let higher = truth < 0.3 || draw.chance(0.6);
-    let assumed = if higher { truth + draw.between(0.10, 0.25, 3) } else { truth - draw.between(0.10, 0.18, 3) };
+    let assumed = if higher {
+        truth + draw.between(0.10, 0.25, 3)
+    } else {
+        truth - draw.between(0.10, 0.18, 3)
+    };
     moved(format!("friction={truth}"), &[("friction", assumed)])
 }
 
 fn worn_profile(draw: &mut Draw, base: &Base, _: &Catalogue) -> Hidden {
     let truth = base.value("profile.conicity_scale");
     let assumed = truth * draw.either((0.5, 0.65), (1.5, 2.0), 2);
-    moved(format!("worn_profile.profile.conicity_scale={truth}"), &[("profile.conicity_scale", assumed)])
+    moved(
+        format!("worn_profile.profile.conicity_scale={truth}"),
+        &[("profile.conicity_scale", assumed)],
+    )
 }
 
 fn bending(draw: &mut Draw, _: &Base, _: &Catalogue) -> Hidden {
     let (frequency, mass) = (draw.between(7.0, 11.0, 2), draw.between(4000.0, 9000.0, 0));
-    added(vec![format!("body_bending.body_bending.frequency={frequency}"), format!("body_bending.body_bending.modal_mass={mass}")])
+    added(vec![
+        format!("body_bending.body_bending.frequency={frequency}"),
+        format!("body_bending.body_bending.modal_mass={mass}"),
+    ])
 }
 
 fn bump_stop(draw: &mut Draw, _: &Base, _: &Catalogue) -> Hidden {
@@ -191,7 +210,12 @@ fn load_to_one_side(draw: &mut Draw, _: &Base, _: &Catalogue) -> Hidden {
 }
 
 fn anti_roll_bar(draw: &mut Draw, base: &Base, _: &Catalogue) -> Hidden {
-    left(base, "anti_roll_bar", draw.either((0.1, 0.5), (1.5, 2.0), 2), &["secondary.anti_roll_stiffness"])
+    left(
+        base,
+        "anti_roll_bar",
+        draw.either((0.1, 0.5), (1.5, 2.0), 2),
+        &["secondary.anti_roll_stiffness"],
+    )
 }
 
 fn axle_guidance(draw: &mut Draw, base: &Base, _: &Catalogue) -> Hidden {
@@ -209,13 +233,20 @@ fn lateral_dampers(draw: &mut Draw, base: &Base, _: &Catalogue) -> Hidden {
 fn out_of_round(draw: &mut Draw, _: &Base, _: &Catalogue) -> Hidden {
     let of = |what: &str, value: f64| format!("out_of_roundness.out_of_roundness.{what}={value}");
     let (wheelset, harmonic) = (1.0 + draw.below(4) as f64, 1.0 + draw.below(3) as f64);
-    added(vec![of("amplitude", draw.between(0.0004, 0.001, 5)), of("wheelset", wheelset), of("harmonic", harmonic)])
+    added(vec![
+        of("amplitude", draw.between(0.0004, 0.001, 5)),
+        of("wheelset", wheelset),
+        of("harmonic", harmonic),
+    ])
 }
 
 fn irregularities(draw: &mut Draw, base: &Base, _: &Catalogue) -> Hidden {
     const KEY: &str = "track.irregularity_scale";
     let truth = base.value(KEY);
-    moved(format!("track_irregularity_scale={truth}"), &[(KEY, truth / draw.either((0.6, 0.75), (1.35, 1.8), 2))])
+    moved(
+        format!("track_irregularity_scale={truth}"),
+        &[(KEY, truth / draw.either((0.6, 0.75), (1.35, 1.8), 2))],
+    )
 }
 
 fn cant(draw: &mut Draw, base: &Base, _: &Catalogue) -> Hidden {
@@ -235,7 +266,8 @@ fn wind(draw: &mut Draw, base: &Base, _: &Catalogue) -> Hidden {
 
 /// A random channel of some groups.
 pub fn channel(draw: &mut Draw, catalogue: &Catalogue, groups: &[&str]) -> String {
-    let channels: Vec<String> = groups.iter().filter_map(|group| catalogue.channels(group)).flatten().collect();
+    let channels: Vec<String> =
+        groups.iter().filter_map(|group| catalogue.channels(group)).flatten().collect();
     channels[draw.below(channels.len())].clone()
 }
 
@@ -246,7 +278,11 @@ fn gain(draw: &mut Draw, _: &Base, catalogue: &Catalogue) -> Hidden {
 
 fn offset(draw: &mut Draw, _: &Base, catalogue: &Catalogue) -> Hidden {
     let channel = channel(draw, catalogue, &["guiding forces", "vertical forces", "accelerations"]);
-    let size = if channel.starts_with('a') { draw.either_sign(0.08, 0.2, 3) } else { draw.either_sign(5.0, 9.0, 3) };
+    let size = if channel.starts_with('a') {
+        draw.either_sign(0.08, 0.2, 3)
+    } else {
+        draw.either_sign(5.0, 9.0, 3)
+    };
     operated(format!("sensor_offset={size} on {channel}"))
 }
 
@@ -266,7 +302,10 @@ fn swap(draw: &mut Draw, _: &Base, catalogue: &Catalogue) -> Hidden {
 }
 
 fn polarity(draw: &mut Draw, _: &Base, catalogue: &Catalogue) -> Hidden {
-    operated(format!("polarity=-1 on {}", channel(draw, catalogue, &["guiding forces", "accelerations"])))
+    operated(format!(
+        "polarity=-1 on {}",
+        channel(draw, catalogue, &["guiding forces", "accelerations"])
+    ))
 }
 
 fn crosstalk(draw: &mut Draw, _: &Base, _: &Catalogue) -> Hidden {
@@ -275,7 +314,10 @@ fn crosstalk(draw: &mut Draw, _: &Base, _: &Catalogue) -> Hidden {
 
 /// Declared tolerances, and the numbers of the vehicle file to which they apply.
 const DECLARED: [(&str, &[&str]); 4] = [
-    ("suspension stiffness [-]", &["primary.kx", "primary.ky", "primary.kz", "secondary.ky", "secondary.kz"]),
+    (
+        "suspension stiffness [-]",
+        &["primary.kx", "primary.ky", "primary.kz", "secondary.ky", "secondary.kz"],
+    ),
     ("suspension damping [-]", &["primary.cz", "primary.cy", "secondary.cz", "secondary.cy"]),
     ("masses and inertias [-]", &["car_body.mass", "bogie.mass", "wheelset.mass"]),
     ("equivalent conicity [-]", &["profile.conicity_scale"]),
@@ -289,10 +331,16 @@ fn nothing(draw: &mut Draw, base: &Base) -> Hidden {
             vehicle.push((*key, base.value(key) * draw.normal(base.declared(name)).exp()));
         }
     }
-    vehicle.push(("friction", base.vehicle.friction + draw.normal(base.declared("friction per section [-]"))));
+    vehicle.push((
+        "friction",
+        base.vehicle.friction + draw.normal(base.declared("friction per section [-]")),
+    ));
     let livelier = draw.normal(base.declared("irregularity amplitude [-]")).exp();
     vehicle.push(("track.irregularity_scale", base.value("track.irregularity_scale") * livelier));
     // Tolerances declared by section, with a common deviation of all sections.
-    vehicle.push(("track.cant_error", base.value("track.cant_error") + 0.5 * draw.normal(base.declared("cant [mm]"))));
+    vehicle.push((
+        "track.cant_error",
+        base.value("track.cant_error") + 0.5 * draw.normal(base.declared("cant [mm]")),
+    ));
     Hidden { effects: Vec::new(), ..moved(String::new(), &vehicle) }
 }

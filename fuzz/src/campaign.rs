@@ -21,11 +21,13 @@ use super::records::{folder, write};
 pub const CAMPAIGN: &str = "name: Fuzzed\nvehicle: vehicle.yaml\nsections: sections.csv\n\
     measurement: measurement\nsimulation: simulation\nline: Somewhere\n\
     report:\n  number: R1\n  customer: Somebody\nparameters:\n  share: 0.5\n";
-pub const VEHICLE: &str = "name: Wagon\ncategory: passenger\nsuspension: true\nstatic_wheel_load: 50\n";
+pub const VEHICLE: &str =
+    "name: Wagon\ncategory: passenger\nsuspension: true\nstatic_wheel_load: 50\n";
 pub const SECTIONS: &str = "section,zone [-],start [m],end [m],radius [m],direction\nS1,1,1,9,700,right\nS2,2,1,9,500,left\n";
 
 /// The three files in which a campaign says what it is.
-const FILES: [(&str, &str); 3] = [("campaign.yaml", CAMPAIGN), ("vehicle.yaml", VEHICLE), ("sections.csv", SECTIONS)];
+const FILES: [(&str, &str); 3] =
+    [("campaign.yaml", CAMPAIGN), ("vehicle.yaml", VEHICLE), ("sections.csv", SECTIONS)];
 
 /// A record of 10 m: 50 samples, 100 a second.
 fn samples(turned: f64) -> String {
@@ -113,8 +115,8 @@ pub fn compiled(overrides: &Overrides, problems: &mut Problems) -> Option<Compil
     compile(family, overrides, problems)
 }
 
-/// No number is NaN or infinite, "validated" stands only where every statistic holds, and the result can be
-/// read back.
+/// No number is NaN or infinite, "validated" stands only where every statistic holds, and the
+/// result can be read back.
 #[track_caller]
 fn sensible(found: &Certification) {
     let mut all = true;
@@ -145,8 +147,11 @@ pub fn certified() -> Certification {
         let mut problems = Problems::default();
         let campaign = Campaign::open(&with("", b""), &mut problems);
         let compiled = compiled(&Overrides::new(), &mut problems);
-        let (Some(campaign), Some(compiled)) = (campaign, compiled) else { panic!("{}", problems.render(false)) };
-        certify(&compiled, &campaign, Settings { traces: 1 }, &|_| {}).unwrap_or_else(|problems| panic!("{}", problems.render(false)))
+        let (Some(campaign), Some(compiled)) = (campaign, compiled) else {
+            panic!("{}", problems.render(false))
+        };
+        certify(&compiled, &campaign, Settings { traces: 1 }, &|_| {})
+            .unwrap_or_else(|problems| panic!("{}", problems.render(false)))
     });
     FOUND.clone()
 }

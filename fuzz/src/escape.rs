@@ -1,9 +1,9 @@
-//! Texts of users in the report: they stay texts. A page is compared with the one of a harmless text: the
-//! same tags with the same attributes in the same order, whatever the text. Only italics and subscripts may
-//! differ: symbols of quantities are set with them.
+//! Texts of users in the report: they stay texts. A page is compared with the one of a harmless
+//! text: the same tags with the same attributes in the same order, whatever the text. Only italics
+//! and subscripts may differ: symbols of quantities are set with them.
 //!
-//! The PDF has no escape that could fail: Typst reads texts as data of a JSON file, and no template evaluates
-//! text (`tests/templates.rs`).
+//! The PDF has no escape that could fail: Typst reads texts as data of a JSON file, and no template
+//! evaluates text (`tests/templates.rs`).
 
 use std::sync::LazyLock;
 
@@ -27,7 +27,8 @@ pub fn escape(input: &[u8]) {
 pub fn report(input: &[u8]) {
     static HARMLESS: LazyLock<Vec<String>> = LazyLock::new(|| tags(&whole("x")));
     let Ok(text) = std::str::from_utf8(input) else { return };
-    // How many labels a figure has room for depends on their length, so only the kinds of tags are compared.
+    // How many labels a figure has room for depends on their length, so only the kinds of tags are
+    // compared.
     compare(text, &HARMLESS, whole);
 }
 
@@ -53,19 +54,30 @@ fn small(text: &str) -> String {
         head: vec![Head::text(text), Head::short(text), Head::number(text)],
         rows: vec![vec![text.into(), text.into(), text.into()]],
     };
-    let items =
-        vec![Item::text(text), Item::Heading { text: text.into() }, Item::List { entries: vec![text.into()] }, Item::Table { table }];
+    let items = vec![
+        Item::text(text),
+        Item::Heading { text: text.into() },
+        Item::List { entries: vec![text.into()] },
+        Item::Table { table },
+    ];
     let chapter = Chapter { id: "chapter".into(), title: text.into(), items };
-    let page = chapters_html(text, &[chapter]).unwrap_or_else(|problems| panic!("{}", problems.render(false)));
+    let page = chapters_html(text, &[chapter])
+        .unwrap_or_else(|problems| panic!("{}", problems.render(false)));
     let mut canvas = Canvas::new(100.0, 50.0);
-    let group = Group { title: Some(text), section: Some(text), zone: Some(text), ..Group::default() };
+    let group =
+        Group { title: Some(text), section: Some(text), zone: Some(text), ..Group::default() };
     canvas.group(&group, |layer| layer.text(text, (1.0, 2.0), &Font::left(8.0)));
     page + &canvas.finish()
 }
 
 fn whole(text: &str) -> String {
     let mut found = certified();
-    for place in [&mut found.campaign.name, &mut found.protocol.name, &mut found.protocol.title, &mut found.protocol.verdict_rule] {
+    for place in [
+        &mut found.campaign.name,
+        &mut found.protocol.name,
+        &mut found.protocol.title,
+        &mut found.protocol.verdict_rule,
+    ] {
         text.clone_into(place);
     }
     found.notes = vec![text.into()];
@@ -116,7 +128,8 @@ fn whole(text: &str) -> String {
     html(&view(&found), &drawn).unwrap_or_else(|problems| panic!("{}", problems.render(false)))
 }
 
-/// The tags of a page with the names of their attributes; what stands inside scripts and styles is none.
+/// The tags of a page with the names of their attributes; what stands inside scripts and styles is
+/// none.
 #[track_caller]
 fn tags(page: &str) -> Vec<String> {
     let mut found = Vec::new();

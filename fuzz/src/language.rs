@@ -29,8 +29,8 @@ pub fn protocol_yaml(input: &[u8]) {
     surface("fuzz.yaml", input);
 }
 
-/// What is read without a problem survives both forms, and printing again changes nothing. What is refused
-/// says where.
+/// What is read without a problem survives both forms, and printing again changes nothing. What is
+/// refused says where.
 fn surface(name: &str, input: &[u8]) {
     let Ok(text) = std::str::from_utf8(input) else { return };
     let (document, problems) = read(name, text);
@@ -53,8 +53,8 @@ fn keeps(document: &Document, as_text: &str, as_yaml: &str) {
     }
 }
 
-/// A whole protocol up to its graph. Formatting, and the other form, keep what it means: the same errors, or
-/// a graph of as many operations.
+/// A whole protocol up to its graph. Formatting, and the other form, keep what it means: the same
+/// errors, or a graph of as many operations.
 pub fn check(input: &[u8]) {
     let Ok(text) = std::str::from_utf8(input) else { return };
     let (document, problems) = read("fuzz.fp", text);
@@ -87,7 +87,8 @@ fn compiled(name: &str, text: &str) -> (Option<Compiled>, Problems) {
     (found, problems)
 }
 
-/// Only what the program carries may be extended: a fuzzed text must not choose files of this machine.
+/// Only what the program carries may be extended: a fuzzed text must not choose files of this
+/// machine.
 fn shipped(name: &str, _: &Source) -> Result<Arc<Source>, Box<Problem>> {
     let says = || Problem::error("no-such-protocol", format!("there is no protocol `{name}`"));
     library::shipped(name).ok_or_else(|| Box::new(says()))

@@ -1,8 +1,9 @@
-//! What is fuzzed, and what must hold of every input. Each target takes any bytes and panics where a
-//! promise is broken.
+//! What is fuzzed, and what must hold of every input. Each target takes any bytes and panics where
+//! a promise is broken.
 //!
-//! The fuzzer's programs (`fuzz_targets`) call these functions; `tests/fuzz` of the main package calls them
-//! with every seed and every input that once failed, so that they are tried wherever the tests run.
+//! The fuzzer's programs (`fuzz_targets`) call these functions; `tests/fuzz` of the main package
+//! calls them with every seed and every input that once failed, so that they are tried wherever the
+//! tests run.
 
 mod campaign;
 mod escape;

@@ -6,8 +6,8 @@ use fishplate::source::Span;
 /// Messages looked at in print; the same code prints all others.
 const PRINTED: usize = 8;
 
-/// Every place lies inside its text, every message says something, and no control character reaches the
-/// terminal.
+/// Every place lies inside its text, every message says something, and no control character reaches
+/// the terminal.
 #[track_caller]
 pub fn told(problems: &[Problem]) {
     for problem in problems {
@@ -27,7 +27,11 @@ pub fn told(problems: &[Problem]) {
 #[track_caller]
 fn inside(code: &str, place: &Span) {
     let (text, range) = (&place.source.text, place.start..place.end);
-    assert!(text.get(range.clone()).is_some(), "`{code}` points at {range:?} of {} bytes", text.len());
+    assert!(
+        text.get(range.clone()).is_some(),
+        "`{code}` points at {range:?} of {} bytes",
+        text.len()
+    );
 }
 
 /// As [`told`], and every error of a text that is not empty says where it is.
@@ -39,7 +43,8 @@ pub fn placed(problems: &Problems) {
     }
 }
 
-/// The codes of the errors, each once: where a form gives less narrow places, errors of one field fall together.
+/// The codes of the errors, each once: where a form gives less narrow places, errors of one field
+/// fall together.
 pub fn codes(problems: &Problems) -> Vec<&'static str> {
     let errors = problems.0.iter().filter(|problem| problem.severity == Severity::Error);
     let mut codes: Vec<_> = errors.map(|problem| problem.code).collect();

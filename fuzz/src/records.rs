@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use fishplate::data::checks::check_axis;
-use fishplate::data::record::{Record, Wanted, read_headings, read_raw, read_record, read_stretch, stream};
+use fishplate::data::record::{
+    Record, Wanted, read_headings, read_raw, read_record, read_stretch, stream,
+};
 use fishplate::data::table::Table;
 use fishplate::problem::Problems;
 
@@ -27,8 +29,8 @@ pub fn write(path: &Path, bytes: &[u8]) {
     std::fs::write(path, bytes).expect("written");
 }
 
-/// A record, all of its columns. What is accepted holds the numbers that the standard library reads from its
-/// cells, and none of them is NaN or infinite.
+/// A record, all of its columns. What is accepted holds the numbers that the standard library reads
+/// from its cells, and none of them is NaN or infinite.
 pub fn record(input: &[u8]) {
     let path = folder().join("record.csv");
     write(&path, input);
@@ -59,8 +61,8 @@ pub fn record(input: &[u8]) {
     }
 }
 
-/// A Parquet file, all of its columns. What is accepted holds finite numbers, the same whole, in blocks and as a
-/// stretch; what is refused says why, without a panic of the decoder.
+/// A Parquet file, all of its columns. What is accepted holds finite numbers, the same whole, in
+/// blocks and as a stretch; what is refused says why, without a panic of the decoder.
 pub fn parquet(input: &[u8]) {
     let path = folder().join("record.parquet");
     write(&path, input);
@@ -90,9 +92,14 @@ pub fn parquet(input: &[u8]) {
             rows += block.rows;
         });
         assert!(run.is_ok() && rows == record.rows, "{}", heading.name);
-        if let Err(problems) =
-            read_stretch(&path, "record.parquet", &wanted, &heading.name, 0.0..1.0, &fishplate::data::record::Known::default())
-        {
+        if let Err(problems) = read_stretch(
+            &path,
+            "record.parquet",
+            &wanted,
+            &heading.name,
+            0.0..1.0,
+            &fishplate::data::record::Known::default(),
+        ) {
             promise::told(&problems);
         }
     }
@@ -109,15 +116,16 @@ fn same_as_std(record: &Record, input: &[u8]) {
     for column in &record.columns {
         for (row, value) in column.values.iter().enumerate() {
             let cell = lines[row].split(',').nth(column.position).expect("a cell").trim();
-            let number: f64 = cell.parse().unwrap_or_else(|_| panic!("`{cell}` was read as {value}"));
+            let number: f64 =
+                cell.parse().unwrap_or_else(|_| panic!("`{cell}` was read as {value}"));
             let wanted = column.unit.to_si(number);
             assert_eq!(wanted.to_bits(), value.to_bits(), "`{cell}`: {wanted} and {value}");
         }
     }
 }
 
-/// A table such as `sections.csv`. Every row has as many cells as there are columns, names differ, numbers
-/// are finite, and each cell stands where it says.
+/// A table such as `sections.csv`. Every row has as many cells as there are columns, names differ,
+/// numbers are finite, and each cell stands where it says.
 pub fn table(input: &[u8]) {
     let path = folder().join("table.csv");
     write(&path, input);

@@ -93,7 +93,9 @@ fn of_file(path: &Path, bytes: Vec<u8>, seeds: &mut Vec<Seed>) {
         Some("yaml") if inside("effects") || name == "effects.yaml" => {
             seeds.push(("catalogue", bytes));
         }
-        Some("yaml") if name == "mapping.yaml" || shown.contains("cases/import/") => seeds.push(("mapping", bytes)),
+        Some("yaml") if name == "mapping.yaml" || shown.contains("cases/import/") => {
+            seeds.push(("mapping", bytes))
+        }
         Some("yaml") if inside("protocols") || inside("syntax") || inside("check") => {
             protocol(&name, bytes, seeds);
         }
@@ -164,8 +166,9 @@ fn protocol(name: &str, bytes: Vec<u8>, seeds: &mut Vec<Seed>) {
     seeds.push(("protocol_text", bytes));
 }
 
-/// Writes the seeds of a target below `corpus`, inputs that once failed among them, and `TARGET.dict`:
-/// the words of the language for the fuzzer to put together. Each target has its own, as several start at a time.
+/// Writes the seeds of a target below `corpus`, inputs that once failed among them, and
+/// `TARGET.dict`: the words of the language for the fuzzer to put together. Each target has its
+/// own, as several start at a time.
 ///
 /// # Errors
 /// A file cannot be written.

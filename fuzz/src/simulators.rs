@@ -10,8 +10,8 @@ use fishplate::source::Source;
 
 use super::promise;
 
-/// A catalogue of effects. Its effects can be chosen by name, and its formulas give finite numbers or say why
-/// they do not.
+/// A catalogue of effects. Its effects can be chosen by name, and its formulas give finite numbers
+/// or say why they do not.
 pub fn catalogue(input: &[u8]) {
     let Ok(text) = std::str::from_utf8(input) else { return };
     let source = Source::new("fuzz.yaml", text);
@@ -47,8 +47,14 @@ fn applied(catalogue: &Catalogue) {
         let values = [0.0, 1.0, -2.5, 1e6];
         let channel = |name: &String| Channel { name: name.clone(), values: values.to_vec() };
         let channels = catalogue.groups.iter().flat_map(|group| group.channels.iter().map(channel));
-        let mut signals = Signals { axis: vec![0.0, 1.0, 2.0, 3.0], over_time: false, rate: 1.0, channels: channels.collect() };
-        let settings: Vec<f64> = effect.parameters.iter().map(|parameter| parameter.default).collect();
+        let mut signals = Signals {
+            axis: vec![0.0, 1.0, 2.0, 3.0],
+            over_time: false,
+            rate: 1.0,
+            channels: channels.collect(),
+        };
+        let settings: Vec<f64> =
+            effect.parameters.iter().map(|parameter| parameter.default).collect();
         if signals.compute(formulas, &settings).is_ok() {
             let mut computed = signals.channels.iter().flat_map(|channel| &channel.values);
             assert!(computed.all(|value| value.is_finite()), "{}", effect.name);

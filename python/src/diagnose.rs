@@ -74,10 +74,13 @@ fn called(
         return Err(Problem::error("interrupted", "the diagnosis was interrupted"));
     }
     Python::attach(|py| {
-        let made = Task::of(py, task).and_then(|task| Bound::new(py, task)).and_then(|task| function.bind(py).call1((task,)));
+        let made = Task::of(py, task)
+            .and_then(|task| Bound::new(py, task))
+            .and_then(|task| function.bind(py).call1((task,)));
         let table = made.and_then(|made| Table::of(&convert.bind(py).call1((made,))?));
         let frame = table.map_err(|error| {
-            let says = format!("section `{}`: the simulator {name} failed: {error}", task.section.name());
+            let says =
+                format!("section `{}`: the simulator {name} failed: {error}", task.section.name());
             let traceback = error.traceback(py).and_then(|traceback| traceback.format().ok());
             let problem = Problem::error("simulator-failed", says).at(&task.section.cell.span);
             match traceback {
@@ -114,7 +117,16 @@ pub fn diagnose(
     let campaign = campaign.inner.clone();
     let (found, problems) = work::run(py, jobs, move |stopped| {
         let mut problems = Problems::default();
-        let found = diagnosed(campaign, protocol.as_ref(), &catalogue, &simulator, &set, seed, stopped, &mut problems);
+        let found = diagnosed(
+            campaign,
+            protocol.as_ref(),
+            &catalogue,
+            &simulator,
+            &set,
+            seed,
+            stopped,
+            &mut problems,
+        );
         // The function may hold the last reference to its objects.
         Python::attach(|_| drop(simulator));
         (found, problems)
@@ -124,7 +136,8 @@ pub fn diagnose(
     Ok(Report::new(Found::Diagnosis(Box::new(found))))
 }
 
-/// Problems of a number that is in the vehicle file: errors. What else the model lacks is a warning.
+/// Problems of a number that is in the vehicle file: errors. What else the model lacks is a
+/// warning.
 const WRONG: [&str; 2] = ["wrong-kind", "range"];
 
 #[allow(clippy::too_many_arguments)]
@@ -138,24 +151,35 @@ fn diagnosed(
     stopped: &Stopped,
     problems: &mut Problems,
 ) -> Option<fishplate::diagnose::Outcome> {
-    let mut pool = prepare_opened(vec![campaign], protocol.map(Asked::of), set, problems).filter(|_| !problems.any_error())?;
+    let mut pool = prepare_opened(vec![campaign], protocol.map(Asked::of), set, problems)
+        .filter(|_| !problems.any_error())?;
     let campaign = pool.campaigns.pop()?;
     let (catalogue, settings, sections) = for_diagnosis(&campaign, catalogue, problems)?;
     let call = |task: &simulate::Task<'_>| {
-        let function = simulates.function.as_ref().ok_or_else(|| Problem::error("internal", "no simulator"))?;
+        let function = simulates
+            .function
+            .as_ref()
+            .ok_or_else(|| Problem::error("internal", "no simulator"))?;
         called(function, &simulates.convert, &simulates.name, task, stopped)
     };
-    let function = simulates.function.is_some().then(|| Function::new(&campaign, simulates.name.as_str(), &call));
+    let function = simulates
+        .function
+        .is_some()
+        .then(|| Function::new(&campaign, simulates.name.as_str(), &call));
     let mut lacking = Problems::default();
     let model = if function.is_some() { None } else { Builtin::new(&campaign, &mut lacking) };
     for problem in lacking.0 {
-        let severity = if WRONG.contains(&problem.code) { Severity::Error } else { Severity::Warning };
+        let severity =
+            if WRONG.contains(&problem.code) { Severity::Error } else { Severity::Warning };
         problems.push(Problem { severity, ..problem });
     }
     if problems.any_error() {
         return None;
     }
-    let simulator = function.as_ref().map(|one| one as &dyn Simulator).or(model.as_ref().map(|one| one as &dyn Simulator));
+    let simulator = function
+        .as_ref()
+        .map(|one| one as &dyn Simulator)
+        .or(model.as_ref().map(|one| one as &dyn Simulator));
     let inputs = Inputs {
         campaign: &campaign,
         catalogue: &catalogue,

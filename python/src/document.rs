@@ -106,16 +106,27 @@ impl Report {
 
     /// The bytes of study.json, comparison.json or diagnosis.json.
     fn json<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let files = py.detach(|| self.found.files(Reports::NONE)).map_err(|problems| raised(py, &problems))?;
-        let numbers = files.iter().find(|(name, _)| name.ends_with(".json")).map(|(_, bytes)| bytes.as_slice());
+        let files = py
+            .detach(|| self.found.files(Reports::NONE))
+            .map_err(|problems| raised(py, &problems))?;
+        let numbers = files
+            .iter()
+            .find(|(name, _)| name.ends_with(".json"))
+            .map(|(_, bytes)| bytes.as_slice());
         Ok(PyBytes::new(py, numbers.unwrap_or_default()))
     }
 
     /// All tables by name.
     fn tables(&self, py: Python<'_>) -> PyResult<Vec<(String, Table)>> {
-        let files = py.detach(|| self.found.files(Reports::NONE)).map_err(|problems| raised(py, &problems))?;
-        let name = |path: &str| Some(path.strip_prefix("tables/")?.trim_end_matches(".csv").to_string());
-        Ok(files.into_iter().filter_map(|(path, bytes)| Some((name(&path)?, of_csv(&bytes)))).collect())
+        let files = py
+            .detach(|| self.found.files(Reports::NONE))
+            .map_err(|problems| raised(py, &problems))?;
+        let name =
+            |path: &str| Some(path.strip_prefix("tables/")?.trim_end_matches(".csv").to_string());
+        Ok(files
+            .into_iter()
+            .filter_map(|(path, bytes)| Some((name(&path)?, of_csv(&bytes))))
+            .collect())
     }
 
     /// The figures as SVG, by name.
@@ -147,10 +158,23 @@ impl Report {
             "bad" => Some(false),
             _ => None,
         };
-        let facts: Vec<Vec<String>> = document.key_facts.iter().map(|fact| vec![fact.name.clone(), fact.value.clone()]).collect();
-        let drawn = self.found.figures().into_iter().take(FIGURES).map(|(name, svg)| html::figure(&svg, &name));
-        html::head(&document.title, holds, &self.verdict(), std::slice::from_ref(&document.sentence))
-            + &drawn.collect::<String>()
+        let facts: Vec<Vec<String>> = document
+            .key_facts
+            .iter()
+            .map(|fact| vec![fact.name.clone(), fact.value.clone()])
+            .collect();
+        let drawn = self
+            .found
+            .figures()
+            .into_iter()
+            .take(FIGURES)
+            .map(|(name, svg)| html::figure(&svg, &name));
+        html::head(
+            &document.title,
+            holds,
+            &self.verdict(),
+            std::slice::from_ref(&document.sentence),
+        ) + &drawn.collect::<String>()
             + &html::table(&[String::new(), String::new()], &facts, None)
     }
 }
@@ -174,10 +198,17 @@ pub struct Studied {
 impl Studied {
     fn asked(&self) -> Kind {
         match self.kind.as_str() {
-            "sync" => Kind::Sync(Synchronisation { offsets: self.offsets.clone(), farthest: self.farthest, correct: self.correct }),
-            "parameters" => {
-                Kind::Parameters(self.vary.iter().map(|(name, values)| Vary { name: name.clone(), values: values.clone() }).collect())
-            }
+            "sync" => Kind::Sync(Synchronisation {
+                offsets: self.offsets.clone(),
+                farthest: self.farthest,
+                correct: self.correct,
+            }),
+            "parameters" => Kind::Parameters(
+                self.vary
+                    .iter()
+                    .map(|(name, values)| Vary { name: name.clone(), values: values.clone() })
+                    .collect(),
+            ),
             _ => Kind::Sections,
         }
     }
@@ -204,12 +235,13 @@ pub fn study(
     let campaigns: Vec<_> = campaigns.iter().map(|campaign| campaign.inner.clone()).collect();
     let (found, problems) = work::run(py, jobs, move |_| {
         let mut problems = Problems::default();
-        let pool = prepare_opened(campaigns, protocol.as_ref().map(Asked::of), &set, &mut problems).filter(|_| !problems.any_error());
+        let pool = prepare_opened(campaigns, protocol.as_ref().map(Asked::of), &set, &mut problems)
+            .filter(|_| !problems.any_error());
         let found = pool.and_then(|pool| {
             let (asked, campaigns) = (studied.asked(), Campaigns::from(&pool.campaigns));
-            let found = asked
-                .ready(&pool.compiled, campaigns)
-                .and_then(|_| asked.run(&pool.compiled, campaigns, &pool.overrides, &studied.settings(), &|_| {}));
+            let found = asked.ready(&pool.compiled, campaigns).and_then(|_| {
+                asked.run(&pool.compiled, campaigns, &pool.overrides, &studied.settings(), &|_| {})
+            });
             found.map_err(|told| told.0.into_iter().for_each(|problem| problems.push(problem))).ok()
         });
         (found, problems)
@@ -231,11 +263,15 @@ pub fn compare(
     let campaigns: Vec<_> = campaigns.iter().map(|campaign| campaign.inner.clone()).collect();
     let (found, problems) = work::run(py, jobs, move |_| {
         let mut problems = Problems::default();
-        let families: Option<Vec<_>> = protocols.iter().map(|protocol| protocol.of().load(&mut problems)).collect();
+        let families: Option<Vec<_>> =
+            protocols.iter().map(|protocol| protocol.of().load(&mut problems)).collect();
         let sizes = sizes.unwrap_or_else(|| fishplate::compare::SIZES.to_vec());
         let settings = fishplate::compare::Settings { sizes, set };
-        let prepared = families.and_then(|families| fishplate::compare::Prepared::new(families, campaigns, settings, &mut problems));
-        let found = prepared.filter(|_| !problems.any_error()).map(|prepared| prepared.compare(&|_| {}));
+        let prepared = families.and_then(|families| {
+            fishplate::compare::Prepared::new(families, campaigns, settings, &mut problems)
+        });
+        let found =
+            prepared.filter(|_| !problems.any_error()).map(|prepared| prepared.compare(&|_| {}));
         (found, problems)
     })?;
     let found = or_raise(py, found, &problems)?;

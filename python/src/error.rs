@@ -11,11 +11,21 @@ use fishplate::source::Span;
 /// One problem as a `fishplate.Problem`.
 fn one<'py>(py: Python<'py>, problem: &Problem) -> PyResult<Bound<'py, PyAny>> {
     let told = PyDict::new(py);
-    told.set_item("severity", if problem.severity == Severity::Error { "error" } else { "warning" })?;
+    told.set_item(
+        "severity",
+        if problem.severity == Severity::Error { "error" } else { "warning" },
+    )?;
     told.set_item("code", problem.code)?;
     told.set_item("message", &problem.says)?;
-    told.set_item("span", problem.at.as_ref().map(|at| span(py, at, problem.label.as_deref())).transpose()?)?;
-    let also: Vec<Bound<'_, PyAny>> = problem.also.iter().map(|(at, label)| span(py, at, Some(label))).collect::<PyResult<_>>()?;
+    told.set_item(
+        "span",
+        problem.at.as_ref().map(|at| span(py, at, problem.label.as_deref())).transpose()?,
+    )?;
+    let also: Vec<Bound<'_, PyAny>> = problem
+        .also
+        .iter()
+        .map(|(at, label)| span(py, at, Some(label)))
+        .collect::<PyResult<_>>()?;
     told.set_item("also", also)?;
     told.set_item("help", &problem.help)?;
     told.set_item("text", problem.render(false))?;
@@ -42,7 +52,8 @@ fn classes(py: Python<'_>) -> PyResult<Bound<'_, PyModule>> {
 
 /// All problems as a list of `fishplate.Problem`.
 pub fn listed<'py>(py: Python<'py>, problems: &Problems) -> PyResult<Bound<'py, PyAny>> {
-    let all: Vec<Bound<'_, PyAny>> = problems.0.iter().map(|problem| one(py, problem)).collect::<PyResult<_>>()?;
+    let all: Vec<Bound<'_, PyAny>> =
+        problems.0.iter().map(|problem| one(py, problem)).collect::<PyResult<_>>()?;
     Ok(PyList::new(py, all)?.into_any())
 }
 
@@ -67,7 +78,8 @@ pub fn told(py: Python<'_>, problems: &Problems) -> PyResult<()> {
     }
     let category = classes(py)?.getattr("Warning")?;
     for problem in &problems.0 {
-        let text = CString::new(problem.render(false).replace('\0', "\u{fffd}")).unwrap_or_default();
+        let text =
+            CString::new(problem.render(false).replace('\0', "\u{fffd}")).unwrap_or_default();
         PyErr::warn(py, &category, &text, 2)?;
     }
     Ok(())
@@ -76,5 +88,7 @@ pub fn told(py: Python<'_>, problems: &Problems) -> PyResult<()> {
 /// The value, or the errors.
 pub fn or_raise<T>(py: Python<'_>, value: Option<T>, problems: &Problems) -> PyResult<T> {
     told(py, problems)?;
-    value.ok_or_else(|| one_raised(py, Problem::error("internal", "no result, and no problem that says why")))
+    value.ok_or_else(|| {
+        one_raised(py, Problem::error("internal", "no result, and no problem that says why"))
+    })
 }

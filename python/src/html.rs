@@ -38,14 +38,19 @@ pub fn table(names: &[String], rows: &[Vec<String>], note: Option<String>) -> St
     out
 }
 
-/// The head of a result: a title, and the verdict in words with a mark, so that colour is not needed.
+/// The head of a result: a title, and the verdict in words with a mark, so that colour is not
+/// needed.
 pub fn head(title: &str, holds: Option<bool>, word: &str, reasons: &[String]) -> String {
     let (mark, color) = match holds {
         Some(true) => ("✓", "#1b7f3b"),
         Some(false) => ("✗", "#b3261e"),
         None => ("–", "#6b6b6b"),
     };
-    let mut out = format!("<p>{}</p><p style=\"color:{color};font-weight:bold\">{mark} {}</p>", escaped(title), escaped(word));
+    let mut out = format!(
+        "<p>{}</p><p style=\"color:{color};font-weight:bold\">{mark} {}</p>",
+        escaped(title),
+        escaped(word)
+    );
     if !reasons.is_empty() {
         out += "<ul>";
         for reason in reasons {
@@ -56,16 +61,30 @@ pub fn head(title: &str, holds: Option<bool>, word: &str, reasons: &[String]) ->
     out
 }
 
-/// A figure of the report. It is an image, so that neither its names nor its styles meet those of the page.
+/// A figure of the report. It is an image, so that neither its names nor its styles meet those of
+/// the page.
 pub fn figure(svg: &str, alt: &str) -> String {
     let mut data = String::with_capacity(3 * svg.len());
     for byte in svg.bytes() {
         match byte {
-            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' | b'/' | b':' | b'=' | b' ' => data.push(byte.into()),
+            b'a'..=b'z'
+            | b'A'..=b'Z'
+            | b'0'..=b'9'
+            | b'-'
+            | b'.'
+            | b'_'
+            | b'~'
+            | b'/'
+            | b':'
+            | b'='
+            | b' ' => data.push(byte.into()),
             _ => {
                 let _ = write!(data, "%{byte:02X}");
             }
         }
     }
-    format!("<img style=\"max-width:100%\" alt=\"{}\" src=\"data:image/svg+xml,{data}\">", escaped(alt))
+    format!(
+        "<img style=\"max-width:100%\" alt=\"{}\" src=\"data:image/svg+xml,{data}\">",
+        escaped(alt)
+    )
 }

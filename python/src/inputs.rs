@@ -23,19 +23,28 @@ pub struct Campaign {
 
 #[pymethods]
 impl Campaign {
-    /// `texts` and `records` by their paths inside the campaign; `folder` has what is not among them.
+    /// `texts` and `records` by their paths inside the campaign; `folder` has what is not among
+    /// them.
     #[staticmethod]
-    fn of(py: Python<'_>, folder: Option<PathBuf>, texts: BTreeMap<String, Vec<u8>>, records: &Bound<'_, PyDict>) -> PyResult<Self> {
+    fn of(
+        py: Python<'_>,
+        folder: Option<PathBuf>,
+        texts: BTreeMap<String, Vec<u8>>,
+        records: &Bound<'_, PyDict>,
+    ) -> PyResult<Self> {
         let mut memory = Memory { texts, records: BTreeMap::new() };
         for (name, record) in records {
             let name: String = name.extract()?;
-            let frame = Table::of(&record)?.frame(&name).map_err(|problem| one_raised(py, problem))?;
+            let frame =
+                Table::of(&record)?.frame(&name).map_err(|problem| one_raised(py, problem))?;
             memory.records.insert(name, Arc::new(frame));
         }
         let (opened, problems) = py.detach(|| {
             let mut problems = Problems::default();
             let opened = match folder {
-                Some(folder) if memory.texts.is_empty() && memory.records.is_empty() => data::Campaign::open(&folder, &mut problems),
+                Some(folder) if memory.texts.is_empty() && memory.records.is_empty() => {
+                    data::Campaign::open(&folder, &mut problems)
+                }
                 folder => data::Campaign::with_memory(folder.as_deref(), memory, &mut problems),
             };
             (opened, problems)

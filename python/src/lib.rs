@@ -1,4 +1,5 @@
-//! The Python package `fishplate`: thin classes over the library. Signatures, defaults and documentation are in `package/fishplate`.
+//! The Python package `fishplate`: thin classes over the library. Signatures, defaults and
+//! documentation are in `package/fishplate`.
 
 mod diagnose;
 mod document;
@@ -17,7 +18,8 @@ use fishplate::library;
 use fishplate::prepare::Protocol;
 use fishplate::problem::Problems;
 
-/// The allocator of the program: see `src/main.rs`. The memory of Python, NumPy and others is not touched.
+/// The allocator of the program: see `src/main.rs`. The memory of Python, NumPy and others is not
+/// touched.
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 

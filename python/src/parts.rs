@@ -1,4 +1,5 @@
-//! `reduce` and `judge`: the values of a part of the sections as bytes, and the result from all parts.
+//! `reduce` and `judge`: the values of a part of the sections as bytes, and the result from all
+//! parts.
 
 use std::sync::Arc;
 
@@ -31,10 +32,19 @@ pub fn reduce<'py>(
         let mut problems = Problems::default();
         let shard = Shard::parse(&format!("{}/{}", shard.0, shard.1));
         let shard = shard.map_err(|says| problems.push(Problem::error("shard", says))).ok();
-        let pool = prepare_opened(campaigns, protocol.as_ref().map(Asked::of), &set, &mut problems).filter(|_| !problems.any_error());
+        let pool = prepare_opened(campaigns, protocol.as_ref().map(Asked::of), &set, &mut problems)
+            .filter(|_| !problems.any_error());
         let made = shard.zip(pool).and_then(|(shard, pool)| {
-            let made = values::reduce(&pool.compiled, (&pool.campaigns, pool.found), Part { shard, plots }, &|_| {})
-                .and_then(|found| values::write(&pool.compiled.plan, &found).map_err(|problem| Problems(vec![problem])));
+            let made = values::reduce(
+                &pool.compiled,
+                (&pool.campaigns, pool.found),
+                Part { shard, plots },
+                &|_| {},
+            )
+            .and_then(|found| {
+                values::write(&pool.compiled.plan, &found)
+                    .map_err(|problem| Problems(vec![problem]))
+            });
             made.map_err(|told| told.0.into_iter().for_each(|problem| problems.push(problem))).ok()
         });
         (made, problems)

@@ -33,9 +33,15 @@ pub fn certify(
     let campaigns: Vec<_> = campaigns.iter().map(|campaign| campaign.inner.clone()).collect();
     let (found, problems) = work::run(py, jobs, move |_| {
         let mut problems = Problems::default();
-        let pool = prepare_opened(campaigns, protocol.as_ref().map(Asked::of), &set, &mut problems).filter(|_| !problems.any_error());
+        let pool = prepare_opened(campaigns, protocol.as_ref().map(Asked::of), &set, &mut problems)
+            .filter(|_| !problems.any_error());
         let found = pool.and_then(|pool| {
-            let found = fishplate::certify::certify(&pool.compiled, &pool.campaigns, Settings { traces: plots }, &|_| {});
+            let found = fishplate::certify::certify(
+                &pool.compiled,
+                &pool.campaigns,
+                Settings { traces: plots },
+                &|_| {},
+            );
             match found {
                 Ok(found) => Some(Certification { found: pool.found, ..found }),
                 Err(told) => {
@@ -94,8 +100,12 @@ impl Result {
     /// One row for each statistic of each quantity.
     #[getter]
     fn summary(&self) -> Table {
-        let all: Vec<(&QuantityResult, &StatisticResult)> =
-            self.found.quantities.iter().flat_map(|q| q.statistics.iter().map(move |s| (q, s))).collect();
+        let all: Vec<(&QuantityResult, &StatisticResult)> = self
+            .found
+            .quantities
+            .iter()
+            .flat_map(|q| q.statistics.iter().map(move |s| (q, s)))
+            .collect();
         let text = |of: &dyn Fn(&QuantityResult, &StatisticResult) -> Option<String>| -> ArrayRef {
             Arc::new(all.iter().map(|(q, s)| of(q, s)).collect::<StringArray>())
         };
@@ -125,13 +135,18 @@ impl Result {
     /// One row for each value that is compared or assessed.
     #[getter]
     fn values(&self) -> Table {
-        let all: Vec<(&QuantityResult, &PairValue)> =
-            self.found.quantities.iter().flat_map(|q| q.values.iter().map(move |v| (q, v))).collect();
+        let all: Vec<(&QuantityResult, &PairValue)> = self
+            .found
+            .quantities
+            .iter()
+            .flat_map(|q| q.values.iter().map(move |v| (q, v)))
+            .collect();
         let text = |of: &dyn Fn(&QuantityResult, &PairValue) -> Option<String>| -> ArrayRef {
             Arc::new(all.iter().map(|(q, v)| of(q, v)).collect::<StringArray>())
         };
-        let number =
-            |of: &dyn Fn(&PairValue) -> Option<f64>| -> ArrayRef { Arc::new(all.iter().map(|(_, v)| of(v)).collect::<Float64Array>()) };
+        let number = |of: &dyn Fn(&PairValue) -> Option<f64>| -> ArrayRef {
+            Arc::new(all.iter().map(|(_, v)| of(v)).collect::<Float64Array>())
+        };
         Table::new(vec![
             ("quantity", text(&|q, _| Some(q.id.clone()))),
             ("unit", text(&|q, _| Some(q.unit.clone()))),
@@ -151,7 +166,10 @@ impl Result {
     fn sections(&self) -> Table {
         let all = &self.found.sections;
         Table::new(vec![
-            ("section", Arc::new(all.iter().map(|s| Some(s.section.as_str())).collect::<StringArray>())),
+            (
+                "section",
+                Arc::new(all.iter().map(|s| Some(s.section.as_str())).collect::<StringArray>()),
+            ),
             ("zone", Arc::new(all.iter().map(|s| s.zone.as_deref()).collect::<StringArray>())),
             ("used", Arc::new(all.iter().map(|s| Some(s.used)).collect::<BooleanArray>())),
             ("reason", Arc::new(all.iter().map(|s| s.reason.as_deref()).collect::<StringArray>())),
@@ -160,8 +178,13 @@ impl Result {
 
     /// All tables of the report by name.
     fn tables(&self, py: Python<'_>) -> PyResult<Vec<(String, Table)>> {
-        let all = tables::tables(&self.found).map_err(|error| raised(py, &Problems(vec![Problem::error("table", error.to_string())])))?;
-        Ok(all.into_iter().map(|(name, bytes)| (name.trim_end_matches(".csv").to_string(), of_csv(&bytes))).collect())
+        let all = tables::tables(&self.found).map_err(|error| {
+            raised(py, &Problems(vec![Problem::error("table", error.to_string())]))
+        })?;
+        Ok(all
+            .into_iter()
+            .map(|(name, bytes)| (name.trim_end_matches(".csv").to_string(), of_csv(&bytes)))
+            .collect())
     }
 
     /// The figures of the report as SVG, by name.
@@ -184,7 +207,11 @@ impl Result {
     }
 
     fn __repr__(&self) -> String {
-        format!("<fishplate.Result {:?}: {}>", self.found.campaign.name, self.found.verdict_in_words())
+        format!(
+            "<fishplate.Result {:?}: {}>",
+            self.found.campaign.name,
+            self.found.verdict_in_words()
+        )
     }
 
     fn _repr_html_(&self) -> String {
@@ -198,11 +225,21 @@ impl Result {
         let chart = if found.quantities.is_empty() {
             String::new()
         } else {
-            html::figure(&figure::overview(&found.quantities), "Every statistic divided by its limit")
+            html::figure(
+                &figure::overview(&found.quantities),
+                "Every statistic divided by its limit",
+            )
         };
         let names: Vec<String> =
-            ["quantity", "statistic", "scope", "n", "value", "limit", "unit", "ratio", ""].map(str::to_string).to_vec();
-        let number = |value: Option<f64>| value.map_or_else(|| "–".to_string(), |value| fishplate::report::number::significant(value, 4));
+            ["quantity", "statistic", "scope", "n", "value", "limit", "unit", "ratio", ""]
+                .map(str::to_string)
+                .to_vec();
+        let number = |value: Option<f64>| {
+            value.map_or_else(
+                || "–".to_string(),
+                |value| fishplate::report::number::significant(value, 4),
+            )
+        };
         let mut rows = Vec::new();
         for quantity in &found.quantities {
             for s in &quantity.statistics {
@@ -211,14 +248,27 @@ impl Result {
                     Some(false) => "not met",
                     None => "not assessable",
                 };
-                let (value, limit, ratio) = (number(s.value), number(s.limit), number(s.normalised));
-                let cells = [&quantity.id, &s.title, &s.scope, &s.n.to_string(), &value, &limit, &s.unit, &ratio, &word.to_string()];
+                let (value, limit, ratio) =
+                    (number(s.value), number(s.limit), number(s.normalised));
+                let cells = [
+                    &quantity.id,
+                    &s.title,
+                    &s.scope,
+                    &s.n.to_string(),
+                    &value,
+                    &limit,
+                    &s.unit,
+                    &ratio,
+                    &word.to_string(),
+                ];
                 rows.push(cells.map(Clone::clone).to_vec());
             }
         }
         let (shown, all) = (rows.len().min(MOST_SHOWN), rows.len());
         let note = (all > shown).then(|| format!("{all} rows; all are in `result.summary`"));
-        html::head(&title, holds, &found.verdict_in_words(), &found.reasons) + &chart + &html::table(&names, &rows[..shown], note)
+        html::head(&title, holds, &found.verdict_in_words(), &found.reasons)
+            + &chart
+            + &html::table(&names, &rows[..shown], note)
     }
 }
 

@@ -40,7 +40,9 @@ const SHOWN: usize = 10;
 impl Table {
     pub fn new(columns: Vec<(&str, ArrayRef)>) -> Self {
         // Names pass to other libraries as C strings, which end at a zero byte.
-        let field = |(name, array): &(&str, ArrayRef)| Field::new(name.replace('\0', "\u{fffd}"), array.data_type().clone(), true);
+        let field = |(name, array): &(&str, ArrayRef)| {
+            Field::new(name.replace('\0', "\u{fffd}"), array.data_type().clone(), true)
+        };
         let fields: Vec<Field> = columns.iter().map(field).collect();
         let schema = Arc::new(Schema::new(fields));
         let arrays = columns.into_iter().map(|(_, array)| array).collect();
@@ -63,12 +65,20 @@ impl Table {
             return Ok(table.get().clone());
         }
         let wrong = |error: &dyn std::fmt::Display| {
-            let problem = Problem::error("not-a-table", format!("the table cannot be read: {error}"));
-            one_raised(given.py(), problem.help("give a data frame, an Arrow table, or a dict of names and arrays"))
+            let problem =
+                Problem::error("not-a-table", format!("the table cannot be read: {error}"));
+            one_raised(
+                given.py(),
+                problem.help("give a data frame, an Arrow table, or a dict of names and arrays"),
+            )
         };
-        let reader = given.extract::<AnyRecordBatch>().and_then(AnyRecordBatch::into_reader).map_err(|error| wrong(&error))?;
+        let reader = given
+            .extract::<AnyRecordBatch>()
+            .and_then(AnyRecordBatch::into_reader)
+            .map_err(|error| wrong(&error))?;
         let schema = reader.schema();
-        let batches = reader.collect::<Result<Vec<_>, ArrowError>>().map_err(|error| wrong(&error))?;
+        let batches =
+            reader.collect::<Result<Vec<_>, ArrowError>>().map_err(|error| wrong(&error))?;
         Ok(Self { schema, batches, file: None })
     }
 
@@ -92,10 +102,20 @@ impl Table {
 impl Table {
     /// The Arrow PyCapsule interface.
     #[pyo3(signature = (requested_schema = None))]
-    fn __arrow_c_stream__<'py>(&self, py: Python<'py>, requested_schema: Option<Bound<'py, PyCapsule>>) -> PyResult<Bound<'py, PyCapsule>> {
-        let batches: Vec<Result<ArrayRef, ArrowError>> =
-            self.batches.iter().map(|batch| Ok(Arc::new(arrow_array::StructArray::from(batch.clone())) as ArrayRef)).collect();
-        let field = Arc::new(Field::new_struct("", self.schema.fields().clone(), false).with_metadata(self.schema.metadata().clone()));
+    fn __arrow_c_stream__<'py>(
+        &self,
+        py: Python<'py>,
+        requested_schema: Option<Bound<'py, PyCapsule>>,
+    ) -> PyResult<Bound<'py, PyCapsule>> {
+        let batches: Vec<Result<ArrayRef, ArrowError>> = self
+            .batches
+            .iter()
+            .map(|batch| Ok(Arc::new(arrow_array::StructArray::from(batch.clone())) as ArrayRef))
+            .collect();
+        let field = Arc::new(
+            Field::new_struct("", self.schema.fields().clone(), false)
+                .with_metadata(self.schema.metadata().clone()),
+        );
         let reader = Box::new(pyo3_arrow::ffi::ArrayIterator::new(batches, field));
         Ok(to_stream_pycapsule(py, reader, requested_schema)?)
     }
@@ -132,9 +152,15 @@ impl Table {
         let names: Vec<String> = self.column_names();
         let rows = self.rows();
         let shown = (0..rows).filter(|row| *row < SHOWN || *row + SHOWN >= rows);
-        let cells = shown.map(|row| (0..names.len()).map(|column| self.cell(row, column)).collect()).collect::<Vec<Vec<String>>>();
+        let cells = shown
+            .map(|row| (0..names.len()).map(|column| self.cell(row, column)).collect())
+            .collect::<Vec<Vec<String>>>();
         let left_out = rows.saturating_sub(2 * SHOWN);
-        html::table(&names, &cells, (left_out > 0).then(|| format!("{rows} rows, {left_out} of which are left out here")))
+        html::table(
+            &names,
+            &cells,
+            (left_out > 0).then(|| format!("{rows} rows, {left_out} of which are left out here")),
+        )
     }
 
     fn to_polars<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
@@ -150,29 +176,52 @@ impl Table {
     }
 }
 
-/// Columns of equal length, each an array of numpy or of any library that speaks Arrow, or a list of numbers or of texts.
+/// Columns of equal length, each an array of numpy or of any library that speaks Arrow, or a list
+/// of numbers or of texts.
 #[pyfunction]
-pub fn from_arrays(py: Python<'_>, names: Vec<String>, arrays: Vec<Bound<'_, PyAny>>) -> PyResult<Table> {
+pub fn from_arrays(
+    py: Python<'_>,
+    names: Vec<String>,
+    arrays: Vec<Bound<'_, PyAny>>,
+) -> PyResult<Table> {
     let mut columns: Vec<ArrayRef> = Vec::new();
     for (name, array) in names.iter().zip(&arrays) {
         let list = array.is_exact_instance_of::<PyList>();
-        let made: ArrayRef = if let Some(numbers) = list.then(|| array.extract::<Vec<Option<f64>>>().ok()).flatten() {
+        let made: ArrayRef = if let Some(numbers) =
+            list.then(|| array.extract::<Vec<Option<f64>>>().ok()).flatten()
+        {
             Arc::new(Float64Array::from(numbers))
-        } else if let Some(texts) = list.then(|| array.extract::<Vec<Option<String>>>().ok()).flatten() {
+        } else if let Some(texts) =
+            list.then(|| array.extract::<Vec<Option<String>>>().ok()).flatten()
+        {
             Arc::new(StringArray::from(texts))
-        } else if let Some(numbers) = array.cast::<PyArray1<f64>>().ok().and_then(|array| array.try_readonly().ok()) {
+        } else if let Some(numbers) =
+            array.cast::<PyArray1<f64>>().ok().and_then(|array| array.try_readonly().ok())
+        {
             // The one copy: numpy may change its numbers later.
             Arc::new(numbers.as_array().iter().copied().collect::<Float64Array>())
         } else {
             let found = array.extract::<PyArray>().map_err(|error| {
                 let says = format!("the column `{name}` is no array of numbers: {error}");
-                one_raised(py, Problem::error("not-a-number", says).help("convert the column to float64"))
+                one_raised(
+                    py,
+                    Problem::error("not-a-number", says).help("convert the column to float64"),
+                )
             })?;
             Arc::clone(found.array())
         };
         if let Some(first) = columns.first().filter(|first| first.len() != made.len()) {
-            let says = format!("the column `{name}` has {} values and `{}` has {}", made.len(), names[0], first.len());
-            return Err(one_raised(py, Problem::error("unequal-lengths", says).help("all columns of a record have the same length")));
+            let says = format!(
+                "the column `{name}` has {} values and `{}` has {}",
+                made.len(),
+                names[0],
+                first.len()
+            );
+            return Err(one_raised(
+                py,
+                Problem::error("unequal-lengths", says)
+                    .help("all columns of a record have the same length"),
+            ));
         }
         columns.push(made);
     }
@@ -185,9 +234,15 @@ pub fn read_record(py: Python<'_>, path: PathBuf) -> PyResult<Table> {
     let made = py.detach(|| {
         let shown = path.display().to_string();
         let columns = read_raw(&path, &shown)?;
-        let unreadable = |error: std::io::Error| Problem::error("file-unreadable", format!("`{shown}` cannot be read: {error}"));
+        let unreadable = |error: std::io::Error| {
+            Problem::error("file-unreadable", format!("`{shown}` cannot be read: {error}"))
+        };
         let bytes = disk::read(&path, LARGEST_RECORD).map_err(unreadable)?;
-        let file = ReadFrom { ending: Format::of(&path).ending(), sha256: sha256(&bytes), bytes: bytes.len() };
+        let file = ReadFrom {
+            ending: Format::of(&path).ending(),
+            sha256: sha256(&bytes),
+            bytes: bytes.len(),
+        };
         let arrays = columns.into_iter().map(|column| {
             let array: ArrayRef = match column.values {
                 Values::Numbers(values) => Arc::new(Float64Array::from(values)),
@@ -196,7 +251,8 @@ pub fn read_record(py: Python<'_>, path: PathBuf) -> PyResult<Table> {
             (column.heading, array)
         });
         let arrays: Vec<(String, ArrayRef)> = arrays.collect();
-        let columns = arrays.iter().map(|(name, array)| (name.as_str(), Arc::clone(array))).collect();
+        let columns =
+            arrays.iter().map(|(name, array)| (name.as_str(), Arc::clone(array))).collect();
         Ok(Table { file: Some(file), ..Table::new(columns) })
     });
     made.map_err(|problems: Vec<Problem>| raised(py, &Problems(problems)))
@@ -219,9 +275,18 @@ pub fn csv(table: &Bound<'_, PyAny>) -> PyResult<Vec<u8>> {
         Some(unit) if !field.name().ends_with(']') => format!("{} [{unit}]", field.name()),
         _ => field.name().clone(),
     };
-    let mut text = table.schema.fields().iter().map(|field| quoted(&heading(field))).collect::<Vec<_>>().join(",") + "\n";
+    let mut text = table
+        .schema
+        .fields()
+        .iter()
+        .map(|field| quoted(&heading(field)))
+        .collect::<Vec<_>>()
+        .join(",")
+        + "\n";
     for row in 0..table.rows() {
-        let cells: Vec<String> = (0..table.schema.fields().len()).map(|column| quoted(&table.cell(row, column))).collect();
+        let cells: Vec<String> = (0..table.schema.fields().len())
+            .map(|column| quoted(&table.cell(row, column)))
+            .collect();
         text += &cells.join(",");
         text.push('\n');
     }
@@ -241,9 +306,9 @@ fn text_of(array: &ArrayRef, row: usize) -> Option<String> {
         return None;
     }
     match array.data_type() {
-        DataType::Float64 => {
-            Some(array.as_primitive::<Float64Type>().value(row)).filter(|value| !value.is_nan()).map(|value| value.to_string())
-        }
+        DataType::Float64 => Some(array.as_primitive::<Float64Type>().value(row))
+            .filter(|value| !value.is_nan())
+            .map(|value| value.to_string()),
         DataType::Utf8 => Some(array.as_string::<i32>().value(row).to_string()),
         DataType::LargeUtf8 => Some(array.as_string::<i64>().value(row).to_string()),
         DataType::Utf8View => Some(array.as_string_view().value(row).to_string()),
@@ -254,18 +319,33 @@ fn text_of(array: &ArrayRef, row: usize) -> Option<String> {
     }
 }
 
-/// The tables of a result, from the text of its CSV files: a column whose cells are all numbers or empty holds numbers.
+/// The tables of a result, from the text of its CSV files: a column whose cells are all numbers or
+/// empty holds numbers.
 pub fn of_csv(bytes: &[u8]) -> Table {
     let mut reader = ::csv::Reader::from_reader(bytes);
-    let names: Vec<String> = reader.headers().map(|header| header.iter().map(str::to_string).collect()).unwrap_or_default();
-    let rows: Vec<::csv::StringRecord> = reader.records().filter_map(std::result::Result::ok).collect();
+    let names: Vec<String> = reader
+        .headers()
+        .map(|header| header.iter().map(str::to_string).collect())
+        .unwrap_or_default();
+    let rows: Vec<::csv::StringRecord> =
+        reader.records().filter_map(std::result::Result::ok).collect();
     let array = |column: usize| -> ArrayRef {
         let cells = || rows.iter().map(|row| row.get(column).filter(|cell| !cell.is_empty()));
-        if cells().flatten().next().is_some() && cells().flatten().all(|cell| cell.parse::<f64>().is_ok()) {
-            return Arc::new(cells().map(|cell| cell.and_then(|cell| cell.parse().ok())).collect::<Float64Array>());
+        if cells().flatten().next().is_some()
+            && cells().flatten().all(|cell| cell.parse::<f64>().is_ok())
+        {
+            return Arc::new(
+                cells()
+                    .map(|cell| cell.and_then(|cell| cell.parse().ok()))
+                    .collect::<Float64Array>(),
+            );
         }
-        if cells().flatten().next().is_some() && cells().flatten().all(|cell| cell == "true" || cell == "false") {
-            return Arc::new(cells().map(|cell| cell.map(|cell| cell == "true")).collect::<BooleanArray>());
+        if cells().flatten().next().is_some()
+            && cells().flatten().all(|cell| cell == "true" || cell == "false")
+        {
+            return Arc::new(
+                cells().map(|cell| cell.map(|cell| cell == "true")).collect::<BooleanArray>(),
+            );
         }
         let mut texts = StringBuilder::new();
         cells().for_each(|cell| texts.append_option(cell));

@@ -1,4 +1,5 @@
-//! Long work in a thread of its own: the interpreter is free meanwhile, and an interrupt of the user ends the waiting.
+//! Long work in a thread of its own: the interpreter is free meanwhile, and an interrupt of the
+//! user ends the waiting.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -12,7 +13,8 @@ use pyo3::prelude::*;
 use crate::error::one_raised;
 use fishplate::problem::Problem;
 
-/// Time between two looks for an interrupt [ms]: short for a person, and long beside what a look costs (some microseconds).
+/// Time between two looks for an interrupt [ms]: short for a person, and long beside what a look
+/// costs (some microseconds).
 const TICK: Duration = Duration::from_millis(50);
 /// Most threads; each takes the memory of a record.
 const MOST_JOBS: usize = 256;
@@ -27,13 +29,26 @@ impl Stopped {
     }
 }
 
-/// Runs work with `jobs` threads, one per core without a number. The threads end with the work, so that a process may fork later.
-pub fn run<T: Send + 'static>(py: Python<'_>, jobs: Option<usize>, work: impl FnOnce(&Stopped) -> T + Send + 'static) -> PyResult<T> {
+/// Runs work with `jobs` threads, one per core without a number. The threads end with the work, so
+/// that a process may fork later.
+pub fn run<T: Send + 'static>(
+    py: Python<'_>,
+    jobs: Option<usize>,
+    work: impl FnOnce(&Stopped) -> T + Send + 'static,
+) -> PyResult<T> {
     if let Some(jobs) = jobs.filter(|jobs| !(1..=MOST_JOBS).contains(jobs)) {
-        return Err(one_raised(py, Problem::error("jobs", format!("jobs = {jobs} is not a number from 1 to {MOST_JOBS}"))));
+        return Err(one_raised(
+            py,
+            Problem::error("jobs", format!("jobs = {jobs} is not a number from 1 to {MOST_JOBS}")),
+        ));
     }
-    let failed = |error: &dyn std::fmt::Display| one_raised(py, Problem::error("threads", format!("no threads can be started: {error}")));
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs.unwrap_or(0)).build().map_err(|error| failed(&error))?;
+    let failed = |error: &dyn std::fmt::Display| {
+        one_raised(py, Problem::error("threads", format!("no threads can be started: {error}")))
+    };
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(jobs.unwrap_or(0))
+        .build()
+        .map_err(|error| failed(&error))?;
     let stopped = Stopped::default();
     let (send, receive) = channel();
     let inside = stopped.clone();
@@ -55,7 +70,9 @@ pub fn run<T: Send + 'static>(py: Python<'_>, jobs: Option<usize>, work: impl Fn
         match got {
             Ok(Ok(done)) => return Ok(done),
             Ok(Err(panic)) => return Err(one_raised(py, internal(&*panic))),
-            Err(RecvTimeoutError::Disconnected) => return Err(one_raised(py, internal(&"the thread ended"))),
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(one_raised(py, internal(&"the thread ended")));
+            }
             Err(RecvTimeoutError::Timeout) => {}
         }
         if let Err(interrupt) = py.check_signals() {
@@ -66,6 +83,13 @@ pub fn run<T: Send + 'static>(py: Python<'_>, jobs: Option<usize>, work: impl Fn
 }
 
 fn internal(panic: &(dyn Any + Send)) -> Problem {
-    let said = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
-    Problem::error("internal", format!("a fault of the program: {}", said.unwrap_or("without a message"))).help("please report it")
+    let said = panic
+        .downcast_ref::<String>()
+        .map(String::as_str)
+        .or_else(|| panic.downcast_ref::<&str>().copied());
+    Problem::error(
+        "internal",
+        format!("a fault of the program: {}", said.unwrap_or("without a message")),
+    )
+    .help("please report it")
 }

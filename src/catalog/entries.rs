@@ -3,7 +3,8 @@
 use std::fmt::Write;
 
 use super::{
-    Best, DIFFERENCES, FUNCTIONS, Form, METRICS, NOT_CHECKED, NumberOption, REDUCERS, SIGNAL_FUNCTIONS, STATISTICS, STEPS, Signature,
+    Best, DIFFERENCES, FUNCTIONS, Form, METRICS, NOT_CHECKED, NumberOption, REDUCERS,
+    SIGNAL_FUNCTIONS, STATISTICS, STEPS, Signature,
 };
 use crate::units::Dimension;
 
@@ -26,8 +27,21 @@ pub struct Entry {
 }
 
 impl Entry {
-    fn new(kind: &'static str, wording: impl Into<String>, signature: &'static str, about: impl Into<String>) -> Self {
-        Self { kind, wording: wording.into(), signature, about: about.into(), best: None, options: Vec::new(), source: None }
+    fn new(
+        kind: &'static str,
+        wording: impl Into<String>,
+        signature: &'static str,
+        about: impl Into<String>,
+    ) -> Self {
+        Self {
+            kind,
+            wording: wording.into(),
+            signature,
+            about: about.into(),
+            best: None,
+            options: Vec::new(),
+            source: None,
+        }
     }
 
     /// The complete description, in one line.
@@ -55,7 +69,12 @@ pub fn entries() -> Vec<Entry> {
             ..Entry::new("step", entry.form.in_words(), step_signature(&entry.form), entry.about)
         });
     }
-    all.push(Entry::new("reducer", "p<number>", "signal<D> -> D", "The value below which this percentage of the samples lies."));
+    all.push(Entry::new(
+        "reducer",
+        "p<number>",
+        "signal<D> -> D",
+        "The value below which this percentage of the samples lies.",
+    ));
     for entry in REDUCERS {
         let signature = match (entry.gives)(Dimension::LENGTH, Dimension::TIME) {
             Dimension::LENGTH => "signal<D> -> D",
@@ -72,22 +91,49 @@ pub fn entries() -> Vec<Entry> {
         };
         let best = Some(entry.best.in_words());
         let options = options(&entry.form);
-        let about = if entry.unverified { format!("{} Unverified: {NOT_CHECKED}.", entry.about) } else { entry.about.to_string() };
-        all.push(Entry { source: Some(entry.source), best, options, ..Entry::new("metric", entry.form.in_words(), signature, about) });
+        let about = if entry.unverified {
+            format!("{} Unverified: {NOT_CHECKED}.", entry.about)
+        } else {
+            entry.about.to_string()
+        };
+        all.push(Entry {
+            source: Some(entry.source),
+            best,
+            options,
+            ..Entry::new("metric", entry.form.in_words(), signature, about)
+        });
     }
     for (name, expression) in DIFFERENCES {
         let best = Some(Best::Near(0.0).in_words());
-        all.push(Entry { best, ..Entry::new("difference", name, "(D, D) -> D", format!("`{expression}`")) });
+        all.push(Entry {
+            best,
+            ..Entry::new("difference", name, "(D, D) -> D", format!("`{expression}`"))
+        });
     }
     for entry in STATISTICS {
         let best = entry.of_scatter.then(|| Best::Least(0.0).in_words());
         let about = format!("The {} of all pairs.", entry.title);
         all.push(Entry { best, ..Entry::new("statistic", entry.name, "pairs of D -> D", about) });
     }
-    all.push(Entry::new("statistic", "p<number>", "pairs of D -> D", "A percentile of all pairs, with linear interpolation."));
-    all.push(Entry::new("statistic", "each", "each pair of D", "Every pair separately; the worst decides."));
+    all.push(Entry::new(
+        "statistic",
+        "p<number>",
+        "pairs of D -> D",
+        "A percentile of all pairs, with linear interpolation.",
+    ));
+    all.push(Entry::new(
+        "statistic",
+        "each",
+        "each pair of D",
+        "Every pair separately; the worst decides.",
+    ));
     for function in FUNCTIONS {
-        all.push(Entry::new("function", function.name, signature(function.signature), function.about));
+        all.push(Entry::new(
+            "function",
+            function.name,
+            signature(function.signature),
+            function.about,
+        ));
     }
     for (name, signature, about) in SIGNAL_FUNCTIONS {
         all.push(Entry::new("signal-function", name, signature, about));

@@ -1,6 +1,8 @@
-//! The registry of operations on signals and numbers: reducers, statistics, functions, filter steps, metrics.
+//! The registry of operations on signals and numbers: reducers, statistics, functions, filter
+//! steps, metrics.
 //!
-//! Each entry has a name, a signature and a description. Checker, run, `explain` and the language reference use the same tables.
+//! Each entry has a name, a signature and a description. Checker, run, `explain` and the language
+//! reference use the same tables.
 
 mod entries;
 mod forms;

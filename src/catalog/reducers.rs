@@ -32,13 +32,22 @@ impl PartialEq for ReducerEntry {
     }
 }
 
-const fn same(name: &'static str, about: &'static str, run: fn(&[f64], &[f64]) -> Option<f64>) -> ReducerEntry {
+const fn same(
+    name: &'static str,
+    about: &'static str,
+    run: fn(&[f64], &[f64]) -> Option<f64>,
+) -> ReducerEntry {
     ReducerEntry { name, about, gives: |signal, _| signal, run }
 }
 
 macro_rules! share {
     ($name:literal, $about:literal, $run:path) => {
-        ReducerEntry { name: $name, about: $about, gives: |_, _| Dimension::ONE, run: |_, x| $run(x) }
+        ReducerEntry {
+            name: $name,
+            about: $about,
+            gives: |_, _| Dimension::ONE,
+            run: |_, x| $run(x),
+        }
     };
 }
 
@@ -47,16 +56,28 @@ pub const REDUCERS: &[ReducerEntry] = &[
     same("median", "The 50 % value.", |_, x| statistics::median(x)),
     same("mean", "Arithmetic mean of the samples.", |_, x| statistics::mean(x)),
     same("rms", "Root mean square; the mean is not removed.", |_, x| statistics::rms(x)),
-    same("std", "Standard deviation of the samples (n-1).", |_, x| statistics::standard_deviation(x, Divisor::Sample)),
+    same("std", "Standard deviation of the samples (n-1).", |_, x| {
+        statistics::standard_deviation(x, Divisor::Sample)
+    }),
     same("minimum", "Smallest sample.", |_, x| statistics::minimum(x)),
     same("maximum", "Largest sample.", |_, x| statistics::maximum(x)),
     same("peak", "Largest magnitude.", |_, x| statistics::peak_magnitude(x)),
     same("range", "Largest minus smallest sample.", |_, x| statistics::range(x)),
-    share!("held", "Share of the samples in the longest run of equal values.", sampling::longest_held_share),
-    share!("at_extreme", "Share of the samples at the largest or at the smallest value, the larger of both.", sampling::share_at_extreme),
-    same("resolution", "Smallest change between consecutive samples: the quantisation step of a signal that varies.", |_, x| {
-        sampling::resolution(x)
-    }),
+    share!(
+        "held",
+        "Share of the samples in the longest run of equal values.",
+        sampling::longest_held_share
+    ),
+    share!(
+        "at_extreme",
+        "Share of the samples at the largest or at the smallest value, the larger of both.",
+        sampling::share_at_extreme
+    ),
+    same(
+        "resolution",
+        "Smallest change between consecutive samples: the quantisation step of a signal that varies.",
+        |_, x| sampling::resolution(x),
+    ),
     same(
         "noise_floor",
         "Standard deviation of the part that changes from sample to sample: for white noise its standard deviation, near 0 for a smooth signal.",
@@ -120,7 +141,8 @@ pub struct StatisticEntry {
     pub of_scatter: bool,
     /// From the values and `ddof` (divisor n - `ddof`).
     pub run: fn(&[f64], usize) -> Option<f64>,
-    /// 95 % confidence interval for normal values that are independent between sites, where there is one.
+    /// 95 % confidence interval for normal values that are independent between sites, where there
+    /// is one.
     pub interval: Option<Interval>,
 }
 
@@ -130,7 +152,11 @@ impl PartialEq for StatisticEntry {
     }
 }
 
-const fn plain(name: &'static str, title: &'static str, run: fn(&[f64], usize) -> Option<f64>) -> StatisticEntry {
+const fn plain(
+    name: &'static str,
+    title: &'static str,
+    run: fn(&[f64], usize) -> Option<f64>,
+) -> StatisticEntry {
     StatisticEntry { name, title, of_scatter: false, run, interval: None }
 }
 
@@ -140,14 +166,24 @@ pub const STATISTICS: &[StatisticEntry] = &[
         title: "mean",
         of_scatter: false,
         run: |x, _| statistics::mean(x),
-        interval: Some(|x, site| mean_interval(x, site, CONFIDENCE).map(|interval| (interval.low, interval.high))),
+        interval: Some(|x, site| {
+            mean_interval(x, site, CONFIDENCE).map(|interval| (interval.low, interval.high))
+        }),
     },
     StatisticEntry {
         name: "std",
         title: "standard deviation",
         of_scatter: true,
-        run: |x, ddof| statistics::standard_deviation(x, if ddof == 0 { Divisor::Population } else { Divisor::Sample }),
-        interval: Some(|x, site| standard_deviation_interval(x, site, CONFIDENCE).map(|interval| (interval.low, interval.high))),
+        run: |x, ddof| {
+            statistics::standard_deviation(
+                x,
+                if ddof == 0 { Divisor::Population } else { Divisor::Sample },
+            )
+        },
+        interval: Some(|x, site| {
+            standard_deviation_interval(x, site, CONFIDENCE)
+                .map(|interval| (interval.low, interval.high))
+        }),
     },
     plain("rms", "root mean square", |x, _| statistics::rms(x)),
     plain("median", "median", |x, _| statistics::median(x)),
@@ -186,7 +222,9 @@ impl Statistic {
         match self {
             Self::Each => "each value".into(),
             Self::Percentile(percent) => format!("{percent} % value"),
-            Self::Named(entry) if entry.name == "std" => format!("{} ({})", entry.title, if ddof == 1 { "n-1" } else { "n" }),
+            Self::Named(entry) if entry.name == "std" => {
+                format!("{} ({})", entry.title, if ddof == 1 { "n-1" } else { "n" })
+            }
             Self::Named(entry) => entry.title.into(),
         }
     }

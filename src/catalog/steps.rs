@@ -24,7 +24,8 @@ pub struct StepEntry {
     pub about: &'static str,
 }
 
-const BUTTERWORTH_NUMBERS: &[NumberOption] = &[NumberOption { name: "order", default: Some(4.0), with_unit: false }];
+const BUTTERWORTH_NUMBERS: &[NumberOption] =
+    &[NumberOption { name: "order", default: Some(4.0), with_unit: false }];
 const BUTTERWORTH_CHOICES: &[Choice] = &[
     Choice {
         name: "phase",
@@ -51,7 +52,11 @@ const WINDOW_CHOICES: &[Choice] = &[
 ];
 
 const fn butterworth(kind: StepKind, head: &'static [Part], about: &'static str) -> StepEntry {
-    StepEntry { kind, form: Form { head, numbers: BUTTERWORTH_NUMBERS, choices: BUTTERWORTH_CHOICES }, about }
+    StepEntry {
+        kind,
+        form: Form { head, numbers: BUTTERWORTH_NUMBERS, choices: BUTTERWORTH_CHOICES },
+        about,
+    }
 }
 
 const GAIN: &[NumberOption] = &[NumberOption { name: "gain", default: Some(1.0), with_unit: true }];
@@ -69,7 +74,11 @@ const TRANSFER_CHOICES: &[Choice] = &[
 ];
 
 const fn transfer(head: &'static [Part], about: &'static str) -> StepEntry {
-    StepEntry { kind: StepKind::TransferFunction, form: Form { head, numbers: GAIN, choices: TRANSFER_CHOICES }, about }
+    StepEntry {
+        kind: StepKind::TransferFunction,
+        form: Form { head, numbers: GAIN, choices: TRANSFER_CHOICES },
+        about,
+    }
 }
 
 const ABOVE_ZERO: Part = Part::Frequency("frequency");
@@ -92,16 +101,34 @@ macro_rules! poles {
 }
 
 pub const STEPS: &[StepEntry] = &[
-    butterworth(StepKind::LowPass, &[Part::Word("low-pass"), Part::Frequency("cut-off")], "Butterworth low-pass over the whole record."),
-    butterworth(StepKind::HighPass, &[Part::Word("high-pass"), Part::Frequency("cut-off")], "Butterworth high-pass over the whole record."),
+    butterworth(
+        StepKind::LowPass,
+        &[Part::Word("low-pass"), Part::Frequency("cut-off")],
+        "Butterworth low-pass over the whole record.",
+    ),
+    butterworth(
+        StepKind::HighPass,
+        &[Part::Word("high-pass"), Part::Frequency("cut-off")],
+        "Butterworth high-pass over the whole record.",
+    ),
     butterworth(
         StepKind::BandPass,
-        &[Part::Word("band-pass"), Part::Frequency("low"), Part::Word("to"), Part::Frequency("high")],
+        &[
+            Part::Word("band-pass"),
+            Part::Frequency("low"),
+            Part::Word("to"),
+            Part::Frequency("high"),
+        ],
         "Butterworth band-pass over the whole record; the order is that of each edge.",
     ),
     butterworth(
         StepKind::BandStop,
-        &[Part::Word("band-stop"), Part::Frequency("low"), Part::Word("to"), Part::Frequency("high")],
+        &[
+            Part::Word("band-stop"),
+            Part::Frequency("low"),
+            Part::Word("to"),
+            Part::Frequency("high"),
+        ],
         "Butterworth band-stop over the whole record; the order is that of each edge.",
     ),
     transfer(
@@ -109,11 +136,21 @@ pub const STEPS: &[StepEntry] = &[
         "One real pole: 1/(1 + s/p), p = 2π times its frequency, over the whole record.",
     ),
     transfer(
-        &[Part::Word("transfer"), Part::Word("function"), Part::Word("pole"), ABOVE_ZERO, Part::Word("zero"), FROM_ZERO],
+        &[
+            Part::Word("transfer"),
+            Part::Word("function"),
+            Part::Word("pole"),
+            ABOVE_ZERO,
+            Part::Word("zero"),
+            FROM_ZERO,
+        ],
         "One real pole and one real zero: (1 + s/z)/(1 + s/p); with the zero at 0 Hz (s/p)/(1 + s/p).",
     ),
     transfer(poles![], "Two poles: 1/P, P = 1 + s/(quality p) + (s/p)²."),
-    transfer(poles![Part::Word("zero"), FROM_ZERO], "Two poles and one real zero: (1 + s/z)/P; with the zero at 0 Hz (s/p)/P."),
+    transfer(
+        poles![Part::Word("zero"), FROM_ZERO],
+        "Two poles and one real zero: (1 + s/z)/P; with the zero at 0 Hz (s/p)/P.",
+    ),
     transfer(
         poles![Part::Word("zeros"), FROM_ZERO],
         "Two poles and two zeros without damping: (1 + (s/z)²)/P; with the zeros at 0 Hz (s/p)²/P.",
@@ -124,12 +161,24 @@ pub const STEPS: &[StepEntry] = &[
     ),
     window(
         StepKind::SlidingMean,
-        &[Part::Word("sliding"), Part::Word("mean"), Part::Extent("window"), Part::Word("every"), Part::Extent("step")],
+        &[
+            Part::Word("sliding"),
+            Part::Word("mean"),
+            Part::Extent("window"),
+            Part::Word("every"),
+            Part::Extent("step"),
+        ],
         "Mean in a sliding window, from the start of the section; all windows are inside the section.",
     ),
     window(
         StepKind::SlidingRms,
-        &[Part::Word("sliding"), Part::Word("rms"), Part::Extent("window"), Part::Word("every"), Part::Extent("step")],
+        &[
+            Part::Word("sliding"),
+            Part::Word("rms"),
+            Part::Extent("window"),
+            Part::Word("every"),
+            Part::Extent("step"),
+        ],
         "Root mean square in a sliding window, from the start of the section; all windows are inside the section.",
     ),
     bare(
@@ -137,6 +186,10 @@ pub const STEPS: &[StepEntry] = &[
         &[Part::Word("resample"), Part::Word("every"), Part::Extent("step")],
         "Linear interpolation of the whole record at equal steps; after resampling over a length, filters have frequencies in cycles per length.",
     ),
-    bare(StepKind::RemoveMean, &[Part::Word("remove"), Part::Word("mean")], "Subtracts the mean of the section."),
+    bare(
+        StepKind::RemoveMean,
+        &[Part::Word("remove"), Part::Word("mean")],
+        "Subtracts the mean of the section.",
+    ),
     bare(StepKind::Magnitude, &[Part::Word("magnitude")], "Absolute values, sample by sample."),
 ];

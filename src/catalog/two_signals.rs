@@ -1,4 +1,5 @@
-//! Metrics: one number from the simulated and the measured signal of a section. The measured signal is the reference.
+//! Metrics: one number from the simulated and the measured signal of a section. The measured signal
+//! is the reference.
 
 use super::forms::{Form, NumberOption, Part};
 use crate::metrics::{coherence, hysteresis, pair};
@@ -15,7 +16,8 @@ pub struct Pair<'a> {
     pub rate: f64,
     /// The frequency band of the wording.
     pub band: Option<(f64, f64)>,
-    /// The simulated and the measured signal used in place of the axis, where the wording names one.
+    /// The simulated and the measured signal used in place of the axis, where the wording names
+    /// one.
     pub over: Option<(&'a [f64], &'a [f64])>,
 }
 
@@ -62,13 +64,14 @@ pub struct Asked {
 }
 
 impl Metric {
-    /// Whether the simulated signal is first interpolated at the points of the measured one. Metrics of distributions do not need
-    /// that after a window or resampling.
+    /// Whether the simulated signal is first interpolated at the points of the measured one.
+    /// Metrics of distributions do not need that after a window or resampling.
     pub fn on_common_points(self, chain_keeps_samples: bool) -> bool {
         self.0.common_points && (chain_keeps_samples || !self.0.of_distributions)
     }
 
-    /// Number of points of both distributions, of which the metric is then computed in place of the samples.
+    /// Number of points of both distributions, of which the metric is then computed in place of the
+    /// samples.
     pub fn points(self) -> Option<usize> {
         self.1.points
     }
@@ -96,7 +99,8 @@ pub struct MetricEntry {
     pub gives: fn(Dimension, Dimension) -> Dimension,
     /// Whether the simulated signal is first interpolated at the points of the measured one.
     pub common_points: bool,
-    /// Whether it uses the values regardless of their order, so that both sides may have different numbers of values.
+    /// Whether it uses the values regardless of their order, so that both sides may have different
+    /// numbers of values.
     pub of_distributions: bool,
     pub best: Best,
     pub about: &'static str,
@@ -113,25 +117,34 @@ impl MetricEntry {
         METRICS.iter().find(|entry| entry.function_name() == name)
     }
 
-    /// Its words before the first slot, joined: `theil_inequality`, `hysteresis_maximum`, `coherence`.
+    /// Its words before the first slot, joined: `theil_inequality`, `hysteresis_maximum`,
+    /// `coherence`.
     pub fn function_name(&self) -> String {
         let head = self.form.head;
         let slot = head.iter().position(|part| !matches!(part, Part::Word(_)));
         // The last word before a slot is a preposition: `over`, `from`.
         let words = &head[..slot.map_or(head.len(), |slot| slot.saturating_sub(1))];
-        let words: Vec<&str> = words.iter().filter_map(|part| if let Part::Word(word) = part { Some(*word) } else { None }).collect();
+        let words: Vec<&str> = words
+            .iter()
+            .filter_map(|part| if let Part::Word(word) = part { Some(*word) } else { None })
+            .collect();
         words.join("_").replace('-', "_")
     }
 
-    /// The call in expressions: `coherence(<low>, <high>)`, `matching_probability` with or without `(<points>)`.
+    /// The call in expressions: `coherence(<low>, <high>)`, `matching_probability` with or without
+    /// `(<points>)`.
     pub fn call_in_words(&self) -> String {
         let slots = self.form.head.iter().filter_map(|part| match part {
             Part::Word(_) => None,
-            Part::Number(name, _) | Part::Extent(name) | Part::Frequency(name) | Part::FrequencyOrZero(name) | Part::Signal(name) => {
-                Some(format!("<{name}>"))
-            }
+            Part::Number(name, _)
+            | Part::Extent(name)
+            | Part::Frequency(name)
+            | Part::FrequencyOrZero(name)
+            | Part::Signal(name) => Some(format!("<{name}>")),
         });
-        let slots: Vec<String> = slots.chain(self.form.numbers.iter().map(|option| format!("<{}>", option.name))).collect();
+        let slots: Vec<String> = slots
+            .chain(self.form.numbers.iter().map(|option| format!("<{}>", option.name)))
+            .collect();
         let name = self.function_name();
         if slots.is_empty() { name } else { format!("{name}({})", slots.join(", ")) }
     }
@@ -159,19 +172,35 @@ macro_rules! ratio {
 
 macro_rules! of_signal {
     ($head:expr, $about:expr, $source:expr, $run:path) => {
-        MetricEntry { gives: |signal, _| signal, ..ratio!($head, Best::Least(0.0), $about, $source, $run) }
+        MetricEntry {
+            gives: |signal, _| signal,
+            ..ratio!($head, Best::Least(0.0), $about, $source, $run)
+        }
     };
 }
 
 macro_rules! of_distributions {
     ($head:expr, $best:expr, $about:expr, $source:expr, $run:path) => {
-        MetricEntry { form: Form { numbers: POINTS, ..form($head) }, of_distributions: true, ..ratio!(&[], $best, $about, $source, $run) }
+        MetricEntry {
+            form: Form { numbers: POINTS, ..form($head) },
+            of_distributions: true,
+            ..ratio!(&[], $best, $about, $source, $run)
+        }
     };
 }
 
 macro_rules! unverified {
     ($part:literal, $about:expr, $run:path) => {
-        MetricEntry { unverified: true, ..ratio!(&[Part::Word("cora"), Part::Word($part)], Best::Greatest(1.0), $about, CORA, $run) }
+        MetricEntry {
+            unverified: true,
+            ..ratio!(
+                &[Part::Word("cora"), Part::Word($part)],
+                Best::Greatest(1.0),
+                $about,
+                CORA,
+                $run
+            )
+        }
     };
 }
 
@@ -263,7 +292,13 @@ pub const METRICS: &[MetricEntry] = &[
         "Ray et al., NCHRP 22-24",
         pair::weighted_integrated_factor
     ),
-    ratio!(&[Part::Word("correlation")], Best::Greatest(1.0), "Pearson correlation of the samples.", "Pearson 1895", pair::correlation),
+    ratio!(
+        &[Part::Word("correlation")],
+        Best::Greatest(1.0),
+        "Pearson correlation of the samples.",
+        "Pearson 1895",
+        pair::correlation
+    ),
     ratio!(
         &[Part::Word("mirrored_correlation")],
         Best::Least(0.0),
@@ -306,11 +341,31 @@ pub const METRICS: &[MetricEntry] = &[
         ISO,
         pair::iso18571_overall
     ),
-    unverified!("corridor", "Corridor rating, with the corridors of ISO/TS 18571.", pair::cora_corridor),
-    unverified!("progression", "Rating of the shape at the best shift: ((cosine + 1) / 2)^10.", pair::cora_progression),
-    unverified!("size", "Rating of the size at the best shift: the smaller over the larger sum of squares.", pair::cora_size),
-    unverified!("phase", "Rating of the best shift: 1 up to 1 %, 0 from 12 % of the interval.", pair::cora_phase),
-    unverified!("total", "(corridor + 0.5 progression + 0.25 size + 0.25 phase) / 2.", pair::cora_total),
+    unverified!(
+        "corridor",
+        "Corridor rating, with the corridors of ISO/TS 18571.",
+        pair::cora_corridor
+    ),
+    unverified!(
+        "progression",
+        "Rating of the shape at the best shift: ((cosine + 1) / 2)^10.",
+        pair::cora_progression
+    ),
+    unverified!(
+        "size",
+        "Rating of the size at the best shift: the smaller over the larger sum of squares.",
+        pair::cora_size
+    ),
+    unverified!(
+        "phase",
+        "Rating of the best shift: 1 up to 1 %, 0 from 12 % of the interval.",
+        pair::cora_phase
+    ),
+    unverified!(
+        "total",
+        "(corridor + 0.5 progression + 0.25 size + 0.25 phase) / 2.",
+        pair::cora_total
+    ),
     MetricEntry {
         form: form(&[Part::Word("shift")]),
         gives: |_, axis| axis,
@@ -320,7 +375,9 @@ pub const METRICS: &[MetricEntry] = &[
         about: "Shift to be added to the measured axis for the largest correlation, up to a quarter of the section.",
         source: "definition",
         unverified: false,
-        run: |p| pair::shift(p.axis, p.simulated, p.measured).map_err(|undefined| undefined.to_string()),
+        run: |p| {
+            pair::shift(p.axis, p.simulated, p.measured).map_err(|undefined| undefined.to_string())
+        },
     },
     MetricEntry {
         form: form(&[Part::Word("drift")]),
@@ -331,7 +388,9 @@ pub const METRICS: &[MetricEntry] = &[
         about: "Change over the section of the regression line of measured minus simulated samples.",
         source: "definition",
         unverified: false,
-        run: |p| pair::drift(p.axis, p.simulated, p.measured).map_err(|undefined| undefined.to_string()),
+        run: |p| {
+            pair::drift(p.axis, p.simulated, p.measured).map_err(|undefined| undefined.to_string())
+        },
     },
     ratio!(
         &[Part::Word("misfit")],
@@ -400,12 +459,26 @@ pub const METRICS: &[MetricEntry] = &[
         )
     },
     MetricEntry {
-        form: Form { numbers: POINTS, ..form(&[Part::Word("area"), Part::Word("between"), Part::Word("distributions")]) },
+        form: Form {
+            numbers: POINTS,
+            ..form(&[Part::Word("area"), Part::Word("between"), Part::Word("distributions")])
+        },
         of_distributions: true,
-        ..of_signal!(&[], "Area between the two cumulative distributions of the samples.", "Ferson, Oberkampf & Ginzburg 2008", area)
+        ..of_signal!(
+            &[],
+            "Area between the two cumulative distributions of the samples.",
+            "Ferson, Oberkampf & Ginzburg 2008",
+            area
+        )
     },
     MetricEntry {
-        form: form(&[Part::Word("coherence"), Part::Word("from"), Part::Frequency("low"), Part::Word("to"), Part::Frequency("high")]),
+        form: form(&[
+            Part::Word("coherence"),
+            Part::Word("from"),
+            Part::Frequency("low"),
+            Part::Word("to"),
+            Part::Frequency("high"),
+        ]),
         gives: |_, _| Dimension::ONE,
         common_points: true,
         of_distributions: false,
@@ -415,11 +488,17 @@ pub const METRICS: &[MetricEntry] = &[
         unverified: false,
         run: |p| {
             let band = p.band.ok_or("the frequencies are missing")?;
-            coherence::in_band(p.simulated, p.measured, p.rate, band).map_err(|undefined| undefined.to_string())
+            coherence::in_band(p.simulated, p.measured, p.rate, band)
+                .map_err(|undefined| undefined.to_string())
         },
     },
     MetricEntry {
-        form: form(&[Part::Word("hysteresis"), Part::Word("maximum"), Part::Word("over"), Part::Signal("axis")]),
+        form: form(&[
+            Part::Word("hysteresis"),
+            Part::Word("maximum"),
+            Part::Word("over"),
+            Part::Signal("axis"),
+        ]),
         gives: |signal, _| signal,
         common_points: false,
         of_distributions: false,
@@ -430,7 +509,12 @@ pub const METRICS: &[MetricEntry] = &[
         run: |p| loop_error(p).map(|error| error.maximum),
     },
     MetricEntry {
-        form: form(&[Part::Word("hysteresis"), Part::Word("mean"), Part::Word("over"), Part::Signal("axis")]),
+        form: form(&[
+            Part::Word("hysteresis"),
+            Part::Word("mean"),
+            Part::Word("over"),
+            Part::Signal("axis"),
+        ]),
         gives: |signal, _| signal,
         common_points: false,
         of_distributions: false,
@@ -444,7 +528,11 @@ pub const METRICS: &[MetricEntry] = &[
 
 /// The area metric; for equal numbers of values the faster form.
 fn area(simulated: &[f64], measured: &[f64]) -> Result<f64, pair::Undefined> {
-    if simulated.len() == measured.len() { pair::area_metric(simulated, measured) } else { pair::area_between(simulated, measured) }
+    if simulated.len() == measured.len() {
+        pair::area_metric(simulated, measured)
+    } else {
+        pair::area_between(simulated, measured)
+    }
 }
 
 /// Share of the input's range by which it must reverse to count as a turning point.

@@ -1,4 +1,5 @@
-//! A protocol compiled again from its text and the values of its parameters, as a report or a file of values carries them.
+//! A protocol compiled again from its text and the values of its parameters, as a report or a file
+//! of values carries them.
 
 use std::sync::Arc;
 
@@ -12,11 +13,21 @@ use crate::result::ParameterInfo;
 use crate::source::Source;
 use crate::syntax::document::Text;
 
-/// Compiles a protocol from its files, the protocol first, then its parent, and so on. No two may have the same name.
-pub fn again(sources: &[Arc<Source>], parameters: &[Setting], problems: &mut Problems) -> Option<Compiled> {
+/// Compiles a protocol from its files, the protocol first, then its parent, and so on. No two may
+/// have the same name.
+pub fn again(
+    sources: &[Arc<Source>],
+    parameters: &[Setting],
+    problems: &mut Problems,
+) -> Option<Compiled> {
     let next = |_: &str, from: &Source| {
         let at = sources.iter().position(|source| source.name == from.name).map_or(0, |at| at + 1);
-        let lacks = || Box::new(Problem::error("protocol-missing", "the protocol extends one that is not carried with it"));
+        let lacks = || {
+            Box::new(Problem::error(
+                "protocol-missing",
+                "the protocol extends one that is not carried with it",
+            ))
+        };
         sources.get(at).cloned().ok_or_else(lacks)
     };
     let family = family::read(sources.first()?, &next, problems);
@@ -57,7 +68,8 @@ impl Setting {
     }
 }
 
-/// The text of a protocol with the values of its parameters: all that it needs to be compiled again.
+/// The text of a protocol with the values of its parameters: all that it needs to be compiled
+/// again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rules {
     /// Name and text of each file; the protocol first.
@@ -70,13 +82,21 @@ impl Rules {
         let file = |source: &Arc<Source>| (source.file_name(), source.text.clone());
         Self {
             files: compiled.family.sources.iter().map(file).collect(),
-            parameters: compiled.plan.parameters.iter().map(super::parameter_info).map(Setting::of).collect(),
+            parameters: compiled
+                .plan
+                .parameters
+                .iter()
+                .map(super::parameter_info)
+                .map(Setting::of)
+                .collect(),
         }
     }
 
     pub fn compiled(&self, problems: &mut Problems) -> Option<Compiled> {
         // The number tells files of the same name apart.
-        let source = |(at, (name, text)): (usize, &(String, String))| Source::new(format!("{}/{name}", at + 1), text.clone());
+        let source = |(at, (name, text)): (usize, &(String, String))| {
+            Source::new(format!("{}/{name}", at + 1), text.clone())
+        };
         let sources: Vec<Arc<Source>> = self.files.iter().enumerate().map(source).collect();
         again(&sources, &self.parameters, problems)
     }

@@ -23,13 +23,25 @@ pub(super) fn report(members: &[CampaignMember]) -> Vec<ReportItem> {
     let one = |(at, item): (usize, &ReportItem)| {
         let values: Vec<(&str, Option<&str>)> = members
             .iter()
-            .map(|member| (member.short_name.as_str(), member.report.get(at).and_then(|item| item.value.as_deref())))
+            .map(|member| {
+                (
+                    member.short_name.as_str(),
+                    member.report.get(at).and_then(|item| item.value.as_deref()),
+                )
+            })
             .collect();
         let alike = values.iter().all(|(_, value)| *value == item.value.as_deref());
         let of_report = OF_ONE_REPORT.iter().any(|path| item.path == *path);
-        let stated: Vec<String> =
-            values.iter().filter_map(|(of, value)| value.map(|value| format!("{of}: {value}"))).filter(|_| !of_report).collect();
-        let value = if alike { item.value.clone() } else { Some(stated.join("; ")).filter(|text| !text.is_empty()) };
+        let stated: Vec<String> = values
+            .iter()
+            .filter_map(|(of, value)| value.map(|value| format!("{of}: {value}")))
+            .filter(|_| !of_report)
+            .collect();
+        let value = if alike {
+            item.value.clone()
+        } else {
+            Some(stated.join("; ")).filter(|text| !text.is_empty())
+        };
         ReportItem { value, ..item.clone() }
     };
     first.report.iter().enumerate().map(one).collect()
@@ -37,8 +49,10 @@ pub(super) fn report(members: &[CampaignMember]) -> Vec<ReportItem> {
 
 /// The origins of all simulations as one.
 pub(super) fn origin(members: &[CampaignMember]) -> Option<OriginInfo> {
-    let stated: Vec<(&str, &OriginInfo)> =
-        members.iter().filter_map(|member| Some((member.short_name.as_str(), member.origin.as_ref()?))).collect();
+    let stated: Vec<(&str, &OriginInfo)> = members
+        .iter()
+        .filter_map(|member| Some((member.short_name.as_str(), member.origin.as_ref()?)))
+        .collect();
     if stated.is_empty() {
         return None;
     }
@@ -46,13 +60,25 @@ pub(super) fn origin(members: &[CampaignMember]) -> Option<OriginInfo> {
     Some(OriginInfo {
         made_by: join(&mut stated.iter().map(|(of, origin)| format!("{of}: {}", origin.made_by))),
         says: join(&mut stated.iter().map(|(of, origin)| format!("{of}: {}", origin.says))),
-        effects: stated.iter().flat_map(|(of, origin)| origin.effects.iter().map(move |effect| format!("{effect} ({of})"))).collect(),
-        fitted_to: stated.iter().flat_map(|(_, origin)| &origin.fitted_to).cloned().collect::<Vec<FittedTo>>(),
+        effects: stated
+            .iter()
+            .flat_map(|(of, origin)| {
+                origin.effects.iter().map(move |effect| format!("{effect} ({of})"))
+            })
+            .collect(),
+        fitted_to: stated
+            .iter()
+            .flat_map(|(_, origin)| &origin.fitted_to)
+            .cloned()
+            .collect::<Vec<FittedTo>>(),
         fitted_to_these: stated.iter().map(|(_, origin)| origin.fitted_to_these).sum(),
         imported: stated
             .iter()
             .flat_map(|(of, origin)| {
-                origin.imported.iter().map(move |side| ImportedSide { side: format!("{of}, {}", side.side), ..side.clone() })
+                origin.imported.iter().map(move |side| ImportedSide {
+                    side: format!("{of}, {}", side.side),
+                    ..side.clone()
+                })
             })
             .collect(),
     })
@@ -61,8 +87,10 @@ pub(super) fn origin(members: &[CampaignMember]) -> Option<OriginInfo> {
 /// Facts that all campaigns state alike once, the others with their campaign.
 pub(super) fn facts(of_campaigns: impl Iterator<Item = Vec<DataItem>>) -> Vec<DataItem> {
     let all: Vec<Vec<DataItem>> = of_campaigns.collect();
-    let same = |a: &DataItem, b: &DataItem| (&a.name, &a.value, &a.unit) == (&b.name, &b.value, &b.unit);
-    let common = |item: &DataItem| all.iter().all(|facts| facts.iter().any(|other| same(item, other)));
+    let same =
+        |a: &DataItem, b: &DataItem| (&a.name, &a.value, &a.unit) == (&b.name, &b.value, &b.unit);
+    let common =
+        |item: &DataItem| all.iter().all(|facts| facts.iter().any(|other| same(item, other)));
     let mut found: Vec<DataItem> = Vec::new();
     for item in all.iter().flatten() {
         let item = if common(item) { DataItem { of: None, ..item.clone() } } else { item.clone() };

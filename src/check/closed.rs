@@ -1,4 +1,5 @@
-//! Checks the parts of a protocol that no quantity uses, so that a mistake in them is reported now and not at their first use.
+//! Checks the parts of a protocol that no quantity uses, so that a mistake in them is reported now
+//! and not at their first use.
 
 use std::collections::BTreeSet;
 
@@ -13,7 +14,8 @@ use crate::units::Dimension;
 
 impl Checker<'_> {
     pub(super) fn unused_parts(&mut self) {
-        let places: Vec<_> = self.names.places.values().flat_map(|place| place.aliases.clone()).collect();
+        let places: Vec<_> =
+            self.names.places.values().flat_map(|place| place.aliases.clone()).collect();
         for (alias, text) in places {
             for (_, condition) in &alias.cases {
                 if let Some(condition) = self.expr(condition, &text, &mut Scope::section()) {
@@ -21,37 +23,64 @@ impl Checker<'_> {
                 }
             }
         }
-        let signals: Vec<_> = self.names.signals.iter().map(|(name, signal)| (name.clone(), signal.clone())).collect();
+        let signals: Vec<_> = self
+            .names
+            .signals
+            .iter()
+            .map(|(name, signal)| (name.clone(), signal.clone()))
+            .collect();
         for (name, signal) in signals {
             let at = self.first_position(&signal.places);
             let text = Text { text: String::new(), span: signal.span.clone(), exact: false };
             self.signal(&At { node: Node::Path(name), range: 0..0 }, &text, &at);
         }
-        let estimates: Vec<_> = self.names.estimates.iter().map(|(name, written)| (name.clone(), written.clone())).collect();
+        let estimates: Vec<_> = self
+            .names
+            .estimates
+            .iter()
+            .map(|(name, written)| (name.clone(), written.clone()))
+            .collect();
         for (name, written) in estimates {
             if self.used_defines.contains(&format!("estimate {name}")) {
                 continue;
             }
-            // The dimension of the values of an unused estimate is not known. Mismatches of units are therefore not reported.
+            // The dimension of the values of an unused estimate is not known. Mismatches of units
+            // are therefore not reported.
             let before = self.problems.0.len();
-            let mut scope = Scope { group: Some(Group { values: Some(Dimension::ONE), taken: Vec::new() }), ..Scope::vehicle() };
-            self.inside("estimate", &name, &written.text.span, |checker| checker.expr(&written.phrase, &written.text, &mut scope));
+            let mut scope = Scope {
+                group: Some(Group { values: Some(Dimension::ONE), taken: Vec::new() }),
+                ..Scope::vehicle()
+            };
+            self.inside("estimate", &name, &written.text.span, |checker| {
+                checker.expr(&written.phrase, &written.text, &mut scope)
+            });
             let told = self.problems.0.split_off(before);
-            self.problems.0.extend(told.into_iter().filter(|problem| problem.code != "unit-mismatch"));
+            self.problems
+                .0
+                .extend(told.into_iter().filter(|problem| problem.code != "unit-mismatch"));
         }
-        let defines: Vec<_> = self.names.defines.iter().map(|(name, define)| (name.clone(), define.clone())).collect();
+        let defines: Vec<_> = self
+            .names
+            .defines
+            .iter()
+            .map(|(name, define)| (name.clone(), define.clone()))
+            .collect();
         for (name, define) in defines {
             if self.used_defines.contains(&name) {
                 continue;
             }
             match self.stands_for(&define.phrase, &mut BTreeSet::new()) {
-                Meaning::Closed => drop(self.inside("define", &name, &define.text.span, |checker| {
-                    checker.expr(&define.phrase, &define.text, &mut Scope::section())
-                })),
+                Meaning::Closed => {
+                    drop(self.inside("define", &name, &define.text.span, |checker| {
+                        checker.expr(&define.phrase, &define.text, &mut Scope::section())
+                    }))
+                }
                 Meaning::Signal => {
                     let places: Vec<String> = self.names.places.keys().cloned().collect();
                     let at = self.first_position(&places);
-                    drop(self.inside("define", &name, &define.text.span, |checker| checker.signal(&define.phrase, &define.text, &at)));
+                    drop(self.inside("define", &name, &define.text.span, |checker| {
+                        checker.signal(&define.phrase, &define.text, &at)
+                    }));
                 }
                 Meaning::Open => {}
             }
@@ -59,7 +88,9 @@ impl Checker<'_> {
     }
 
     fn first_position(&self, places: &[String]) -> Assignment {
-        let first = |place: &String| Some((place.clone(), self.names.places.get(place)?.members.first()?.clone()));
+        let first = |place: &String| {
+            Some((place.clone(), self.names.places.get(place)?.members.first()?.clone()))
+        };
         places.iter().filter_map(first).collect()
     }
 
@@ -68,7 +99,8 @@ impl Checker<'_> {
         let mut of = |phrase: &Phrase| self.stands_for(phrase, seen);
         match &phrase.node {
             Node::Number { .. } | Node::Quoted(_) => Meaning::Closed,
-            // Values of a signal, of one side or of other limits have no meaning before they are used.
+            // Values of a signal, of one side or of other limits have no meaning before they are
+            // used.
             Node::Percentile(_)
             | Node::Reduced(..)
             | Node::Over(..)
@@ -86,21 +118,35 @@ impl Checker<'_> {
             {
                 Meaning::Open
             }
-            Node::Path(path) if self.names.channels.contains_key(path) || self.names.signals.contains_key(path) => Meaning::Signal,
+            Node::Path(path)
+                if self.names.channels.contains_key(path)
+                    || self.names.signals.contains_key(path) =>
+            {
+                Meaning::Signal
+            }
             Node::Path(path) => match self.names.defines.get(path) {
                 Some(define) if seen.insert(path.clone()) => self.stands_for(&define.phrase, seen),
                 _ => Meaning::Closed,
             },
             Node::PlaceOf(..) | Node::Through(..) => Meaning::Signal,
             Node::Binary(_, left, right) => of(left).with(of(right)),
-            Node::Near { value, target, tolerance, .. } => of(value).with(of(target)).with(of(tolerance)),
-            Node::Negative(inner) | Node::Not(inner) | Node::Magnitude(inner) | Node::Power(inner, _) => of(inner),
-            Node::Call(name, _) if matches!(name.node.as_str(), "simulated" | "measured") => Meaning::Open,
+            Node::Near { value, target, tolerance, .. } => {
+                of(value).with(of(target)).with(of(tolerance))
+            }
+            Node::Negative(inner)
+            | Node::Not(inner)
+            | Node::Magnitude(inner)
+            | Node::Power(inner, _) => of(inner),
+            Node::Call(name, _) if matches!(name.node.as_str(), "simulated" | "measured") => {
+                Meaning::Open
+            }
             Node::Call(name, _) if MetricEntry::called(&name.node).is_some() => Meaning::Open,
             Node::Call(name, arguments) if is_signal_function(&name.node) => {
                 Meaning::Signal.with(arguments.first().map_or(Meaning::Closed, of))
             }
-            Node::Call(_, arguments) => arguments.iter().map(&mut of).fold(Meaning::Closed, Meaning::with),
+            Node::Call(_, arguments) => {
+                arguments.iter().map(&mut of).fold(Meaning::Closed, Meaning::with)
+            }
             Node::Cases(arms, otherwise) => {
                 let mut all = Meaning::Closed;
                 for (value, condition) in arms {

@@ -1,4 +1,5 @@
-//! What is known of conditions without a campaign: whether they exclude each other, and whether one of them always holds.
+//! What is known of conditions without a campaign: whether they exclude each other, and whether one
+//! of them always holds.
 
 use super::evaluate::shape;
 use super::plan::{Expr, Kind, Operator, Scalar, Type};
@@ -6,12 +7,14 @@ use super::plan::{Expr, Kind, Operator, Scalar, Type};
 /// Largest number of combinations of tests that are examined.
 const MOST: usize = 256;
 
-/// Whether these conditions can certainly never hold together. With `false` beside it, a condition is taken as not satisfied.
+/// Whether these conditions can certainly never hold together. With `false` beside it, a condition
+/// is taken as not satisfied.
 pub(super) fn impossible(conditions: &[(&Expr, bool)]) -> bool {
     let mut all: Vec<Vec<Test>> = vec![Vec::new()];
     for (condition, holds) in conditions {
         let Some(alternatives) = alternatives(condition, !holds) else { continue };
-        // A condition that is left out weakens the rest: a contradiction without it is a contradiction with it.
+        // A condition that is left out weakens the rest: a contradiction without it is a
+        // contradiction with it.
         if all.len() * alternatives.len() <= MOST {
             all = product(&all, &alternatives);
         }
@@ -20,7 +23,9 @@ pub(super) fn impossible(conditions: &[(&Expr, bool)]) -> bool {
 }
 
 fn product(left: &[Vec<Test>], right: &[Vec<Test>]) -> Vec<Vec<Test>> {
-    left.iter().flat_map(|a| right.iter().map(move |b| a.iter().chain(b).cloned().collect())).collect()
+    left.iter()
+        .flat_map(|a| right.iter().map(move |b| a.iter().chain(b).cloned().collect()))
+        .collect()
 }
 
 /// A test of one value. The value is identified by the structure of its expression.
@@ -40,10 +45,13 @@ enum Is {
     Number(Operator, f64),
 }
 
-/// A condition as alternatives, each a list of tests that hold together; `None` where there are too many.
+/// A condition as alternatives, each a list of tests that hold together; `None` where there are too
+/// many.
 fn alternatives(expr: &Expr, negated: bool) -> Option<Vec<Vec<Test>>> {
     match &expr.kind {
-        Kind::Constant(Scalar::Flag(flag)) => Some(if *flag == negated { Vec::new() } else { vec![Vec::new()] }),
+        Kind::Constant(Scalar::Flag(flag)) => {
+            Some(if *flag == negated { Vec::new() } else { vec![Vec::new()] })
+        }
         Kind::Not(inner) => alternatives(inner, !negated),
         Kind::Binary(operator @ (Operator::And | Operator::Or), left, right) => {
             let (left, right) = (alternatives(left, negated)?, alternatives(right, negated)?);
@@ -52,7 +60,9 @@ fn alternatives(expr: &Expr, negated: bool) -> Option<Vec<Vec<Test>>> {
             }
             (left.len() * right.len() <= MOST).then(|| product(&left, &right))
         }
-        Kind::Binary(operator, left, right) => Some(vec![test(*operator, left, right, negated).into_iter().collect()]),
+        Kind::Binary(operator, left, right) => {
+            Some(vec![test(*operator, left, right, negated).into_iter().collect()])
+        }
         _ => Some(vec![vec![Test { what: shape(expr), is: Is::Flag(!negated) }]]),
     }
 }
@@ -66,10 +76,16 @@ fn test(operator: Operator, left: &Expr, right: &Expr, negated: bool) -> Option<
     };
     let operator = if negated { opposite(operator)? } else { operator };
     let is = match (constant, &what.ty) {
-        (Scalar::Word(word), Type::Word(words)) if words.is_empty() => Is::Name(operator == Operator::Is, word.clone()),
-        (Scalar::Word(word), Type::Word(words)) => {
-            Is::Words(words.iter().filter(|other| (*other == word) == (operator == Operator::Is)).cloned().collect())
+        (Scalar::Word(word), Type::Word(words)) if words.is_empty() => {
+            Is::Name(operator == Operator::Is, word.clone())
         }
+        (Scalar::Word(word), Type::Word(words)) => Is::Words(
+            words
+                .iter()
+                .filter(|other| (*other == word) == (operator == Operator::Is))
+                .cloned()
+                .collect(),
+        ),
         (Scalar::Flag(flag), _) => Is::Flag((operator == Operator::Is) == *flag),
         (Scalar::Number(number), _) => Is::Number(operator, *number),
         _ => return None,
@@ -104,16 +120,22 @@ fn contradictory(together: &[Test]) -> bool {
     together.iter().enumerate().any(|(index, test)| {
         let same = || together[index..].iter().filter(|other| other.what == test.what);
         match &test.is {
-            Is::Words(words) => {
-                !words.iter().any(|word| same().all(|other| !matches!(&other.is, Is::Words(words) if !words.contains(word))))
-            }
+            Is::Words(words) => !words.iter().any(|word| {
+                same().all(|other| !matches!(&other.is, Is::Words(words) if !words.contains(word)))
+            }),
             Is::Name(is, name) => same().any(|other| match &other.is {
-                Is::Name(other_is, other) => (*is && *other_is && name != other) || (is != other_is && name == other),
+                Is::Name(other_is, other) => {
+                    (*is && *other_is && name != other) || (is != other_is && name == other)
+                }
                 _ => false,
             }),
-            Is::Flag(flag) => same().any(|other| matches!(other.is, Is::Flag(other) if other != *flag)),
+            Is::Flag(flag) => {
+                same().any(|other| matches!(other.is, Is::Flag(other) if other != *flag))
+            }
             Is::Number(operator, number) => same().any(|other| match other.is {
-                Is::Number(o, n) => apart(*operator, *number, o, n) || apart(o, n, *operator, *number),
+                Is::Number(o, n) => {
+                    apart(*operator, *number, o, n) || apart(o, n, *operator, *number)
+                }
                 _ => false,
             }),
         }
@@ -123,7 +145,8 @@ fn contradictory(together: &[Test]) -> bool {
 /// Whether nothing satisfies both `x below a` and `x above b`.
 fn apart(below: Operator, a: f64, above: Operator, b: f64) -> bool {
     match (below, above) {
-        (Operator::Less, Operator::Greater | Operator::GreaterEqual) | (Operator::LessEqual, Operator::Greater) => a <= b,
+        (Operator::Less, Operator::Greater | Operator::GreaterEqual)
+        | (Operator::LessEqual, Operator::Greater) => a <= b,
         (Operator::LessEqual, Operator::GreaterEqual) => a < b,
         (Operator::Is, Operator::Greater) => a <= b,
         (Operator::Is, Operator::GreaterEqual) => a < b,

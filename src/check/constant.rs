@@ -3,18 +3,22 @@
 use super::Checker;
 use super::evaluate::number;
 use super::names::normalised;
-use super::plan::{Expr, Input, InputSide, Kind, Operator, Scalar, Side, Signal, SignalKind, Taken};
+use super::plan::{
+    Expr, Input, InputSide, Kind, Operator, Scalar, Side, Signal, SignalKind, Taken,
+};
 use super::values::{Nothing, Values};
 use crate::catalog::Function;
 use crate::metrics::rounded;
 use crate::problem::Problem;
 use crate::source::Span;
 
-/// Number of sets of inputs that are tried. Arithmetic that gives the same for three sets without a simple ratio is the same for all.
+/// Number of sets of inputs that are tried. Arithmetic that gives the same for three sets without a
+/// simple ratio is the same for all.
 const SETS: usize = 3;
 /// What results may differ by and still be the same: rounding.
 const SAME: f64 = 1e-12;
-/// Functions with steps or with values that only one argument decides: numbers that are tried may all lie on one side.
+/// Functions with steps or with values that only one argument decides: numbers that are tried may
+/// all lie on one side.
 const WITH_STEPS: [&str; 4] = ["larger", "smaller", "floor", "sign"];
 
 /// Irregular numbers between 0 and 1, which every function is defined for.
@@ -49,28 +53,36 @@ impl Values for Trial<'_> {
     }
 }
 
-/// The value that an expression has whatever its inputs and the two compared values are, with these values of other names. `None`
-/// where they matter, and where it cannot be told. `inputs` are those of one position.
+/// The value that an expression has whatever its inputs and the two compared values are, with these
+/// values of other names. `None` where they matter, and where it cannot be told. `inputs` are those
+/// of one position.
 pub fn whatever_the_records(expr: &Expr, inputs: &[Input], values: &dyn Values) -> Option<f64> {
     if has_steps(expr) {
         return None;
     }
     // `simulated(std)` and `measured(std)` are both written `std`.
-    let names: Vec<(String, InputSide)> = inputs.iter().map(|input| (normalised(input.span.text()), input.side)).collect();
-    let alike: Vec<usize> = names.iter().map(|name| names.iter().position(|known| known == name).unwrap_or_default()).collect();
+    let names: Vec<(String, InputSide)> =
+        inputs.iter().map(|input| (normalised(input.span.text()), input.side)).collect();
+    let alike: Vec<usize> = names
+        .iter()
+        .map(|name| names.iter().position(|known| known == name).unwrap_or_default())
+        .collect();
     same((0..SETS).map(|set| number(expr, &Trial { values, alike: &alike, set }).ok()))
 }
 
 /// The number that all are, if there is one.
 fn same(mut all: impl Iterator<Item = Option<f64>>) -> Option<f64> {
     let first = all.next()??;
-    let close = |other: Option<f64>| other.is_some_and(|other| (other - first).abs() <= SAME * first.abs());
+    let close =
+        |other: Option<f64>| other.is_some_and(|other| (other - first).abs() <= SAME * first.abs());
     (first.is_finite() && all.all(close)).then_some(first)
 }
 
 fn of_records(expr: &Expr) -> bool {
     let mut any = false;
-    expr.visit(&mut |part| any |= matches!(part.kind, Kind::Input(_) | Kind::Simulated | Kind::Measured));
+    expr.visit(&mut |part| {
+        any |= matches!(part.kind, Kind::Input(_) | Kind::Simulated | Kind::Measured)
+    });
     any
 }
 
@@ -80,7 +92,9 @@ fn has_steps(expr: &Expr) -> bool {
     expr.visit(&mut |part| {
         any |= match &part.kind {
             Kind::Cases(arms, _) => arms.iter().any(|(_, condition)| of_records(condition)),
-            Kind::Call(function, arguments) => WITH_STEPS.contains(&function.name) && arguments.iter().any(of_records),
+            Kind::Call(function, arguments) => {
+                WITH_STEPS.contains(&function.name) && arguments.iter().any(of_records)
+            }
             _ => false,
         };
     });
@@ -117,7 +131,13 @@ fn sample(signal: &Signal, sides: (f64, f64)) -> Option<f64> {
 
 impl Checker<'_> {
     /// A metric, or a value (`what`), that no record can change.
-    pub(super) fn can_vary(&mut self, what: &str, expr: &Expr, inputs: &[Input], at: &Span) -> Option<()> {
+    pub(super) fn can_vary(
+        &mut self,
+        what: &str,
+        expr: &Expr,
+        inputs: &[Input],
+        at: &Span,
+    ) -> Option<()> {
         let code = "constant-value";
         let help = if what == "metric" {
             "a metric uses metrics or the samples of both sides: `correlation`, `rms of (simulated - measured)`"
@@ -128,7 +148,10 @@ impl Checker<'_> {
             let (Taken::OfBoth(_), Some(signal)) = (input.taken, &input.signal) else { continue };
             let samples = (0..SETS).map(|set| sample(signal, (tried(set, 0), tried(set, 1))));
             if same(samples).is_some() {
-                let says = format!("all samples of `{}` are the same whatever the records are", normalised(signal.span.text()));
+                let says = format!(
+                    "all samples of `{}` are the same whatever the records are",
+                    normalised(signal.span.text())
+                );
                 self.problems.push(Problem::error(code, says).at(&input.span).help(help));
                 return None;
             }

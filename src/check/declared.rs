@@ -1,5 +1,5 @@
-//! Checks blocks that declare the content of records, of the vehicle file and of the table of sections: places, data, channels,
-//! signals.
+//! Checks blocks that declare the content of records, of the vehicle file and of the table of
+//! sections: places, data, channels, signals.
 
 use super::Checker;
 use super::names::{Channel, Place, SignalDef, normalised};
@@ -10,8 +10,8 @@ use crate::syntax::document::{Block, Field};
 use crate::syntax::phrase::{At, Pick};
 use crate::syntax::{families, from_pest};
 
-/// Largest number of positions of a place: the wheels of a train of sixty vehicles. A signal at several places has the product of
-/// their numbers.
+/// Largest number of positions of a place: the wheels of a train of sixty vehicles. A signal at
+/// several places has the product of their numbers.
 const MOST_MEMBERS: usize = 500;
 /// Written as the default of a vehicle datum that the vehicle file may omit.
 const NOT_STATED: &str = "not stated";
@@ -21,20 +21,30 @@ impl Checker<'_> {
         let field = self.required(block, "members")?;
         let written = from_pest::list(&field.value, self.problems)?;
         if written.len() > MOST_MEMBERS {
-            let says = format!("`{name}` has {} positions; there can be at most {MOST_MEMBERS}", written.len());
+            let says = format!(
+                "`{name}` has {} positions; there can be at most {MOST_MEMBERS}",
+                written.len()
+            );
             let problem = Problem::error("too-large", says).at(&field.value.span);
-            self.problems.push(problem.help("declare the positions that are compared; put the others into another place"));
+            self.problems.push(problem.help(
+                "declare the positions that are compared; put the others into another place",
+            ));
             return None;
         }
         let mut members: Vec<String> = Vec::new();
         for member in written {
             let place = field.value.place(member.range);
             if let Some(sign) = member.node.chars().find(|c| matches!(c, '-' | '.')) {
-                let says =
-                    format!("`{}` cannot be a position of `{name}`: in an expression, `{sign}` is not read as part of a name", member.node);
+                let says = format!(
+                    "`{}` cannot be a position of `{name}`: in an expression, `{sign}` is not read as part of a name",
+                    member.node
+                );
                 self.problems.push(Problem::error("bad-name", says).at(&place));
             } else if members.contains(&member.node) {
-                self.problems.push(Problem::error("duplicate-name", format!("`{}` is named twice", member.node)).at(&place));
+                self.problems.push(
+                    Problem::error("duplicate-name", format!("`{}` is named twice", member.node))
+                        .at(&place),
+                );
             } else {
                 members.push(member.node);
             }
@@ -43,7 +53,8 @@ impl Checker<'_> {
         for field in block.fields_named("alias") {
             let Some(alias) = from_pest::alias(&field.value, self.problems) else { continue };
             if members.contains(&alias.name.node) {
-                let says = format!("`{}` is both a position of `{name}` and an alias", alias.name.node);
+                let says =
+                    format!("`{}` is both a position of `{name}` and an alias", alias.name.node);
                 self.problems.push(
                     Problem::error("name-clash", says)
                         .at(&field.value.place(alias.name.range.clone()))
@@ -53,9 +64,12 @@ impl Checker<'_> {
             for (member, _) in &alias.cases {
                 if !members.contains(&member.node) {
                     self.problems.push(
-                        Problem::error("unknown-place", format!("`{}` is not a position of `{name}`", member.node))
-                            .at(&field.value.place(member.range.clone()))
-                            .suggest(&member.node, members.iter().map(String::as_str)),
+                        Problem::error(
+                            "unknown-place",
+                            format!("`{}` is not a position of `{name}`", member.node),
+                        )
+                        .at(&field.value.place(member.range.clone()))
+                        .suggest(&member.node, members.iter().map(String::as_str)),
                     );
                 }
             }
@@ -64,17 +78,31 @@ impl Checker<'_> {
         Some(Place { members, aliases })
     }
 
-    pub(super) fn datum(&mut self, name: &str, block: &Block, key: &str, standard_key: String) -> Option<Datum> {
-        let title = block.title.as_ref().map_or_else(|| name.replace('_', " "), |title| title.text.clone());
+    pub(super) fn datum(
+        &mut self,
+        name: &str,
+        block: &Block,
+        key: &str,
+        standard_key: String,
+    ) -> Option<Datum> {
+        let title =
+            block.title.as_ref().map_or_else(|| name.replace('_', " "), |title| title.text.clone());
         let kind = match (block.field("in"), block.field("one of")) {
             (Some(unit), None) => DatumKind::Number(self.unit(&unit.value)?),
             (None, Some(words)) => {
-                let mut words: Vec<String> = from_pest::list(&words.value, self.problems)?.into_iter().map(|word| word.node).collect();
-                // The names of the zone blocks. A further zone then needs one block and no change of a list.
+                let mut words: Vec<String> = from_pest::list(&words.value, self.problems)?
+                    .into_iter()
+                    .map(|word| word.node)
+                    .collect();
+                // The names of the zone blocks. A further zone then needs one block and no change
+                // of a list.
                 if words == ["zones"] {
                     words.clone_from(&self.zone_names);
                 }
-                if words.len() == 2 && words.contains(&"true".to_string()) && words.contains(&"false".to_string()) {
+                if words.len() == 2
+                    && words.contains(&"true".to_string())
+                    && words.contains(&"false".to_string())
+                {
                     DatumKind::Flag
                 } else {
                     DatumKind::Words(words)
@@ -82,16 +110,29 @@ impl Checker<'_> {
             }
             _ => {
                 self.problems.push(
-                    Problem::error("missing-field", format!("{} `{name}` needs a field `in` or `one of`", block.kind.text))
-                        .at(block.span())
-                        .help("`in kN` for a number, `one of right, left` for a word"),
+                    Problem::error(
+                        "missing-field",
+                        format!("{} `{name}` needs a field `in` or `one of`", block.kind.text),
+                    )
+                    .at(block.span())
+                    .help("`in kN` for a number, `one of right, left` for a word"),
                 );
                 return None;
             }
         };
-        let key = block.field(key).map_or(standard_key, |field| field.value.text.trim().to_string());
+        let key =
+            block.field(key).map_or(standard_key, |field| field.value.text.trim().to_string());
         let (range, may_be_absent) = (None, false);
-        Some(Datum { name: name.to_string(), title, key, kind, default: None, range, may_be_absent, span: block.span().clone() })
+        Some(Datum {
+            name: name.to_string(),
+            title,
+            key,
+            kind,
+            default: None,
+            range,
+            may_be_absent,
+            span: block.span().clone(),
+        })
     }
 
     /// The range of a number of the vehicle, in its unit.
@@ -107,12 +148,18 @@ impl Checker<'_> {
             self.problems.push(Problem::error("out-of-range", says).at(&field.value.span));
             return None;
         }
-        Some(DatumRange { low, high, words: normalised(&field.value.text), span: field.value.span.clone() })
+        Some(DatumRange {
+            low,
+            high,
+            words: normalised(&field.value.text),
+            span: field.value.span.clone(),
+        })
     }
 
     /// Range and default of a datum, after all names are known.
     pub(super) fn datum_default(&mut self, name: &str, block: &Block) -> Option<()> {
-        let data = if block.kind.text == "vehicle" { &self.names.vehicle } else { &self.names.columns };
+        let data =
+            if block.kind.text == "vehicle" { &self.names.vehicle } else { &self.names.columns };
         let Some(index) = data.iter().position(|datum| datum.name == name) else { return Some(()) };
         let data_kind = data[index].kind.clone();
         let range = block.field("range");
@@ -129,10 +176,18 @@ impl Checker<'_> {
             DatumKind::Number(unit) => {
                 let (value, dimension) = self.constant(&field.value)?;
                 if dimension != unit.dimension {
-                    let says = format!("`{name}` is {}, its default is {}", unit.dimension.in_words(), dimension.in_words());
-                    let problem = Problem::error("unit-mismatch", says).at(&field.value.span).label(dimension.in_words());
+                    let says = format!(
+                        "`{name}` is {}, its default is {}",
+                        unit.dimension.in_words(),
+                        dimension.in_words()
+                    );
+                    let problem = Problem::error("unit-mismatch", says)
+                        .at(&field.value.span)
+                        .label(dimension.in_words());
                     self.problems.push(match block.field("in") {
-                        Some(unit_field) => problem.also(&unit_field.value.span, unit.dimension.in_words()),
+                        Some(unit_field) => {
+                            problem.also(&unit_field.value.span, unit.dimension.in_words())
+                        }
                         None => problem,
                     });
                     return None;
@@ -143,32 +198,46 @@ impl Checker<'_> {
                 Scalar::Number(value)
             }
             DatumKind::Flag if matches!(word, "true" | "false") => Scalar::Flag(word == "true"),
-            DatumKind::Words(words) if words.iter().any(|known| known == word) => Scalar::Word(word.to_string()),
+            DatumKind::Words(words) if words.iter().any(|known| known == word) => {
+                Scalar::Word(word.to_string())
+            }
             DatumKind::Words(words) if self.stands_for_one_of(word, &words, &field.value.span) => {
                 Scalar::Word(self.choice_word(word, &field.value.span)?)
             }
             kind => {
-                let words = if let DatumKind::Words(words) = kind { words } else { vec!["true".into(), "false".into()] };
+                let words = if let DatumKind::Words(words) = kind {
+                    words
+                } else {
+                    vec!["true".into(), "false".into()]
+                };
                 self.problems.push(
-                    Problem::error("unknown-choice", format!("`{word}` is not one of the words of `{name}`"))
-                        .at(&field.value.span)
-                        .suggest(word, words.iter().map(String::as_str)),
+                    Problem::error(
+                        "unknown-choice",
+                        format!("`{word}` is not one of the words of `{name}`"),
+                    )
+                    .at(&field.value.span)
+                    .suggest(word, words.iter().map(String::as_str)),
                 );
                 return None;
             }
         };
-        let data = if block.kind.text == "vehicle" { &mut self.names.vehicle } else { &mut self.names.columns };
+        let data = if block.kind.text == "vehicle" {
+            &mut self.names.vehicle
+        } else {
+            &mut self.names.columns
+        };
         data[index].default = Some(default);
         Some(())
     }
 
     /// Whether a word is a choice parameter whose value is one of `words`.
     fn stands_for_one_of(&mut self, word: &str, words: &[String], span: &Span) -> bool {
-        self.names.parameter_blocks.contains_key(word) && self.choice_word(word, span).is_some_and(|choice| words.contains(&choice))
+        self.names.parameter_blocks.contains_key(word)
+            && self.choice_word(word, span).is_some_and(|choice| words.contains(&choice))
     }
 
-    /// Accepts `not stated` for a vehicle datum without a default. The table of sections does not need it: an empty cell is a
-    /// missing value.
+    /// Accepts `not stated` for a vehicle datum without a default. The table of sections does not
+    /// need it: an empty cell is a missing value.
     fn may_be_absent(&mut self, index: usize, block: &Block, field: &Field) -> Option<()> {
         if block.kind.text == "vehicle" {
             self.names.vehicle[index].may_be_absent = true;
@@ -176,7 +245,9 @@ impl Checker<'_> {
         }
         let says = format!("`{NOT_STATED}` can only be written for vehicle data");
         let problem = Problem::error("unknown-choice", says).at(&field.value.span);
-        self.problems.push(problem.help("remove the line: without a default, an empty cell is a missing value"));
+        self.problems.push(
+            problem.help("remove the line: without a default, an empty cell is a missing value"),
+        );
         None
     }
 
@@ -184,7 +255,9 @@ impl Checker<'_> {
         let unit = self.required(block, "in").and_then(|field| self.unit(&field.value));
         let places = block.field("at").map_or(Some(Vec::new()), |field| self.place_names(field));
         let (unit, places) = (unit?, places?);
-        let column = block.field("column").map_or_else(|| self.standard_pattern(name, &places), |field| field.value.text.clone());
+        let column = block
+            .field("column")
+            .map_or_else(|| self.standard_pattern(name, &places), |field| field.value.text.clone());
         self.check_pattern(&column, &places, block, "column");
         let track = match block.field("record").map(|field| (field.value.text.trim(), field)) {
             None => false,
@@ -198,7 +271,10 @@ impl Checker<'_> {
                 false
             }
         };
-        self.names.channels.insert(name.to_string(), Channel { places, unit, column, track, span: block.span().clone() });
+        self.names.channels.insert(
+            name.to_string(),
+            Channel { places, unit, column, track, span: block.span().clone() },
+        );
         Some(())
     }
 
@@ -211,9 +287,14 @@ impl Checker<'_> {
             Some(unit) => Some(unit?),
             None => None,
         };
-        let named = block.field("named").map_or_else(|| self.standard_pattern(name, &places), |field| field.value.text.clone());
+        let named = block
+            .field("named")
+            .map_or_else(|| self.standard_pattern(name, &places), |field| field.value.text.clone());
         self.check_pattern(&named, &places, block, "named");
-        self.names.signals.insert(name.to_string(), SignalDef { places, is, unit, named, span: block.span().clone() });
+        self.names.signals.insert(
+            name.to_string(),
+            SignalDef { places, is, unit, named, span: block.span().clone() },
+        );
         Some(())
     }
 
@@ -225,13 +306,17 @@ impl Checker<'_> {
 
     /// Every place must occur in the pattern; otherwise two positions would have the same column.
     fn check_pattern(&mut self, pattern: &str, places: &[String], block: &Block, key: &str) {
-        let span = block.field(key).map_or_else(|| block.span().clone(), |field| field.value.span.clone());
+        let span =
+            block.field(key).map_or_else(|| block.span().clone(), |field| field.value.span.clone());
         for place in places {
             if !pattern.contains(&format!("{{{place}}}")) {
                 self.problems.push(
-                    Problem::error("pattern", format!("`{pattern}` gives the same column for every {place}"))
-                        .at(&span)
-                        .help(format!("write {{{place}}} where the column name contains it")),
+                    Problem::error(
+                        "pattern",
+                        format!("`{pattern}` gives the same column for every {place}"),
+                    )
+                    .at(&span)
+                    .help(format!("write {{{place}}} where the column name contains it")),
                 );
             }
         }
@@ -239,9 +324,12 @@ impl Checker<'_> {
             let inside = part.split('}').next().unwrap_or("");
             if !places.iter().any(|place| place == inside) {
                 self.problems.push(
-                    Problem::error("pattern", format!("`{{{inside}}}` in `{pattern}` is not a place of this channel"))
-                        .at(&span)
-                        .suggest(inside, places.iter().map(String::as_str)),
+                    Problem::error(
+                        "pattern",
+                        format!("`{{{inside}}}` in `{pattern}` is not a place of this channel"),
+                    )
+                    .at(&span)
+                    .suggest(inside, places.iter().map(String::as_str)),
                 );
             }
         }
@@ -256,9 +344,13 @@ impl Checker<'_> {
             let mut groups = vec![words];
             groups.extend(more.into_iter().map(|word| vec![word]));
             for group in groups {
-                let words: Vec<At<String>> =
-                    group.into_iter().filter(|word| !matches!(word.node.as_str(), "each" | "every" | "all")).collect();
-                match self.place_called(&words.iter().map(|word| word.node.as_str()).collect::<Vec<_>>().join("_")) {
+                let words: Vec<At<String>> = group
+                    .into_iter()
+                    .filter(|word| !matches!(word.node.as_str(), "each" | "every" | "all"))
+                    .collect();
+                match self.place_called(
+                    &words.iter().map(|word| word.node.as_str()).collect::<Vec<_>>().join("_"),
+                ) {
                     Some(place) => found.push(place),
                     None => {
                         self.unknown_place(&words, &field.value);
@@ -270,8 +362,10 @@ impl Checker<'_> {
         Some(found)
     }
 
-    /// The place with a name in the singular or plural: `wheelset`, `wheelsets`, `axle boxes`, `bodies`.
+    /// The place with a name in the singular or plural: `wheelset`, `wheelsets`, `axle boxes`,
+    /// `bodies`.
     pub(super) fn place_called(&self, word: &str) -> Option<String> {
-        families::place_called(word, self.names.places.keys().map(String::as_str)).map(str::to_owned)
+        families::place_called(word, self.names.places.keys().map(String::as_str))
+            .map(str::to_owned)
     }
 }

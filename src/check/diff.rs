@@ -11,7 +11,8 @@ use crate::units::Unit;
 use super::names::normalised;
 use super::overlay::slot;
 
-/// Rules added, removed or changed from the first document to the second, in the order of the second.
+/// Rules added, removed or changed from the first document to the second, in the order of the
+/// second.
 pub fn diff(before: &Document, after: &Document) -> Vec<Deviation> {
     changes(before, after).into_iter().map(|change| change.deviation).collect()
 }
@@ -22,8 +23,15 @@ pub fn changes(before: &Document, after: &Document) -> Vec<Change> {
     for (at, block) in after.blocks.iter().enumerate() {
         match before.blocks.iter().find(|old| same(old, block)) {
             None => found.push(Change {
-                deviation: Deviation { rule: head(block), before: None, after: Some(in_words(block)) },
-                edit: Edit::Add { block: Box::new(block.clone()), after: after.blocks[..at].to_vec() },
+                deviation: Deviation {
+                    rule: head(block),
+                    before: None,
+                    after: Some(in_words(block)),
+                },
+                edit: Edit::Add {
+                    block: Box::new(block.clone()),
+                    after: after.blocks[..at].to_vec(),
+                },
             }),
             Some(old) => fields(old, block, &mut found),
         }
@@ -31,7 +39,11 @@ pub fn changes(before: &Document, after: &Document) -> Vec<Change> {
     for block in &before.blocks {
         if !after.blocks.iter().any(|new| same(block, new)) {
             found.push(Change {
-                deviation: Deviation { rule: head(block), before: Some(in_words(block)), after: None },
+                deviation: Deviation {
+                    rule: head(block),
+                    before: Some(in_words(block)),
+                    after: None,
+                },
                 edit: Edit::Remove(Box::new(block.clone())),
             });
         }
@@ -87,17 +99,27 @@ impl Change {
         let blocks = &mut document.blocks;
         match &self.edit {
             Edit::Add { block, after } => {
-                let place = after.iter().rev().find_map(|known| blocks.iter().position(|block| same(known, block)));
+                let place = after
+                    .iter()
+                    .rev()
+                    .find_map(|known| blocks.iter().position(|block| same(known, block)));
                 blocks.insert(place.map_or(0, |place| place + 1), block.as_ref().clone());
             }
             Edit::Remove(gone) => blocks.retain(|block| !same(block, gone)),
             Edit::Title { of, title } => {
-                blocks.iter_mut().filter(|block| same(block, of)).for_each(|block| block.title.clone_from(title));
+                blocks
+                    .iter_mut()
+                    .filter(|block| same(block, of))
+                    .for_each(|block| block.title.clone_from(title));
             }
             Edit::Field { of, old, new } => {
                 for block in blocks.iter_mut().filter(|block| same(block, of)) {
-                    let alike = |field: &Field, old: &Field| field.key.text == old.key.text && field.value.text == old.value.text;
-                    let place = old.as_ref().and_then(|old| block.fields.iter().position(|field| alike(field, old)));
+                    let alike = |field: &Field, old: &Field| {
+                        field.key.text == old.key.text && field.value.text == old.value.text
+                    };
+                    let place = old
+                        .as_ref()
+                        .and_then(|old| block.fields.iter().position(|field| alike(field, old)));
                     match (place, new) {
                         (Some(place), Some(new)) => block.fields[place] = new.as_ref().clone(),
                         (Some(place), None) => drop(block.fields.remove(place)),
@@ -121,7 +143,12 @@ fn head(block: &Block) -> String {
 }
 
 fn in_words(block: &Block) -> String {
-    block.fields.iter().map(|field| format!("{} {}", field.key.text, normalised(&field.value.text))).collect::<Vec<_>>().join("; ")
+    block
+        .fields
+        .iter()
+        .map(|field| format!("{} {}", field.key.text, normalised(&field.value.text)))
+        .collect::<Vec<_>>()
+        .join("; ")
 }
 
 fn fields(old: &Block, new: &Block, found: &mut Vec<Change>) {
@@ -134,8 +161,15 @@ fn fields(old: &Block, new: &Block, found: &mut Vec<Change>) {
     }
     let title = |block: &Block| block.title.as_ref().map(|title| normalised(&title.text));
     if title(old) != title(new) {
-        let deviation = Deviation { rule: format!("{}, title", head(new)), before: title(old), after: title(new) };
-        found.push(Change { deviation, edit: Edit::Title { of: Box::new(new.clone()), title: new.title.clone() } });
+        let deviation = Deviation {
+            rule: format!("{}, title", head(new)),
+            before: title(old),
+            after: title(new),
+        };
+        found.push(Change {
+            deviation,
+            edit: Edit::Title { of: Box::new(new.clone()), title: new.title.clone() },
+        });
     }
     for key in keys::of_block(new).map_or(&[][..], |kind| kind.keys) {
         let olds: Vec<&Field> = old.fields_named(key.word).collect();
@@ -148,8 +182,8 @@ fn fields(old: &Block, new: &Block, found: &mut Vec<Change>) {
     }
 }
 
-/// Compares fields that may occur several times. Equal ones are removed first. A limit is then compared with the one of the same
-/// statistic and zones; other fields in their order.
+/// Compares fields that may occur several times. Equal ones are removed first. A limit is then
+/// compared with the one of the same statistic and zones; other fields in their order.
 fn many(block: &Block, olds: &[&Field], news: &[&Field], found: &mut Vec<Change>) {
     let kind = &block.kind.text;
     let mut left: Vec<&Field> = olds.to_vec();
@@ -162,10 +196,11 @@ fn many(block: &Block, olds: &[&Field], news: &[&Field], found: &mut Vec<Change>
     }
     for new in changed {
         let limit = matches!(new.key.text.as_str(), "limit" | "minimum pairs");
-        let partner = left
-            .iter()
-            .position(|old| slot(old) == slot(new))
-            .or_else(|| left.iter().position(|old| !limit || new.key.text == "limit" && statistic(old) == statistic(new)));
+        let partner = left.iter().position(|old| slot(old) == slot(new)).or_else(|| {
+            left.iter().position(|old| {
+                !limit || new.key.text == "limit" && statistic(old) == statistic(new)
+            })
+        });
         one(block, &rule(new), partner.map(|at| left.remove(at)), Some(new), found);
     }
     for old in left {
@@ -183,10 +218,17 @@ fn statistic(field: &Field) -> String {
         return String::new();
     }
     let first = || field.value.text.split_whitespace().next().unwrap_or("").to_string();
-    from_pest::limit(&field.value, &mut Problems::default()).map_or_else(first, |limit| limit.statistic.node)
+    from_pest::limit(&field.value, &mut Problems::default())
+        .map_or_else(first, |limit| limit.statistic.node)
 }
 
-fn one(block: &Block, rule: &str, old: Option<&Field>, new: Option<&Field>, found: &mut Vec<Change>) {
+fn one(
+    block: &Block,
+    rule: &str,
+    old: Option<&Field>,
+    new: Option<&Field>,
+    found: &mut Vec<Change>,
+) {
     let differs = match (old, new) {
         (None, None) => false,
         (Some(old), Some(new)) => !equal(&block.kind.text, old, new),
@@ -194,22 +236,34 @@ fn one(block: &Block, rule: &str, old: Option<&Field>, new: Option<&Field>, foun
     };
     if differs {
         let words = |field: Option<&Field>| field.map(|field| normalised(&field.value.text));
-        let deviation = Deviation { rule: format!("{}, {rule}", head(block)), before: words(old), after: words(new) };
+        let deviation = Deviation {
+            rule: format!("{}, {rule}", head(block)),
+            before: words(old),
+            after: words(new),
+        };
         found.push(Change {
             deviation,
-            edit: Edit::Field { of: Box::new(block.clone()), old: old.cloned().map(Box::new), new: new.cloned().map(Box::new) },
+            edit: Edit::Field {
+                of: Box::new(block.clone()),
+                old: old.cloned().map(Box::new),
+                new: new.cloned().map(Box::new),
+            },
         });
     }
 }
 
 fn equal(kind: &str, a: &Field, b: &Field) -> bool {
-    normalised(&a.value.text) == normalised(&b.value.text) || meaning(kind, a).is_some_and(|meant| meaning(kind, b) == Some(meant))
+    normalised(&a.value.text) == normalised(&b.value.text)
+        || meaning(kind, a).is_some_and(|meant| meaning(kind, b) == Some(meant))
 }
 
-/// What a field means, independent of how it is written; `None` for prose and for text that cannot be parsed.
+/// What a field means, independent of how it is written; `None` for prose and for text that cannot
+/// be parsed.
 fn meaning(kind: &str, field: &Field) -> Option<String> {
     let kind_of = keys::kind(kind)?;
-    let key = [true, false].into_iter().find_map(|named| kind_of.with_name(named).key(&field.key.text))?;
+    let key = [true, false]
+        .into_iter()
+        .find_map(|named| kind_of.with_name(named).key(&field.key.text))?;
     if key.sort != Sort::Phrase {
         return None;
     }
@@ -220,30 +274,33 @@ fn meaning(kind: &str, field: &Field) -> Option<String> {
         "limit" if kind == "quantity" => from_pest::limit(text, quiet).map(|limit| limit.meaning()),
         "report" => from_pest::report(text, quiet).map(|report| report.meaning()),
         "minimum pairs" => from_pest::minimum(text, quiet).map(|minimum| minimum.meaning()),
-        "filter" | "step" | "metric" => {
-            from_pest::chain(text, quiet).map(|chain| chain.iter().map(|step| step.node.meaning()).collect::<Vec<_>>().join("; "))
-        }
-        "of" if kind == "verdict" => {
-            from_pest::list(text, quiet).map(|list| list.into_iter().map(|item| item.node).collect::<Vec<_>>().join(", "))
-        }
+        "filter" | "step" | "metric" => from_pest::chain(text, quiet).map(|chain| {
+            chain.iter().map(|step| step.node.meaning()).collect::<Vec<_>>().join("; ")
+        }),
+        "of" if kind == "verdict" => from_pest::list(text, quiet)
+            .map(|list| list.into_iter().map(|item| item.node).collect::<Vec<_>>().join(", ")),
         "validated" | "holds" => from_pest::verdict(text, quiet).map(|verdict| verdict.meaning()),
         "of" => from_pest::of_places(text, quiet).map(|of| {
-            let when = of.when.as_ref().map_or(String::new(), |when| format!(" when {}", when.meaning()));
+            let when =
+                of.when.as_ref().map_or(String::new(), |when| format!(" when {}", when.meaning()));
             format!("{} {}{when}", of.signal.node, picks(&of.picks))
         }),
         "at" => from_pest::places(text, quiet).map(|at| picks(&at)),
-        "one of" | "members" => {
-            from_pest::list(text, quiet).map(|list| list.into_iter().map(|item| item.node).collect::<Vec<_>>().join(", "))
-        }
+        "one of" | "members" => from_pest::list(text, quiet)
+            .map(|list| list.into_iter().map(|item| item.node).collect::<Vec<_>>().join(", ")),
         "in" => Unit::parse(&text.text).ok().map(|unit| unit_meaning(&unit)),
         "axis" | "time" => {
             let (name, unit) = from_pest::axis(text, quiet)?;
             Some(format!("{} {}", name.node, unit_meaning(&Unit::parse(&unit.node).ok()?)))
         }
-        "range" => from_pest::range(text, quiet).map(|(low, high)| format!("{} {}", low.meaning(), high.meaning())),
+        "range" => from_pest::range(text, quiet)
+            .map(|(low, high)| format!("{} {}", low.meaning(), high.meaning())),
         "alias" => from_pest::alias(text, quiet).map(|alias| {
-            let cases: Vec<String> =
-                alias.cases.iter().map(|(member, condition)| format!("{}?{}", member.node, condition.meaning())).collect();
+            let cases: Vec<String> = alias
+                .cases
+                .iter()
+                .map(|(member, condition)| format!("{}?{}", member.node, condition.meaning()))
+                .collect();
             format!("{} {}", alias.name.node, cases.join(", "))
         }),
         _ => from_pest::expression(text, quiet).map(|phrase: Phrase| phrase.meaning()),

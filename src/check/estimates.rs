@@ -1,8 +1,11 @@
-//! Checks estimates: expressions over the values of a group of rows and over the data of its sections.
+//! Checks estimates: expressions over the values of a group of rows and over the data of its
+//! sections.
 
 use super::Checker;
 use super::names::normalised;
-use super::plan::{DataReducer, Estimate, EstimateKind, Expr, Fit, Kind, OfGroup, Origin, Taking, Type};
+use super::plan::{
+    DataReducer, Estimate, EstimateKind, Expr, Fit, Kind, OfGroup, Origin, Taking, Type,
+};
 use super::scalars::in_words;
 use super::scope::{Group, Scope};
 use crate::catalog::{STATISTICS, Statistic};
@@ -13,14 +16,17 @@ use crate::syntax::document::{Block, Text};
 use crate::syntax::phrase::{At, Fit as WrittenFit, Node, Phrase};
 use crate::units::Dimension;
 
-/// Largest number of regressors. With more, the number of sections of usual tests is too small for a regression.
+/// Largest number of regressors. With more, the number of sections of usual tests is too small for
+/// a regression.
 const MOST_REGRESSORS: usize = 8;
 
-/// Confidence levels that a bootstrap of 2000 draws can resolve: 10 draws lie beyond each of these limits.
+/// Confidence levels that a bootstrap of 2000 draws can resolve: 10 draws lie beyond each of these
+/// limits.
 const DRAWN: (f64, f64) = (0.005, 0.995);
 
-/// Smallest confidence level. Below it, the upper end of a one-sided interval lies below the estimate: `upper 5 %` would accept more than
-/// no confidence at all, and is usually an error probability.
+/// Smallest confidence level. Below it, the upper end of a one-sided interval lies below the
+/// estimate: `upper 5 %` would accept more than no confidence at all, and is usually an error
+/// probability.
 const LEAST_CONFIDENCE: f64 = 0.5;
 
 /// Name of the number of independent units of a group.
@@ -52,7 +58,8 @@ pub(super) fn reducer_name(reducer: &Phrase) -> String {
 }
 
 impl Checker<'_> {
-    /// The estimate of a limit, in one zone if it is for each. Without a dimension (values that have an error), only names are checked.
+    /// The estimate of a limit, in one zone if it is for each. Without a dimension (values that
+    /// have an error), only names are checked.
     pub(super) fn estimate(
         &mut self,
         name: &At<String>,
@@ -73,10 +80,21 @@ impl Checker<'_> {
         self.named_estimate(&plain, kind, dimension)
     }
 
-    /// An expression over a group with its name, title and unit. `values` is the dimension of the values, if there are any.
-    pub(super) fn named_estimate(&self, name: &str, kind: OfGroup, values: Option<Dimension>) -> Option<Estimate> {
-        let title = self.blocks.iter().find(|block| block.kind.text == "estimate" && block.name_text() == name);
-        let title = title.and_then(|block| block.title.as_ref()).map_or_else(|| self.with_values(name), |title| title.text.clone());
+    /// An expression over a group with its name, title and unit. `values` is the dimension of the
+    /// values, if there are any.
+    pub(super) fn named_estimate(
+        &self,
+        name: &str,
+        kind: OfGroup,
+        values: Option<Dimension>,
+    ) -> Option<Estimate> {
+        let title = self
+            .blocks
+            .iter()
+            .find(|block| block.kind.text == "estimate" && block.name_text() == name);
+        let title = title
+            .and_then(|block| block.title.as_ref())
+            .map_or_else(|| self.with_values(name), |title| title.text.clone());
         let of_scatter = match &kind.taken[..] {
             [Taking::Bound { of, .. }] => of.of_scatter,
             [Taking::Weighted { statistic, .. }] => statistic.of_scatter(),
@@ -88,8 +106,15 @@ impl Checker<'_> {
             Taking::Data { of, .. } => self.datum_unit(of, found),
             _ => None,
         });
-        let unit = (Some(found) != values).then(|| of_data.unwrap_or_else(|| self.own_unit("", found)));
-        Some(Estimate { name: name.to_string(), title, kind: EstimateKind::Of(Box::new(kind)), of_scatter, unit })
+        let unit =
+            (Some(found) != values).then(|| of_data.unwrap_or_else(|| self.own_unit("", found)));
+        Some(Estimate {
+            name: name.to_string(),
+            title,
+            kind: EstimateKind::Of(Box::new(kind)),
+            of_scatter,
+            unit,
+        })
     }
 
     fn of_statistic(&self, statistic: Statistic) -> Estimate {
@@ -99,21 +124,39 @@ impl Checker<'_> {
                 let source = crate::source::Source::new("statistic", statistic.name());
                 let span = Origin { span: source.whole(), words: statistic.name().into() };
                 let expr = Expr { kind: Kind::Input(0), ty: Type::Number(Dimension::ONE), span };
-                EstimateKind::Of(Box::new(OfGroup { expr, taken: vec![Taking::Statistic(statistic, self.ddof)] }))
+                EstimateKind::Of(Box::new(OfGroup {
+                    expr,
+                    taken: vec![Taking::Statistic(statistic, self.ddof)],
+                }))
             }
         };
-        Estimate { name: statistic.name(), title: statistic.title(self.ddof), kind, of_scatter: statistic.of_scatter(), unit: None }
+        Estimate {
+            name: statistic.name(),
+            title: statistic.title(self.ddof),
+            kind,
+            of_scatter: statistic.of_scatter(),
+            unit: None,
+        }
     }
 
     /// An expression over the values of a group. It must have the dimension of the values.
-    fn of_values(&mut self, phrase: &Phrase, text: &Text, dimension: Dimension, zone: Option<&str>) -> Option<OfGroup> {
+    fn of_values(
+        &mut self,
+        phrase: &Phrase,
+        text: &Text,
+        dimension: Dimension,
+        zone: Option<&str>,
+    ) -> Option<OfGroup> {
         let with = Scope { zone: zone.map(str::to_string), ..Scope::vehicle() };
         let found = self.of_group(phrase, text, Some(dimension), &with)?;
         if found.taken.is_empty() {
             self.problems.push(
-                Problem::error("estimate-of-nothing", "this expression uses no statistic of the values")
-                    .at(&found.expr.span)
-                    .help("for instance `mean + 3 * std`"),
+                Problem::error(
+                    "estimate-of-nothing",
+                    "this expression uses no statistic of the values",
+                )
+                .at(&found.expr.span)
+                .help("for instance `mean + 3 * std`"),
             );
             return None;
         }
@@ -122,9 +165,20 @@ impl Checker<'_> {
     }
 
     /// An expression over a group; the scope `with` gives the other names it can use.
-    pub(super) fn of_group(&mut self, phrase: &Phrase, text: &Text, values: Option<Dimension>, with: &Scope) -> Option<OfGroup> {
+    pub(super) fn of_group(
+        &mut self,
+        phrase: &Phrase,
+        text: &Text,
+        values: Option<Dimension>,
+        with: &Scope,
+    ) -> Option<OfGroup> {
         let group = Some(Group { values, taken: Vec::new() });
-        let mut scope = Scope { zone: with.zone.clone(), limits: with.limits.clone(), group, ..Scope::vehicle() };
+        let mut scope = Scope {
+            zone: with.zone.clone(),
+            limits: with.limits.clone(),
+            group,
+            ..Scope::vehicle()
+        };
         let expr = self.expr(phrase, text, &mut scope)?;
         Some(OfGroup { expr, taken: scope.group.map_or_else(Vec::new, |group| group.taken) })
     }
@@ -133,15 +187,27 @@ impl Checker<'_> {
         let found = Statistic::named(&written.node);
         if found.is_none() && !self.is_failed(&written.node) {
             let span = text.place(written.range.clone());
-            let percent: Option<f64> = written.node.strip_prefix('p').and_then(|percent| percent.parse().ok());
+            let percent: Option<f64> =
+                written.node.strip_prefix('p').and_then(|percent| percent.parse().ok());
             self.problems.push(match percent {
-                Some(percent) => Problem::error("out-of-range", format!("a percentile must be from 0 to 100, this is {percent}")).at(&span),
+                Some(percent) => Problem::error(
+                    "out-of-range",
+                    format!("a percentile must be from 0 to 100, this is {percent}"),
+                )
+                .at(&span),
                 None => {
                     let estimates: Vec<String> = self.names.estimates.keys().cloned().collect();
-                    let known = STATISTICS.iter().map(|entry| entry.name).chain(["each"]).chain(estimates.iter().map(String::as_str));
-                    Problem::error("unknown-statistic", format!("`{}` is not a statistic", written.node))
-                        .at(&span)
-                        .suggest(&written.node, known)
+                    let known = STATISTICS
+                        .iter()
+                        .map(|entry| entry.name)
+                        .chain(["each"])
+                        .chain(estimates.iter().map(String::as_str));
+                    Problem::error(
+                        "unknown-statistic",
+                        format!("`{}` is not a statistic", written.node),
+                    )
+                    .at(&span)
+                    .suggest(&written.node, known)
                 }
             });
         }
@@ -149,26 +215,40 @@ impl Checker<'_> {
     }
 
     /// A name with a meaning in a group: a statistic, `n`, an estimate.
-    pub(super) fn group_path(&mut self, path: &str, span: &Origin, scope: &mut Scope) -> Option<Option<Expr>> {
+    pub(super) fn group_path(
+        &mut self,
+        path: &str,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Option<Expr>> {
         let values = scope.group.as_ref()?.values;
         if let Some(written) = self.names.estimates.get(path).cloned() {
             self.used_defines.insert(format!("estimate {path}"));
             self.unconfirmed |= self.names.unconfirmed.contains_key(path);
-            let found = self.inside("estimate", path, span, |checker| checker.expr(&written.phrase, &written.text, scope));
+            let found = self.inside("estimate", path, span, |checker| {
+                checker.expr(&written.phrase, &written.text, scope)
+            });
             return Some(found);
         }
         let dimension = values?;
         let ddof = self.ddof;
         let group = scope.group.as_mut()?;
-        let expr = |kind, dimension| Some(Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() }));
+        let expr = |kind, dimension| {
+            Some(Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() }))
+        };
         if path == COUNT && !self.names.parameter_blocks.contains_key(path) {
             let kind = group.take(Taking::Count);
             return expr(kind, Dimension::ONE);
         }
         match Statistic::named(path)? {
             Statistic::Each => {
-                self.problems
-                    .push(Problem::error("each-value", "`each` stands for every single value and is not a statistic of a group").at(span));
+                self.problems.push(
+                    Problem::error(
+                        "each-value",
+                        "`each` stands for every single value and is not a statistic of a group",
+                    )
+                    .at(span),
+                );
                 Some(None)
             }
             statistic => {
@@ -179,7 +259,12 @@ impl Checker<'_> {
     }
 
     /// A percentile of the values of a group, such as `p95`.
-    pub(super) fn group_percentile(&mut self, percent: f64, span: &Origin, scope: &mut Scope) -> Option<Option<Expr>> {
+    pub(super) fn group_percentile(
+        &mut self,
+        percent: f64,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Option<Expr>> {
         let group = scope.group.as_mut()?;
         let Some(dimension) = group.values else { return Some(self.no_values(span)) };
         if !(0.0..=100.0).contains(&percent) {
@@ -191,8 +276,16 @@ impl Checker<'_> {
         Some(Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() }))
     }
 
-    /// A number of the sections of a group: `mean of radius`, `total of length`, `mean of radius weighted by length`.
-    pub(super) fn group_data(&mut self, reducer: &Phrase, of: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+    /// A number of the sections of a group: `mean of radius`, `total of length`, `mean of radius
+    /// weighted by length`.
+    pub(super) fn group_data(
+        &mut self,
+        reducer: &Phrase,
+        of: &Phrase,
+        text: &Text,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
         let found = self.group_reducer(reducer, "the sections of a group", text)?;
         // `mean of radius weighted by length` reads as `mean of (radius weighted by length)`.
         let (of, by) = match &of.node {
@@ -203,24 +296,37 @@ impl Checker<'_> {
             && (self.names.channels.contains_key(signal) || self.names.signals.contains_key(signal))
         {
             let name = reducer_name(reducer);
-            let says = format!("`{name} of {signal}` needs the records of a section, which are not available here");
+            let says = format!(
+                "`{name} of {signal}` needs the records of a section, which are not available here"
+            );
             let help = "here only section data can be used: `mean of radius`";
             self.problems.push(Problem::error("no-records", says).at(span).help(help));
             return None;
         }
         let by = match (by, found) {
             (None, _) => None,
-            (Some(by), DataReducer::Statistic(statistic, _)) if has_weights(statistic) => Some(self.weight(by, text, scope)?),
-            (Some(_), _) => return self.no_weight(&format!("the {} of section data", reducer_name(reducer)), span),
+            (Some(by), DataReducer::Statistic(statistic, _)) if has_weights(statistic) => {
+                Some(self.weight(by, text, scope)?)
+            }
+            (Some(_), _) => {
+                return self
+                    .no_weight(&format!("the {} of section data", reducer_name(reducer)), span);
+            }
         };
-        let of = self.expr(of, text, &mut Scope { zone: scope.zone.clone(), ..Scope::section() })?;
+        let of =
+            self.expr(of, text, &mut Scope { zone: scope.zone.clone(), ..Scope::section() })?;
         let dimension = self.number_type(&of)?;
         let kind = scope.group.as_mut()?.take(Taking::Data { reducer: found, of, by });
         Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() })
     }
 
     /// A statistic, or `total`.
-    pub(super) fn group_reducer(&mut self, reducer: &Phrase, from: &str, text: &Text) -> Option<DataReducer> {
+    pub(super) fn group_reducer(
+        &mut self,
+        reducer: &Phrase,
+        from: &str,
+        text: &Text,
+    ) -> Option<DataReducer> {
         let name = reducer_name(reducer);
         match (name.as_str(), Statistic::named(&name)) {
             ("total", _) => return Some(DataReducer::Total),
@@ -229,31 +335,42 @@ impl Checker<'_> {
         }
         let known = STATISTICS.iter().map(|entry| entry.name).chain(["total"]);
         let says = format!("`{name} of` cannot be computed over {from}");
-        self.problems.push(Problem::error("unknown-statistic", says).at(&text.place(reducer.range.clone())).suggest(&name, known));
+        self.problems.push(
+            Problem::error("unknown-statistic", says)
+                .at(&text.place(reducer.range.clone()))
+                .suggest(&name, known),
+        );
         None
     }
 
-    /// The quantity `NAME` in `p80 of NAME`, as its index and the index of its block. Only where the rows of a group are available.
-    /// A section datum of the same name has priority.
+    /// The quantity `NAME` in `p80 of NAME`, as its index and the index of its block. Only where
+    /// the rows of a group are available. A section datum of the same name has priority.
     pub(super) fn other_quantity(&self, of: &Phrase, scope: &Scope) -> Option<(usize, usize)> {
         let Node::Path(name) = &of.node else { return None };
         if scope.group.is_none() && scope.value.is_none() || self.names.defines.contains_key(name) {
             return None;
         }
         let data = [&self.names.columns, &self.names.vehicle];
-        if data.iter().any(|data| data.iter().any(|datum| datum.name == *name)) || self.names.parameter_blocks.contains_key(name) {
+        if data.iter().any(|data| data.iter().any(|datum| datum.name == *name))
+            || self.names.parameter_blocks.contains_key(name)
+        {
             return None;
         }
-        let quantities = self.blocks.iter().enumerate().filter(|(_, block)| block.kind.text == "quantity");
+        let quantities =
+            self.blocks.iter().enumerate().filter(|(_, block)| block.kind.text == "quantity");
         let mut named = quantities.enumerate().filter(|(_, (_, block))| block.name_text() == name);
         named.next().map(|(number, (at, _))| (number, at))
     }
 
-    /// Whether a limit or an estimate uses a value of the quantity. The quantity then has an effect without a limit of its own.
+    /// Whether a limit or an estimate uses a value of the quantity. The quantity then has an effect
+    /// without a limit of its own.
     pub(super) fn is_referred_to(&self, quantity: &str) -> bool {
         let refers = |text: &Text| {
-            let words: Vec<&str> =
-                text.text.split(|c: char| c.is_whitespace() || "()".contains(c)).filter(|word| !word.is_empty()).collect();
+            let words: Vec<&str> = text
+                .text
+                .split(|c: char| c.is_whitespace() || "()".contains(c))
+                .filter(|word| !word.is_empty())
+                .collect();
             words.windows(2).any(|pair| pair == ["of", quantity])
         };
         let of_block = |block: &Block| {
@@ -267,35 +384,67 @@ impl Checker<'_> {
     }
 
     /// In a condition on one value, `p80 of ...` must name another quantity.
-    pub(super) fn no_such_quantity(&mut self, of: &Phrase, text: &Text, span: &Span) -> Option<Expr> {
+    pub(super) fn no_such_quantity(
+        &mut self,
+        of: &Phrase,
+        text: &Text,
+        span: &Span,
+    ) -> Option<Expr> {
         let name = text.text.get(of.range.clone()).unwrap_or_default().trim().to_string();
-        let problem = Problem::error("no-such-quantity", format!("`{name}` is not a quantity that can be used here"));
-        let quantities: Vec<String> =
-            self.blocks.iter().filter(|block| block.kind.text == "quantity").map(|block| block.name_text().to_string()).collect();
+        let problem = Problem::error(
+            "no-such-quantity",
+            format!("`{name}` is not a quantity that can be used here"),
+        );
+        let quantities: Vec<String> = self
+            .blocks
+            .iter()
+            .filter(|block| block.kind.text == "quantity")
+            .map(|block| block.name_text().to_string())
+            .collect();
         self.problems.push(problem.at(span).suggest(&name, quantities.iter().map(String::as_str)));
         None
     }
 
-    /// A statistic of all rows of another quantity: `p80 of misfit_of_repeats`. Estimates of the other quantity cannot be used, so
-    /// no two quantities can depend on each other.
-    pub(super) fn of_other(&mut self, reducer: &Phrase, of: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+    /// A statistic of all rows of another quantity: `p80 of misfit_of_repeats`. Estimates of the
+    /// other quantity cannot be used, so no two quantities can depend on each other.
+    pub(super) fn of_other(
+        &mut self,
+        reducer: &Phrase,
+        of: &Phrase,
+        text: &Text,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
         let (quantity, block) = self.other_quantity(of, scope)?;
         let (name, range) = (reducer_name(reducer), reducer.range.clone());
         if self.names.estimates.contains_key(&name) {
-            let says = format!("`{name}` is an estimate and can only be applied to the values of this quantity");
+            let says = format!(
+                "`{name}` is an estimate and can only be applied to the values of this quantity"
+            );
             let help = "use a statistic of the other quantity: `p80 of ...`, `mean of ...`";
-            self.problems.push(Problem::error("unknown-statistic", says).at(&text.place(range)).help(help));
+            self.problems
+                .push(Problem::error("unknown-statistic", says).at(&text.place(range)).help(help));
             return None;
         }
         let statistic = self.statistic(&At { node: name, range }, text)?;
         if statistic == Statistic::Each {
-            self.problems
-                .push(Problem::error("each-value", "`each` stands for every single value and is not a statistic of a quantity").at(span));
+            self.problems.push(
+                Problem::error(
+                    "each-value",
+                    "`each` stands for every single value and is not a statistic of a quantity",
+                )
+                .at(span),
+            );
             return None;
         }
         let block = self.blocks.get(block)?.clone();
         let dimension = self.dimension_of(&block)?;
-        let taking = Taking::Other { quantity, id: block.name_text().to_string(), statistic, ddof: self.ddof };
+        let taking = Taking::Other {
+            quantity,
+            id: block.name_text().to_string(),
+            statistic,
+            ddof: self.ddof,
+        };
         let kind = match scope.group.as_mut() {
             Some(group) => group.take(taking),
             None => {
@@ -316,19 +465,27 @@ impl Checker<'_> {
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        let Some(dimension) = scope.group.as_ref().and_then(|group| group.values) else { return self.no_values(span) };
+        let Some(dimension) = scope.group.as_ref().and_then(|group| group.values) else {
+            return self.no_values(span);
+        };
         self.confidence(confidence, span)?;
         let name = match &of.node {
             Node::Path(path) => path.clone(),
             Node::Percentile(percent) => format!("p{percent}"),
             _ => bare(&normalised(text.text.get(of.range.clone()).unwrap_or(""))),
         };
-        let plain = matches!(of.node, Node::Path(_) | Node::Percentile(_)) && !self.names.estimates.contains_key(&name);
+        let plain = matches!(of.node, Node::Path(_) | Node::Percentile(_))
+            && !self.names.estimates.contains_key(&name);
         let estimate = if plain {
             let statistic = self.statistic(&At { node: name, range: of.range.clone() }, text)?;
             if statistic == Statistic::Each {
-                self.problems
-                    .push(Problem::error("each-value", "`each` stands for every single value and is not a statistic of a group").at(span));
+                self.problems.push(
+                    Problem::error(
+                        "each-value",
+                        "`each` stands for every single value and is not a statistic of a group",
+                    )
+                    .at(span),
+                );
                 return None;
             }
             self.of_statistic(statistic)
@@ -336,12 +493,21 @@ impl Checker<'_> {
             let kind = self.of_values(of, text, dimension, scope.zone.clone().as_deref())?;
             if kind.taken.iter().any(|taking| matches!(taking, Taking::Bound { .. })) {
                 self.problems.push(
-                    Problem::error("interval-of-interval", "the end of a confidence interval has no confidence interval of its own")
-                        .at(span),
+                    Problem::error(
+                        "interval-of-interval",
+                        "the end of a confidence interval has no confidence interval of its own",
+                    )
+                    .at(span),
                 );
                 return None;
             }
-            Estimate { title: name.clone(), name, kind: EstimateKind::Of(Box::new(kind)), of_scatter: false, unit: None }
+            Estimate {
+                title: name.clone(),
+                name,
+                kind: EstimateKind::Of(Box::new(kind)),
+                of_scatter: false,
+                unit: None,
+            }
         };
         let of_scatter = estimate.weighted().is_some_and(|(statistic, ..)| statistic.of_scatter());
         let estimate = Estimate { of_scatter: estimate.of_scatter || of_scatter, ..estimate };
@@ -349,7 +515,8 @@ impl Checker<'_> {
             Statistic::Named(entry) => entry.name == "mean" || entry.name == "std" && ddof == 1,
             _ => false,
         });
-        let closed = closed || estimate.weighted().is_some_and(|(statistic, ..)| is_mean(statistic));
+        let closed =
+            closed || estimate.weighted().is_some_and(|(statistic, ..)| is_mean(statistic));
         if (bootstrap || !closed) && !(DRAWN.0..=DRAWN.1).contains(&confidence) {
             let says = "a bootstrap of 2000 draws cannot give a bound outside 0.5 % to 99.5 %";
             self.problems.push(Problem::error("out-of-range", says).at(span));
@@ -359,7 +526,12 @@ impl Checker<'_> {
             EstimateKind::Of(of) if estimate.statistic().is_none() => of.expr.ty.clone(),
             _ => Type::Number(dimension),
         };
-        let kind = scope.group.as_mut()?.take(Taking::Bound { of: estimate, upper, confidence, bootstrap });
+        let kind = scope.group.as_mut()?.take(Taking::Bound {
+            of: estimate,
+            upper,
+            confidence,
+            bootstrap,
+        });
         Some(Expr { kind, ty, span: span.clone() })
     }
 
@@ -374,7 +546,13 @@ impl Checker<'_> {
         scope: &mut Scope,
     ) -> Option<Expr> {
         let Some(group) = &scope.group else {
-            self.problems.push(Problem::error("no-group", "a share needs the values of a group, which are not available here").at(span));
+            self.problems.push(
+                Problem::error(
+                    "no-group",
+                    "a share needs the values of a group, which are not available here",
+                )
+                .at(span),
+            );
             return None;
         };
         let value = group.values.filter(|_| !of_sections);
@@ -388,15 +566,31 @@ impl Checker<'_> {
             Some(by) => Some(self.weight(by, text, scope)?),
             None => None,
         };
-        let kind = scope.group.as_mut()?.take(Taking::Share { condition, of_sections, others: of_row.others, by });
+        let kind = scope.group.as_mut()?.take(Taking::Share {
+            condition,
+            of_sections,
+            others: of_row.others,
+            by,
+        });
         Some(Expr { kind, ty: Type::Number(Dimension::ONE), span: span.clone() })
     }
 
     /// A regression or prediction: `prediction over cant_deficiency at 143 mm, confidence 99 %`.
-    pub(super) fn group_fit(&mut self, written: &WrittenFit, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
-        let Some(dimension) = scope.group.as_ref().and_then(|group| group.values) else { return self.no_values(span) };
+    pub(super) fn group_fit(
+        &mut self,
+        written: &WrittenFit,
+        text: &Text,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
+        let Some(dimension) = scope.group.as_ref().and_then(|group| group.values) else {
+            return self.no_values(span);
+        };
         if written.over.len() > MOST_REGRESSORS {
-            let says = format!("{} regressors; there can be at most {MOST_REGRESSORS}", written.over.len());
+            let says = format!(
+                "{} regressors; there can be at most {MOST_REGRESSORS}",
+                written.over.len()
+            );
             self.problems.push(Problem::error("too-large", says).at(span));
             return None;
         }
@@ -406,33 +600,54 @@ impl Checker<'_> {
                 written.over.len(),
                 written.at.len()
             );
-            self.problems.push(Problem::error("arguments", says).at(span).help("write for instance `prediction over a, b at 1, 2`"));
+            self.problems.push(
+                Problem::error("arguments", says)
+                    .at(span)
+                    .help("write for instance `prediction over a, b at 1, 2`"),
+            );
             return None;
         }
-        let confidence = written.confidence.as_ref().map(|share| (share.node, text.place(share.range.clone())));
+        let confidence =
+            written.confidence.as_ref().map(|share| (share.node, text.place(share.range.clone())));
         if let Some((share, place)) = &confidence {
             self.confidence(*share, place)?;
         }
         if written.prediction && confidence.is_none() {
-            let problem = Problem::error("missing-confidence", "a prediction bound needs a confidence level").at(span);
-            self.problems.push(problem.help("add `, confidence 99 %`; the fitted value itself is `regression over ... at ...`"));
+            let problem =
+                Problem::error("missing-confidence", "a prediction bound needs a confidence level")
+                    .at(span);
+            self.problems.push(problem.help(
+                "add `, confidence 99 %`; the fitted value itself is `regression over ... at ...`",
+            ));
             return None;
         }
         let (mut over, mut at, mut ok) = (Vec::new(), Vec::new(), true);
         for (regressor, target) in written.over.iter().zip(&written.at) {
-            let regressor = self.expr(regressor, text, &mut Scope { zone: scope.zone.clone(), ..Scope::section() });
+            let regressor = self.expr(
+                regressor,
+                text,
+                &mut Scope { zone: scope.zone.clone(), ..Scope::section() },
+            );
             let target = self.of_group(target, text, None, scope);
             let (Some(regressor), Some(target)) = (regressor, target) else {
                 ok = false;
                 continue;
             };
-            let (Some(of), Some(read)) = (self.number_type(&regressor), self.number_type(&target.expr)) else {
+            let (Some(of), Some(read)) =
+                (self.number_type(&regressor), self.number_type(&target.expr))
+            else {
                 ok = false;
                 continue;
             };
             if of != read {
-                let says = format!("the regressor is {}, the value after `at` is {}", of.in_words(), in_words(&target.expr.ty));
-                let problem = Problem::error("unit-mismatch", says).at(&target.expr.span).also(&regressor.span, of.in_words());
+                let says = format!(
+                    "the regressor is {}, the value after `at` is {}",
+                    of.in_words(),
+                    in_words(&target.expr.ty)
+                );
+                let problem = Problem::error("unit-mismatch", says)
+                    .at(&target.expr.span)
+                    .also(&regressor.span, of.in_words());
                 self.problems.push(problem);
                 ok = false;
             }
@@ -458,9 +673,17 @@ impl Checker<'_> {
         if (LEAST_CONFIDENCE..1.0).contains(&share) {
             return Some(());
         }
-        let problem = Problem::error("out-of-range", "a confidence level must be at least 50 % and below 100 %").at(at);
+        let problem = Problem::error(
+            "out-of-range",
+            "a confidence level must be at least 50 % and below 100 %",
+        )
+        .at(at);
         self.problems.push(problem.help(if share > 0.0 && share < LEAST_CONFIDENCE {
-            format!("an error probability of {0} % is a confidence of {1} %", rounded(100.0 * share), rounded(100.0 * (1.0 - share)))
+            format!(
+                "an error probability of {0} % is a confidence of {1} %",
+                rounded(100.0 * share),
+                rounded(100.0 * (1.0 - share))
+            )
         } else {
             "write it as a percentage: `95 %`".into()
         }));

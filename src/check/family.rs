@@ -24,8 +24,8 @@ pub struct Family {
     pub parent: Option<Document>,
     /// The text of the protocol first, then that of its parent, and so on.
     pub sources: Vec<Arc<Source>>,
-    /// Whether every ancestor was found and every family of blocks could be expanded. If not, names may be missing and are not
-    /// reported as unknown.
+    /// Whether every ancestor was found and every family of blocks could be expanded. If not, names
+    /// may be missing and are not reported as unknown.
     pub whole: bool,
 }
 
@@ -40,8 +40,13 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
     while let Some(field) = chain.last().and_then(|document| extends(document).cloned()) {
         let name = field.value.text.trim().trim_matches('"').to_string();
         if chain.len() > DEEPEST {
-            problems
-                .push(Problem::error("extends-too-deep", format!("more than {DEEPEST} protocols extend each other")).at(&field.value.span));
+            problems.push(
+                Problem::error(
+                    "extends-too-deep",
+                    format!("more than {DEEPEST} protocols extend each other"),
+                )
+                .at(&field.value.span),
+            );
             whole = false;
             break;
         }
@@ -72,7 +77,8 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
     let mut parent: Option<Document> = None;
     let mut known = Vec::new();
     while let Some(written) = chain.pop() {
-        let left = merged.as_ref().map(|before| without_removed(before, &written, &known, problems));
+        let left =
+            merged.as_ref().map(|before| without_removed(before, &written, &known, problems));
         let (document, sound) = families::expand(&written, left.as_ref(), &mut known, problems);
         whole &= sound;
         let together = left.map_or_else(|| document.clone(), |left| merge(left, &document));
@@ -80,8 +86,12 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
             parent = Some(before);
         }
     }
-    let mut merged =
-        merged.unwrap_or_else(|| Document { source: Arc::clone(source), leading: Vec::new(), blocks: Vec::new(), trailing: Vec::new() });
+    let mut merged = merged.unwrap_or_else(|| Document {
+        source: Arc::clone(source),
+        leading: Vec::new(),
+        blocks: Vec::new(),
+        trailing: Vec::new(),
+    });
     like::write_out(&mut merged, whole, problems);
     if let Some(parent) = &mut parent {
         // What is wrong in it was told above.
@@ -91,17 +101,32 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
 }
 
 fn extends(document: &Document) -> Option<&Field> {
-    document.blocks.iter().find(|block| block.kind.text == "protocol").and_then(|block| block.field("extends"))
+    document
+        .blocks
+        .iter()
+        .find(|block| block.kind.text == "protocol")
+        .and_then(|block| block.field("extends"))
 }
 
-/// The parent without the blocks that the variant removes. Blocks of the variant are not in it yet, so `remove` only concerns the
-/// parent.
-fn without_removed(parent: &Document, variant: &Document, families: &[Known], problems: &mut Problems) -> Document {
+/// The parent without the blocks that the variant removes. Blocks of the variant are not in it yet,
+/// so `remove` only concerns the parent.
+fn without_removed(
+    parent: &Document,
+    variant: &Document,
+    families: &[Known],
+    problems: &mut Problems,
+) -> Document {
     let mut left = parent.clone();
-    let removals = || variant.blocks.iter().filter(|block| block.kind.text == "remove").flat_map(|block| &block.fields);
+    let removals = || {
+        variant
+            .blocks
+            .iter()
+            .filter(|block| block.kind.text == "remove")
+            .flat_map(|block| &block.fields)
+    };
     let every = |field: &Field| words(field).first() == Some(&EVERY);
-    // Single names are removed before `every`, and limits before their quantities. Otherwise they would be reported as removed
-    // already.
+    // Single names are removed before `every`, and limits before their quantities. Otherwise they
+    // would be reported as removed already.
     let mut fields: Vec<&Field> = removals().collect();
     fields.sort_by_key(|field| (every(field), field.key.text != "limit"));
     for field in fields {
@@ -110,13 +135,15 @@ fn without_removed(parent: &Document, variant: &Document, families: &[Known], pr
     left
 }
 
-/// The blocks of the parent, overridden field by field by blocks of the variant with the same kind and name.
+/// The blocks of the parent, overridden field by field by blocks of the variant with the same kind
+/// and name.
 fn merge(parent: Document, variant: &Document) -> Document {
     let mut blocks = parent.blocks;
     for block in variant.blocks.iter().filter(|block| block.kind.text != "remove") {
         let single = keys::of_block(block).is_some_and(|kind| kind.single);
         let same = |other: &&mut Block| {
-            let both = other.kind.text == block.kind.text && keys::of_block(other).is_some_and(|kind| kind.single) == single;
+            let both = other.kind.text == block.kind.text
+                && keys::of_block(other).is_some_and(|kind| kind.single) == single;
             both && (single || other.name_text() == block.name_text())
         };
         match blocks.iter_mut().find(same) {
@@ -125,13 +152,23 @@ fn merge(parent: Document, variant: &Document) -> Document {
             Some(old) => overlay(old, block),
         }
     }
-    Document { source: Arc::clone(&variant.source), leading: Vec::new(), blocks, trailing: Vec::new() }
+    Document {
+        source: Arc::clone(&variant.source),
+        leading: Vec::new(),
+        blocks,
+        trailing: Vec::new(),
+    }
 }
 
-/// The protocol block of the variant. Axis, time, edition and source are inherited unless the variant states them.
+/// The protocol block of the variant. Axis, time, edition and source are inherited unless the
+/// variant states them.
 fn succeed(parent: &Block, variant: &Block) -> Block {
     let mut own = variant.clone();
-    for field in parent.fields.iter().filter(|field| matches!(field.key.text.as_str(), "axis" | "time" | "edition" | "source")) {
+    for field in parent
+        .fields
+        .iter()
+        .filter(|field| matches!(field.key.text.as_str(), "axis" | "time" | "edition" | "source"))
+    {
         if own.field(&field.key.text).is_none() {
             own.fields.push(field.clone());
         }
@@ -143,39 +180,74 @@ fn words(field: &Field) -> Vec<&str> {
     field.value.text.split_whitespace().collect()
 }
 
-/// Removes what a field of `remove` names: a block, a family of blocks, or all of its kind; or limits of these.
+/// Removes what a field of `remove` names: a block, a family of blocks, or all of its kind; or
+/// limits of these.
 fn remove(blocks: &mut Vec<Block>, field: &Field, families: &[Known], problems: &mut Problems) {
     let words = words(field);
     let is_limit = field.key.text == "limit";
-    let (kind, name) = (if is_limit { "quantity" } else { field.key.text.as_str() }, words.first().copied().unwrap_or(""));
+    let (kind, name) = (
+        if is_limit { "quantity" } else { field.key.text.as_str() },
+        words.first().copied().unwrap_or(""),
+    );
     let family = families.iter().find(|family| family.kind == kind && family.name == name);
     let meant = |block: &Block| {
-        let named = || block.name_text() == name || family.is_some_and(|family| family.members.iter().any(|one| one == block.name_text()));
+        let named = || {
+            block.name_text() == name
+                || family
+                    .is_some_and(|family| family.members.iter().any(|one| one == block.name_text()))
+        };
         // The verdict without a name cannot be removed.
         block.kind.text == kind && block.name.is_some() && (name == EVERY || named())
     };
     if !blocks.iter().any(meant) {
-        let says = if name == EVERY { format!("the parent has no {kind}") } else { format!("the parent has no {kind} called `{name}`") };
-        let mut known: Vec<&str> =
-            blocks.iter().filter(|block| block.kind.text == kind && block.name.is_some()).map(Block::name_text).collect();
-        let here = families.iter().filter(|family| family.kind == kind && family.members.iter().any(|one| known.contains(&one.as_str())));
+        let says = if name == EVERY {
+            format!("the parent has no {kind}")
+        } else {
+            format!("the parent has no {kind} called `{name}`")
+        };
+        let mut known: Vec<&str> = blocks
+            .iter()
+            .filter(|block| block.kind.text == kind && block.name.is_some())
+            .map(Block::name_text)
+            .collect();
+        let here = families.iter().filter(|family| {
+            family.kind == kind && family.members.iter().any(|one| known.contains(&one.as_str()))
+        });
         let here: Vec<&str> = here.map(|family| family.name.as_str()).collect();
         known.extend(here);
-        problems.push(Problem::error("nothing-to-remove", says).at(&field.value.span).suggest(name, known));
+        problems.push(
+            Problem::error("nothing-to-remove", says).at(&field.value.span).suggest(name, known),
+        );
         return;
     }
     match (is_limit, words.as_slice()) {
         (false, [_]) => blocks.retain(|block| !meant(block)),
-        (true, [_, limit @ ..]) => remove_limits(blocks.iter_mut().filter(|block| meant(block)), name, limit, field, problems),
+        (true, [_, limit @ ..]) => remove_limits(
+            blocks.iter_mut().filter(|block| meant(block)),
+            name,
+            limit,
+            field,
+            problems,
+        ),
         _ => {
-            let problem = Problem::error("remove", format!("`remove` needs the name of one {}", field.key.text)).at(&field.value.span);
+            let problem = Problem::error(
+                "remove",
+                format!("`remove` needs the name of one {}", field.key.text),
+            )
+            .at(&field.value.span);
             problems.push(problem.help("write one name on each line, or `every` for all"));
         }
     }
 }
 
 /// Removes limits from quantities: those of a statistic and scope, or all.
-fn remove_limits<'a>(quantities: impl Iterator<Item = &'a mut Block>, name: &str, words: &[&str], field: &Field, problems: &mut Problems) {
+fn remove_limits<'a>(
+    quantities: impl Iterator<Item = &'a mut Block>,
+    name: &str,
+    words: &[&str],
+    field: &Field,
+    problems: &mut Problems,
+) {
     let wanted = |other: &Field| {
         if words.is_empty() {
             return true;
@@ -191,7 +263,10 @@ fn remove_limits<'a>(quantities: impl Iterator<Item = &'a mut Block>, name: &str
     let mut removed = false;
     let mut known: Vec<String> = Vec::new();
     for quantity in quantities {
-        let of = |field: &Field| from_pest::limit(&field.value, &mut Problems::default()).map(|limit| limit.statistic.node);
+        let of = |field: &Field| {
+            from_pest::limit(&field.value, &mut Problems::default())
+                .map(|limit| limit.statistic.node)
+        };
         known.extend(quantity.fields_named("limit").filter_map(of));
         let before = quantity.fields.len();
         quantity.fields.retain(|other| other.key.text != "limit" || !wanted(other));
@@ -200,7 +275,11 @@ fn remove_limits<'a>(quantities: impl Iterator<Item = &'a mut Block>, name: &str
     if removed {
         return;
     }
-    let of = if name == EVERY { "no quantity of the parent has".to_owned() } else { format!("`{name}` of the parent has no limit") };
+    let of = if name == EVERY {
+        "no quantity of the parent has".to_owned()
+    } else {
+        format!("`{name}` of the parent has no limit")
+    };
     let says = match (name == EVERY, words) {
         (true, []) => format!("{of} a limit"),
         (true, _) => format!("{of} a limit of the `{}`", words.join(" ")),

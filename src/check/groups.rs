@@ -24,7 +24,10 @@ pub(super) struct Grouped {
 impl Grouped {
     /// The values of a quantity.
     pub fn values(quantity: &Block, places: &[String]) -> Self {
-        Self { what: format!("the values of `{}`", quantity.name_text()), places: Some(places.to_vec()) }
+        Self {
+            what: format!("the values of `{}`", quantity.name_text()),
+            places: Some(places.to_vec()),
+        }
     }
 
     pub fn sections() -> Self {
@@ -33,15 +36,23 @@ impl Grouped {
 }
 
 impl Checker<'_> {
-    /// A scope by itself, or once for every zone if it says so, with the zone. One that was not understood is kept, so that what
-    /// else there is in the rule is looked at.
-    pub(super) fn zone_by_zone(&self, scope: Option<(Scope, bool)>) -> Vec<(Option<Scope>, Option<String>)> {
+    /// A scope by itself, or once for every zone if it says so, with the zone. One that was not
+    /// understood is kept, so that what else there is in the rule is looked at.
+    pub(super) fn zone_by_zone(
+        &self,
+        scope: Option<(Scope, bool)>,
+    ) -> Vec<(Option<Scope>, Option<String>)> {
         let Some((scope, true)) = scope else { return vec![(scope.map(|(scope, _)| scope), None)] };
-        let zones = if scope.zones.is_empty() { self.zone_names.clone() } else { scope.zones.clone() };
-        zones.into_iter().map(|zone| (Some(Scope { zones: vec![zone.clone()], ..scope.clone() }), Some(zone))).collect()
+        let zones =
+            if scope.zones.is_empty() { self.zone_names.clone() } else { scope.zones.clone() };
+        zones
+            .into_iter()
+            .map(|zone| (Some(Scope { zones: vec![zone.clone()], ..scope.clone() }), Some(zone)))
+            .collect()
     }
 
-    /// The rows that a limit or a minimum applies to, and whether there is one limit for every zone.
+    /// The rows that a limit or a minimum applies to, and whether there is one limit for every
+    /// zone.
     pub(super) fn scope_of(&mut self, scope: &At<Written>, text: &Text) -> Option<(Scope, bool)> {
         let written = &scope.node;
         let zones = self.limit_zones(&written.zones, text);
@@ -51,7 +62,9 @@ impl Checker<'_> {
             if matches!(key.node.as_str(), "zone" | "zones") {
                 ok &= !each_zone || self.key_twice(&key.node, &place);
                 if self.zone_names.is_empty() {
-                    self.problems.push(Problem::error("unknown-zone", "the protocol has no zones").at(&place));
+                    self.problems.push(
+                        Problem::error("unknown-zone", "the protocol has no zones").at(&place),
+                    );
                     ok = false;
                 }
                 each_zone = true;
@@ -84,7 +97,9 @@ impl Checker<'_> {
             let place = text.place(zone.range.clone());
             if !self.zone_names.contains(&zone.node) {
                 let known = self.zone_names.clone();
-                let problem = Problem::error("unknown-zone", format!("there is no zone {}", zone.node)).at(&place);
+                let problem =
+                    Problem::error("unknown-zone", format!("there is no zone {}", zone.node))
+                        .at(&place);
                 self.problems.push(if known.is_empty() {
                     problem.help("the protocol has no zones")
                 } else {
@@ -101,11 +116,14 @@ impl Checker<'_> {
     }
 
     fn key_twice(&mut self, key: &str, at: &Span) -> bool {
-        self.problems.push(Problem::error("duplicate-name", format!("`{key}` is named twice in the scope")).at(at));
+        self.problems.push(
+            Problem::error("duplicate-name", format!("`{key}` is named twice in the scope")).at(at),
+        );
         false
     }
 
-    /// A key by which rows are grouped: section, site, record, a place of the signal, or a section column of words.
+    /// A key by which rows are grouped: section, site, record, a place of the signal, or a section
+    /// column of words.
     fn key(&mut self, name: &str, span: &Span) -> Option<Key> {
         let Grouped { what, places } = self.grouped.clone();
         match name {
@@ -114,23 +132,38 @@ impl Checker<'_> {
             "record" if places.is_some() => return Some(Key::Record),
             _ => {}
         }
-        if let Some(place) = places.iter().flatten().find(|place| *place == name || Some(place.as_str()) == name.strip_suffix('s')) {
+        if let Some(place) = places
+            .iter()
+            .flatten()
+            .find(|place| *place == name || Some(place.as_str()) == name.strip_suffix('s'))
+        {
             return Some(Key::Place(place.clone()));
         }
         if let Some(index) = self.campaign_column(name, span) {
             if matches!(self.names.columns[index].kind, DatumKind::Number(_)) {
                 let says = format!("`{name}` is a number; only a column of words can form groups");
-                let help = "declare the column with `one of ...`, or use it in an estimate: `mean of ...`";
+                let help =
+                    "declare the column with `one of ...`, or use it in an estimate: `mean of ...`";
                 self.problems.push(Problem::error("not-a-word", says).at(span).help(help));
                 return None;
             }
             return Some(Key::Column(index));
         }
-        let words = self.names.columns.iter().filter(|datum| !matches!(datum.kind, DatumKind::Number(_)));
-        let columns: Vec<String> = words.map(|datum| datum.name.clone()).filter(|name| !KEYS.contains(&name.as_str())).collect();
+        let words =
+            self.names.columns.iter().filter(|datum| !matches!(datum.kind, DatumKind::Number(_)));
+        let columns: Vec<String> = words
+            .map(|datum| datum.name.clone())
+            .filter(|name| !KEYS.contains(&name.as_str()))
+            .collect();
         let of_all = KEYS.into_iter().filter(|key| places.is_some() || *key != "record");
-        let known = of_all.chain(places.iter().flatten().map(String::as_str)).chain(columns.iter().map(String::as_str));
-        self.problems.push(Problem::error("unknown-key", format!("{what} cannot be grouped by `{name}`")).at(span).suggest(name, known));
+        let known = of_all
+            .chain(places.iter().flatten().map(String::as_str))
+            .chain(columns.iter().map(String::as_str));
+        self.problems.push(
+            Problem::error("unknown-key", format!("{what} cannot be grouped by `{name}`"))
+                .at(span)
+                .suggest(name, known),
+        );
         None
     }
 
@@ -143,7 +176,8 @@ impl Checker<'_> {
         match self.zone.as_ref().map(|zone| &zone.kind) {
             Some(Kind::Column(index)) => Some(Key::Column(*index)),
             _ => {
-                self.problems.push(Problem::error("unknown-zone", "the protocol has no zones").at(&place));
+                self.problems
+                    .push(Problem::error("unknown-zone", "the protocol has no zones").at(&place));
                 None
             }
         }

@@ -2,7 +2,9 @@
 
 use super::Checker;
 use super::evaluate::{number, words};
-use super::plan::{Estimate, EstimateKind, Expr, InputSide, Kind, OfGroup, Operator, Scalar, Taking, Valued};
+use super::plan::{
+    Estimate, EstimateKind, Expr, InputSide, Kind, OfGroup, Operator, Scalar, Taking, Valued,
+};
 use super::values::Values;
 use crate::catalog::Statistic;
 use crate::metrics::rounded;
@@ -18,7 +20,9 @@ impl Checker<'_> {
     pub(super) fn depends_on_values(&mut self, difference: &Expr, at: &Span) -> Option<()> {
         /// Values of both signs, without a simple ratio.
         const TRIED: [(f64, f64); 3] = [(1.0, -1.7), (2.9, 1.0), (-1.7, 2.9)];
-        let mut found = TRIED.iter().map(|&(simulated, measured)| number(difference, &Apart { simulated, measured }));
+        let mut found = TRIED
+            .iter()
+            .map(|&(simulated, measured)| number(difference, &Apart { simulated, measured }));
         let Some(Ok(first)) = found.next() else { return Some(()) };
         if !found.all(|other| other == Ok(first)) {
             return Some(());
@@ -29,46 +33,71 @@ impl Checker<'_> {
         None
     }
 
-    /// Values that are compared although all of them are taken from the same record: `value measured(p99.85)`.
-    pub(super) fn of_both_records(&mut self, values: &[Valued], difference: &Expr, at: &Span) -> Option<()> {
-        let mut sides = values.iter().flat_map(|value| value.inputs.iter().flatten()).map(|input| input.side);
+    /// Values that are compared although all of them are taken from the same record: `value
+    /// measured(p99.85)`.
+    pub(super) fn of_both_records(
+        &mut self,
+        values: &[Valued],
+        difference: &Expr,
+        at: &Span,
+    ) -> Option<()> {
+        let mut sides =
+            values.iter().flat_map(|value| value.inputs.iter().flatten()).map(|input| input.side);
         let (mut simulated, mut measured) = (false, false);
         difference.visit(&mut |part| {
             simulated |= matches!(part.kind, Kind::Simulated);
             measured |= matches!(part.kind, Kind::Measured);
         });
         let first = sides.next().filter(|side| *side != InputSide::Own && simulated && measured);
-        let Some(side) = first.filter(|first| sides.all(|side| side == *first)) else { return Some(()) };
+        let Some(side) = first.filter(|first| sides.all(|side| side == *first)) else {
+            return Some(());
+        };
         let name = if side == InputSide::Measured { "measured" } else { "simulated" };
-        let says = format!("this value is taken from the {name} record for both sides, so that the two are always equal");
+        let says = format!(
+            "this value is taken from the {name} record for both sides, so that the two are always equal"
+        );
         let help = format!("write the value without `{name}(...)`: it is taken from each record");
         self.problems.push(Problem::error("value-of-one-record", says).at(at).help(help));
         None
     }
 
-    /// A share is at most 1: a limit above it always holds, and with `at least` never. Usually `%` is missing.
+    /// A share is at most 1: a limit above it always holds, and with `at least` never. Usually `%`
+    /// is missing.
     pub(super) fn share_above_one(&mut self, estimate: &Estimate, bound: &Expr) -> Option<()> {
         let Kind::Constant(Scalar::Number(value)) = bound.kind else { return Some(()) };
         if value <= 1.0 || !is_share(estimate) {
             return Some(());
         }
-        let problem = Problem::error("out-of-range", format!("a share is at most 1; `{}` is above it", words(bound))).at(&bound.span);
-        self.problems.push(if value <= 100.0 { problem.help(format!("write `{} %`", rounded(value))) } else { problem });
+        let problem = Problem::error(
+            "out-of-range",
+            format!("a share is at most 1; `{}` is above it", words(bound)),
+        )
+        .at(&bound.span);
+        self.problems.push(if value <= 100.0 {
+            problem.help(format!("write `{} %`", rounded(value)))
+        } else {
+            problem
+        });
         None
     }
 
     /// The estimate of a whole quantity with a bound from the same values: the two grow together.
     pub(super) fn of_own_values(&mut self, estimate: &Estimate, bound: &OfGroup, block: &Block) {
-        let own = |taking: &Taking| matches!(taking, Taking::Other { id, .. } if id == block.name_text());
+        let own =
+            |taking: &Taking| matches!(taking, Taking::Other { id, .. } if id == block.name_text());
         if matches!(estimate.kind, EstimateKind::Each) || !bound.taken.iter().any(own) {
             return;
         }
-        let says = format!("this bound is taken from the values of `{}`, which it limits", block.name_text());
+        let says = format!(
+            "this bound is taken from the values of `{}`, which it limits",
+            block.name_text()
+        );
         let help = "it says nothing about their size; name another quantity, or write a number";
         self.problems.push(Problem::warning("own-values", says).at(&bound.expr.span).help(help));
     }
 
-    /// `mean + 3 * std` of differences: its magnitude is small where the mean is negative, so a bad model can pass.
+    /// `mean + 3 * std` of differences: its magnitude is small where the mean is negative, so a bad
+    /// model can pass.
     pub(super) fn signed_estimate(&mut self, estimate: &Estimate, at: &Span) {
         let EstimateKind::Of(of) = &estimate.kind else { return };
         let Kind::Binary(Operator::Add, left, right) = &of.expr.kind else { return };
@@ -77,7 +106,9 @@ impl Checker<'_> {
             let mut named = Vec::new();
             outside_magnitudes(part, &mut named);
             let statistics = named.into_iter().filter_map(|index| match of.taken.get(index) {
-                Some(Taking::Statistic(statistic, _) | Taking::Weighted { statistic, .. }) => Some(*statistic),
+                Some(Taking::Statistic(statistic, _) | Taking::Weighted { statistic, .. }) => {
+                    Some(*statistic)
+                }
                 _ => None,
             });
             for statistic in statistics {
@@ -90,7 +121,9 @@ impl Checker<'_> {
             let says = "the magnitude of this estimate is small where the differences are negative on average";
             let help = "write it with the magnitude of the mean: `(|mean| + 3 * std)`";
             // A limit for each zone is checked once for each.
-            let told = |problem: &Problem| problem.code == "signed-estimate" && problem.at.as_ref() == Some(at);
+            let told = |problem: &Problem| {
+                problem.code == "signed-estimate" && problem.at.as_ref() == Some(at)
+            };
             if !self.problems.0.iter().any(told) {
                 self.problems.push(Problem::warning("signed-estimate", says).at(at).help(help));
             }

@@ -6,8 +6,9 @@ use crate::syntax::document::{Block, Document};
 
 const LIKE: &str = "like";
 
-/// Writes out every quantity with `like`, after all variants were merged: so it follows a variant that changes the other. Names are
-/// told to be unknown only where all blocks are at hand (`whole`). A quantity that could not be written out keeps its `like`.
+/// Writes out every quantity with `like`, after all variants were merged: so it follows a variant
+/// that changes the other. Names are told to be unknown only where all blocks are at hand
+/// (`whole`). A quantity that could not be written out keeps its `like`.
 pub fn write_out(document: &mut Document, whole: bool, problems: &mut Problems) {
     if !document.blocks.iter().any(is_like) {
         return;
@@ -26,16 +27,27 @@ fn is_like(block: &Block) -> bool {
 }
 
 /// The block with the fields of the one that it is like, which may itself be like a third.
-fn filled(blocks: &[Block], at: usize, passed: &mut Vec<usize>, whole: bool, problems: &mut Problems) -> Option<Block> {
+fn filled(
+    blocks: &[Block],
+    at: usize,
+    passed: &mut Vec<usize>,
+    whole: bool,
+    problems: &mut Problems,
+) -> Option<Block> {
     let own = &blocks[at];
     let Some(field) = own.field(LIKE).filter(|_| is_like(own)) else { return Some(own.clone()) };
     passed.push(at);
     let name = field.value.text.trim();
-    let quantities = || blocks.iter().enumerate().filter(|(_, block)| block.kind.text == "quantity");
+    let quantities =
+        || blocks.iter().enumerate().filter(|(_, block)| block.kind.text == "quantity");
     let Some((other, _)) = quantities().find(|(_, block)| block.name_text() == name) else {
         if whole && passed.len() == 1 {
-            let known = quantities().map(|(_, block)| block.name_text()).filter(|known| *known != own.name_text());
-            let problem = Problem::error("no-such-quantity", format!("no quantity is called `{name}`")).at(&field.value.span);
+            let known = quantities()
+                .map(|(_, block)| block.name_text())
+                .filter(|known| *known != own.name_text());
+            let problem =
+                Problem::error("no-such-quantity", format!("no quantity is called `{name}`"))
+                    .at(&field.value.span);
             problems.push(problem.suggest(name, known));
         }
         return None;

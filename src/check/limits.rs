@@ -3,7 +3,9 @@
 use super::evaluate::{number, words};
 use super::groups::Grouped;
 use super::names::normalised;
-use super::plan::{Estimate, EstimateKind, Expr, Kind, Limit, OfGroup, Scalar, Scope as LimitScope, Type};
+use super::plan::{
+    Estimate, EstimateKind, Expr, Kind, Limit, OfGroup, Scalar, Scope as LimitScope, Type,
+};
 use super::scalar_names::LIMITS_NOT_VALUES;
 use super::scalars::in_words;
 use super::scope::Scope;
@@ -21,7 +23,8 @@ use crate::units::{Dimension, Unit};
 /// What all limits of a quantity have in common.
 struct Common<'a> {
     block: &'a Block,
-    /// Unit of the compared values and the text that decides their dimension; `None` where the values have an error.
+    /// Unit of the compared values and the text that decides their dimension; `None` where the
+    /// values have an error.
     unit: Option<(&'a Unit, &'a Span)>,
     /// Best value and the text that decides it, where it is known.
     best: Option<&'a (Best, Span)>,
@@ -30,13 +33,18 @@ struct Common<'a> {
 }
 
 impl Checker<'_> {
-    /// Behind a number that is not from a checked source: against the standard, if the protocol names its source.
+    /// Behind a number that is not from a checked source: against the standard, if the protocol
+    /// names its source.
     pub(super) fn to_be_confirmed(&self) -> &'static str {
-        let named = self.blocks.iter().any(|block| block.kind.text == "protocol" && block.field("source").is_some());
+        let named = self
+            .blocks
+            .iter()
+            .any(|block| block.kind.text == "protocol" && block.field("source").is_some());
         if named { ", to be confirmed against the standard" } else { ", to be confirmed" }
     }
 
-    /// The limits of a quantity. Where the values have an error (no `unit`), everything but the dimension is checked.
+    /// The limits of a quantity. Where the values have an error (no `unit`), everything but the
+    /// dimension is checked.
     pub(super) fn limits(
         &mut self,
         block: &Block,
@@ -49,7 +57,9 @@ impl Checker<'_> {
         let mut names = Vec::new();
         for field in &fields {
             if let Some(limit) = from_pest::limit(&field.value, &mut Problems::default()) {
-                names.push(self.with_statistic(limit.statistic, limit.estimate, &field.value).0.node);
+                names.push(
+                    self.with_statistic(limit.statistic, limit.estimate, &field.value).0.node,
+                );
             }
         }
         let common = Common { block, unit, best, names };
@@ -83,7 +93,13 @@ impl Checker<'_> {
         let mut limits = Vec::new();
         for (scope, zone) in self.zone_by_zone(scope) {
             self.unconfirmed = unconfirmed;
-            let estimate = self.estimate(&written.statistic, &written.estimate, text, dimension, zone.as_deref());
+            let estimate = self.estimate(
+                &written.statistic,
+                &written.estimate,
+                text,
+                dimension,
+                zone.as_deref(),
+            );
             limits.push(self.limit_of(&written, &estimate?, scope?, zone, text, common)?);
         }
         Some(limits)
@@ -98,10 +114,13 @@ impl Checker<'_> {
         text: &Text,
         common: &Common<'_>,
     ) -> Option<Limit> {
-        let dimension = estimate.unit.as_ref().or(common.unit.map(|(unit, _)| unit)).map(|unit| unit.dimension);
-        let names = common.names.iter().filter(|name| **name != written.statistic.node).cloned().collect();
+        let dimension =
+            estimate.unit.as_ref().or(common.unit.map(|(unit, _)| unit)).map(|unit| unit.dimension);
+        let names =
+            common.names.iter().filter(|name| **name != written.statistic.node).cloned().collect();
         let scope = || Scope {
-            // A limit of every single value may depend on its section; a limit of a statistic has one bound.
+            // A limit of every single value may depend on its section; a limit of a statistic has
+            // one bound.
             section: matches!(estimate.kind, EstimateKind::Each),
             zone: zone.clone(),
             ..Scope::vehicle()
@@ -109,7 +128,8 @@ impl Checker<'_> {
         let mut of_bound = scope();
         of_bound.limits = Some((dimension.unwrap_or(Dimension::ONE), names));
         let bound = if of_bound.section {
-            self.expr(&written.bound, text, &mut of_bound).map(|expr| OfGroup { expr, taken: Vec::new() })
+            self.expr(&written.bound, text, &mut of_bound)
+                .map(|expr| OfGroup { expr, taken: Vec::new() })
         } else {
             self.of_group(&written.bound, text, None, &of_bound)
         };
@@ -124,13 +144,19 @@ impl Checker<'_> {
             }
             let expr = self.suitable_bound(bound.expr, written.at_least, of, common)?;
             self.share_above_one(estimate, &expr)?;
-            Some(OfGroup { expr: self.on_its_side(expr, written, estimate, text, common)?, ..bound })
+            Some(OfGroup {
+                expr: self.on_its_side(expr, written, estimate, text, common)?,
+                ..bound
+            })
         });
         let mut factors = Vec::new();
         let mut ok = true;
         for (factor, condition) in &written.factors {
-            let factor = self.expr(factor, text, &mut scope()).and_then(|factor| self.plain_factor(factor));
-            let condition = self.expr(condition, text, &mut scope()).filter(|condition| self.flag_type(condition).is_some());
+            let factor =
+                self.expr(factor, text, &mut scope()).and_then(|factor| self.plain_factor(factor));
+            let condition = self
+                .expr(condition, text, &mut scope())
+                .filter(|condition| self.flag_type(condition).is_some());
             match factor.zip(condition) {
                 Some(found) => factors.push(found),
                 None => ok = false,
@@ -140,7 +166,9 @@ impl Checker<'_> {
             None => None,
             Some(condition) => {
                 let vehicle = Scope { zone: zone.clone(), ..Scope::vehicle() };
-                let condition = self.expr(condition, text, &mut { vehicle }).filter(|condition| self.flag_type(condition).is_some());
+                let condition = self
+                    .expr(condition, text, &mut { vehicle })
+                    .filter(|condition| self.flag_type(condition).is_some());
                 ok &= condition.is_some();
                 condition
             }
@@ -160,7 +188,8 @@ impl Checker<'_> {
         })
     }
 
-    /// The words of a limit with parameters replaced by their values: `2/3 of std` for `share of std`.
+    /// The words of a limit with parameters replaced by their values: `2/3 of std` for `share of
+    /// std`.
     pub(super) fn with_values(&self, words: &str) -> String {
         let is_name = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
         let mut out = String::new();
@@ -177,7 +206,10 @@ impl Checker<'_> {
             // After a number, the name is a unit.
             let unit = out.trim_end().ends_with(|c: char| c.is_ascii_digit());
             match self.names.parameters.get(word).filter(|_| !unit) {
-                Some(parameter) if parameter.value_words.contains([' ', '+']) && matches!(parameter.ty, Type::Number(Dimension::ONE)) => {
+                Some(parameter)
+                    if parameter.value_words.contains([' ', '+'])
+                        && matches!(parameter.ty, Type::Number(Dimension::ONE)) =>
+                {
                     out.push_str(&format!("({})", parameter.value_words));
                 }
                 Some(parameter) => out.push_str(&parameter.value_words),
@@ -188,15 +220,35 @@ impl Checker<'_> {
         out
     }
 
-    fn suitable_bound(&mut self, bound: Expr, at_least: bool, of: Option<(&Unit, &Span)>, common: &Common<'_>) -> Option<Expr> {
+    fn suitable_bound(
+        &mut self,
+        bound: Expr,
+        at_least: bool,
+        of: Option<(&Unit, &Span)>,
+        common: &Common<'_>,
+    ) -> Option<Expr> {
         let found = self.number_type(&bound)?;
         if let Some((unit, from)) = of.filter(|(unit, _)| unit.dimension != found) {
             let wanted = unit.dimension.in_words();
             let of_values = common.unit.is_some_and(|(of, _)| of == unit);
-            let what = if of_values { format!("the values of `{}` are", common.block.name_text()) } else { "this estimate is".into() };
+            let what = if of_values {
+                format!("the values of `{}` are", common.block.name_text())
+            } else {
+                "this estimate is".into()
+            };
             let says = format!("{what} {wanted}, this limit is {}", found.in_words());
-            let help = if unit.text == "-" { "write the limit without unit".into() } else { format!("write the limit in {unit}") };
-            self.problems.push(Problem::error("unit-mismatch", says).at(&bound.span).label(found.in_words()).also(from, wanted).help(help));
+            let help = if unit.text == "-" {
+                "write the limit without unit".into()
+            } else {
+                format!("write the limit in {unit}")
+            };
+            self.problems.push(
+                Problem::error("unit-mismatch", says)
+                    .at(&bound.span)
+                    .label(found.in_words())
+                    .also(from, wanted)
+                    .help(help),
+            );
             return None;
         }
         match bound.kind {
@@ -210,16 +262,28 @@ impl Checker<'_> {
     }
 
     /// Checks that the limit admits the best value and excludes worse ones.
-    fn on_its_side(&mut self, bound: Expr, written: &Written, estimate: &Estimate, text: &Text, common: &Common<'_>) -> Option<Expr> {
+    fn on_its_side(
+        &mut self,
+        bound: Expr,
+        written: &Written,
+        estimate: &Estimate,
+        text: &Text,
+        common: &Common<'_>,
+    ) -> Option<Expr> {
         let scatter = estimate.of_scatter;
-        let of_values = matches!(estimate.kind, EstimateKind::Each) || estimate.statistic().is_some() || estimate.weighted().is_some();
+        let of_values = matches!(estimate.kind, EstimateKind::Each)
+            || estimate.statistic().is_some()
+            || estimate.weighted().is_some();
         let (best, from) = match common.best {
             _ if scatter => (Best::Least(0.0), None),
             Some((best, from)) if of_values => (*best, Some(from)),
             _ => return Some(bound),
         };
-        let constant = if let Kind::Constant(Scalar::Number(value)) = bound.kind { Some(value) } else { None };
-        let keeps_best = |value: f64| if written.at_least { best.value() >= value } else { best.value().abs() <= value };
+        let constant =
+            if let Kind::Constant(Scalar::Number(value)) = bound.kind { Some(value) } else { None };
+        let keeps_best = |value: f64| {
+            if written.at_least { best.value() >= value } else { best.value().abs() <= value }
+        };
         let wrong = match (best, written.at_least) {
             (Best::Least(_), true) | (Best::Greatest(_), false) => true,
             _ => constant.is_some_and(|value| !keeps_best(value)),
@@ -234,21 +298,33 @@ impl Checker<'_> {
             (format!("the values of `{}`", common.block.name_text()), best.in_words())
         };
         let says = format!("this limit is on the wrong side: for {of}, the best value is {is}");
-        let problem = Problem::error("wrong-side", says).at(&text.place(written.statistic.range.start..written.bound.range.end));
+        let problem = Problem::error("wrong-side", says)
+            .at(&text.place(written.statistic.range.start..written.bound.range.end));
         let problem = match from {
             Some(from) => problem.also(from, format!("best value {is}")),
             None => problem,
         };
         self.problems.push(match (best, written.at_least) {
-            (Best::Greatest(best), true) => problem.help(format!("no value is above {best}, so the limit must not be either")),
-            (Best::Greatest(_), false) => problem.help(format!("write `limit {name} at least {words}`")),
-            (Best::Least(_), _) => problem.help(format!("write `limit {name} {words}`: values up to it are accepted")),
-            (Best::Near(best), true) if constant.is_some_and(|value| value > 0.0) && best == 0.0 => {
-                problem.help(format!("write `limit {name} {words}`: magnitudes up to it are accepted"))
+            (Best::Greatest(best), true) => {
+                problem.help(format!("no value is above {best}, so the limit must not be either"))
+            }
+            (Best::Greatest(_), false) => {
+                problem.help(format!("write `limit {name} at least {words}`"))
+            }
+            (Best::Least(_), _) => {
+                problem.help(format!("write `limit {name} {words}`: values up to it are accepted"))
+            }
+            (Best::Near(best), true)
+                if constant.is_some_and(|value| value > 0.0) && best == 0.0 =>
+            {
+                problem
+                    .help(format!("write `limit {name} {words}`: magnitudes up to it are accepted"))
             }
             (Best::Near(best), at_least) => {
                 let side = if at_least { "not above" } else { "not below" };
-                problem.help(format!("the limit must admit the best value: write a limit {side} {best}"))
+                problem.help(format!(
+                    "the limit must admit the best value: write a limit {side} {best}"
+                ))
             }
         });
         None
@@ -260,7 +336,11 @@ impl Checker<'_> {
             return Some(factor);
         }
         self.problems.push(
-            Problem::error("unit-mismatch", format!("a factor must be a plain number, this is {}", in_words(&factor.ty))).at(&factor.span),
+            Problem::error(
+                "unit-mismatch",
+                format!("a factor must be a plain number, this is {}", in_words(&factor.ty)),
+            )
+            .at(&factor.span),
         );
         None
     }
@@ -271,18 +351,33 @@ impl Checker<'_> {
             let mut names = Vec::new();
             referred(&limit.bound.expr, &mut names);
             let Some((name, place)) = names.first() else { continue };
-            let Ok(value) = number(&limit.bound.expr, &Others { limits, of: limit, depth: 0 }) else { continue };
+            let Ok(value) = number(&limit.bound.expr, &Others { limits, of: limit, depth: 0 })
+            else {
+                continue;
+            };
             if value > 0.0 {
                 continue;
             }
-            let shown = unit.map_or_else(|| value.to_string(), |unit| format!("{}{}", rounded(unit.from_si(value)), unit.suffix()));
-            let says = format!("a limit must be above zero; `{}` is {shown}", words(&limit.bound.expr));
-            let help = format!("in a limit, `{name}` stands for the limit of the {name}, not for its value");
-            self.problems.push(Problem::error("out-of-range", says).at(&limit.bound.expr.span).also(place, "a limit").help(help));
+            let shown = unit.map_or_else(
+                || value.to_string(),
+                |unit| format!("{}{}", rounded(unit.from_si(value)), unit.suffix()),
+            );
+            let says =
+                format!("a limit must be above zero; `{}` is {shown}", words(&limit.bound.expr));
+            let help = format!(
+                "in a limit, `{name}` stands for the limit of the {name}, not for its value"
+            );
+            self.problems.push(
+                Problem::error("out-of-range", says)
+                    .at(&limit.bound.expr.span)
+                    .also(place, "a limit")
+                    .help(help),
+            );
         }
     }
 
-    /// Every limit that a limit refers to must apply to the same sections. A limit must not depend on itself.
+    /// Every limit that a limit refers to must apply to the same sections. A limit must not depend
+    /// on itself.
     fn references(&mut self, limits: &[Limit]) {
         let refers = |limit: &Limit| {
             let mut names = Vec::new();
@@ -290,22 +385,32 @@ impl Checker<'_> {
             names
         };
         let target = |limit: &Limit, name: &str| {
-            limits.iter().position(|other| other.estimate.name == name && same_sections(&other.scope, &limit.scope))
+            limits.iter().position(|other| {
+                other.estimate.name == name && same_sections(&other.scope, &limit.scope)
+            })
         };
         for limit in limits {
             for (name, span) in refers(limit) {
                 if target(limit, &name).is_none() {
-                    let problem = Problem::error("no-such-limit", format!("no limit of `{name}` applies to the same sections")).at(&span);
+                    let problem = Problem::error(
+                        "no-such-limit",
+                        format!("no limit of `{name}` applies to the same sections"),
+                    )
+                    .at(&span);
                     let other = limits.iter().find(|other| other.estimate.name == name);
                     self.problems.push(match other {
-                        Some(other) => problem.also(&other.span, "this one applies to other sections"),
+                        Some(other) => {
+                            problem.also(&other.span, "this one applies to other sections")
+                        }
                         None => problem,
                     });
                 }
             }
         }
-        let next: Vec<Vec<usize>> =
-            limits.iter().map(|limit| refers(limit).iter().filter_map(|(name, _)| target(limit, name)).collect()).collect();
+        let next: Vec<Vec<usize>> = limits
+            .iter()
+            .map(|limit| refers(limit).iter().filter_map(|(name, _)| target(limit, name)).collect())
+            .collect();
         let mut told: Vec<&Span> = Vec::new();
         for (index, limit) in limits.iter().enumerate() {
             let Some(way) = way_back(index, &next) else { continue };
@@ -313,7 +418,8 @@ impl Checker<'_> {
                 continue;
             }
             let others: Vec<&Span> = way.iter().map(|&other| &limits[other].span).collect();
-            let mut problem = Problem::error("limit-loop", "this limit depends on itself").at(&limit.span);
+            let mut problem =
+                Problem::error("limit-loop", "this limit depends on itself").at(&limit.span);
             for other in &others {
                 problem = problem.also(other, "through this one");
             }
@@ -324,11 +430,16 @@ impl Checker<'_> {
     }
 }
 
-/// Says so behind each limit with a number that is to be confirmed, and behind each that refers to such a limit.
+/// Says so behind each limit with a number that is to be confirmed, and behind each that refers to
+/// such a limit.
 fn say_unconfirmed(limits: &mut [Limit], words: &str) {
     // As often as there are limits, since one may refer to another by way of all others.
     for _ in 0..limits.len() {
-        let sources: Vec<String> = limits.iter().filter(|limit| limit.unconfirmed).map(|limit| limit.estimate.name.clone()).collect();
+        let sources: Vec<String> = limits
+            .iter()
+            .filter(|limit| limit.unconfirmed)
+            .map(|limit| limit.estimate.name.clone())
+            .collect();
         for limit in limits.iter_mut() {
             let mut names = Vec::new();
             referred(&limit.bound.expr, &mut names);
@@ -350,10 +461,13 @@ struct Others<'a> {
 impl Values for Others<'_> {
     fn limit_of(&self, statistic: &str) -> Result<f64, String> {
         let unknown = || format!("the limit of {statistic} is not known here");
-        let mut found = self.limits.iter().filter(|limit| limit.estimate.name == statistic && same_sections(&limit.scope, &self.of.scope));
+        let mut found = self.limits.iter().filter(|limit| {
+            limit.estimate.name == statistic && same_sections(&limit.scope, &self.of.scope)
+        });
         // With several limits, or a factor or condition, the value depends on the vehicle.
         let (Some(limit), None) = (found.next(), found.next()) else { return Err(unknown()) };
-        if self.depth > self.limits.len() || !limit.factors.is_empty() || limit.only_when.is_some() {
+        if self.depth > self.limits.len() || !limit.factors.is_empty() || limit.only_when.is_some()
+        {
             return Err(unknown());
         }
         number(&limit.bound.expr, &Others { limits: self.limits, of: limit, depth: self.depth + 1 })

@@ -1,10 +1,14 @@
-//! Checks the `metric` of a quantity: a wording of the registry, or an expression of metrics and of the signals of both sides.
+//! Checks the `metric` of a quantity: a wording of the registry, or an expression of metrics and of
+//! the signals of both sides.
 
 use std::collections::BTreeSet;
 
 use super::Checker;
 use super::names::{Assignment, Written, bare_word, normalised};
-use super::plan::{Axis, Evaluation, Expr, Input, InputSide, Kind, Origin, Pairing, Position, Side, Signal, SignalKind, Step, Taken, Type};
+use super::plan::{
+    Axis, Evaluation, Expr, Input, InputSide, Kind, Origin, Pairing, Position, Side, Signal,
+    SignalKind, Step, Taken, Type,
+};
 use super::quantities::Compared;
 use super::scalar_names::add_input;
 use super::scope::{Reduce, Scope};
@@ -29,7 +33,8 @@ impl Checker<'_> {
         positions: Option<&[(Position, Assignment)]>,
         chain: Option<&[Step]>,
     ) -> Option<Compared> {
-        let of_pairs = compare.map_or(Some(Pairing::SIDES), |compare| self.of_metric(compare, &field.key.span));
+        let of_pairs = compare
+            .map_or(Some(Pairing::SIDES), |compare| self.of_metric(compare, &field.key.span));
         let compared = if self.is_wording(&field.value) {
             self.by_wording(field, positions, chain)
         } else {
@@ -37,12 +42,15 @@ impl Checker<'_> {
         };
         let (of_pairs, mut compared) = (of_pairs?, compared?);
         if of_pairs != Pairing::SIDES {
-            if let Evaluation::Metric { pairing, .. } | Evaluation::Combined { pairing, .. } = &mut compared.evaluation {
+            if let Evaluation::Metric { pairing, .. } | Evaluation::Combined { pairing, .. } =
+                &mut compared.evaluation
+            {
                 *pairing = of_pairs;
             }
             let words = self.paired_words(of_pairs, &compared.comparison);
             let both = self.paired_words(of_pairs, "simulated and measured");
-            compared.comparison = if words == compared.comparison { format!("{words} of {both}") } else { words };
+            compared.comparison =
+                if words == compared.comparison { format!("{words} of {both}") } else { words };
         }
         Some(compared)
     }
@@ -52,15 +60,21 @@ impl Checker<'_> {
         let mut unheard = Problems::default();
         let step = from_pest::step_alone(text, &mut unheard);
         if let Some(step) = &step {
-            let step = self.with_choices(step.node.clone(), text, METRICS.iter().map(|entry| &entry.form));
-            if step.parts.first().is_some_and(|items| METRICS.iter().any(|entry| fits(&entry.form, items))) {
+            let step =
+                self.with_choices(step.node.clone(), text, METRICS.iter().map(|entry| &entry.form));
+            if step
+                .parts
+                .first()
+                .is_some_and(|items| METRICS.iter().any(|entry| fits(&entry.form, items)))
+            {
                 return true;
             }
         }
         match from_pest::expression(text, &mut unheard) {
             // A word without another meaning is reported as an unknown metric.
             Some(At { node: Node::Path(word), .. }) => {
-                let named = self.names.defines.contains_key(&word) || self.names.parameter_blocks.contains_key(&word);
+                let named = self.names.defines.contains_key(&word)
+                    || self.names.parameter_blocks.contains_key(&word);
                 !named && MetricEntry::called(&word).is_none()
             }
             Some(_) => step.is_some_and(|step| step.node.when.is_some()),
@@ -68,7 +82,12 @@ impl Checker<'_> {
         }
     }
 
-    fn by_wording(&mut self, field: &Field, positions: Option<&[(Position, Assignment)]>, chain: Option<&[Step]>) -> Option<Compared> {
+    fn by_wording(
+        &mut self,
+        field: &Field,
+        positions: Option<&[(Position, Assignment)]>,
+        chain: Option<&[Step]>,
+    ) -> Option<Compared> {
         let (metric, over) = self.metric(&field.value)?;
         self.by_one(metric, over, field, positions?, chain?)
     }
@@ -100,7 +119,10 @@ impl Checker<'_> {
         let (first, _) = positions.first()?;
         Some(Compared {
             evaluation: Evaluation::Metric { metric, over, over_axis, pairing: Pairing::SIDES },
-            dimension: (metric.0.gives)(after(chain, first.signal.dimension), self.axis_dimension()),
+            dimension: (metric.0.gives)(
+                after(chain, first.signal.dimension),
+                self.axis_dimension(),
+            ),
             processing: words.clone(),
             comparison: words,
             best: Some((metric.0.best, field.value.span.clone())),
@@ -109,20 +131,33 @@ impl Checker<'_> {
     }
 
     fn samples_are_kept(&mut self, taken: Taken, chain: &[Step], at: &Span) -> Option<()> {
-        let Some(step) = chain.iter().find(|step| !step.kind.keeps_samples()).filter(|_| taken.needs_samples()) else { return Some(()) };
+        let Some(step) =
+            chain.iter().find(|step| !step.kind.keeps_samples()).filter(|_| taken.needs_samples())
+        else {
+            return Some(());
+        };
         self.problems.push(
-            Problem::error("metric-of-window", "this metric compares samples and cannot follow a window or resampling")
-                .at(at)
-                .also(&step.span, "this step"),
+            Problem::error(
+                "metric-of-window",
+                "this metric compares samples and cannot follow a window or resampling",
+            )
+            .at(at)
+            .also(&step.span, "this step"),
         );
         None
     }
 
     /// An expression. Its best value is known only if it is a single metric.
-    fn by_expression(&mut self, field: &Field, positions: Option<&[(Position, Assignment)]>, chain: Option<&[Step]>) -> Option<Compared> {
+    fn by_expression(
+        &mut self,
+        field: &Field,
+        positions: Option<&[(Position, Assignment)]>,
+        chain: Option<&[Step]>,
+    ) -> Option<Compared> {
         let phrase = self.metric_expression(&field.value)?;
         let (positions, chain) = (positions?, chain?);
-        let (mut valued, dimension) = self.valued(&phrase, field, positions, chain, Scope::comparing)?;
+        let (mut valued, dimension) =
+            self.valued(&phrase, field, positions, chain, Scope::comparing)?;
         if chain.iter().any(|step| !step.kind.keeps_samples()) {
             valued.inputs.iter_mut().flatten().for_each(of_one_side);
         }
@@ -130,7 +165,11 @@ impl Checker<'_> {
         for input in inputs {
             if let (Taken::Reduced(reducer), InputSide::Own) = (input.taken, input.side) {
                 let words = normalised(input.span.text());
-                let problem = Problem::error("side", format!("`{words}` does not say which side it is computed from")).at(&input.span);
+                let problem = Problem::error(
+                    "side",
+                    format!("`{words}` does not say which side it is computed from"),
+                )
+                .at(&input.span);
                 let simple = reducer.in_words() == words;
                 self.problems.push(if simple {
                     problem.help(format!("write `{words} of measured` or `{words} of simulated`"))
@@ -141,7 +180,9 @@ impl Checker<'_> {
             }
             self.samples_are_kept(input.taken, chain, &input.span)?;
         }
-        if let (Kind::Input(0), [Input { taken: Taken::Compared(metric), over: None, .. }]) = (&valued.expr.kind, inputs.as_slice()) {
+        if let (Kind::Input(0), [Input { taken: Taken::Compared(metric), over: None, .. }]) =
+            (&valued.expr.kind, inputs.as_slice())
+        {
             return self.by_one(*metric, None, field, positions, chain);
         }
         let words = self.with_values(&normalised(&field.value.text));
@@ -155,15 +196,23 @@ impl Checker<'_> {
         })
     }
 
-    /// The expression in a field. If it cannot be parsed because a metric is written in words, the message says so.
+    /// The expression in a field. If it cannot be parsed because a metric is written in words, the
+    /// message says so.
     fn metric_expression(&mut self, text: &Text) -> Option<Phrase> {
         let mut problems = Problems::default();
         let found = from_pest::expression(text, &mut problems);
         let words = normalised(&text.text);
-        let spelt = METRICS.iter().filter(|entry| entry.form.head.len() > 1).find(|entry| words.contains(&leading_words(entry)));
+        let spelt = METRICS
+            .iter()
+            .filter(|entry| entry.form.head.len() > 1)
+            .find(|entry| words.contains(&leading_words(entry)));
         for problem in problems.0 {
             self.problems.push(match spelt {
-                Some(entry) => problem.help(format!("in an expression `{}` is written `{}`", entry.form.in_words(), entry.call_in_words())),
+                Some(entry) => problem.help(format!(
+                    "in an expression `{}` is written `{}`",
+                    entry.form.in_words(),
+                    entry.call_in_words()
+                )),
                 None => problem,
             });
         }
@@ -174,16 +223,31 @@ impl Checker<'_> {
     fn metric(&mut self, text: &Text) -> Option<(Metric, Option<Written>)> {
         let step = from_pest::step_alone(text, self.problems)?;
         let span = text.place(step.range.clone());
-        let step = At { node: self.with_choices(step.node, text, METRICS.iter().map(|entry| &entry.form)), range: step.range };
-        let index = self.find_form(&step.node, &span, "metric", METRICS.iter().map(|entry| &entry.form))?;
+        let step = At {
+            node: self.with_choices(step.node, text, METRICS.iter().map(|entry| &entry.form)),
+            range: step.range,
+        };
+        let index =
+            self.find_form(&step.node, &span, "metric", METRICS.iter().map(|entry| &entry.form))?;
         let entry = &METRICS[index];
-        if let Some(extra) = step.node.parts.get(1).and_then(|part| part.first()).filter(|_| entry.form.numbers.is_empty()) {
-            self.problems.push(Problem::error("unknown-option", "this metric has no option").at(&text.place(extra.range.clone())));
+        if let Some(extra) = step
+            .node
+            .parts
+            .get(1)
+            .and_then(|part| part.first())
+            .filter(|_| entry.form.numbers.is_empty())
+        {
+            self.problems.push(
+                Problem::error("unknown-option", "this metric has no option")
+                    .at(&text.place(extra.range.clone())),
+            );
             return None;
         }
         if let Some(condition) = &step.node.when {
-            let problem = Problem::error("unknown-option", "a metric has no condition").at(&text.place(condition.range.clone()));
-            self.problems.push(problem.help("sections are left out of a quantity by its field `where`"));
+            let problem = Problem::error("unknown-option", "a metric has no condition")
+                .at(&text.place(condition.range.clone()));
+            self.problems
+                .push(problem.help("sections are left out of a quantity by its field `where`"));
             return None;
         }
         self.metric_filled(entry, &step.node, text, &span)
@@ -208,22 +272,38 @@ impl Checker<'_> {
         };
         let filled = self.fill_form(&entry.form, step, text, span)?;
         let points = filled.options.first().copied().flatten().map(|(points, _)| points);
-        if let Some(points) = points.filter(|points| points.fract() != 0.0 || !(LEAST_POINTS..=MOST_POINTS).contains(points)) {
-            let says = format!("the number of points must be a whole number from {LEAST_POINTS} to {MOST_POINTS}, this is {points}");
+        if let Some(points) = points.filter(|points| {
+            points.fract() != 0.0 || !(LEAST_POINTS..=MOST_POINTS).contains(points)
+        }) {
+            let says = format!(
+                "the number of points must be a whole number from {LEAST_POINTS} to {MOST_POINTS}, this is {points}"
+            );
             self.problems.push(Problem::error("out-of-range", says).at(span));
             return None;
         }
         let mut asked = Asked { points: points.map(|points| points as usize), band: None };
         if let [(low, of_low, at_low), (high, of_high, at_high)] = filled.numbers.as_slice() {
-            let in_time = self.has_time || self.axis.as_ref().is_some_and(|axis| axis.unit.dimension == Dimension::TIME);
-            let wanted = if in_time { Dimension::FREQUENCY } else { Dimension::ONE / Dimension::LENGTH };
+            let in_time = self.has_time
+                || self.axis.as_ref().is_some_and(|axis| axis.unit.dimension == Dimension::TIME);
+            let wanted =
+                if in_time { Dimension::FREQUENCY } else { Dimension::ONE / Dimension::LENGTH };
             for (found, at) in [(of_low, at_low), (of_high, at_high)] {
-                let of = if in_time { "a frequency in Hz" } else { "a frequency in cycles per length, as records have no time" };
+                let of = if in_time {
+                    "a frequency in Hz"
+                } else {
+                    "a frequency in cycles per length, as records have no time"
+                };
                 self.suits("frequency", *found == wanted, of, *found, at)?;
             }
             if low >= high {
                 let (low, high) = (show_number(*low, wanted), show_number(*high, wanted));
-                self.problems.push(Problem::error("out-of-range", format!("the band from {low} to {high} is empty")).at(at_high));
+                self.problems.push(
+                    Problem::error(
+                        "out-of-range",
+                        format!("the band from {low} to {high} is empty"),
+                    )
+                    .at(at_high),
+                );
                 return None;
             }
             asked.band = Some((*low, *high));
@@ -233,11 +313,12 @@ impl Checker<'_> {
 
     /// Whether a call is that of a metric.
     pub(super) fn metric_called(&self, name: &At<String>, scope: &Scope) -> bool {
-        scope.reduce.is_some_and(|reduce| reduce.metrics) && MetricEntry::called(&name.node).is_some()
+        scope.reduce.is_some_and(|reduce| reduce.metrics)
+            && MetricEntry::called(&name.node).is_some()
     }
 
-    /// A metric in an expression: `coherence(1 Hz, 3 Hz)`, `matching_probability(50)`. The arguments are the slots of its wording,
-    /// then its options.
+    /// A metric in an expression: `coherence(1 Hz, 3 Hz)`, `matching_probability(50)`. The
+    /// arguments are the slots of its wording, then its options.
     pub(super) fn metric_call(
         &mut self,
         name: &At<String>,
@@ -247,23 +328,38 @@ impl Checker<'_> {
         scope: &mut Scope,
     ) -> Option<Expr> {
         let entry = MetricEntry::called(&name.node)?;
-        let item = |phrase: &Phrase| At { node: Item::Value(phrase.clone()), range: phrase.range.clone() };
+        let item =
+            |phrase: &Phrase| At { node: Item::Value(phrase.clone()), range: phrase.range.clone() };
         let word = |word: &str| At { node: Item::Word(word.into()), range: name.range.clone() };
         let mut rest = given.iter();
         let head: Option<Vec<At<Item>>> = entry
             .form
             .head
             .iter()
-            .map(|part| if let Part::Word(fixed) = part { Some(word(fixed)) } else { rest.next().map(item) })
+            .map(|part| {
+                if let Part::Word(fixed) = part { Some(word(fixed)) } else { rest.next().map(item) }
+            })
             .collect();
-        let options = entry.form.numbers.iter().zip(&mut rest).map(|(option, value)| vec![item(value), word(option.name)]);
+        let options = entry
+            .form
+            .numbers
+            .iter()
+            .zip(&mut rest)
+            .map(|(option, value)| vec![item(value), word(option.name)]);
         let parts = head.map(|head| std::iter::once(head).chain(options).collect::<Vec<_>>());
         let (Some(parts), None) = (parts, rest.next()) else {
-            let says = format!("`{}` is written `{}`; number of arguments: {}", name.node, entry.call_in_words(), given.len());
-            self.problems.push(Problem::error("arguments", says).at(&text.place(name.range.clone())));
+            let says = format!(
+                "`{}` is written `{}`; number of arguments: {}",
+                name.node,
+                entry.call_in_words(),
+                given.len()
+            );
+            self.problems
+                .push(Problem::error("arguments", says).at(&text.place(name.range.clone())));
             return None;
         };
-        let (metric, over) = self.metric_filled(entry, &WrittenStep { parts, when: None }, text, span)?;
+        let (metric, over) =
+            self.metric_filled(entry, &WrittenStep { parts, when: None }, text, span)?;
         let at = scope.at.clone();
         let over = match over {
             None => None,
@@ -273,35 +369,72 @@ impl Checker<'_> {
     }
 
     /// A metric without arguments.
-    pub(super) fn metric_named(&mut self, entry: &'static MetricEntry, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+    pub(super) fn metric_named(
+        &mut self,
+        entry: &'static MetricEntry,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
         if entry.form.head.iter().any(|part| !matches!(part, Part::Word(_))) {
             let says = format!("`{}` needs arguments", entry.function_name());
-            self.problems.push(Problem::error("arguments", says).at(span).help(format!("write `{}`", entry.call_in_words())));
+            self.problems.push(
+                Problem::error("arguments", says)
+                    .at(span)
+                    .help(format!("write `{}`", entry.call_in_words())),
+            );
             return None;
         }
         self.metric_input(Metric(entry, Asked::default()), None, span, scope)
     }
 
-    fn metric_input(&mut self, metric: Metric, over: Option<Signal>, span: &Origin, scope: &mut Scope) -> Option<Expr> {
-        let Some(Reduce { own: Some(dimension), axis, side, .. }) = scope.reduce else { return None };
+    fn metric_input(
+        &mut self,
+        metric: Metric,
+        over: Option<Signal>,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
+        let Some(Reduce { own: Some(dimension), axis, side, .. }) = scope.reduce else {
+            return None;
+        };
         if side != InputSide::Own {
-            let problem = Problem::error("side", format!("`{}` takes both sides", span.words)).at(span);
+            let problem =
+                Problem::error("side", format!("`{}` takes both sides", span.words)).at(span);
             self.problems.push(problem.help("leave `measured(...)` or `simulated(...)` out"));
             return None;
         }
         let taken = Taken::Compared(metric);
-        let input = Input { taken, signal: None, chain: Vec::new(), over, side: InputSide::Own, span: span.span.clone() };
+        let input = Input {
+            taken,
+            signal: None,
+            chain: Vec::new(),
+            over,
+            side: InputSide::Own,
+            span: span.span.clone(),
+        };
         let ty = Type::Number(taken.gives(dimension, axis));
         Some(Expr { kind: Kind::Input(add_input(scope, input)), ty, span: span.clone() })
     }
 
     /// The slope of the own signal: `slope over cant_angle`.
-    pub(super) fn slope_over(&mut self, value: &Phrase, over: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+    pub(super) fn slope_over(
+        &mut self,
+        value: &Phrase,
+        over: &Phrase,
+        text: &Text,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
         let place = text.place(value.range.clone());
         let reducer = bare_word(value).and_then(Reducer::named);
         let Some(reducer) = reducer else {
-            let problem = Problem::error("unknown-reducer", "only a slope can be computed over another signal").at(&place);
-            self.problems.push(problem.help("write `slope over SIGNAL` or `slope of SIGNAL over SIGNAL`"));
+            let problem = Problem::error(
+                "unknown-reducer",
+                "only a slope can be computed over another signal",
+            )
+            .at(&place);
+            self.problems
+                .push(problem.help("write `slope over SIGNAL` or `slope of SIGNAL over SIGNAL`"));
             return None;
         };
         let at = scope.at.clone();
@@ -310,16 +443,34 @@ impl Checker<'_> {
             return self.own_reducer(reducer, span.clone(), scope);
         };
         let ty = Type::Number(reducer.gives(dimension, over.dimension * scope.factor));
-        let input =
-            Input { taken: Taken::Reduced(reducer), signal: None, chain: Vec::new(), over: Some(over), side, span: span.span.clone() };
+        let input = Input {
+            taken: Taken::Reduced(reducer),
+            signal: None,
+            chain: Vec::new(),
+            over: Some(over),
+            side,
+            span: span.span.clone(),
+        };
         Some(Expr { kind: Kind::Input(add_input(scope, input)), ty, span: span.clone() })
     }
 
     /// The signal that a slope is computed over.
-    pub(super) fn slope_axis(&mut self, reducer: Reducer, over: &Phrase, place: &Span, text: &Text, at: &Assignment) -> Option<Signal> {
+    pub(super) fn slope_axis(
+        &mut self,
+        reducer: Reducer,
+        over: &Phrase,
+        place: &Span,
+        text: &Text,
+        at: &Assignment,
+    ) -> Option<Signal> {
         if reducer.in_words() != "slope" {
-            let says = format!("`{}` cannot be computed over another signal; only a slope can", reducer.in_words());
-            self.problems.push(Problem::error("unknown-reducer", says).at(place).help("write `slope over SIGNAL`"));
+            let says = format!(
+                "`{}` cannot be computed over another signal; only a slope can",
+                reducer.in_words()
+            );
+            self.problems.push(
+                Problem::error("unknown-reducer", says).at(place).help("write `slope over SIGNAL`"),
+            );
             return None;
         }
         self.signal(over, text, at)
@@ -329,27 +480,45 @@ impl Checker<'_> {
     pub(super) fn names_side(&self, phrase: &Phrase, seen: &mut BTreeSet<String>) -> bool {
         let mut any = |phrase: &Phrase| self.names_side(phrase, seen);
         match &phrase.node {
-            Node::Path(path) if matches!(path.as_str(), "simulated" | "measured") => !self.is_signal(path),
+            Node::Path(path) if matches!(path.as_str(), "simulated" | "measured") => {
+                !self.is_signal(path)
+            }
             Node::Path(path) => match self.names.defines.get(path) {
-                Some(define) if seen.insert(path.clone()) => self.names_side(&define.phrase.clone(), seen),
+                Some(define) if seen.insert(path.clone()) => {
+                    self.names_side(&define.phrase.clone(), seen)
+                }
                 _ => false,
             },
             Node::Binary(_, left, right) | Node::Over(left, right) => any(left) || any(right),
-            Node::Reduced(_, inner) | Node::Negative(inner) | Node::Magnitude(inner) | Node::Power(inner, _) | Node::Through(inner, _) => {
-                any(inner)
-            }
+            Node::Reduced(_, inner)
+            | Node::Negative(inner)
+            | Node::Magnitude(inner)
+            | Node::Power(inner, _)
+            | Node::Through(inner, _) => any(inner),
             Node::Call(_, arguments) => arguments.iter().any(any),
-            Node::Cases(arms, otherwise) => arms.iter().any(|(value, _)| any(value)) || otherwise.as_deref().is_some_and(any),
+            Node::Cases(arms, otherwise) => {
+                arms.iter().any(|(value, _)| any(value)) || otherwise.as_deref().is_some_and(any)
+            }
             _ => false,
         }
     }
 
     /// A value taken from the samples of both sides: `rms of (simulated - measured)`.
-    pub(super) fn of_both(&mut self, reducer: Reducer, signal: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+    pub(super) fn of_both(
+        &mut self,
+        reducer: Reducer,
+        signal: &Phrase,
+        text: &Text,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
         let Reduce { own, axis, metrics, side } = scope.reduce?;
         if metrics && side != InputSide::Own {
-            let problem = Problem::error("side", format!("`{}` names its sides already", span.words)).at(span);
-            self.problems.push(problem.help("remove the outer `measured(...)` or `simulated(...)`"));
+            let problem =
+                Problem::error("side", format!("`{}` names its sides already", span.words))
+                    .at(span);
+            self.problems
+                .push(problem.help("remove the outer `measured(...)` or `simulated(...)`"));
             return None;
         }
         let at = scope.at.clone();
@@ -379,7 +548,11 @@ impl Checker<'_> {
 
 /// `rms of simulated` after a window: the sides have no common points, and none are needed.
 fn of_one_side(input: &mut Input) {
-    let (Taken::OfBoth(reducer), Some(Signal { kind: SignalKind::Side(side), .. })) = (input.taken, &input.signal) else { return };
+    let (Taken::OfBoth(reducer), Some(Signal { kind: SignalKind::Side(side), .. })) =
+        (input.taken, &input.signal)
+    else {
+        return;
+    };
     input.side = match side {
         Side::Simulated => InputSide::Simulated,
         Side::Measured => InputSide::Measured,
@@ -394,17 +567,28 @@ fn not_of_both(signal: &Signal) -> Option<Span> {
     match &signal.kind {
         SignalKind::Side(_) | SignalKind::Scalar(_) => None,
         SignalKind::Binary(_, left, right) => not_of_both(left).or_else(|| not_of_both(right)),
-        SignalKind::OverAxis(AxisOperation::Shifted(_), inner) if !matches!(inner.kind, SignalKind::Side(_)) => Some(signal.span.clone()),
-        SignalKind::Negative(inner) | SignalKind::Power(inner, _) | SignalKind::Level(_, inner) | SignalKind::OverAxis(_, inner) => {
-            not_of_both(inner)
+        SignalKind::OverAxis(AxisOperation::Shifted(_), inner)
+            if !matches!(inner.kind, SignalKind::Side(_)) =>
+        {
+            Some(signal.span.clone())
         }
+        SignalKind::Negative(inner)
+        | SignalKind::Power(inner, _)
+        | SignalKind::Level(_, inner)
+        | SignalKind::OverAxis(_, inner) => not_of_both(inner),
         SignalKind::Call(_, arguments) => arguments.iter().find_map(not_of_both),
-        SignalKind::Column { .. } | SignalKind::Filtered(..) | SignalKind::Select(..) => Some(signal.span.clone()),
+        SignalKind::Column { .. } | SignalKind::Filtered(..) | SignalKind::Select(..) => {
+            Some(signal.span.clone())
+        }
     }
 }
 
 /// The words of a wording before its first slot: `theil inequality`, `coherence from`.
 fn leading_words(entry: &MetricEntry) -> String {
-    let words = entry.form.head.iter().map_while(|part| if let Part::Word(word) = part { Some(*word) } else { None });
+    let words = entry
+        .form
+        .head
+        .iter()
+        .map_while(|part| if let Part::Word(word) = part { Some(*word) } else { None });
     words.collect::<Vec<_>>().join(" ")
 }

@@ -25,7 +25,8 @@ pub(super) struct Minima {
 
 /// What of a minimum tells it from others: its groups. Empty where it is one of all values.
 pub(super) fn groups_of(field: &Field) -> Option<String> {
-    from_pest::minimum(&field.value, &mut Problems::default()).map(|minimum| minimum.scope.node.meaning())
+    from_pest::minimum(&field.value, &mut Problems::default())
+        .map(|minimum| minimum.scope.node.meaning())
 }
 
 impl Checker<'_> {
@@ -39,7 +40,11 @@ impl Checker<'_> {
             };
             let groups = written.scope.node.meaning();
             if let Some((_, first)) = seen.iter().find(|(known, _)| *known == groups) {
-                let problem = Problem::error("duplicate-field", "there are two `minimum pairs` for the same values").at(&field.value.span);
+                let problem = Problem::error(
+                    "duplicate-field",
+                    "there are two `minimum pairs` for the same values",
+                )
+                .at(&field.value.span);
                 self.problems.push(problem.also(first, "the first"));
                 continue;
             }
@@ -54,12 +59,19 @@ impl Checker<'_> {
     }
 
     /// The minimum counts of groups of a quantity.
-    pub(super) fn minimum_of_groups(&mut self, fields: &[Field], block: &Block, places: &[String]) -> Option<Vec<MinimumOfGroups>> {
+    pub(super) fn minimum_of_groups(
+        &mut self,
+        fields: &[Field],
+        block: &Block,
+        places: &[String],
+    ) -> Option<Vec<MinimumOfGroups>> {
         self.grouped = Grouped::values(block, places);
         let mut all = Vec::new();
         let mut ok = true;
         for field in fields {
-            let Some(written) = from_pest::minimum(&field.value, &mut Problems::default()) else { continue };
+            let Some(written) = from_pest::minimum(&field.value, &mut Problems::default()) else {
+                continue;
+            };
             let before = self.problems.0.len();
             let needed = self.pairs(&written.count, field);
             let scope = self.scope_of(&written.scope, &field.value);
@@ -74,10 +86,14 @@ impl Checker<'_> {
         ok.then_some(all)
     }
 
-    /// Drops a problem that another quantity has already met in the same field, that of the verdict.
+    /// Drops a problem that another quantity has already met in the same field, that of the
+    /// verdict.
     fn once(&mut self, before: usize) {
         let (known, new) = self.problems.0.split_at(before);
-        if new.iter().all(|new| known.iter().any(|known| known.at == new.at && known.code == new.code)) {
+        if new
+            .iter()
+            .all(|new| known.iter().any(|known| known.at == new.at && known.code == new.code))
+        {
             self.problems.0.truncate(before);
         }
     }

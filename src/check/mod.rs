@@ -1,5 +1,5 @@
-//! Checks a document and turns it into a [`plan::Plan`]: resolves names, checks dimensions, inserts parameters, finds
-//! contradictions.
+//! Checks a document and turns it into a [`plan::Plan`]: resolves names, checks dimensions, inserts
+//! parameters, finds contradictions.
 //!
 //! Checking goes on after an error, so that an author sees all of them in one run.
 
@@ -69,10 +69,11 @@ pub struct Override {
 
 pub type Overrides = IndexMap<String, Override>;
 
-/// Largest depth of nested expressions, definitions and signals together. The stack is large enough for it.
+/// Largest depth of nested expressions, definitions and signals together. The stack is large enough
+/// for it.
 const DEEPEST: usize = 80;
-/// Largest number of parts of expressions that are checked. Definitions that use each other twice double at every level and would
-/// exceed it.
+/// Largest number of parts of expressions that are checked. Definitions that use each other twice
+/// double at every level and would exceed it.
 const MOST_WORK: usize = 200_000;
 
 struct Checker<'a> {
@@ -95,7 +96,8 @@ struct Checker<'a> {
     /// Conditions that hold wherever the present expression is evaluated.
     assumed: Vec<Expr>,
     in_quantity: bool,
-    /// Whether what was looked at since this was last put to false has a number that is to be confirmed.
+    /// Whether what was looked at since this was last put to false has a number that is to be
+    /// confirmed.
     unconfirmed: bool,
     /// Whether records have a time.
     has_time: bool,
@@ -117,7 +119,11 @@ struct Checker<'a> {
 }
 
 /// The plan of a protocol with its parameters set; `None` after a problem of severity error.
-pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Problems) -> Option<Plan> {
+pub fn check(
+    family: &family::Family,
+    overrides: &Overrides,
+    problems: &mut Problems,
+) -> Option<Plan> {
     if !family.whole {
         return None;
     }
@@ -125,7 +131,12 @@ pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Prob
     let parent_names = family
         .parent
         .iter()
-        .flat_map(|parent| parent.blocks.iter().map(|block| (block.kind.text.clone(), block.name_text().to_string())))
+        .flat_map(|parent| {
+            parent
+                .blocks
+                .iter()
+                .map(|block| (block.kind.text.clone(), block.name_text().to_string()))
+        })
         .collect();
     let mut checker = Checker {
         blocks: document.blocks.clone(),
@@ -133,7 +144,12 @@ pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Prob
         overrides,
         names: Names::default(),
         axis: None,
-        zone_names: document.blocks.iter().filter(|block| block.kind.text == "zone").map(|block| block.name_text().to_string()).collect(),
+        zone_names: document
+            .blocks
+            .iter()
+            .filter(|block| block.kind.text == "zone")
+            .map(|block| block.name_text().to_string())
+            .collect(),
         zone: None,
         parent_names,
         filter_steps: IndexMap::new(),
@@ -178,9 +194,13 @@ pub fn check(family: &family::Family, overrides: &Overrides, problems: &mut Prob
     if problems.any_error() { None } else { plan }
 }
 
-/// Better help where the unknown unit after a number is a name, which the parser does not know: `3 std`.
+/// Better help where the unknown unit after a number is a name, which the parser does not know: `3
+/// std`.
 fn name_after_number(problem: &mut Problem, names: &Names) {
-    let Some(word) = problem.at.as_ref().filter(|_| problem.code == "unknown-unit").map(Span::text) else { return };
+    let Some(word) = problem.at.as_ref().filter(|_| problem.code == "unknown-unit").map(Span::text)
+    else {
+        return;
+    };
     let is_name = Reducer::named(word).is_some()
         || Statistic::named(word).is_some()
         || names.parameter_blocks.contains_key(word)
@@ -195,11 +215,17 @@ fn name_after_number(problem: &mut Problem, names: &Names) {
 /// Problems of a value; others do not depend on what a parameter is set to.
 const OF_VALUES: [&str; 2] = ["not-a-count", "out-of-range"];
 
-/// Where the text of a wrong value names a parameter set from outside the protocol, the place where it was set.
+/// Where the text of a wrong value names a parameter set from outside the protocol, the place where
+/// it was set.
 fn set_outside(problem: &mut Problem, overrides: &Overrides) {
-    let Some(at) = problem.at.as_ref().filter(|_| OF_VALUES.contains(&problem.code)) else { return };
-    let named: BTreeSet<&str> = at.text().split(|c: char| !c.is_alphanumeric() && c != '_').collect();
-    let given = overrides.iter().filter(|(name, given)| named.contains(name.as_str()) && given.text.span != *at);
+    let Some(at) = problem.at.as_ref().filter(|_| OF_VALUES.contains(&problem.code)) else {
+        return;
+    };
+    let named: BTreeSet<&str> =
+        at.text().split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+    let given = overrides
+        .iter()
+        .filter(|(name, given)| named.contains(name.as_str()) && given.text.span != *at);
     problem.also.extend(given.map(|(_, given)| (given.text.span.clone(), "set here".to_owned())));
 }
 
@@ -211,7 +237,12 @@ fn in_reading_order(problems: &mut Problems, from: usize) {
             sources.push(at.source.name.clone());
         }
     }
-    let place = |problem: &Problem| problem.at.as_ref().map(|at| (sources.iter().position(|name| *name == at.source.name), at.start));
+    let place = |problem: &Problem| {
+        problem
+            .at
+            .as_ref()
+            .map(|at| (sources.iter().position(|name| *name == at.source.name), at.start))
+    };
     problems.0[from..].sort_by_key(place);
 }
 
@@ -219,7 +250,9 @@ fn written_rules(block: &Block) -> usize {
     match block.kind.text.as_str() {
         "zone" | "check" | "filter" | "domain" => 1,
         "plausibility" => block.fields_named("of").count().max(1),
-        "quantity" => 1 + block.fields_named("limit").count() + block.fields_named("report").count(),
+        "quantity" => {
+            1 + block.fields_named("limit").count() + block.fields_named("report").count()
+        }
         "sections" => block.fields_named("report").count(),
         "verdict" => usize::from(block.name.is_some()),
         _ => 0,
@@ -234,7 +267,8 @@ fn rule_count(plan: &Plan) -> usize {
         written.len()
     }
     let of_quantity = |quantity: &plan::Quantity| {
-        1 + written(quantity.limits.iter().map(|limit| &limit.span)) + written(quantity.reports.iter().map(|report| &report.span))
+        1 + written(quantity.limits.iter().map(|limit| &limit.span))
+            + written(quantity.reports.iter().map(|report| &report.span))
     };
     plan.zones.len()
         + plan.checks.len()
@@ -255,14 +289,19 @@ impl Checker<'_> {
         self.work += 1;
         if self.work > MOST_WORK {
             self.problems.push(
-                Problem::error("too-large", "definitions and signals use each other too often: the rules become too large")
-                    .at(at)
-                    .help("use each part once or twice, not twice at every level"),
+                Problem::error(
+                    "too-large",
+                    "definitions and signals use each other too often: the rules become too large",
+                )
+                .at(at)
+                .help("use each part once or twice, not twice at every level"),
             );
             return None;
         }
         if self.depth >= DEEPEST {
-            self.problems.push(Problem::error("too-deep", "definitions and signals are nested too deeply").at(at));
+            self.problems.push(
+                Problem::error("too-deep", "definitions and signals are nested too deeply").at(at),
+            );
             return None;
         }
         self.depth += 1;
@@ -272,14 +311,23 @@ impl Checker<'_> {
     }
 
     /// Checks a named part; `None` after a problem if it is already being checked.
-    fn inside<T>(&mut self, kind: &str, name: &str, at: &Span, look: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+    fn inside<T>(
+        &mut self,
+        kind: &str,
+        name: &str,
+        at: &Span,
+        look: impl FnOnce(&mut Self) -> Option<T>,
+    ) -> Option<T> {
         let key = format!("{kind} {name}");
         if self.looped.contains(&key) {
             return None;
         }
         if let Some(from) = self.open.iter().position(|open| *open == key) {
-            let round: Vec<String> =
-                self.open[from..].iter().chain([&key]).map(|part| format!("`{}`", part.split(' ').next_back().unwrap_or(part))).collect();
+            let round: Vec<String> = self.open[from..]
+                .iter()
+                .chain([&key])
+                .map(|part| format!("`{}`", part.split(' ').next_back().unwrap_or(part)))
+                .collect();
             let code = match kind {
                 "parameter" => "parameter-loop",
                 "signal" => "signal-loop",
@@ -293,7 +341,11 @@ impl Checker<'_> {
                 format!("{kind} `{name}` is defined by itself")
             };
             let mut problem = Problem::error(code, says).at(at);
-            if let Some(block) = self.blocks.iter().find(|block| block.kind.text == kind && block.name_text() == name) {
+            if let Some(block) = self
+                .blocks
+                .iter()
+                .find(|block| block.kind.text == kind && block.name_text() == name)
+            {
                 problem = problem.also(block.span(), "begins here");
             }
             self.problems.push(problem);
@@ -343,12 +395,20 @@ impl Checker<'_> {
         sections.find = self.find(of("sections").next(), &sections, zones.len());
         sections.reports = self.reports_of_sections(of("sections").next());
         let checks = of("check").filter_map(|block| self.section_check(block)).collect();
-        let plausibility = of("plausibility").filter_map(|block| self.plausibility(block)).flatten().collect();
+        let plausibility =
+            of("plausibility").filter_map(|block| self.plausibility(block)).flatten().collect();
         let filters = of("filter").filter_map(|block| self.named_filter(block)).collect();
         let domains = of("domain").filter_map(|block| self.domain(block)).collect();
-        let quantities: Vec<plan::Quantity> = of("quantity").filter_map(|block| self.quantity(block)).collect();
+        let quantities: Vec<plan::Quantity> =
+            of("quantity").filter_map(|block| self.quantity(block)).collect();
         if of("quantity").next().is_none() {
-            self.problems.push(Problem::error("no-quantity", "the protocol has no quantity, so nothing would be compared").at(head.span()));
+            self.problems.push(
+                Problem::error(
+                    "no-quantity",
+                    "the protocol has no quantity, so nothing would be compared",
+                )
+                .at(head.span()),
+            );
         }
         self.unused_parts();
         let verdicts = self.verdicts(verdict_block, head, &quantities);
@@ -365,17 +425,31 @@ impl Checker<'_> {
                 default: found.default_words.clone(),
                 set_by: found.set_by,
                 unconfirmed: found.unconfirmed.clone(),
-                choices: if let plan::Type::Word(choices) = &found.ty { choices.clone() } else { Vec::new() },
+                choices: if let plan::Type::Word(choices) = &found.ty {
+                    choices.clone()
+                } else {
+                    Vec::new()
+                },
             })
             .collect();
-        let why = |block: &Block| Some((block.name_text().to_string(), block.field("unconfirmed")?.value.text.clone()));
+        let why = |block: &Block| {
+            Some((block.name_text().to_string(), block.field("unconfirmed")?.value.text.clone()))
+        };
         let of_zones = of("zone").filter_map(why).map(|(name, why)| (format!("zone {name}"), why));
         let others = of("quantity").filter_map(why).chain(of_zones);
-        let unconfirmed = names.unconfirmed.iter().map(|(name, why)| (name.clone(), why.clone())).chain(others).collect();
+        let unconfirmed = names
+            .unconfirmed
+            .iter()
+            .map(|(name, why)| (name.clone(), why.clone()))
+            .chain(others)
+            .collect();
         let text = |key: &str| head.field(key).map(|field| field.value.text.clone());
         Some(Plan {
             name: head.name_text().to_string(),
-            title: head.title.as_ref().map_or_else(|| head.name_text().to_string(), |title| title.text.clone()),
+            title: head
+                .title
+                .as_ref()
+                .map_or_else(|| head.name_text().to_string(), |title| title.text.clone()),
             edition: text("edition"),
             source: text("source"),
             scope: text("scope"),
@@ -411,11 +485,17 @@ impl Checker<'_> {
         for (name, given) in self.overrides {
             if !self.names.parameter_blocks.contains_key(name) {
                 let known: Vec<String> = self.names.parameter_blocks.keys().cloned().collect();
-                let problem = Problem::error("unknown-parameter", format!("protocol `{}` has no parameter `{name}`", head.name_text()))
-                    .at(&given.text.span);
+                let problem = Problem::error(
+                    "unknown-parameter",
+                    format!("protocol `{}` has no parameter `{name}`", head.name_text()),
+                )
+                .at(&given.text.span);
                 let datum = self.names.vehicle.iter().find(|datum| datum.name == *name);
                 self.problems.push(match datum {
-                    Some(datum) => problem.help(format!("this is a vehicle datum: write `{}` in the vehicle file", datum.key)),
+                    Some(datum) => problem.help(format!(
+                        "this is a vehicle datum: write `{}` in the vehicle file",
+                        datum.key
+                    )),
                     None => problem.suggest(name, known.iter().map(String::as_str)),
                 });
             }

@@ -1,4 +1,5 @@
-//! The names of a protocol and their meanings, gathered first, so that rules can refer to blocks further down.
+//! The names of a protocol and their meanings, gathered first, so that rules can refer to blocks
+//! further down.
 
 use std::collections::BTreeSet;
 
@@ -100,24 +101,28 @@ impl Checker<'_> {
                     Some(place) => drop(self.names.places.insert(name, place)),
                     None => drop(self.names.failed.insert(name)),
                 },
-                "define" => match self.required(block, "is").and_then(|field| self.written(field)) {
-                    Some(is) => {
-                        if let Some(why) = block.field("unconfirmed") {
-                            self.names.unconfirmed.insert(name.clone(), why.value.text.clone());
+                "define" => {
+                    match self.required(block, "is").and_then(|field| self.written(field)) {
+                        Some(is) => {
+                            if let Some(why) = block.field("unconfirmed") {
+                                self.names.unconfirmed.insert(name.clone(), why.value.text.clone());
+                            }
+                            self.names.defines.insert(name, is);
                         }
-                        self.names.defines.insert(name, is);
+                        None => drop(self.names.failed.insert(name)),
                     }
-                    None => drop(self.names.failed.insert(name)),
-                },
-                "estimate" => match self.required(block, "is").and_then(|field| self.written(field)) {
-                    Some(is) => {
-                        if let Some(why) = block.field("unconfirmed") {
-                            self.names.unconfirmed.insert(name.clone(), why.value.text.clone());
+                }
+                "estimate" => {
+                    match self.required(block, "is").and_then(|field| self.written(field)) {
+                        Some(is) => {
+                            if let Some(why) = block.field("unconfirmed") {
+                                self.names.unconfirmed.insert(name.clone(), why.value.text.clone());
+                            }
+                            self.names.estimates.insert(name, is);
                         }
-                        self.names.estimates.insert(name, is);
+                        None => drop(self.names.failed.insert(name)),
                     }
-                    None => drop(self.names.failed.insert(name)),
-                },
+                }
                 "record" => match self.declared_record(&name, block) {
                     Some(record) => self.names.records.push(record),
                     None => drop(self.names.failed.insert(name)),
@@ -151,8 +156,18 @@ impl Checker<'_> {
 
     /// Reports a name that an expression could not use or would read as something else.
     fn usable_name(&mut self, block: &Block) {
-        const IN_EXPRESSIONS: [&str; 10] =
-            ["record", "parameter", "place", "vehicle", "section", "channel", "signal", "filter", "define", "estimate"];
+        const IN_EXPRESSIONS: [&str; 10] = [
+            "record",
+            "parameter",
+            "place",
+            "vehicle",
+            "section",
+            "channel",
+            "signal",
+            "filter",
+            "define",
+            "estimate",
+        ];
         const WORDS: [&str; 25] = [
             "and",
             "or",
@@ -184,8 +199,11 @@ impl Checker<'_> {
         if name.is_empty() || !IN_EXPRESSIONS.contains(&kind) {
             return;
         }
-        let percentile = name.strip_prefix('p').is_some_and(|rest| !rest.is_empty() && rest.chars().all(|c| c.is_ascii_digit()));
-        const OF_GROUPS: [&str; 8] = ["n", "value", "share", "total", "upper", "lower", "prediction", "regression"];
+        let percentile = name
+            .strip_prefix('p')
+            .is_some_and(|rest| !rest.is_empty() && rest.chars().all(|c| c.is_ascii_digit()));
+        const OF_GROUPS: [&str; 8] =
+            ["n", "value", "share", "total", "upper", "lower", "prediction", "regression"];
         let taken = if WORDS.contains(&name) || kind == "estimate" && OF_GROUPS.contains(&name) {
             Some("a word of the language")
         } else if percentile {
@@ -199,17 +217,29 @@ impl Checker<'_> {
         };
         if let Some(what) = taken {
             self.problems.push(
-                Problem::error("reserved-name", format!("`{name}` is {what}, so this {kind} needs another name"))
-                    .at(block.span())
-                    .help(format!("for instance `{name}_1`, or a longer name")),
+                Problem::error(
+                    "reserved-name",
+                    format!("`{name}` is {what}, so this {kind} needs another name"),
+                )
+                .at(block.span())
+                .help(format!("for instance `{name}_1`, or a longer name")),
             );
-        } else if let Some(sign) =
-            name.chars().find(|c| !c.is_ascii_alphanumeric() && *c != '_').or_else(|| name.chars().next().filter(char::is_ascii_digit))
+        } else if let Some(sign) = name
+            .chars()
+            .find(|c| !c.is_ascii_alphanumeric() && *c != '_')
+            .or_else(|| name.chars().next().filter(char::is_ascii_digit))
         {
-            let says = format!("a {kind} cannot be called `{name}`: in an expression, `{sign}` is not read as part of a name");
-            self.problems
-                .push(Problem::error("bad-name", says).at(block.span()).help("use letters, digits and `_`, and begin with a letter"));
-        } else if let Some(unit) = SYMBOLS.iter().find(|unit| unit.symbol == name && kind != "filter" && kind != "place") {
+            let says = format!(
+                "a {kind} cannot be called `{name}`: in an expression, `{sign}` is not read as part of a name"
+            );
+            self.problems.push(
+                Problem::error("bad-name", says)
+                    .at(block.span())
+                    .help("use letters, digits and `_`, and begin with a letter"),
+            );
+        } else if let Some(unit) =
+            SYMBOLS.iter().find(|unit| unit.symbol == name && kind != "filter" && kind != "place")
+        {
             self.problems.push(
                 Problem::warning("unit-name", format!("`{name}` is also a unit ({})", unit.name))
                     .at(block.span())
@@ -220,14 +250,25 @@ impl Checker<'_> {
 
     /// Reports names with two roles: an expression could not tell which is meant.
     fn clashes(&mut self, blocks: &[Block]) {
-        const ROLES: [&str; 8] = ["parameter", "channel", "signal", "filter", "define", "estimate", "section", "vehicle"];
+        const ROLES: [&str; 8] = [
+            "parameter",
+            "channel",
+            "signal",
+            "filter",
+            "define",
+            "estimate",
+            "section",
+            "vehicle",
+        ];
         let mut seen: IndexMap<&str, &Block> = IndexMap::new();
         for block in blocks.iter().filter(|block| ROLES.contains(&block.kind.text.as_str())) {
             let name = block.name_text();
             if let Some(first) = seen.get(name) {
                 let (a, b) = (first.kind.text.as_str(), block.kind.text.as_str());
                 // `vehicle.speed` and `section.speed` distinguish these.
-                if a != b && !(matches!(a, "vehicle" | "section") && matches!(b, "vehicle" | "section")) {
+                if a != b
+                    && !(matches!(a, "vehicle" | "section") && matches!(b, "vehicle" | "section"))
+                {
                     self.problems.push(
                         Problem::error("name-clash", format!("`{name}` is a {a} and a {b}"))
                             .at(block.span())
@@ -253,15 +294,22 @@ impl Checker<'_> {
 
     /// Reports all missing required fields in one problem.
     pub(super) fn all_required(&mut self, block: &Block, keys: &[&str]) {
-        let missing: Vec<String> = keys.iter().filter(|key| block.field(key).is_none()).map(|key| format!("`{key}`")).collect();
+        let missing: Vec<String> = keys
+            .iter()
+            .filter(|key| block.field(key).is_none())
+            .map(|key| format!("`{key}`"))
+            .collect();
         let Some(first) = missing.first() else { return };
         let kind = &block.kind.text;
         let list = match missing.split_last() {
-            Some((last, before)) if !before.is_empty() => format!("{} and no {last}", before.join(", no ")),
+            Some((last, before)) if !before.is_empty() => {
+                format!("{} and no {last}", before.join(", no "))
+            }
             _ => first.clone(),
         };
         // A variant that names a quantity its parent lacks has most likely misspelt it.
-        let siblings = self.parent_names.iter().filter(|(of, _)| of == kind).map(|(_, name)| name.as_str());
+        let siblings =
+            self.parent_names.iter().filter(|(of, _)| of == kind).map(|(_, name)| name.as_str());
         let help = match crate::problem::nearest(block.name_text(), siblings) {
             Some(near) => format!("the parent has `{near}`: to override it, use that name"),
             None if missing.len() == 1 => format!("add a line {first} ..."),
@@ -279,10 +327,16 @@ impl Checker<'_> {
         match Unit::parse(&text.text) {
             Ok(unit) => Some(unit),
             Err(unknown) => {
-                let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word)).at(&text.span);
+                let problem = Problem::error(
+                    "unknown-unit",
+                    format!("`{}` is not a known unit", unknown.word),
+                )
+                .at(&text.span);
                 self.problems.push(match unknown.near {
                     Some(near) => problem.help(format!("did you mean `{near}`?")),
-                    None => problem.help("units are written like kN, m/s^2, km/h, mrad, `-` for a plain number"),
+                    None => problem.help(
+                        "units are written like kN, m/s^2, km/h, mrad, `-` for a plain number",
+                    ),
                 });
                 None
             }

@@ -1,4 +1,5 @@
-//! Conditions of nearness: `a near b within c` as a comparison, and the two numbers that it compares.
+//! Conditions of nearness: `a near b within c` as a comparison, and the two numbers that it
+//! compares.
 
 use super::Checker;
 use super::functions::function;
@@ -19,30 +20,51 @@ pub(super) struct Near {
 }
 
 impl Checker<'_> {
-    /// `a near b within c` means `|a - b| <= c`. If `c` is a plain number and `a` is not, `c` is a share of `|b|`. `a near b within
-    /// a factor of c` means equal signs and a ratio of magnitudes from `1/c` to `c`.
+    /// `a near b within c` means `|a - b| <= c`. If `c` is a plain number and `a` is not, `c` is a
+    /// share of `|b|`. `a near b within a factor of c` means equal signs and a ratio of magnitudes
+    /// from `1/c` to `c`.
     pub(super) fn near(&mut self, phrase: &Phrase, text: &Text, scope: &mut Scope) -> Option<Near> {
         let Node::Near { value, target, tolerance, by_factor } = &phrase.node else { return None };
-        let (value, target, tolerance) = (self.expr(value, text, scope), self.expr(target, text, scope), self.expr(tolerance, text, scope));
+        let (value, target, tolerance) = (
+            self.expr(value, text, scope),
+            self.expr(target, text, scope),
+            self.expr(tolerance, text, scope),
+        );
         let (found, expected, tolerance) = (value?, target?, tolerance?);
         let span = origin(phrase, text);
         let make = |kind: Kind, ty: Type| Expr { kind, ty, span: span.clone() };
-        let pair = |operator, a: &Expr, b: &Expr, ty: Type| make(Kind::Binary(operator, Box::new(a.clone()), Box::new(b.clone())), ty);
-        let (a, b, c) = (self.number_type(&found)?, self.number_type(&expected)?, self.number_type(&tolerance)?);
+        let pair = |operator, a: &Expr, b: &Expr, ty: Type| {
+            make(Kind::Binary(operator, Box::new(a.clone()), Box::new(b.clone())), ty)
+        };
+        let (a, b, c) = (
+            self.number_type(&found)?,
+            self.number_type(&expected)?,
+            self.number_type(&tolerance)?,
+        );
         if a != b {
             self.problems.push(
-                Problem::error("unit-mismatch", format!("{} and {} cannot be compared", a.in_words(), b.in_words()))
-                    .at(&expected.span)
-                    .label(b.in_words())
-                    .also(&found.span, a.in_words()),
+                Problem::error(
+                    "unit-mismatch",
+                    format!("{} and {} cannot be compared", a.in_words(), b.in_words()),
+                )
+                .at(&expected.span)
+                .label(b.in_words())
+                .also(&found.span, a.in_words()),
             );
             return None;
         }
         if (*by_factor && c != Dimension::ONE) || (!by_factor && c != a && c != Dimension::ONE) {
-            let wanted = if *by_factor { Dimension::ONE.in_words() } else { format!("{}, or a share such as `10 %`", a.in_words()) };
+            let wanted = if *by_factor {
+                Dimension::ONE.in_words()
+            } else {
+                format!("{}, or a share such as `10 %`", a.in_words())
+            };
             self.problems.push(
-                Problem::error("unit-mismatch", format!("expected a tolerance that is {wanted}; this is {}", c.in_words()))
-                    .at(&tolerance.span),
+                Problem::error(
+                    "unit-mismatch",
+                    format!("expected a tolerance that is {wanted}; this is {}", c.in_words()),
+                )
+                .at(&tolerance.span),
             );
             return None;
         }
@@ -53,7 +75,10 @@ impl Checker<'_> {
             if let Kind::Constant(Scalar::Number(factor)) = tolerance.kind
                 && factor < 1.0
             {
-                self.problems.push(Problem::error("out-of-range", "the factor must be 1 or more").at(&tolerance.span));
+                self.problems.push(
+                    Problem::error("out-of-range", "the factor must be 1 or more")
+                        .at(&tolerance.span),
+                );
                 return None;
             }
             let times = |of: &Expr| pair(Operator::Multiply, &tolerance, &size(of), number.clone());
@@ -63,23 +88,41 @@ impl Checker<'_> {
             let not_above = pair(Operator::LessEqual, &size(&found), &times(&expected), Type::Flag);
             let not_below = pair(Operator::LessEqual, &size(&expected), &times(&found), Type::Flag);
             let sizes = pair(Operator::And, &not_above, &not_below, Type::Flag);
-            return Some(Near { holds: pair(Operator::And, &same_sign, &sizes, Type::Flag), found, expected });
+            return Some(Near {
+                holds: pair(Operator::And, &same_sign, &sizes, Type::Flag),
+                found,
+                expected,
+            });
         }
         let off = size(&pair(Operator::Subtract, &found, &expected, number.clone()));
-        let room = if c == a { tolerance } else { pair(Operator::Multiply, &tolerance, &size(&expected), number.clone()) };
+        let room = if c == a {
+            tolerance
+        } else {
+            pair(Operator::Multiply, &tolerance, &size(&expected), number.clone())
+        };
         Some(Near { holds: pair(Operator::LessEqual, &off, &room, Type::Flag), found, expected })
     }
 
-    /// A condition and the comparisons of which it consists: `a near b within c`, `a <= b`, or several of the latter joined by `and`.
-    /// Nothing where it has other parts.
-    pub(super) fn compared(&mut self, phrase: &Phrase, text: &Text, scope: &mut Scope) -> Option<(Expr, Vec<(Near, bool)>)> {
+    /// A condition and the comparisons of which it consists: `a near b within c`, `a <= b`, or
+    /// several of the latter joined by `and`. Nothing where it has other parts.
+    pub(super) fn compared(
+        &mut self,
+        phrase: &Phrase,
+        text: &Text,
+        scope: &mut Scope,
+    ) -> Option<(Expr, Vec<(Near, bool)>)> {
         if let Node::Near { .. } = &phrase.node {
-            return self.near(phrase, text, scope).map(|near| (near.holds.clone(), vec![(near, true)]));
+            return self
+                .near(phrase, text, scope)
+                .map(|near| (near.holds.clone(), vec![(near, true)]));
         }
         let holds = self.expr(phrase, text, scope)?;
         let mut found = Vec::new();
         let whole = bounds(&holds, &mut found);
-        Some((holds, if whole { found.into_iter().map(|near| (near, false)).collect() } else { Vec::new() }))
+        Some((
+            holds,
+            if whole { found.into_iter().map(|near| (near, false)).collect() } else { Vec::new() },
+        ))
     }
 }
 
@@ -87,11 +130,20 @@ impl Checker<'_> {
 fn bounds(condition: &Expr, found: &mut Vec<Near>) -> bool {
     match &condition.kind {
         Kind::Binary(Operator::And, left, right) => bounds(left, found) && bounds(right, found),
-        Kind::Binary(Operator::Less | Operator::LessEqual | Operator::Greater | Operator::GreaterEqual, left, right) => {
+        Kind::Binary(
+            Operator::Less | Operator::LessEqual | Operator::Greater | Operator::GreaterEqual,
+            left,
+            right,
+        ) => {
             // `0.02 m/s^2 <= rms`: the number of the protocol is the bound on either side.
             let is_bound = |side: &Expr| matches!(side.kind, Kind::Constant(_));
-            let (value, bound) = if is_bound(left) && !is_bound(right) { (right, left) } else { (left, right) };
-            found.push(Near { holds: condition.clone(), found: (**value).clone(), expected: (**bound).clone() });
+            let (value, bound) =
+                if is_bound(left) && !is_bound(right) { (right, left) } else { (left, right) };
+            found.push(Near {
+                holds: condition.clone(),
+                found: (**value).clone(),
+                expected: (**bound).clone(),
+            });
             true
         }
         _ => false,

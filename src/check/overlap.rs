@@ -10,19 +10,22 @@ pub(super) fn find(limits: &[Limit], zone: Option<&Expr>, block: &Block, problem
     let mut said = Vec::new();
     for (index, limit) in limits.iter().enumerate() {
         for other in &limits[..index] {
-            // The limits made by `for each zone` count as one. A pair that meets in several zones is reported once.
+            // The limits made by `for each zone` count as one. A pair that meets in several zones
+            // is reported once.
             let pair = (other.span.start, limit.span.start);
-            let alike =
-                other.estimate.name == limit.estimate.name && other.at_least == limit.at_least && other.scope.each == limit.scope.each;
+            let alike = other.estimate.name == limit.estimate.name
+                && other.at_least == limit.at_least
+                && other.scope.each == limit.scope.each;
             if other.span == limit.span || !alike || said.contains(&pair) {
                 continue;
             }
             let (a, b) = (scope_condition(&other.scope, zone), scope_condition(&limit.scope, zone));
-            let conditions: Vec<(&Expr, bool)> = [other.only_when.as_ref(), limit.only_when.as_ref(), a.as_ref(), b.as_ref()]
-                .into_iter()
-                .flatten()
-                .map(|condition| (condition, true))
-                .collect();
+            let conditions: Vec<(&Expr, bool)> =
+                [other.only_when.as_ref(), limit.only_when.as_ref(), a.as_ref(), b.as_ref()]
+                    .into_iter()
+                    .flatten()
+                    .map(|condition| (condition, true))
+                    .collect();
             if impossible(&conditions) {
                 continue;
             }
@@ -54,10 +57,16 @@ fn scope_condition(scope: &Scope, zone: Option<&Expr>) -> Option<Expr> {
         ty: Type::Flag,
     };
     let is = |zone: &Expr, name: &String| {
-        let word = Expr { kind: Kind::Constant(Scalar::Word(name.clone())), ty: zone.ty.clone(), span: zone.span.clone() };
+        let word = Expr {
+            kind: Kind::Constant(Scalar::Word(name.clone())),
+            ty: zone.ty.clone(),
+            span: zone.span.clone(),
+        };
         joined(Operator::Is, zone.clone(), word)
     };
-    let zones = zone.and_then(|zone| scope.zones.iter().map(|name| is(zone, name)).reduce(|a, b| joined(Operator::Or, a, b)));
+    let zones = zone.and_then(|zone| {
+        scope.zones.iter().map(|name| is(zone, name)).reduce(|a, b| joined(Operator::Or, a, b))
+    });
     let condition = scope.condition.as_ref().map(|(condition, _)| condition.clone());
     match (zones, condition) {
         (Some(zones), Some(condition)) => Some(joined(Operator::And, zones, condition)),

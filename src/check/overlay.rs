@@ -6,7 +6,8 @@ use crate::problem::Problems;
 use crate::syntax::document::{Block, Field};
 use crate::syntax::from_pest;
 
-/// Puts fields of the variant in place of fields of the parent with the same slot; other fields stay.
+/// Puts fields of the variant in place of fields of the parent with the same slot; other fields
+/// stay.
 pub fn overlay(parent: &mut Block, variant: &Block) {
     parent.name.clone_from(&variant.name);
     if variant.title.is_some() {
@@ -14,7 +15,8 @@ pub fn overlay(parent: &mut Block, variant: &Block) {
     }
     let says = |key: &str| variant.field(key).is_some();
     let replaced = |field: &Field| match field.key.text.as_str() {
-        // A metric replaces value and difference, a unit replaces a choice of words, and the other way round.
+        // A metric replaces value and difference, a unit replaces a choice of words, and the other
+        // way round.
         "value" => says("metric"),
         "difference" => says("metric") || says("from"),
         "metric" => says("value") || says("difference") || says("from"),
@@ -30,7 +32,9 @@ pub fn overlay(parent: &mut Block, variant: &Block) {
         "reported" => says("limit"),
         "limit" => says("reported"),
         // A number of one's own is not the one that was to be confirmed.
-        "unconfirmed" => says("default") || says("is") || parent.kind.text == "zone" && says("where"),
+        "unconfirmed" => {
+            says("default") || says("is") || parent.kind.text == "zone" && says("where")
+        }
         _ => false,
     };
     let mut new: IndexMap<String, Vec<Field>> = IndexMap::new();
@@ -41,7 +45,8 @@ pub fn overlay(parent: &mut Block, variant: &Block) {
     let mut fields = Vec::new();
     for field in parent.fields.drain(..) {
         let slot = slot(&field);
-        // The first field of a slot is replaced by all of the variant's, so that the order of the parent is kept.
+        // The first field of a slot is replaced by all of the variant's, so that the order of the
+        // parent is kept.
         fields.extend(new.shift_remove(&slot).unwrap_or_default());
         if !taken.contains(&slot) && !replaced(&field) {
             fields.push(field);
@@ -51,7 +56,8 @@ pub fn overlay(parent: &mut Block, variant: &Block) {
     parent.fields = fields;
 }
 
-/// What identifies a field when it is overridden: its key; for a limit also its statistic and its scope, for a minimum of which groups.
+/// What identifies a field when it is overridden: its key; for a limit also its statistic and its
+/// scope, for a minimum of which groups.
 pub fn slot(field: &Field) -> String {
     if field.key.text == "minimum pairs" {
         return format!("minimum pairs {}", super::minima::groups_of(field).unwrap_or_default());

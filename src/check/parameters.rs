@@ -1,4 +1,5 @@
-//! Parameters: values from defaults, campaign or command line; numbers that follow from constants only.
+//! Parameters: values from defaults, campaign or command line; numbers that follow from constants
+//! only.
 
 use super::evaluate::words;
 use super::names::{ParameterDef, normalised};
@@ -12,14 +13,20 @@ use crate::syntax::phrase::Phrase;
 use crate::units::Dimension;
 
 impl Checker<'_> {
-    /// The parameter of a name. It is checked when it is first used, as its default may use parameters further down.
-    pub(super) fn parameter(&mut self, name: &str, at: &crate::source::Span) -> Option<ParameterDef> {
+    /// The parameter of a name. It is checked when it is first used, as its default may use
+    /// parameters further down.
+    pub(super) fn parameter(
+        &mut self,
+        name: &str,
+        at: &crate::source::Span,
+    ) -> Option<ParameterDef> {
         let known = self.names.parameters.get(name).cloned();
         let found = match known {
             Some(found) => found,
             None => {
                 let block = self.names.parameter_blocks.get(name)?.clone();
-                let found = self.inside("parameter", name, at, |checker| checker.parameter_of(name, &block))?;
+                let found = self
+                    .inside("parameter", name, at, |checker| checker.parameter_of(name, &block))?;
                 self.names.parameters.insert(name.to_string(), found.clone());
                 found
             }
@@ -38,18 +45,32 @@ impl Checker<'_> {
             None => (default.value.clone(), SetBy::Default),
         };
         // Who sets a value answers for it: the protocol says nothing about that number.
-        let unconfirmed = (set_by == SetBy::Default).then(|| block.field("unconfirmed").map(|why| why.value.text.clone())).flatten();
+        let unconfirmed = (set_by == SetBy::Default)
+            .then(|| block.field("unconfirmed").map(|why| why.value.text.clone()))
+            .flatten();
         if let Some(place) = block.field("at") {
             let selects = self.selection(name, place, &default.value, &source)?;
             let (value, ty) = (Scalar::Word(selects.1.join(", ")), Type::Word(Vec::new()));
             let value_words = normalised(&source.text);
-            return Some(ParameterDef { title, value, ty, value_words, default_words, set_by, unconfirmed, selects: Some(selects) });
+            return Some(ParameterDef {
+                title,
+                value,
+                ty,
+                value_words,
+                default_words,
+                set_by,
+                unconfirmed,
+                selects: Some(selects),
+            });
         }
         let (value, ty) = match block.field("one of") {
             Some(choices) => {
                 if let Some(range) = block.field("range") {
-                    let problem = Problem::error("unknown-field", format!("`{name}` is a choice of words and cannot have a range"))
-                        .at(&range.key.span);
+                    let problem = Problem::error(
+                        "unknown-field",
+                        format!("`{name}` is a choice of words and cannot have a range"),
+                    )
+                    .at(&range.key.span);
                     self.problems.push(problem.also(&choices.key.span, "the choice"));
                 }
                 self.choice(name, choices, &default.value, &source)?
@@ -57,19 +78,40 @@ impl Checker<'_> {
             None => self.number(name, block, &default.value, given.is_some().then_some(&source))?,
         };
         let value_words = normalised(&source.text);
-        Some(ParameterDef { title, value, ty, value_words, default_words, set_by, unconfirmed, selects: None })
+        Some(ParameterDef {
+            title,
+            value,
+            ty,
+            value_words,
+            default_words,
+            set_by,
+            unconfirmed,
+            selects: None,
+        })
     }
 
-    fn choice(&mut self, name: &str, choices: &Field, default: &Text, source: &Text) -> Option<(Scalar, Type)> {
-        let choices: Vec<String> = from_pest::list(&choices.value, self.problems)?.into_iter().map(|choice| choice.node).collect();
+    fn choice(
+        &mut self,
+        name: &str,
+        choices: &Field,
+        default: &Text,
+        source: &Text,
+    ) -> Option<(Scalar, Type)> {
+        let choices: Vec<String> = from_pest::list(&choices.value, self.problems)?
+            .into_iter()
+            .map(|choice| choice.node)
+            .collect();
         let mut ok = true;
         for text in [default, source] {
             let word = text.text.trim();
             if !choices.iter().any(|choice| choice == word) {
                 self.problems.push(
-                    Problem::error("unknown-choice", format!("`{word}` is not one of the choices of `{name}`"))
-                        .at(&text.span)
-                        .suggest(word, choices.iter().map(String::as_str)),
+                    Problem::error(
+                        "unknown-choice",
+                        format!("`{word}` is not one of the choices of `{name}`"),
+                    )
+                    .at(&text.span)
+                    .suggest(word, choices.iter().map(String::as_str)),
                 );
                 ok = false;
             }
@@ -78,11 +120,18 @@ impl Checker<'_> {
     }
 
     /// Positions of a place: checks the default and the given value.
-    fn selection(&mut self, name: &str, place: &Field, default: &Text, source: &Text) -> Option<(String, Vec<String>)> {
+    fn selection(
+        &mut self,
+        name: &str,
+        place: &Field,
+        default: &Text,
+        source: &Text,
+    ) -> Option<(String, Vec<String>)> {
         let written = normalised(&place.value.text);
         let Some(place_name) = self.place_called(&written) else {
             let known: Vec<String> = self.names.places.keys().cloned().collect();
-            let problem = Problem::error("unknown-place", format!("`{written}` is not a place")).at(&place.value.span);
+            let problem = Problem::error("unknown-place", format!("`{written}` is not a place"))
+                .at(&place.value.span);
             self.problems.push(problem.suggest(&written, known.iter().map(String::as_str)));
             return None;
         };
@@ -91,9 +140,14 @@ impl Checker<'_> {
             let mut positions: Vec<String> = Vec::new();
             for word in from_pest::list(text, self.problems)? {
                 if !members.contains(&word.node) {
-                    let says = format!("`{}` is not a position of `{place_name}`; `{name}` selects such positions", word.node);
-                    let problem = Problem::error("unknown-place", says).at(&text.place(word.range.clone()));
-                    self.problems.push(problem.suggest(&word.node, members.iter().map(String::as_str)));
+                    let says = format!(
+                        "`{}` is not a position of `{place_name}`; `{name}` selects such positions",
+                        word.node
+                    );
+                    let problem =
+                        Problem::error("unknown-place", says).at(&text.place(word.range.clone()));
+                    self.problems
+                        .push(problem.suggest(&word.node, members.iter().map(String::as_str)));
                     return None;
                 }
                 if !positions.contains(&word.node) {
@@ -108,7 +162,13 @@ impl Checker<'_> {
         Some((place_name, chosen))
     }
 
-    fn number(&mut self, name: &str, block: &Block, default: &Text, given: Option<&Text>) -> Option<(Scalar, Type)> {
+    fn number(
+        &mut self,
+        name: &str,
+        block: &Block,
+        default: &Text,
+        given: Option<&Text>,
+    ) -> Option<(Scalar, Type)> {
         let found = self.constant(default);
         let set = given.map(|given| (given, self.constant(given)));
         let (default_value, dimension) = found?;
@@ -119,44 +179,74 @@ impl Checker<'_> {
         let Some((text, set)) = set else { return as_default };
         let (value, found) = set?;
         if found != dimension {
-            let says = format!("parameter `{name}` is {}, the given value is {}", dimension.in_words(), found.in_words());
-            let problem = Problem::error("unit-mismatch", says).at(&text.span).label(found.in_words()).also(&default.span, "its default");
+            let says = format!(
+                "parameter `{name}` is {}, the given value is {}",
+                dimension.in_words(),
+                found.in_words()
+            );
+            let problem = Problem::error("unit-mismatch", says)
+                .at(&text.span)
+                .label(found.in_words())
+                .also(&default.span, "its default");
             self.problems.push(match found {
-                Dimension::ONE => problem.help(format!("write its unit, as its default does: `{}`", default.text.trim())),
+                Dimension::ONE => problem.help(format!(
+                    "write its unit, as its default does: `{}`",
+                    default.text.trim()
+                )),
                 _ => problem,
             });
             return None;
         }
         match block.field("range") {
-            // The rules are checked on with the default: what would follow from a wrong value is not told.
+            // The rules are checked on with the default: what would follow from a wrong value is
+            // not told.
             Some(range) if !self.within_range(name, value, dimension, text, range) => as_default,
             _ => Some((Scalar::Number(value), Type::Number(dimension))),
         }
     }
 
     /// Whether a value is inside a range; a problem if it is not, or if the range itself is wrong.
-    pub(super) fn within_range(&mut self, name: &str, value: f64, dimension: Dimension, source: &Text, range: &Field) -> bool {
-        let Some(ends) = self.range_ends(name, dimension, range, Some(source)) else { return false };
+    pub(super) fn within_range(
+        &mut self,
+        name: &str,
+        value: f64,
+        dimension: Dimension,
+        source: &Text,
+        range: &Field,
+    ) -> bool {
+        let Some(ends) = self.range_ends(name, dimension, range, Some(source)) else {
+            return false;
+        };
         let inside = (ends[0]..=ends[1]).contains(&value);
         if !inside {
             self.problems.push(
-                Problem::error("out-of-range", format!("`{}` is outside the range of `{name}`", normalised(&source.text)))
-                    .at(&source.span)
-                    .also(&range.value.span, "the range")
-                    .help(format!("allowed: {}", normalised(&range.value.text))),
+                Problem::error(
+                    "out-of-range",
+                    format!("`{}` is outside the range of `{name}`", normalised(&source.text)),
+                )
+                .at(&source.span)
+                .also(&range.value.span, "the range")
+                .help(format!("allowed: {}", normalised(&range.value.text))),
             );
         }
         inside
     }
 
     /// Both ends of a range in SI. They must have the dimension of the value that the range is of.
-    pub(super) fn range_ends(&mut self, name: &str, dimension: Dimension, range: &Field, of_value: Option<&Text>) -> Option<[f64; 2]> {
+    pub(super) fn range_ends(
+        &mut self,
+        name: &str,
+        dimension: Dimension,
+        range: &Field,
+        of_value: Option<&Text>,
+    ) -> Option<[f64; 2]> {
         let (low, high) = from_pest::range(&range.value, self.problems)?;
         let mut ends = [0.0; 2];
         for (end, phrase) in ends.iter_mut().zip([low, high]) {
             let (found, of) = self.constant_phrase(&phrase, &range.value)?;
             if of != dimension {
-                let says = format!("`{name}` is {}, its range is {}", dimension.in_words(), of.in_words());
+                let says =
+                    format!("`{name}` is {}, its range is {}", dimension.in_words(), of.in_words());
                 let at = range.value.place(phrase.range.clone());
                 let problem = Problem::error("unit-mismatch", says).at(&at).label(of.in_words());
                 self.problems.push(match of_value {
@@ -176,7 +266,11 @@ impl Checker<'_> {
         self.constant_phrase(&phrase, text)
     }
 
-    pub(super) fn constant_phrase(&mut self, phrase: &Phrase, text: &Text) -> Option<(f64, Dimension)> {
+    pub(super) fn constant_phrase(
+        &mut self,
+        phrase: &Phrase,
+        text: &Text,
+    ) -> Option<(f64, Dimension)> {
         let expr = self.expr(phrase, text, &mut Scope::constant())?;
         let dimension = self.number_type(&expr)?;
         if let Kind::Constant(Scalar::Number(value)) = expr.kind {

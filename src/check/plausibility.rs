@@ -4,7 +4,8 @@ use super::Checker;
 use super::names::normalised;
 use super::near::Near;
 use super::plan::{
-    Comparison, Distinct, Exchanged, Expr, Input, InputSide, Looks, OnFault, Plausibility, Requirement, Signal, Step, Taken, Test,
+    Comparison, Distinct, Exchanged, Expr, Input, InputSide, Looks, OnFault, Plausibility,
+    Requirement, Signal, Step, Taken, Test,
 };
 use super::scope::Scope;
 use super::steps::after;
@@ -22,14 +23,18 @@ type Of = (Vec<(String, Signal)>, Option<Unit>);
 impl Checker<'_> {
     /// One rule for each field `of` of the block.
     pub(super) fn plausibility(&mut self, block: &Block) -> Option<Vec<Plausibility>> {
-        let (require, distinct, exchanged) = (block.field("require"), block.field("distinct"), block.field("exchanged"));
+        let (require, distinct, exchanged) =
+            (block.field("require"), block.field("distinct"), block.field("exchanged"));
         let tests: Vec<&Field> = [require, distinct, exchanged].into_iter().flatten().collect();
         if let [first, second, ..] = tests[..] {
             self.problems.push(
-                Problem::error("require-and-distinct", "a plausibility rule has one of `require`, `distinct` and `exchanged`")
-                    .at(&second.key.span)
-                    .also(&first.key.span, "the first of them")
-                    .help("write two rules"),
+                Problem::error(
+                    "require-and-distinct",
+                    "a plausibility rule has one of `require`, `distinct` and `exchanged`",
+                )
+                .at(&second.key.span)
+                .also(&first.key.span, "the first of them")
+                .help("write two rules"),
             );
             return None;
         }
@@ -38,7 +43,8 @@ impl Checker<'_> {
         } else {
             self.required(block, "of")?;
         }
-        let chain = block.field("filter").map_or(Some(Vec::new()), |field| self.chain(&field.value));
+        let chain =
+            block.field("filter").map_or(Some(Vec::new()), |field| self.chain(&field.value));
         let mut all: Vec<Of> = Vec::new();
         let mut whole = true;
         for field in block.fields_named("of") {
@@ -59,25 +65,37 @@ impl Checker<'_> {
         let mut rules = Vec::new();
         for (signals, unit) in all {
             let test = match (require, distinct, exchanged) {
-                (Some(field), ..) => Test::Require(Box::new(self.requirement(field, &signals, &chain, unit.as_ref())?)),
+                (Some(field), ..) => Test::Require(Box::new(self.requirement(
+                    field,
+                    &signals,
+                    &chain,
+                    unit.as_ref(),
+                )?)),
                 (None, Some(field), _) => Test::Distinct(self.distinct(field)?),
                 (None, None, Some(field)) => Test::Exchanged(self.exchanged(field)?),
                 (None, None, None) => return None,
             };
             let otherwise = otherwise?;
-            if let (Test::Require(requirement), Some(step)) = (&test, chain.iter().find(|step| !step.kind.keeps_samples()))
+            if let (Test::Require(requirement), Some(step)) =
+                (&test, chain.iter().find(|step| !step.kind.keeps_samples()))
                 && requirement.inputs.iter().any(|input| input.taken.needs_samples())
             {
                 self.problems.push(
-                    Problem::error("metric-of-window", "this metric compares samples and cannot follow a window or resampling")
-                        .at(&requirement.holds.span)
-                        .also(&step.span, "this step"),
+                    Problem::error(
+                        "metric-of-window",
+                        "this metric compares samples and cannot follow a window or resampling",
+                    )
+                    .at(&requirement.holds.span)
+                    .also(&step.span, "this step"),
                 );
                 return None;
             }
             rules.push(Plausibility {
                 name: block.name_text().to_string(),
-                title: block.title.as_ref().map_or_else(|| block.name_text().replace('_', " "), |title| title.text.clone()),
+                title: block.title.as_ref().map_or_else(
+                    || block.name_text().replace('_', " "),
+                    |title| title.text.clone(),
+                ),
                 signals,
                 chain: chain.clone(),
                 test,
@@ -93,15 +111,24 @@ impl Checker<'_> {
     fn signals_with_unit(&mut self, field: &Field, chain: &[Step]) -> Option<Of> {
         let signals = self.signals_of(&field.value)?;
         let name = from_pest::of_places(&field.value, self.problems)?.signal.node;
-        let unit = signals.first().map(|(_, signal, _)| self.own_unit(&name, after(chain, signal.dimension)));
+        let unit = signals
+            .first()
+            .map(|(_, signal, _)| self.own_unit(&name, after(chain, signal.dimension)));
         Some((signals.into_iter().map(|(name, signal, _)| (name, signal)).collect(), unit))
     }
 
-    fn requirement(&mut self, field: &Field, signals: &[(String, Signal)], chain: &[Step], own_unit: Option<&Unit>) -> Option<Requirement> {
+    fn requirement(
+        &mut self,
+        field: &Field,
+        signals: &[(String, Signal)],
+        chain: &[Step],
+        own_unit: Option<&Unit>,
+    ) -> Option<Requirement> {
         let phrase = from_pest::expression(&field.value, self.problems)?;
         let axis = self.axis_dimension();
         let own = signals.first().map(|(_, signal)| after(chain, signal.dimension));
-        let mut scope = Scope { factor: after(chain, Dimension::ONE), ..Scope::comparing(own, axis) };
+        let mut scope =
+            Scope { factor: after(chain, Dimension::ONE), ..Scope::comparing(own, axis) };
         let (holds, compared) = self.compared(&phrase, &field.value, &mut scope)?;
         self.flag_type(&holds)?;
         self.inputs_of_one_record(&scope.inputs)?;
@@ -112,17 +139,31 @@ impl Checker<'_> {
             comparisons.push(Comparison { holds, found, expected, unit, about });
         }
         let of = looks(&scope.inputs);
-        Some(Requirement { holds, inputs: scope.inputs, of, compared: comparisons, words: normalised(&field.value.text) })
+        Some(Requirement {
+            holds,
+            inputs: scope.inputs,
+            of,
+            compared: comparisons,
+            words: normalised(&field.value.text),
+        })
     }
 
     /// The unit in which a value is printed: that of the rule's own signal, of the axis, or SI.
-    fn unit_of(&self, found: &Expr, expected: &Expr, inputs: &[Input], dimension: Dimension, own: Option<&Unit>) -> Unit {
+    fn unit_of(
+        &self,
+        found: &Expr,
+        expected: &Expr,
+        inputs: &[Input],
+        dimension: Dimension,
+        own: Option<&Unit>,
+    ) -> Unit {
         let named = inputs.iter().find_map(|input| {
             let name = input.signal.as_ref()?.span.text();
             Some(self.own_unit(name.split_whitespace().next()?, dimension))
         });
         let axis = self.axis.as_ref().map(|axis| axis.unit.clone());
-        let datum = self.datum_unit(found, dimension).or_else(|| self.datum_unit(expected, dimension));
+        let datum =
+            self.datum_unit(found, dimension).or_else(|| self.datum_unit(expected, dimension));
         [own.cloned(), datum, axis, named]
             .into_iter()
             .flatten()
@@ -153,12 +194,20 @@ impl Checker<'_> {
     /// `from 0.5, by 0.3`.
     fn exchanged(&mut self, field: &Field) -> Option<Exchanged> {
         let text = normalised(&field.value.text);
-        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| *number > 0.0 && *number < 1.0);
+        let number = |text: &str| {
+            text.trim().parse::<f64>().ok().filter(|number| *number > 0.0 && *number < 1.0)
+        };
         let parts = text.strip_prefix("from ").and_then(|rest| rest.split_once(", by "));
-        let found = parts.and_then(|(least, more)| Some(Exchanged { least: number(least)?, more: number(more)? }));
+        let found = parts.and_then(|(least, more)| {
+            Some(Exchanged { least: number(least)?, more: number(more)? })
+        });
         if found.is_none() {
             let says = "`exchanged` must be two numbers between 0 and 1: a correlation, and a difference of two";
-            self.problems.push(Problem::error("exchanged-numbers", says).at(&field.value.span).help("write `exchanged  from 0.5, by 0.3`"));
+            self.problems.push(
+                Problem::error("exchanged-numbers", says)
+                    .at(&field.value.span)
+                    .help("write `exchanged  from 0.5, by 0.3`"),
+            );
         }
         found
     }
@@ -173,7 +222,8 @@ impl Checker<'_> {
 
 fn looks(inputs: &[Input]) -> Looks {
     let track = |input: &Input| input.signal.as_ref().is_some_and(|signal| signal.track);
-    let own = |input: &Input| input.side == InputSide::Own && matches!(input.taken, Taken::Reduced(_));
+    let own =
+        |input: &Input| input.side == InputSide::Own && matches!(input.taken, Taken::Reduced(_));
     match inputs {
         [] => Looks::Data,
         inputs if inputs.iter().any(track) => Looks::Track,

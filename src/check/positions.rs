@@ -1,4 +1,5 @@
-//! Positions of signals: `Y at side R` in expressions, `Y at wheelsets 1, 3 and side outer` in quantities.
+//! Positions of signals: `Y at side R` in expressions, `Y at wheelsets 1, 3 and side outer` in
+//! quantities.
 
 use indexmap::IndexMap;
 
@@ -11,7 +12,8 @@ use crate::source::Span;
 use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase, Pick};
 
-/// Largest number of positions of one quantity. Each is a column of every record and a signal in memory.
+/// Largest number of positions of one quantity. Each is a column of every record and a signal in
+/// memory.
 const MOST_POSITIONS: usize = 2000;
 
 impl Place {
@@ -22,13 +24,23 @@ impl Place {
 
 impl Checker<'_> {
     /// A signal at a position such as `Y at side R`, or at an alias that depends on the section.
-    pub(super) fn placed(&mut self, name: &At<String>, words: &[At<String>], text: &Text, span: &Span, at: &Assignment) -> Option<Signal> {
+    pub(super) fn placed(
+        &mut self,
+        name: &At<String>,
+        words: &[At<String>],
+        text: &Text,
+        span: &Span,
+        at: &Assignment,
+    ) -> Option<Signal> {
         let bare = At { node: Node::Path(name.node.clone()), range: name.range.clone() };
-        // Words alternate: place, member, place, member, ... A place name of several words is joined by `_`.
+        // Words alternate: place, member, place, member, ... A place name of several words is
+        // joined by `_`.
         let mut assignment = at.clone();
         let mut from = 0;
         while from < words.len() {
-            let named = (from + 1..words.len()).find_map(|end| self.place_called(&joined(&words[from..end])).map(|place| (place, end)));
+            let named = (from + 1..words.len()).find_map(|end| {
+                self.place_called(&joined(&words[from..end])).map(|place| (place, end))
+            });
             let Some((place, member_at)) = named else {
                 if let Some(place) = self.place_called(&joined(&words[from..])) {
                     self.problems.push(
@@ -55,10 +67,20 @@ impl Checker<'_> {
     }
 
     /// A signal at positions that may be aliases. The position then depends on the section.
-    pub(super) fn signal_where(&mut self, phrase: &Phrase, text: &Text, at: &Assignment, span: &Span) -> Option<Signal> {
+    pub(super) fn signal_where(
+        &mut self,
+        phrase: &Phrase,
+        text: &Text,
+        at: &Assignment,
+        span: &Span,
+    ) -> Option<Signal> {
         let mut cases: Vec<(Option<Expr>, Assignment)> = vec![(None, at.clone())];
         for (place, member) in at {
-            let Some((alias, alias_text)) = self.names.places.get(place).and_then(|known| known.alias(member)).cloned() else { continue };
+            let Some((alias, alias_text)) =
+                self.names.places.get(place).and_then(|known| known.alias(member)).cloned()
+            else {
+                continue;
+            };
             let mut split = Vec::new();
             let mut conditions = Vec::new();
             for (target, condition) in &alias.cases {
@@ -85,13 +107,14 @@ impl Checker<'_> {
         self.select(arms, None, span)
     }
 
-    /// In a quantity, sections in which an alias has no position cannot be used. This is a warning unless a condition excludes
-    /// them.
+    /// In a quantity, sections in which an alias has no position cannot be used. This is a warning
+    /// unless a condition excludes them.
     fn alias_covers(&mut self, alias: &str, place: &str, conditions: &[Expr], span: &Span) {
         if !self.in_quantity {
             return;
         }
-        let mut all: Vec<(&Expr, bool)> = self.assumed.iter().map(|condition| (condition, true)).collect();
+        let mut all: Vec<(&Expr, bool)> =
+            self.assumed.iter().map(|condition| (condition, true)).collect();
         all.extend(conditions.iter().map(|condition| (condition, false)));
         if !super::conditions::impossible(&all) {
             self.problems.push(
@@ -107,10 +130,13 @@ impl Checker<'_> {
 
     pub(super) fn unknown_place(&mut self, words: &[At<String>], text: &Text) {
         let name = joined(words);
-        if self.names.failed.contains(&name) || self.names.failed.contains(name.strip_suffix('s').unwrap_or(&name)) {
+        if self.names.failed.contains(&name)
+            || self.names.failed.contains(name.strip_suffix('s').unwrap_or(&name))
+        {
             return;
         }
-        let names: Vec<String> = self.names.places.keys().map(|place| place.replace('_', " ")).collect();
+        let names: Vec<String> =
+            self.names.places.keys().map(|place| place.replace('_', " ")).collect();
         let shown = name.replace('_', " ");
         self.problems.push(
             Problem::error("unknown-place", format!("`{shown}` is not a place"))
@@ -130,26 +156,36 @@ impl Checker<'_> {
         let Some(known) = self.names.places.get(place) else { return };
         let aliases = known.aliases.iter().map(|(alias, _)| alias.name.node.as_str());
         let all: Vec<&str> = known.members.iter().map(String::as_str).chain(aliases).collect();
-        let problem = Problem::error("unknown-place", format!("`{}` is not a position of `{}`", member.node, place.replace('_', " ")))
-            .at(&text.place(member.range.clone()));
+        let problem = Problem::error(
+            "unknown-place",
+            format!("`{}` is not a position of `{}`", member.node, place.replace('_', " ")),
+        )
+        .at(&text.place(member.range.clone()));
         self.problems.push(problem.suggest(&member.node, all));
     }
 
     fn members_help(&self, place: &str) -> String {
-        let members = self.names.places.get(place).map_or(String::new(), |place| place.members.join(", "));
+        let members =
+            self.names.places.get(place).map_or(String::new(), |place| place.members.join(", "));
         format!("one of {members}")
     }
 
     /// All positions of a selection, in the order of the signal's places.
-    pub(super) fn positions(&mut self, signal: &At<String>, picks: &[Pick], text: &Text) -> Option<Vec<Assignment>> {
-        let places = match (self.names.channels.get(&signal.node), self.names.signals.get(&signal.node)) {
-            (Some(channel), _) => channel.places.clone(),
-            (_, Some(signal)) => signal.places.clone(),
-            _ => {
-                self.unknown_signal(&signal.node, &text.place(signal.range.clone()));
-                return None;
-            }
-        };
+    pub(super) fn positions(
+        &mut self,
+        signal: &At<String>,
+        picks: &[Pick],
+        text: &Text,
+    ) -> Option<Vec<Assignment>> {
+        let places =
+            match (self.names.channels.get(&signal.node), self.names.signals.get(&signal.node)) {
+                (Some(channel), _) => channel.places.clone(),
+                (_, Some(signal)) => signal.places.clone(),
+                _ => {
+                    self.unknown_signal(&signal.node, &text.place(signal.range.clone()));
+                    return None;
+                }
+            };
         let mut chosen: IndexMap<String, Vec<String>> = IndexMap::new();
         let mut ok = true;
         for pick in picks {
@@ -165,8 +201,10 @@ impl Checker<'_> {
                 None => self.names.places.get(place)?.members.clone(),
             };
             if all.len().saturating_mul(members.len()) > MOST_POSITIONS {
-                let says = format!("`{}` has more than {MOST_POSITIONS} positions here", signal.node);
-                let problem = Problem::error("too-large", says).at(&text.place(signal.range.clone()));
+                let says =
+                    format!("`{}` has more than {MOST_POSITIONS} positions here", signal.node);
+                let problem =
+                    Problem::error("too-large", says).at(&text.place(signal.range.clone()));
                 self.problems.push(problem.help("choose positions: `at wheelset 1 and side R`"));
                 return None;
             }
@@ -175,7 +213,10 @@ impl Checker<'_> {
                 next.insert(place.clone(), member.clone());
                 next
             };
-            all = all.iter().flat_map(|before| members.iter().map(move |member| with(before, member))).collect();
+            all = all
+                .iter()
+                .flat_map(|before| members.iter().map(move |member| with(before, member)))
+                .collect();
         }
         Some(all)
     }
@@ -194,18 +235,29 @@ impl Checker<'_> {
         text: &Text,
         chosen: &mut IndexMap<String, Vec<String>>,
     ) -> Option<()> {
-        let words: Vec<At<String>> =
-            pick.words.iter().filter(|word| !matches!(word.node.as_str(), "each" | "every" | "all")).cloned().collect();
-        let named = (1..=words.len()).rev().find_map(|end| self.place_called(&joined(&words[..end])).map(|place| (place, end)));
+        let words: Vec<At<String>> = pick
+            .words
+            .iter()
+            .filter(|word| !matches!(word.node.as_str(), "each" | "every" | "all"))
+            .cloned()
+            .collect();
+        let named = (1..=words.len())
+            .rev()
+            .find_map(|end| self.place_called(&joined(&words[..end])).map(|place| (place, end)));
         let Some((place, end)) = named else {
             // The last word is a member, unless it is the only word.
-            let of_place = if words.is_empty() { &pick.words[..] } else { &words[..(words.len().max(2) - 1).min(words.len())] };
+            let of_place = if words.is_empty() {
+                &pick.words[..]
+            } else {
+                &words[..(words.len().max(2) - 1).min(words.len())]
+            };
             self.unknown_place(of_place, text);
             return None;
         };
         if !places.contains(&place) {
             let says = format!("`{}` has no place `{}`", signal.node, place.replace('_', " "));
-            let problem = Problem::error("unknown-place", says).at(&self.span_of(&words[..end], text));
+            let problem =
+                Problem::error("unknown-place", says).at(&self.span_of(&words[..end], text));
             let help = if places.is_empty() {
                 "it has no places".to_string()
             } else {
@@ -223,7 +275,9 @@ impl Checker<'_> {
         }
         let mut ok = true;
         for member in members {
-            if let Some(selected) = self.selected(&member.node, &place, &text.place(member.range.clone())) {
+            if let Some(selected) =
+                self.selected(&member.node, &place, &text.place(member.range.clone()))
+            {
                 selected.into_iter().for_each(|member| {
                     if !found.contains(&member) {
                         found.push(member)
@@ -248,7 +302,11 @@ fn both(before: Option<&Expr>, condition: &Expr) -> Expr {
     match before {
         None => condition.clone(),
         Some(before) => Expr {
-            kind: Kind::Binary(Operator::And, Box::new(before.clone()), Box::new(condition.clone())),
+            kind: Kind::Binary(
+                Operator::And,
+                Box::new(before.clone()),
+                Box::new(condition.clone()),
+            ),
             ty: Type::Flag,
             span: condition.span.clone(),
         },

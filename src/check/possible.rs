@@ -1,8 +1,9 @@
-//! Possible values of an expression while some of its names have no value. A result is decided if it is the same for every value of
-//! them.
+//! Possible values of an expression while some of its names have no value. A result is decided if
+//! it is the same for every value of them.
 //!
-//! Numbers are bounded by intervals (interval arithmetic); conditions have three truth values (Kleene logic). The bounds are never
-//! too narrow. They may be too wide where an unknown name occurs twice.
+//! Numbers are bounded by intervals (interval arithmetic); conditions have three truth values
+//! (Kleene logic). The bounds are never too narrow. They may be too wide where an unknown name
+//! occurs twice.
 
 use super::plan::{Expr, Kind, Operator, Scalar, Type};
 use super::values::{Values, leaf};
@@ -46,7 +47,9 @@ impl Possible {
     pub fn one(&self) -> Option<Scalar> {
         match self {
             Self::Number(low, high) if low == high && low.is_finite() => Some(Scalar::Number(*low)),
-            Self::Flag { can_hold, can_fail } if can_hold != can_fail => Some(Scalar::Flag(*can_hold)),
+            Self::Flag { can_hold, can_fail } if can_hold != can_fail => {
+                Some(Scalar::Flag(*can_hold))
+            }
             Self::Words(Some(words)) if words.len() == 1 => Some(Scalar::Word(words[0].clone())),
             _ => None,
         }
@@ -70,12 +73,20 @@ impl Possible {
     }
 
     fn bounds(&self) -> (f64, f64) {
-        if let Self::Number(low, high) = self { (*low, *high) } else { (f64::NEG_INFINITY, f64::INFINITY) }
+        if let Self::Number(low, high) = self {
+            (*low, *high)
+        } else {
+            (f64::NEG_INFINITY, f64::INFINITY)
+        }
     }
 
     /// Whether it can be true, and whether it can be false.
     fn holds(&self) -> (bool, bool) {
-        if let Self::Flag { can_hold, can_fail } = self { (*can_hold, *can_fail) } else { (true, true) }
+        if let Self::Flag { can_hold, can_fail } = self {
+            (*can_hold, *can_fail)
+        } else {
+            (true, true)
+        }
     }
 }
 
@@ -103,13 +114,25 @@ pub fn possible(expr: &Expr, values: &dyn Values) -> Possible {
         Kind::Binary(operator @ (Operator::Is | Operator::IsNot), left, right) => {
             let (can_be, can_differ) = equal(&of(left), &of(right));
             let is = *operator == Operator::Is;
-            Possible::Flag { can_hold: if is { can_be } else { can_differ }, can_fail: if is { can_differ } else { can_be } }
+            Possible::Flag {
+                can_hold: if is { can_be } else { can_differ },
+                can_fail: if is { can_differ } else { can_be },
+            }
         }
-        Kind::Binary(operator, left, right) => binary(*operator, of(left).bounds(), of(right).bounds()),
-        Kind::Call(function, arguments) => call(function, &arguments.iter().map(|argument| of(argument).bounds()).collect::<Vec<_>>()),
+        Kind::Binary(operator, left, right) => {
+            binary(*operator, of(left).bounds(), of(right).bounds())
+        }
+        Kind::Call(function, arguments) => call(
+            function,
+            &arguments.iter().map(|argument| of(argument).bounds()).collect::<Vec<_>>(),
+        ),
         Kind::Cases(arms, otherwise) => {
             let mut all: Option<Possible> = None;
-            let mut add = |value: Possible| all = Some(all.take().map_or_else(|| value.clone(), |before| before.with(value.clone())));
+            let mut add = |value: Possible| {
+                all = Some(
+                    all.take().map_or_else(|| value.clone(), |before| before.with(value.clone())),
+                )
+            };
             let mut open = true;
             for (value, condition) in arms {
                 let (can_hold, can_fail) = of(condition).holds();
@@ -139,7 +162,11 @@ pub fn possible(expr: &Expr, values: &dyn Values) -> Possible {
 
 /// An interval from an operation; it is unbounded where an end is not a number.
 fn interval(low: f64, high: f64) -> Possible {
-    if low.is_nan() || high.is_nan() { Possible::Number(f64::NEG_INFINITY, f64::INFINITY) } else { Possible::Number(low, high) }
+    if low.is_nan() || high.is_nan() {
+        Possible::Number(f64::NEG_INFINITY, f64::INFINITY)
+    } else {
+        Possible::Number(low, high)
+    }
 }
 
 fn corners((a, b): (f64, f64), (c, d): (f64, f64), operation: fn(f64, f64) -> f64) -> Possible {
@@ -147,7 +174,10 @@ fn corners((a, b): (f64, f64), (c, d): (f64, f64), operation: fn(f64, f64) -> f6
     if all.iter().any(|value| value.is_nan()) {
         return interval(f64::NAN, f64::NAN);
     }
-    interval(all.into_iter().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max))
+    interval(
+        all.into_iter().fold(f64::INFINITY, f64::min),
+        all.into_iter().fold(f64::NEG_INFINITY, f64::max),
+    )
 }
 
 fn binary(operator: Operator, left: (f64, f64), right: (f64, f64)) -> Possible {
@@ -179,7 +209,9 @@ fn power((low, high): (f64, f64), exponent: i32) -> Possible {
 }
 
 fn call(function: &Function, arguments: &[(f64, f64)]) -> Possible {
-    let at = |end: fn(&(f64, f64)) -> f64| (function.run)(&arguments.iter().map(end).collect::<Vec<_>>());
+    let at = |end: fn(&(f64, f64)) -> f64| {
+        (function.run)(&arguments.iter().map(end).collect::<Vec<_>>())
+    };
     let (low, high) = (at(|bounds| bounds.0), at(|bounds| bounds.1));
     let known = arguments.iter().all(|(low, high)| low == high);
     match function.name {
@@ -187,7 +219,9 @@ fn call(function: &Function, arguments: &[(f64, f64)]) -> Possible {
         // These functions are monotonically increasing in every argument.
         "larger" | "smaller" | "sign" | "floor" | "exp" => interval(low, high),
         "sqrt" | "ln" | "log10" if arguments[0].0 >= 0.0 => interval(low, high),
-        "magnitude" if arguments[0].0 <= 0.0 && arguments[0].1 >= 0.0 => interval(0.0, low.max(high)),
+        "magnitude" if arguments[0].0 <= 0.0 && arguments[0].1 >= 0.0 => {
+            interval(0.0, low.max(high))
+        }
         "magnitude" => interval(low.min(high), low.max(high)),
         _ => interval(f64::NAN, f64::NAN),
     }
@@ -200,7 +234,9 @@ fn equal(left: &Possible, right: &Possible) -> (bool, bool) {
     }
     let can_be = match (left, right) {
         (Possible::Number(a, b), Possible::Number(c, d)) => a <= d && c <= b,
-        (Possible::Words(Some(left)), Possible::Words(Some(right))) => left.iter().any(|word| right.contains(word)),
+        (Possible::Words(Some(left)), Possible::Words(Some(right))) => {
+            left.iter().any(|word| right.contains(word))
+        }
         _ => true,
     };
     (can_be, true)
@@ -239,7 +275,13 @@ mod tests {
         ];
         let cases = expr(Kind::Cases(arms, Some(number(500.0))), Type::Number(Dimension::ONE));
         assert_eq!(possible(&cases, &Nothing), Possible::Number(100.0, 500.0));
-        let longer = |length: f64| possible(&test(Operator::GreaterEqual, number(length), Box::new(cases.clone())), &Nothing).one();
+        let longer = |length: f64| {
+            possible(
+                &test(Operator::GreaterEqual, number(length), Box::new(cases.clone())),
+                &Nothing,
+            )
+            .one()
+        };
         assert_eq!(longer(500.0), Some(Scalar::Flag(true)));
         assert_eq!(longer(99.0), Some(Scalar::Flag(false)));
         assert_eq!(longer(200.0), None);
@@ -249,10 +291,15 @@ mod tests {
     fn a_side_that_decides_alone_decides() {
         let yes = || Box::new(test(Operator::Less, number(1.0), number(2.0)));
         let open = || Box::new(test(Operator::Less, unknown(), number(2.0)));
-        for (operator, left, right, one) in
-            [(Operator::Or, open(), yes(), Some(true)), (Operator::And, open(), yes(), None), (Operator::Or, open(), open(), None)]
-        {
-            assert_eq!(possible(&test(operator, left, right), &Nothing).one(), one.map(Scalar::Flag));
+        for (operator, left, right, one) in [
+            (Operator::Or, open(), yes(), Some(true)),
+            (Operator::And, open(), yes(), None),
+            (Operator::Or, open(), open(), None),
+        ] {
+            assert_eq!(
+                possible(&test(operator, left, right), &Nothing).one(),
+                one.map(Scalar::Flag)
+            );
         }
     }
 
@@ -260,16 +307,26 @@ mod tests {
     #[test]
     fn no_bound_is_too_narrow() {
         let intervals = [(-2.0, -0.5), (-1.0, 2.0), (0.0, 0.0), (0.5, 3.0)];
-        let points = |(low, high): (f64, f64)| (0..=8).map(move |step| low + (high - low) * f64::from(step) / 8.0);
+        let points = |(low, high): (f64, f64)| {
+            (0..=8).map(move |step| low + (high - low) * f64::from(step) / 8.0)
+        };
         let inside = |found: &Possible, value: f64| {
             let (low, high) = found.bounds();
-            assert!(value.is_nan() || value.is_infinite() || (low - 1e-12..=high + 1e-12).contains(&value), "{value} of {found:?}");
+            assert!(
+                value.is_nan()
+                    || value.is_infinite()
+                    || (low - 1e-12..=high + 1e-12).contains(&value),
+                "{value} of {found:?}"
+            );
         };
         for left in intervals {
             for exponent in [-2, -1, 0, 1, 2, 3] {
                 points(left).for_each(|x| inside(&power(left, exponent), x.powi(exponent)));
             }
-            for function in crate::catalog::FUNCTIONS.iter().filter(|function| function.signature != crate::catalog::Signature::PairSame) {
+            for function in crate::catalog::FUNCTIONS
+                .iter()
+                .filter(|function| function.signature != crate::catalog::Signature::PairSame)
+            {
                 points(left).for_each(|x| inside(&call(function, &[left]), (function.run)(&[x])));
             }
             for right in intervals {
@@ -282,11 +339,14 @@ mod tests {
                     let found = binary(operator, left, right);
                     points(left).for_each(|x| points(right).for_each(|y| inside(&found, of(x, y))));
                 }
-                for function in
-                    crate::catalog::FUNCTIONS.iter().filter(|function| function.signature == crate::catalog::Signature::PairSame)
+                for function in crate::catalog::FUNCTIONS
+                    .iter()
+                    .filter(|function| function.signature == crate::catalog::Signature::PairSame)
                 {
                     let found = call(function, &[left, right]);
-                    points(left).for_each(|x| points(right).for_each(|y| inside(&found, (function.run)(&[x, y]))));
+                    points(left).for_each(|x| {
+                        points(right).for_each(|y| inside(&found, (function.run)(&[x, y])))
+                    });
                 }
             }
         }

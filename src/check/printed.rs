@@ -9,14 +9,23 @@ use crate::units::{Dimension, Unit};
 
 impl Checker<'_> {
     /// The unit in which values are printed: as stated, else that of the signal, else SI.
-    pub(super) fn quantity_unit(&mut self, block: &Block, of: &Text, dimension: Dimension) -> Option<Unit> {
+    pub(super) fn quantity_unit(
+        &mut self,
+        block: &Block,
+        of: &Text,
+        dimension: Dimension,
+    ) -> Option<Unit> {
         if let Some(field) = block.field("in") {
             let unit = self.unit(&field.value)?;
             if unit.dimension != dimension {
                 self.problems.push(
                     Problem::error(
                         "unit-mismatch",
-                        format!("the values are {}; the unit is that of {}", dimension.in_words(), unit.dimension.in_words()),
+                        format!(
+                            "the values are {}; the unit is that of {}",
+                            dimension.in_words(),
+                            unit.dimension.in_words()
+                        ),
                     )
                     .at(&field.value.span)
                     .also(&of.span, dimension.in_words()),
@@ -29,14 +38,23 @@ impl Checker<'_> {
         Some(self.own_unit(&signal, dimension))
     }
 
-    /// The declared unit of the first section column or vehicle datum in an expression that has this dimension.
+    /// The declared unit of the first section column or vehicle datum in an expression that has
+    /// this dimension.
     pub(super) fn datum_unit(&self, expr: &Expr, dimension: Dimension) -> Option<Unit> {
         let datum = match &expr.kind {
             Kind::Column(index) => self.names.columns.get(*index)?,
             Kind::Vehicle(index) => self.names.vehicle.get(*index)?,
-            Kind::Negative(inner) | Kind::Power(inner, _) => return self.datum_unit(inner, dimension),
-            Kind::Binary(_, left, right) => return self.datum_unit(left, dimension).or_else(|| self.datum_unit(right, dimension)),
-            Kind::Call(_, arguments) => return arguments.iter().find_map(|argument| self.datum_unit(argument, dimension)),
+            Kind::Negative(inner) | Kind::Power(inner, _) => {
+                return self.datum_unit(inner, dimension);
+            }
+            Kind::Binary(_, left, right) => {
+                return self
+                    .datum_unit(left, dimension)
+                    .or_else(|| self.datum_unit(right, dimension));
+            }
+            Kind::Call(_, arguments) => {
+                return arguments.iter().find_map(|argument| self.datum_unit(argument, dimension));
+            }
             _ => return None,
         };
         match &datum.kind {
@@ -48,7 +66,8 @@ impl Checker<'_> {
     /// The unit of a channel or signal if its dimension agrees, else the SI unit.
     pub(super) fn own_unit(&self, name: &str, dimension: Dimension) -> Unit {
         let channel = self.names.channels.get(name).map(|channel| channel.unit.clone());
-        let own = channel.or_else(|| self.names.signals.get(name).and_then(|signal| signal.unit.clone()));
+        let own =
+            channel.or_else(|| self.names.signals.get(name).and_then(|signal| signal.unit.clone()));
         match own {
             Some(unit) if unit.dimension == dimension => unit,
             _ => Unit::si(dimension),

@@ -6,7 +6,10 @@ use super::Checker;
 use super::conditions::impossible;
 use super::evaluate::{number, words};
 use super::names::{Assignment, bare_word, normalised};
-use super::plan::{Evaluation, Expr, InputSide, Pairing, Position, Quantity, QuantityWords, Records, Side, Signal, Step, Valued};
+use super::plan::{
+    Evaluation, Expr, InputSide, Pairing, Position, Quantity, QuantityWords, Records, Side, Signal,
+    Step, Valued,
+};
 use super::records::Compare;
 use super::scope::Scope;
 use super::steps::after;
@@ -42,14 +45,16 @@ impl Checker<'_> {
         found
     }
 
-    /// Dimension of its values, for other quantities. Errors are reported only where the quantity itself is checked.
+    /// Dimension of its values, for other quantities. Errors are reported only where the quantity
+    /// itself is checked.
     pub(super) fn dimension_of(&mut self, block: &Block) -> Option<Dimension> {
         let problems = self.problems.0.len();
         let (assumed, partial) = (std::mem::take(&mut self.assumed), self.partial);
         if let Some(Some(only)) = block.field("where").map(|field| self.section_condition(field)) {
             self.assumed.push(only);
         }
-        let chain = block.field("filter").map_or(Some(Vec::new()), |field| self.chain(&field.value));
+        let chain =
+            block.field("filter").map_or(Some(Vec::new()), |field| self.chain(&field.value));
         let positions = self.positions_of_quantity(block);
         let compared = self.compared_of(block, positions.as_deref(), chain.as_deref());
         (self.assumed, self.partial) = (assumed, partial);
@@ -57,7 +62,12 @@ impl Checker<'_> {
         compared.map(|compared| compared.dimension)
     }
 
-    fn compared_of(&mut self, block: &Block, positions: Option<&[(Position, Assignment)]>, chain: Option<&[Step]>) -> Option<Compared> {
+    fn compared_of(
+        &mut self,
+        block: &Block,
+        positions: Option<&[(Position, Assignment)]>,
+        chain: Option<&[Step]>,
+    ) -> Option<Compared> {
         match block.field("metric") {
             Some(field) => self.by_metric(field, block.field("compare"), positions, chain),
             None => self.by_values(block, positions, chain.unwrap_or_default()),
@@ -78,14 +88,21 @@ impl Checker<'_> {
         if !incomplete {
             self.all_required(block, needed);
         }
-        if let (Some(metric), Some(other)) = (metric, block.field("value").or(block.field("difference"))) {
+        if let (Some(metric), Some(other)) =
+            (metric, block.field("value").or(block.field("difference")))
+        {
             self.problems.push(
-                Problem::error("metric-and-value", "a quantity has either `metric`, or `value` and `difference`")
-                    .at(&other.key.span)
-                    .also(&metric.key.span, "the metric"),
+                Problem::error(
+                    "metric-and-value",
+                    "a quantity has either `metric`, or `value` and `difference`",
+                )
+                .at(&other.key.span)
+                .also(&metric.key.span, "the metric"),
             );
         }
-        if let (Some(from), Some(other)) = (assessed, block.field("difference").or(metric).or(block.field("compare"))) {
+        if let (Some(from), Some(other)) =
+            (assessed, block.field("difference").or(metric).or(block.field("compare")))
+        {
             self.problems.push(
                 Problem::error("from-and-compared", "values of one record cannot be compared")
                     .at(&other.key.span)
@@ -93,61 +110,116 @@ impl Checker<'_> {
                     .help(format!("remove `from` or `{}`", other.key.text)),
             );
         }
-        let chain = block.field("filter").map_or(Some(Vec::new()), |field| self.chain(&field.value));
+        let chain =
+            block.field("filter").map_or(Some(Vec::new()), |field| self.chain(&field.value));
         let positions = self.positions_of_quantity(block);
         let of = block.field("of").map(|field| field.value.clone());
-        let dimension = positions.as_ref().and_then(|positions| positions.first()).map(|(position, _)| position.signal.dimension);
-        let dimension = dimension.map(|dimension| after(chain.as_deref().unwrap_or_default(), dimension));
+        let dimension = positions
+            .as_ref()
+            .and_then(|positions| positions.first())
+            .map(|(position, _)| position.signal.dimension);
+        let dimension =
+            dimension.map(|dimension| after(chain.as_deref().unwrap_or_default(), dimension));
         let compared = self.compared_of(block, positions.as_deref(), chain.as_deref());
         let result = compared.as_ref().map(|compared| compared.dimension);
-        let unit = result.zip(of.as_ref()).and_then(|(result, of)| self.quantity_unit(block, of, result));
-        let from = compared.as_ref().and_then(|compared| compared.from.as_ref()).or_else(|| of.as_ref().map(|of| &of.span));
+        let unit =
+            result.zip(of.as_ref()).and_then(|(result, of)| self.quantity_unit(block, of, result));
+        let from = compared
+            .as_ref()
+            .and_then(|compared| compared.from.as_ref())
+            .or_else(|| of.as_ref().map(|of| &of.span));
         let best = compared.as_ref().and_then(|compared| compared.best.as_ref());
-        let places: Vec<String> = positions.iter().flatten().next().map_or_else(Vec::new, |(_, at)| at.keys().cloned().collect());
+        let places: Vec<String> = positions
+            .iter()
+            .flatten()
+            .next()
+            .map_or_else(Vec::new, |(_, at)| at.keys().cloned().collect());
         let limits = self.limits(block, unit.as_ref().zip(from), best, &places);
         let reports = self.reports(block, unit.as_ref().map(|unit| unit.dimension), &places);
         let minima = self.minima(block);
         if let (Some(reported), Some(limit)) = (block.field("reported"), block.field("limit")) {
             let says = "a quantity is either reported without a limit, or has one";
-            self.problems.push(Problem::error("reported-and-limit", says).at(&reported.key.span).also(&limit.key.span, "the limit"));
+            self.problems.push(
+                Problem::error("reported-and-limit", says)
+                    .at(&reported.key.span)
+                    .also(&limit.key.span, "the limit"),
+            );
         }
-        let meant = block.field("reported").or(block.field("report")).is_some() || self.is_referred_to(block.name_text());
+        let meant = block.field("reported").or(block.field("report")).is_some()
+            || self.is_referred_to(block.name_text());
         if block.field("limit").is_none() && !incomplete && !meant {
             self.problems.push(
                 Problem::warning(
                     "no-limit",
-                    format!("quantity `{}` has no limit: it is reported and has no effect on a verdict", block.name_text()),
+                    format!(
+                        "quantity `{}` has no limit: it is reported and has no effect on a verdict",
+                        block.name_text()
+                    ),
                 )
                 .at(block.span())
                 .help("if that is meant, say why: `reported \"...\"`"),
             );
         }
         if let (Some(only), None, 2..) = (block.field("where"), minima.all, self.minimum_pairs) {
-            let says = format!("quantity `{}` uses only some of the sections but needs {} pairs", block.name_text(), self.minimum_pairs);
+            let says = format!(
+                "quantity `{}` uses only some of the sections but needs {} pairs",
+                block.name_text(),
+                self.minimum_pairs
+            );
             let problem = Problem::warning("minimum-inherited", says).at(&only.value.span);
-            self.problems.push(problem.help("state the number for this quantity: `minimum pairs ...`"));
+            self.problems
+                .push(problem.help("state the number for this quantity: `minimum pairs ...`"));
         }
         let minimum_signals = self.count(block, "minimum signals", self.minimum_signals);
         let minimum_pairs = minima.all.unwrap_or(Some(self.minimum_pairs));
-        let of_groups = if minima.of_groups.is_empty() { self.minimum_of_groups.clone() } else { minima.of_groups };
+        let of_groups = if minima.of_groups.is_empty() {
+            self.minimum_of_groups.clone()
+        } else {
+            minima.of_groups
+        };
         let minimum_of_groups = self.minimum_of_groups(&of_groups, block, &places);
         let (of, chain, positions, compared, unit) = (of?, chain?, positions?, compared?, unit?);
         let dimension = dimension?;
-        let signal_unit = from_pest::of_places(&of, self.problems).map(|written| self.own_unit(&written.signal.node, dimension))?;
-        let all: Vec<String> = block.fields_named("of").map(|field| self.with_values(&normalised(&field.value.text))).collect();
+        let signal_unit = from_pest::of_places(&of, self.problems)
+            .map(|written| self.own_unit(&written.signal.node, dimension))?;
+        let all: Vec<String> = block
+            .fields_named("of")
+            .map(|field| self.with_values(&normalised(&field.value.text)))
+            .collect();
         let text = |key: &str| block.field(key).map(|field| field.value.text.clone());
-        let filter =
-            if chain.is_empty() { "none".into() } else { chain.iter().map(|step| step.words.as_str()).collect::<Vec<_>>().join(", then ") };
+        let filter = if chain.is_empty() {
+            "none".into()
+        } else {
+            chain.iter().map(|step| step.words.as_str()).collect::<Vec<_>>().join(", then ")
+        };
         let unverified = compared.evaluation.unverified();
         let reported = text("reported").map(|why| format!("Reported without a limit. {why}"));
-        let notes = reported.into_iter().chain(block.fields_named("note").map(|note| note.value.text.clone()));
-        let notes = notes.chain(unverified.iter().map(|metric| format!("Unverified: `{metric}` is {NOT_CHECKED}."))).collect();
-        let comparison = if unverified.is_empty() { compared.comparison } else { format!("{} (unverified)", compared.comparison) };
+        let notes = reported
+            .into_iter()
+            .chain(block.fields_named("note").map(|note| note.value.text.clone()));
+        let notes = notes
+            .chain(
+                unverified.iter().map(|metric| format!("Unverified: `{metric}` is {NOT_CHECKED}.")),
+            )
+            .collect();
+        let comparison = if unverified.is_empty() {
+            compared.comparison
+        } else {
+            format!("{} (unverified)", compared.comparison)
+        };
         Some(Quantity {
             id: block.name_text().to_string(),
-            title: block.title.as_ref().map_or_else(|| block.name_text().to_string(), |title| title.text.clone()),
+            title: block
+                .title
+                .as_ref()
+                .map_or_else(|| block.name_text().to_string(), |title| title.text.clone()),
             symbol: text("symbol").unwrap_or_else(|| block.name_text().to_string()),
-            words: QuantityWords { of: all.join("; "), filter, processing: compared.processing, comparison },
+            words: QuantityWords {
+                of: all.join("; "),
+                filter,
+                processing: compared.processing,
+                comparison,
+            },
             clause: text("clause"),
             source: text("source"),
             notes,
@@ -199,17 +271,27 @@ impl Checker<'_> {
                         "the signals of one quantity must have the same dimension: another is {}",
                         first.signal.dimension.in_words()
                     );
-                    self.problems.push(Problem::error("unit-mismatch", says).at(&field.value.span).label(signal.dimension.in_words()));
+                    self.problems.push(
+                        Problem::error("unit-mismatch", says)
+                            .at(&field.value.span)
+                            .label(signal.dimension.in_words()),
+                    );
                     return None;
                 }
-                let again = found.iter().find(|(known, _)| known.name == name && both_apply(&known.only, &only));
+                let again = found
+                    .iter()
+                    .find(|(known, _)| known.name == name && both_apply(&known.only, &only));
                 if again.is_some() {
-                    let says = format!("`{name}` is evaluated twice, so its values would count twice");
+                    let says =
+                        format!("`{name}` is evaluated twice, so its values would count twice");
                     let problem = Problem::error("position-twice", says).at(&field.value.span);
-                    self.problems.push(problem.help("add conditions that exclude each other to the fields `of`: `when ...`"));
+                    self.problems.push(problem.help(
+                        "add conditions that exclude each other to the fields `of`: `when ...`",
+                    ));
                     return None;
                 }
-                let places = at.iter().map(|(place, member)| (place.clone(), member.clone())).collect();
+                let places =
+                    at.iter().map(|(place, member)| (place.clone(), member.clone())).collect();
                 found.push((Position { name, signal, places, only: only.clone() }, at));
             }
         }
@@ -221,11 +303,16 @@ impl Checker<'_> {
         let written = from_pest::of_places(of, self.problems)?;
         let positions = self.positions(&written.signal, &written.picks, of)?;
         let name = &written.signal.node;
-        let (pattern, places, span) = match (self.names.channels.get(name), self.names.signals.get(name)) {
-            (Some(channel), _) => (channel.column.clone(), channel.places.clone(), channel.span.clone()),
-            (_, Some(signal)) => (signal.named.clone(), signal.places.clone(), signal.span.clone()),
-            _ => return None,
-        };
+        let (pattern, places, span) =
+            match (self.names.channels.get(name), self.names.signals.get(name)) {
+                (Some(channel), _) => {
+                    (channel.column.clone(), channel.places.clone(), channel.span.clone())
+                }
+                (_, Some(signal)) => {
+                    (signal.named.clone(), signal.places.clone(), signal.span.clone())
+                }
+                _ => return None,
+            };
         let phrase = At { node: Node::Path(name.clone()), range: written.signal.range.clone() };
         let used = of.place(written.signal.range.clone());
         let mut found: Vec<(String, Signal, Assignment)> = Vec::new();
@@ -236,8 +323,13 @@ impl Checker<'_> {
             }
             let signal = self.signal_where(&phrase, of, &position, &of.span)?;
             if signal.track {
-                self.problems
-                    .push(Problem::error("track-quantity", "the track record has no simulated and measured side to compare").at(&used));
+                self.problems.push(
+                    Problem::error(
+                        "track-quantity",
+                        "the track record has no simulated and measured side to compare",
+                    )
+                    .at(&used),
+                );
                 return None;
             }
             found.push((filled, signal, position));
@@ -246,26 +338,47 @@ impl Checker<'_> {
     }
 
     /// Numbers of each record, assessed or compared.
-    fn by_values(&mut self, block: &Block, positions: Option<&[(Position, Assignment)]>, chain: &[Step]) -> Option<Compared> {
+    fn by_values(
+        &mut self,
+        block: &Block,
+        positions: Option<&[(Position, Assignment)]>,
+        chain: &[Step],
+    ) -> Option<Compared> {
         let first = positions.and_then(|positions| positions.first());
         let dimension = first.map(|(position, _)| after(chain, position.signal.dimension));
         let fields: Vec<&Field> = block.fields_named("value").collect();
         self.partial = fields.len() > 1;
-        let values: Vec<Option<(Valued, Dimension)>> = fields.iter().map(|field| self.value(field, positions, chain)).collect();
+        let values: Vec<Option<(Valued, Dimension)>> =
+            fields.iter().map(|field| self.value(field, positions, chain)).collect();
         self.partial = false;
         let result = values.iter().flatten().map(|(_, dimension)| *dimension).next();
-        for (field, (_, other)) in fields.iter().zip(&values).filter_map(|(field, value)| Some((field, value.as_ref()?))) {
+        for (field, (_, other)) in
+            fields.iter().zip(&values).filter_map(|(field, value)| Some((field, value.as_ref()?)))
+        {
             if Some(*other) != result {
                 let wanted = result.map_or_else(String::new, Dimension::in_words);
-                let says =
-                    format!("the values of one quantity must have the same dimension: the first is {wanted}, this is {}", other.in_words());
-                self.problems.push(Problem::error("unit-mismatch", says).at(&field.value.span).also(&fields[0].value.span, wanted));
+                let says = format!(
+                    "the values of one quantity must have the same dimension: the first is {wanted}, this is {}",
+                    other.in_words()
+                );
+                self.problems.push(
+                    Problem::error("unit-mismatch", says)
+                        .at(&field.value.span)
+                        .also(&fields[0].value.span, wanted),
+                );
                 return None;
             }
         }
         for (at, field) in fields.iter().enumerate() {
-            if let Some(first) = fields[..at].iter().find(|first| normalised(&first.value.text) == normalised(&field.value.text)) {
-                let problem = Problem::error("value-twice", "this value is written twice and would count twice").at(&field.value.span);
+            if let Some(first) = fields[..at]
+                .iter()
+                .find(|first| normalised(&first.value.text) == normalised(&field.value.text))
+            {
+                let problem = Problem::error(
+                    "value-twice",
+                    "this value is written twice and would count twice",
+                )
+                .at(&field.value.span);
                 self.problems.push(problem.also(&first.value.span, "the same value"));
                 return None;
             }
@@ -274,19 +387,31 @@ impl Checker<'_> {
         let compare = block.field("compare").map(|field| self.compare(field));
         let difference = match from {
             Some(_) => None,
-            None => Some(block.field("difference").and_then(|field| self.difference(field, result))),
+            None => {
+                Some(block.field("difference").and_then(|field| self.difference(field, result)))
+            }
         };
         let values: Vec<(Valued, Dimension)> = values.into_iter().collect::<Option<_>>()?;
         let result = result?;
-        let processing = values.iter().map(|(value, _)| self.with_values(&words(&value.expr))).collect::<Vec<_>>().join("; ");
+        let processing = values
+            .iter()
+            .map(|(value, _)| self.with_values(&words(&value.expr)))
+            .collect::<Vec<_>>()
+            .join("; ");
         let values: Vec<Valued> = values.into_iter().map(|(value, _)| value).collect();
         let field_of = |key: &str| block.field(key).map(|field| field.value.span.clone());
         let Some(difference) = difference else {
             let of = from??;
             let side = of.side;
-            let other = if side == Side::Measured { InputSide::Simulated } else { InputSide::Measured };
-            if let Some(input) = values.iter().flat_map(|value| value.inputs.iter().flatten()).find(|input| input.side == other) {
-                let says = format!("the values are {}; the other record is not read", side.in_words());
+            let other =
+                if side == Side::Measured { InputSide::Simulated } else { InputSide::Measured };
+            if let Some(input) = values
+                .iter()
+                .flat_map(|value| value.inputs.iter().flatten())
+                .find(|input| input.side == other)
+            {
+                let says =
+                    format!("the values are {}; the other record is not read", side.in_words());
                 self.problems.push(Problem::error("record-not-read", says).at(&input.span));
                 return None;
             }
@@ -296,10 +421,19 @@ impl Checker<'_> {
                 None => format!("{} values", side.in_words()),
                 Some(_) => format!("values of {}", self.chosen_in_words(of)),
             };
-            return Some(Compared { evaluation, dimension: result, processing, comparison, best: None, from });
+            return Some(Compared {
+                evaluation,
+                dimension: result,
+                processing,
+                comparison,
+                best: None,
+                from,
+            });
         };
         let (difference, compared) = difference?;
-        let place = |key: &str| block.field(key).map_or_else(|| block.span().clone(), |field| field.value.span.clone());
+        let place = |key: &str| {
+            block.field(key).map_or_else(|| block.span().clone(), |field| field.value.span.clone())
+        };
         self.depends_on_values(&difference, &place("difference"))?;
         self.of_both_records(&values, &difference, &place("value"))?;
         let compare = match compare {
@@ -318,9 +452,14 @@ impl Checker<'_> {
             }
             Compare::With(of, among, center) => {
                 let all = if among.record.is_some() { self.chosen_in_words(among) } else { "all" };
-                let words =
-                    comparison.replace("measured", &format!("{} of {all}", center.in_words())).replace("simulated", of.side.in_words());
-                let words = if of.record.is_some() { words.replace("simulated", self.chosen_in_words(of)) } else { words };
+                let words = comparison
+                    .replace("measured", &format!("{} of {all}", center.in_words()))
+                    .replace("simulated", of.side.in_words());
+                let words = if of.record.is_some() {
+                    words.replace("simulated", self.chosen_in_words(of))
+                } else {
+                    words
+                };
                 (Records::Spread { of, among, center, difference }, words)
             }
         };
@@ -328,7 +467,12 @@ impl Checker<'_> {
         Some(Compared { evaluation, dimension: compared, processing, comparison, best, from })
     }
 
-    fn value(&mut self, field: &Field, positions: Option<&[(Position, Assignment)]>, chain: &[Step]) -> Option<(Valued, Dimension)> {
+    fn value(
+        &mut self,
+        field: &Field,
+        positions: Option<&[(Position, Assignment)]>,
+        chain: &[Step],
+    ) -> Option<(Valued, Dimension)> {
         let phrase = from_pest::expression(&field.value, self.problems)?;
         self.valued(&phrase, field, positions?, chain, Scope::reducing)
     }
@@ -346,7 +490,8 @@ impl Checker<'_> {
         let (first, at) = positions.first()?;
         let dimension = after(chain, first.signal.dimension);
         let factor = after(chain, Dimension::ONE);
-        let scope_at = |at: &Assignment| Scope { at: at.clone(), factor, ..scope(Some(dimension), axis) };
+        let scope_at =
+            |at: &Assignment| Scope { at: at.clone(), factor, ..scope(Some(dimension), axis) };
         let mut scope = scope_at(at);
         let expr = self.value_at(phrase, field, &first.only, &mut scope)?;
         let result = self.number_type(&expr)?;
@@ -374,7 +519,13 @@ impl Checker<'_> {
     }
 
     /// A value at one position, in the sections in which the position is evaluated.
-    fn value_at(&mut self, phrase: &Phrase, field: &Field, only: &Option<Expr>, scope: &mut Scope) -> Option<Expr> {
+    fn value_at(
+        &mut self,
+        phrase: &Phrase,
+        field: &Field,
+        only: &Option<Expr>,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
         let known = self.assumed.len();
         self.assumed.extend(only.clone());
         let found = self.expr(phrase, &field.value, scope);
@@ -382,24 +533,34 @@ impl Checker<'_> {
         found
     }
 
-    /// A named difference, a choice parameter that names one, or an expression. If the dimension of the values is not known, only
-    /// the name is checked.
-    fn difference(&mut self, field: &Field, dimension: Option<Dimension>) -> Option<(Expr, Dimension)> {
+    /// A named difference, a choice parameter that names one, or an expression. If the dimension of
+    /// the values is not known, only the name is checked.
+    fn difference(
+        &mut self,
+        field: &Field,
+        dimension: Option<Dimension>,
+    ) -> Option<(Expr, Dimension)> {
         let written = from_pest::expression(&field.value, self.problems)?;
         let mut phrase = written.clone();
         let mut text = field.value.clone();
         if let Some(word) = bare_word(&written) {
             let choice = self.choice_phrase(&written, &field.value)?;
             if let Some((name, expression)) = DIFFERENCES.iter().find(|(name, _)| *name == choice) {
-                let source = crate::source::Source::new(format!("difference `{name}`"), *expression);
+                let source =
+                    crate::source::Source::new(format!("difference `{name}`"), *expression);
                 text = Text { text: (*expression).to_string(), span: source.whole(), exact: true };
                 phrase = from_pest::expression(&text, self.problems)?;
             } else if choice != word
-                || !(matches!(word, "simulated" | "measured") || self.names.defines.contains_key(word) || self.is_failed(word))
+                || !(matches!(word, "simulated" | "measured")
+                    || self.names.defines.contains_key(word)
+                    || self.is_failed(word))
             {
                 let differences = DIFFERENCES.iter().map(|(name, _)| *name);
-                let problem =
-                    Problem::error("unknown-difference", format!("`{choice}` is not a difference of two values")).at(&field.value.span);
+                let problem = Problem::error(
+                    "unknown-difference",
+                    format!("`{choice}` is not a difference of two values"),
+                )
+                .at(&field.value.span);
                 self.problems.push(problem.suggest(&choice, differences));
                 return None;
             }
@@ -421,14 +582,25 @@ impl Checker<'_> {
         let Some(field) = block.field(key) else { return Some(default) };
         let (value, dimension) = self.constant(&field.value)?;
         if dimension != Dimension::ONE || value.fract() != 0.0 || !(0.0..=1e6).contains(&value) {
-            self.no_count(key, &normalised(&field.value.text), (value, dimension), &field.value.span);
+            self.no_count(
+                key,
+                &normalised(&field.value.text),
+                (value, dimension),
+                &field.value.span,
+            );
             return None;
         }
         Some(value as usize)
     }
 
     /// `words` are no whole number: their value is told.
-    pub(super) fn no_count(&mut self, key: &str, words: &str, (value, dimension): (f64, Dimension), at: &Span) {
+    pub(super) fn no_count(
+        &mut self,
+        key: &str,
+        words: &str,
+        (value, dimension): (f64, Dimension),
+        at: &Span,
+    ) {
         let evident = dimension != Dimension::ONE || words.parse() == Ok(value);
         let value = if evident { String::new() } else { format!(" = {value}") };
         let says = format!("`{key}` must be a whole number, this is {words}{value}");
@@ -438,11 +610,13 @@ impl Checker<'_> {
 
 /// Whether there may be sections in which both positions are evaluated.
 fn both_apply(a: &Option<Expr>, b: &Option<Expr>) -> bool {
-    let conditions: Vec<(&Expr, bool)> = a.iter().chain(b).map(|condition| (condition, true)).collect();
+    let conditions: Vec<(&Expr, bool)> =
+        a.iter().chain(b).map(|condition| (condition, true)).collect();
     !impossible(&conditions)
 }
 
-/// The value of a comparison where both sides are equal: 0 for a difference, 1 for a ratio; `None` where it depends on the value.
+/// The value of a comparison where both sides are equal: 0 for a difference, 1 for a ratio; `None`
+/// where it depends on the value.
 fn of_equal_sides(difference: &Expr) -> Option<f64> {
     /// Values of both signs, without a simple ratio.
     const TRIED: [f64; 3] = [1.0, -1.7, 2.9];

@@ -23,8 +23,13 @@ impl Checker<'_> {
     pub(super) fn declared_record(&mut self, name: &str, block: &Block) -> Option<DeclaredRecord> {
         let field = self.required(block, "is")?;
         if ["repeats", "originals"].contains(&name) {
-            let says = format!("`{name}` is a word of the language and cannot be the name of this record");
-            self.problems.push(Problem::error("reserved-name", says).at(block.span()).help(format!("for instance `{name}_1`")));
+            let says =
+                format!("`{name}` is a word of the language and cannot be the name of this record");
+            self.problems.push(
+                Problem::error("reserved-name", says)
+                    .at(block.span())
+                    .help(format!("for instance `{name}_1`")),
+            );
             return None;
         }
         let text = &field.value.text;
@@ -32,8 +37,13 @@ impl Checker<'_> {
         let end = text[start..].find(char::is_whitespace).map_or(text.len(), |at| start + at);
         let word = &text[start..end];
         let Some(side) = Side::ALL.into_iter().find(|side| side.in_words() == word) else {
-            let problem = Problem::error("unknown-record", format!("a record is simulated or measured, and not `{word}`"));
-            let problem = problem.at(&field.value.place(start..end)).suggest(word, Side::ALL.map(Side::in_words));
+            let problem = Problem::error(
+                "unknown-record",
+                format!("a record is simulated or measured, and not `{word}`"),
+            );
+            let problem = problem
+                .at(&field.value.place(start..end))
+                .suggest(word, Side::ALL.map(Side::in_words));
             self.problems.push(match problem.help {
                 Some(_) => problem,
                 None => problem.help("`is simulated simpack, vampire`: the side, and the names that the campaign gives to its records"),
@@ -50,20 +60,31 @@ impl Checker<'_> {
                 if text[end..].trim().is_empty() {
                     break;
                 }
-                let problem = Problem::error("syntax", "between commas, the name of a record is missing").at(&field.value.span);
+                let problem =
+                    Problem::error("syntax", "between commas, the name of a record is missing")
+                        .at(&field.value.span);
                 self.problems.push(problem.help("`is simulated simpack, vampire`"));
                 return None;
             }
             let place = field.value.place(range);
             if let Some(first) = members.iter().find(|known| known.value == member) {
-                let problem = Problem::error("duplicate-name", format!("`{member}` is named twice")).at(&place);
+                let problem =
+                    Problem::error("duplicate-name", format!("`{member}` is named twice"))
+                        .at(&place);
                 self.problems.push(problem.also(&first.span, "the first"));
                 return None;
             }
             members.push(Spanned::new(member.to_string(), place));
         }
-        let title = block.title.as_ref().map_or_else(|| name.replace('_', " "), |title| title.text.clone());
-        Some(DeclaredRecord { name: name.to_string(), title, side, members, span: block.span().clone() })
+        let title =
+            block.title.as_ref().map_or_else(|| name.replace('_', " "), |title| title.text.clone());
+        Some(DeclaredRecord {
+            name: name.to_string(),
+            title,
+            side,
+            members,
+            span: block.span().clone(),
+        })
     }
 
     /// `simulated`, `measured`, or the name of a record.
@@ -79,9 +100,16 @@ impl Checker<'_> {
     fn chosen(&mut self, word: &str, at: &Span) -> Option<Chosen> {
         let found = self.chosen_named(word);
         if found.is_none() && !self.is_failed(word) {
-            let declared: Vec<String> = self.names.records.iter().map(|record| record.name.clone()).collect();
-            let known = Side::ALL.map(Side::in_words).into_iter().chain(declared.iter().map(String::as_str));
-            let problem = Problem::error("unknown-record", format!("`{word}` is not a record of a campaign")).at(at).suggest(word, known);
+            let declared: Vec<String> =
+                self.names.records.iter().map(|record| record.name.clone()).collect();
+            let known = Side::ALL
+                .map(Side::in_words)
+                .into_iter()
+                .chain(declared.iter().map(String::as_str));
+            let problem =
+                Problem::error("unknown-record", format!("`{word}` is not a record of a campaign"))
+                    .at(at)
+                    .suggest(word, known);
             self.problems.push(match problem.help {
                 Some(_) => problem,
                 None => problem.help("`simulated`, `measured`, or the name of a block `record`"),
@@ -106,16 +134,20 @@ impl Checker<'_> {
         match self.compare(field)? {
             Compare::Pairs(pairing) => Some(pairing),
             Compare::With(..) => {
-                let problem =
-                    Problem::error("metric-and-spread", "a metric compares two signals; a mean of several signals is not available");
+                let problem = Problem::error(
+                    "metric-and-spread",
+                    "a metric compares two signals; a mean of several signals is not available",
+                );
                 let help = "use `value` and `difference`, or compare `simulated with measured` or `repeats with originals`";
-                self.problems.push(problem.at(&field.value.span).also(metric, "the metric").help(help));
+                self.problems
+                    .push(problem.at(&field.value.span).also(metric, "the metric").help(help));
                 None
             }
         }
     }
 
-    /// `simulated with measured`, `codes with reference`, `codes with mean of simulated`, `runs with each other`, `repeats with originals`.
+    /// `simulated with measured`, `codes with reference`, `codes with mean of simulated`, `runs
+    /// with each other`, `repeats with originals`.
     pub(super) fn compare(&mut self, field: &Field) -> Option<Compare> {
         let words = normalised(&field.value.text);
         let all: Vec<&str> = words.split(' ').collect();
@@ -132,31 +164,49 @@ impl Checker<'_> {
                 self.several(among, &field.value.span)?;
                 if of.side != among.side {
                     let says = "records are compared with the mean or median of their own side";
-                    self.problems.push(Problem::error("unknown-comparison", says).at(&field.value.span).help(WAYS));
+                    self.problems.push(
+                        Problem::error("unknown-comparison", says).at(&field.value.span).help(WAYS),
+                    );
                     return None;
                 }
-                Some(Compare::With(of, among, if *center == "mean" { Center::Mean } else { Center::Median }))
+                Some(Compare::With(
+                    of,
+                    among,
+                    if *center == "mean" { Center::Mean } else { Center::Median },
+                ))
             }
             [first, "with", second] if *first != "repeats" && *second != "originals" => {
                 let one = self.chosen(first, &part(&field.value, first));
                 let (one, other) = (one?, self.chosen(second, &part(&field.value, second))?);
                 if (one.side, other.side) == (Side::Measured, Side::Simulated) {
-                    let problem =
-                        Problem::error("unknown-comparison", "simulated records are compared with measured ones").at(&field.value.span);
-                    self.problems.push(problem.help(format!("the other way round: `{second} with {first}`")));
+                    let problem = Problem::error(
+                        "unknown-comparison",
+                        "simulated records are compared with measured ones",
+                    )
+                    .at(&field.value.span);
+                    self.problems.push(
+                        problem.help(format!("the other way round: `{second} with {first}`")),
+                    );
                     return None;
                 }
                 if one == other {
-                    let problem = Problem::error("unknown-comparison", format!("`{words}` compares records with themselves"));
-                    self.problems
-                        .push(problem.at(&field.value.span).help(format!("`{first} with each other`, or `{first} with mean of {first}`")));
+                    let problem = Problem::error(
+                        "unknown-comparison",
+                        format!("`{words}` compares records with themselves"),
+                    );
+                    self.problems.push(problem.at(&field.value.span).help(format!(
+                        "`{first} with each other`, or `{first} with mean of {first}`"
+                    )));
                     return None;
                 }
                 Some(Compare::Pairs(Pairing::Each(one, other)))
             }
             _ => {
-                let problem = Problem::error("unknown-comparison", format!("`{words}` does not say which records are compared"))
-                    .at(&field.value.span);
+                let problem = Problem::error(
+                    "unknown-comparison",
+                    format!("`{words}` does not say which records are compared"),
+                )
+                .at(&field.value.span);
                 self.problems.push(problem.help(WAYS));
                 None
             }
@@ -165,7 +215,11 @@ impl Checker<'_> {
 
     /// One record cannot be compared with others of its own.
     fn several(&mut self, of: Chosen, at: &Span) -> Option<()> {
-        let Some(record) = of.record.map(|index| &self.names.records[index]).filter(|record| record.members.len() == 1) else {
+        let Some(record) = of
+            .record
+            .map(|index| &self.names.records[index])
+            .filter(|record| record.members.len() == 1)
+        else {
             return Some(());
         };
         let says = format!("`{}` is one record, and several are compared", record.name);
@@ -179,7 +233,9 @@ impl Checker<'_> {
         let (first, second) = match pairing {
             Pairing::Repeats => ("repeat", "original"),
             Pairing::EachOther(_) => ("one", "other"),
-            Pairing::Each(first, second) => (self.chosen_in_words(first), self.chosen_in_words(second)),
+            Pairing::Each(first, second) => {
+                (self.chosen_in_words(first), self.chosen_in_words(second))
+            }
         };
         if pairing == Pairing::SIDES {
             return comparison.to_string();
@@ -210,7 +266,8 @@ impl Checker<'_> {
 fn part(text: &Text, word: &str) -> Span {
     let is_word = |at: usize| {
         let around = |c: Option<char>| c.is_none_or(|c| !(c.is_alphanumeric() || c == '_'));
-        around(text.text[..at].chars().next_back()) && around(text.text[at + word.len()..].chars().next())
+        around(text.text[..at].chars().next_back())
+            && around(text.text[at + word.len()..].chars().next())
     };
     let found = text.text.match_indices(word).map(|(at, _)| at).find(|&at| is_word(at));
     found.map_or_else(|| text.span.clone(), |at| text.place(at..at + word.len()))

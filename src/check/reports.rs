@@ -1,4 +1,5 @@
-//! Checks estimates without a limit: what of the values of a quantity, and of the data of the sections, is printed.
+//! Checks estimates without a limit: what of the values of a quantity, and of the data of the
+//! sections, is printed.
 
 use super::Checker;
 use super::estimates::bare;
@@ -24,8 +25,14 @@ enum Of {
 }
 
 impl Checker<'_> {
-    /// The reports of a quantity. Where its values have an error (no dimension), all else is checked.
-    pub(super) fn reports(&mut self, block: &Block, dimension: Option<Dimension>, places: &[String]) -> Option<Vec<Report>> {
+    /// The reports of a quantity. Where its values have an error (no dimension), all else is
+    /// checked.
+    pub(super) fn reports(
+        &mut self,
+        block: &Block,
+        dimension: Option<Dimension>,
+        places: &[String],
+    ) -> Option<Vec<Report>> {
         self.grouped = Grouped::values(block, places);
         self.reports_of(block, Of::Values(dimension))
     }
@@ -42,9 +49,12 @@ impl Checker<'_> {
         let mut seen: Vec<(String, Span)> = Vec::new();
         let mut ok = true;
         for field in block.fields_named("report") {
-            let meaning = from_pest::report(&field.value, &mut Default::default()).map(|report| report.meaning());
-            if let Some((_, first)) = seen.iter().find(|(known, _)| Some(known) == meaning.as_ref()) {
-                let problem = Problem::error("duplicate-field", "the same is reported twice").at(&field.value.span);
+            let meaning = from_pest::report(&field.value, &mut Default::default())
+                .map(|report| report.meaning());
+            if let Some((_, first)) = seen.iter().find(|(known, _)| Some(known) == meaning.as_ref())
+            {
+                let problem = Problem::error("duplicate-field", "the same is reported twice")
+                    .at(&field.value.span);
                 self.problems.push(problem.also(first, "the first"));
                 ok = false;
                 continue;
@@ -62,20 +72,30 @@ impl Checker<'_> {
     fn report(&mut self, field: &Field, of: Of, unconfirmed: bool) -> Option<Vec<Report>> {
         let text = &field.value;
         let written = from_pest::report(text, self.problems)?;
-        let name = At { node: normalised(text.text.get(written.of.range.clone()).unwrap_or_default()), range: written.of.range.clone() };
+        let name = At {
+            node: normalised(text.text.get(written.of.range.clone()).unwrap_or_default()),
+            range: written.of.range.clone(),
+        };
         let (name, phrase) = self.with_statistic(name, written.of, text);
         let scope = self.scope_of(&written.scope, text);
         let mut reports = Vec::new();
         for (scope, zone) in self.zone_by_zone(scope) {
             self.unconfirmed = unconfirmed;
             let estimate = match of {
-                Of::Values(dimension) => self.estimate(&name, &phrase, text, dimension, zone.as_deref()),
+                Of::Values(dimension) => {
+                    self.estimate(&name, &phrase, text, dimension, zone.as_deref())
+                }
                 Of::Sections => self.of_sections(&name, &phrase, text, zone.as_deref()),
             };
             let (mut estimate, scope) = (estimate?, scope?);
             if matches!(estimate.kind, super::plan::EstimateKind::Each) {
-                let problem = Problem::error("each-value", "`each` stands for every single value, and all values are in the report anyway");
-                self.problems.push(problem.at(&text.place(name.range)).help("name a statistic: `report maximum`"));
+                let problem = Problem::error(
+                    "each-value",
+                    "`each` stands for every single value, and all values are in the report anyway",
+                );
+                self.problems.push(
+                    problem.at(&text.place(name.range)).help("name a statistic: `report maximum`"),
+                );
                 return None;
             }
             if let Some(unit) = &written.unit {
@@ -85,16 +105,36 @@ impl Checker<'_> {
             if self.unconfirmed {
                 estimate.title += self.to_be_confirmed();
             }
-            reports.push(Report { estimate, scope, words: self.with_values(&normalised(&text.text)), span: text.span.clone() });
+            reports.push(Report {
+                estimate,
+                scope,
+                words: self.with_values(&normalised(&text.text)),
+                span: text.span.clone(),
+            });
         }
         Some(reports)
     }
 
     /// An expression over data of sections.
-    fn of_sections(&mut self, name: &At<String>, phrase: &Phrase, text: &Text, zone: Option<&str>) -> Option<Estimate> {
-        let found = self.of_group(phrase, text, None, &Scope { zone: zone.map(str::to_string), ..Scope::vehicle() })?;
+    fn of_sections(
+        &mut self,
+        name: &At<String>,
+        phrase: &Phrase,
+        text: &Text,
+        zone: Option<&str>,
+    ) -> Option<Estimate> {
+        let found = self.of_group(
+            phrase,
+            text,
+            None,
+            &Scope { zone: zone.map(str::to_string), ..Scope::vehicle() },
+        )?;
         if found.taken.is_empty() {
-            let problem = Problem::error("estimate-of-nothing", "this expression uses no data of the sections").at(&found.expr.span);
+            let problem = Problem::error(
+                "estimate-of-nothing",
+                "this expression uses no data of the sections",
+            )
+            .at(&found.expr.span);
             self.problems.push(problem.help("for instance `total of length`, `mean of radius`, `share of sections where radius < 300 m`"));
             return None;
         }
@@ -103,20 +143,37 @@ impl Checker<'_> {
     }
 
     /// The unit that a report states.
-    fn unit_of_report(&mut self, estimate: &Estimate, unit: &At<String>, values: Option<Dimension>, text: &Text) -> Option<Unit> {
+    fn unit_of_report(
+        &mut self,
+        estimate: &Estimate,
+        unit: &At<String>,
+        values: Option<Dimension>,
+        text: &Text,
+    ) -> Option<Unit> {
         let place = text.place(unit.range.clone());
-        let found = self.unit(&Text { text: unit.node.clone(), span: place.clone(), exact: text.exact })?;
+        let found =
+            self.unit(&Text { text: unit.node.clone(), span: place.clone(), exact: text.exact })?;
         let dimension = estimate.unit.as_ref().map(|unit| unit.dimension).or(values)?;
         if found.dimension == dimension {
             return Some(found);
         }
-        let says = format!("this estimate is {}, `{}` is a unit of {}", dimension.in_words(), unit.node, found.dimension.in_words());
+        let says = format!(
+            "this estimate is {}, `{}` is a unit of {}",
+            dimension.in_words(),
+            unit.node,
+            found.dimension.in_words()
+        );
         self.problems.push(Problem::error("unit-mismatch", says).at(&place));
         None
     }
 
     /// A choice parameter in place of an estimate stands for the statistic that it names.
-    pub(super) fn with_statistic(&mut self, mut name: At<String>, mut estimate: Phrase, text: &Text) -> (At<String>, Phrase) {
+    pub(super) fn with_statistic(
+        &mut self,
+        mut name: At<String>,
+        mut estimate: Phrase,
+        text: &Text,
+    ) -> (At<String>, Phrase) {
         let word = name.node.clone();
         let named = Statistic::named(&word).is_some() || self.names.estimates.contains_key(&word);
         let parameter = self.names.parameter_blocks.contains_key(&word);

@@ -1,9 +1,13 @@
-//! Checks the rules that belong to no quantity: axis, zones, section checks, treatment of sections, independent units.
+//! Checks the rules that belong to no quantity: axis, zones, section checks, treatment of sections,
+//! independent units.
 
 use super::Checker;
 use super::find::FOUND_SECTIONS;
 use super::names::normalised;
-use super::plan::{Axis, Check, DatumKind, Expr, Independent, Input, Kind, OnFault, Origin, SectionRules, Type, Zone};
+use super::plan::{
+    Axis, Check, DatumKind, Expr, Independent, Input, Kind, OnFault, Origin, SectionRules, Type,
+    Zone,
+};
 use super::scope::Scope;
 use crate::metrics::percentile::Method;
 use crate::problem::Problem;
@@ -14,13 +18,19 @@ use crate::units::Dimension;
 impl Checker<'_> {
     pub(super) fn axis_field(&mut self, field: &Field, allowed: &[Dimension]) -> Option<Axis> {
         let (name, unit) = from_pest::axis(&field.value, self.problems)?;
-        let text = Text { text: unit.node, span: field.value.place(unit.range), exact: field.value.exact };
+        let text =
+            Text { text: unit.node, span: field.value.place(unit.range), exact: field.value.exact };
         let unit = self.unit(&text)?;
         if !allowed.contains(&unit.dimension) {
             self.problems.push(
-                Problem::error("unit-mismatch", format!("`{}` cannot be {}", field.key.text, unit.dimension.in_words()))
-                    .at(&text.span)
-                    .help("write for instance `axis distance in m` or `axis time in s`; `time time in s`"),
+                Problem::error(
+                    "unit-mismatch",
+                    format!("`{}` cannot be {}", field.key.text, unit.dimension.in_words()),
+                )
+                .at(&text.span)
+                .help(
+                    "write for instance `axis distance in m` or `axis time in s`; `time time in s`",
+                ),
             );
             return None;
         }
@@ -30,7 +40,8 @@ impl Checker<'_> {
     pub(super) fn zone(&mut self, block: &Block) -> Option<Zone> {
         let (condition, condition_words) = match block.field("where") {
             Some(field) => {
-                let unconfirmed = if block.field("unconfirmed").is_some() { self.to_be_confirmed() } else { "" };
+                let unconfirmed =
+                    if block.field("unconfirmed").is_some() { self.to_be_confirmed() } else { "" };
                 (Some(self.section_condition(field)?), normalised(&field.value.text) + unconfirmed)
             }
             None => (None, String::new()),
@@ -40,7 +51,8 @@ impl Checker<'_> {
             Some(field) => {
                 let phrase = from_pest::expression(&field.value, self.problems)?;
                 self.assumed.extend(condition.clone());
-                let mut scope = Scope { zone: Some(block.name_text().to_string()), ..Scope::section() };
+                let mut scope =
+                    Scope { zone: Some(block.name_text().to_string()), ..Scope::section() };
                 let expr = self.expr(&phrase, &field.value, &mut scope);
                 self.assumed.clear();
                 let expr = expr?;
@@ -59,7 +71,8 @@ impl Checker<'_> {
         })
     }
 
-    /// The dimension of the axis; that of the usual one if the protocol has none, which is reported elsewhere.
+    /// The dimension of the axis; that of the usual one if the protocol has none, which is reported
+    /// elsewhere.
     pub(super) fn axis_dimension(&self) -> Dimension {
         self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension)
     }
@@ -79,7 +92,10 @@ impl Checker<'_> {
         let otherwise = self.on_fault(block, "otherwise", &["not used", "stop", "note"])?;
         Some(Check {
             name: block.name_text().to_string(),
-            title: block.title.as_ref().map_or_else(|| block.name_text().replace('_', " "), |title| title.text.clone()),
+            title: block
+                .title
+                .as_ref()
+                .map_or_else(|| block.name_text().replace('_', " "), |title| title.text.clone()),
             require,
             inputs: scope.inputs,
             unless,
@@ -89,22 +105,34 @@ impl Checker<'_> {
         })
     }
 
-    /// The track record has samples of its own: a check cannot combine it with simulation or measurement.
+    /// The track record has samples of its own: a check cannot combine it with simulation or
+    /// measurement.
     pub(super) fn inputs_of_one_record(&mut self, inputs: &[Input]) -> Option<()> {
         let track = |input: &Input| input.signal.as_ref().is_some_and(|signal| signal.track);
         let Some(first) = inputs.first() else { return Some(()) };
-        let Some(other) = inputs.iter().find(|input| track(input) != track(first)) else { return Some(()) };
+        let Some(other) = inputs.iter().find(|input| track(input) != track(first)) else {
+            return Some(());
+        };
         self.problems.push(
-            Problem::error("mixed-records", "a check uses either the track record or the records of simulation and measurement")
-                .at(&other.span)
-                .also(&first.span, "the other record")
-                .help("write two checks"),
+            Problem::error(
+                "mixed-records",
+                "a check uses either the track record or the records of simulation and measurement",
+            )
+            .at(&other.span)
+            .also(&first.span, "the other record")
+            .help("write two checks"),
         );
         None
     }
 
-    /// What is done with a fault: one of the treatments that the field allows; by default the section is not used.
-    pub(super) fn on_fault(&mut self, block: &Block, key: &str, treatments: &[&str]) -> Option<OnFault> {
+    /// What is done with a fault: one of the treatments that the field allows; by default the
+    /// section is not used.
+    pub(super) fn on_fault(
+        &mut self,
+        block: &Block,
+        key: &str,
+        treatments: &[&str],
+    ) -> Option<OnFault> {
         let Some(field) = block.field(key) else { return Some(OnFault::NotUsed) };
         let word = self.choice_field(field)?;
         match word.as_str() {
@@ -143,8 +171,12 @@ impl Checker<'_> {
                 "sections" | FOUND_SECTIONS => {}
                 "whole records" => rules.whole_records = true,
                 other => {
-                    let problem = Problem::error("unknown-choice", format!("`use` cannot be `{other}`")).at(&field.value.span);
-                    self.problems.push(problem.suggest(other, ["sections", FOUND_SECTIONS, "whole records"]));
+                    let problem =
+                        Problem::error("unknown-choice", format!("`use` cannot be `{other}`"))
+                            .at(&field.value.span);
+                    self.problems.push(
+                        problem.suggest(other, ["sections", FOUND_SECTIONS, "whole records"]),
+                    );
                 }
             }
         }
@@ -152,8 +184,11 @@ impl Checker<'_> {
             let name = normalised(&field.value.text);
             rules.zone = self.names.columns.iter().position(|datum| datum.name == name);
             if rules.zone.is_none() {
-                let known: Vec<String> = self.names.columns.iter().map(|datum| datum.name.clone()).collect();
-                let problem = Problem::error("unknown-name", format!("no section column is called `{name}`")).at(&field.value.span);
+                let known: Vec<String> =
+                    self.names.columns.iter().map(|datum| datum.name.clone()).collect();
+                let problem =
+                    Problem::error("unknown-name", format!("no section column is called `{name}`"))
+                        .at(&field.value.span);
                 self.problems.push(problem.suggest(&name, known.iter().map(String::as_str)));
             }
         }
@@ -170,12 +205,19 @@ impl Checker<'_> {
         rules.margin = block.field("margin").and_then(|field| self.along_axis(field, false));
         rules.keep = block.field("keep").and_then(|field| self.keep(field));
         if let Some(field) = block.field("percentiles") {
-            let word = self.choice_field(field).unwrap_or_else(|| Method::Linear.name().to_string());
+            let word =
+                self.choice_field(field).unwrap_or_else(|| Method::Linear.name().to_string());
             match Method::from_name(&word) {
                 Some(method) => rules.percentiles = method,
                 None => {
-                    let problem = Problem::error("unknown-choice", format!("`{word}` is not a percentile rule")).at(&field.value.span);
-                    self.problems.push(problem.suggest(&word, Method::ALL.iter().map(|method| method.name())));
+                    let problem = Problem::error(
+                        "unknown-choice",
+                        format!("`{word}` is not a percentile rule"),
+                    )
+                    .at(&field.value.span);
+                    self.problems.push(
+                        problem.suggest(&word, Method::ALL.iter().map(|method| method.name())),
+                    );
                 }
             }
         }
@@ -188,12 +230,18 @@ impl Checker<'_> {
     }
 
     pub(super) fn divisor(&mut self, block: Option<&Block>) -> usize {
-        let Some(field) = block.and_then(|block| block.field("standard deviation")) else { return 1 };
+        let Some(field) = block.and_then(|block| block.field("standard deviation")) else {
+            return 1;
+        };
         match self.choice_field(field).as_deref().unwrap_or("n-1") {
             "n-1" => 1,
             "n" => 0,
             other => {
-                let problem = Problem::error("unknown-choice", format!("`{other}` is not a divisor of the variance")).at(&field.value.span);
+                let problem = Problem::error(
+                    "unknown-choice",
+                    format!("`{other}` is not a divisor of the variance"),
+                )
+                .at(&field.value.span);
                 self.problems.push(problem.help("write `n-1` or `n`"));
                 1
             }
@@ -202,7 +250,9 @@ impl Checker<'_> {
 
     /// What counts as an independent unit, for n and for confidence intervals.
     pub(super) fn independent(&mut self, block: Option<&Block>) -> Independent {
-        let Some(field) = block.and_then(|block| block.field("independent")) else { return Independent::Site };
+        let Some(field) = block.and_then(|block| block.field("independent")) else {
+            return Independent::Site;
+        };
         let Some(word) = self.choice_field(field) else { return Independent::Site };
         let column = self.campaign_column(&word, &field.value.span);
         match (word.as_str(), column) {
@@ -210,29 +260,42 @@ impl Checker<'_> {
             ("section", _) => Independent::Section,
             (_, Some(index)) => Independent::Column(index),
             _ => {
-                let known: Vec<String> = self.names.columns.iter().map(|datum| datum.name.clone()).collect();
+                let known: Vec<String> =
+                    self.names.columns.iter().map(|datum| datum.name.clone()).collect();
                 let says = format!("`{word}` is neither `site`, `section` nor a section column");
                 let known = known.iter().map(String::as_str).chain(["site", "section", "campaign"]);
-                self.problems.push(Problem::error("unknown-name", says).at(&field.value.span).suggest(&word, known));
+                self.problems.push(
+                    Problem::error("unknown-name", says)
+                        .at(&field.value.span)
+                        .suggest(&word, known),
+                );
                 Independent::Site
             }
         }
     }
 
-    /// The zones of the protocol and the words of the zone column must agree; otherwise some sections would have no zone.
+    /// The zones of the protocol and the words of the zone column must agree; otherwise some
+    /// sections would have no zone.
     pub(super) fn zones_match(&mut self, rules: &SectionRules) {
         let Some(index) = rules.zone else {
             if let Some(block) = self.blocks.iter().find(|block| block.kind.text == "zone") {
-                let problem = Problem::error("no-zone-column", "there are zones, but no section column states the zone of a section")
-                    .at(block.span());
+                let problem = Problem::error(
+                    "no-zone-column",
+                    "there are zones, but no section column states the zone of a section",
+                )
+                .at(block.span());
                 self.problems.push(problem.help("add to `sections`: `zone zone`"));
             }
             return;
         };
         let datum = self.names.columns[index].clone();
         let DatumKind::Words(words) = &datum.kind else {
-            let problem = Problem::error("zone-column", "the zone column must be a choice of words").at(&datum.span);
-            self.problems.push(problem.help("write `one of zones`, which stands for the names of the zone blocks"));
+            let problem =
+                Problem::error("zone-column", "the zone column must be a choice of words")
+                    .at(&datum.span);
+            self.problems.push(
+                problem.help("write `one of zones`, which stands for the names of the zone blocks"),
+            );
             return;
         };
         self.zone = Some(Expr {
@@ -241,21 +304,32 @@ impl Checker<'_> {
             span: Origin { span: datum.span.clone(), words: datum.name.as_str().into() },
         });
         for word in words.iter().filter(|word| !self.zone_names.contains(word)) {
-            let problem = Problem::error("unknown-zone", format!("sections may be of zone {word}, which has no block")).at(&datum.span);
-            self.problems.push(problem.help(format!("add a block `zone {word}`, or declare the column with `one of zones`")));
+            let problem = Problem::error(
+                "unknown-zone",
+                format!("sections may be of zone {word}, which has no block"),
+            )
+            .at(&datum.span);
+            self.problems.push(problem.help(format!(
+                "add a block `zone {word}`, or declare the column with `one of zones`"
+            )));
         }
         let strangers: Vec<Block> = self
             .blocks
             .iter()
-            .filter(|block| block.kind.text == "zone" && !words.iter().any(|word| word == block.name_text()))
+            .filter(|block| {
+                block.kind.text == "zone" && !words.iter().any(|word| word == block.name_text())
+            })
             .cloned()
             .collect();
         for block in strangers {
             self.problems.push(
-                Problem::error("unknown-zone", format!("no section can be of zone {}", block.name_text()))
-                    .at(block.span())
-                    .also(&datum.span, "its words are those of the zone column")
-                    .help("declare the column with `one of zones`"),
+                Problem::error(
+                    "unknown-zone",
+                    format!("no section can be of zone {}", block.name_text()),
+                )
+                .at(block.span())
+                .also(&datum.span, "its words are those of the zone column")
+                .help("declare the column with `one of zones`"),
             );
         }
     }

@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 
 use super::Checker;
 use super::names::bare_word;
-use super::plan::{Datum, DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Step, Taken, Type};
+use super::plan::{
+    Datum, DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Step, Taken, Type,
+};
 use super::scope::{Reduce, Scope};
 use super::steps::after;
 use crate::catalog::{METRICS, MetricEntry, REDUCERS, Reducer, STATISTICS, Statistic};
@@ -14,7 +16,8 @@ use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase};
 use crate::units::Unit;
 
-/// The meaning of a statistic's name in the bound of a limit, and how to limit an expression of values instead.
+/// The meaning of a statistic's name in the bound of a limit, and how to limit an expression of
+/// values instead.
 pub(super) const LIMITS_NOT_VALUES: &str = "in a limit, the name of a statistic stands for the limit of that statistic, not for its \
     value; an expression of values stands before the limit: `limit (mean + 3 * std) 60 kN`";
 
@@ -26,14 +29,28 @@ pub(super) const CAMPAIGN: &str = "campaign";
 
 impl Checker<'_> {
     /// A value taken from the own signal of the quantity.
-    pub(super) fn own_reducer(&mut self, reducer: Reducer, span: Origin, scope: &mut Scope) -> Option<Expr> {
+    pub(super) fn own_reducer(
+        &mut self,
+        reducer: Reducer,
+        span: Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
         self.percentile_range(reducer, &span)?;
         let Some(Reduce { own: Some(dimension), axis, side, .. }) = scope.reduce else {
             let what = reducer.in_words();
-            let problem = Problem::error("no-signal", format!("`{what}` needs a signal, and there is none here")).at(&span);
-            let of_sections = scope.group.as_ref().is_some_and(|group| group.values.is_none() && scope.limits.is_none());
+            let problem = Problem::error(
+                "no-signal",
+                format!("`{what}` needs a signal, and there is none here"),
+            )
+            .at(&span);
+            let of_sections = scope
+                .group
+                .as_ref()
+                .is_some_and(|group| group.values.is_none() && scope.limits.is_none());
             self.problems.push(if of_sections {
-                problem.help(format!("of the sections there are only data: `{what} of speed`, `{what} of length`"))
+                problem.help(format!(
+                    "of the sections there are only data: `{what} of speed`, `{what} of length`"
+                ))
             } else if scope.reduce.is_some() {
                 problem.help(format!("name the signal: `{what} of ...`"))
             } else {
@@ -44,7 +61,14 @@ impl Checker<'_> {
         let ty = Type::Number(reducer.gives(dimension, axis));
         let kind = Kind::Input(add_input(
             scope,
-            Input { taken: Taken::Reduced(reducer), signal: None, chain: Vec::new(), over: None, side, span: span.span.clone() },
+            Input {
+                taken: Taken::Reduced(reducer),
+                signal: None,
+                chain: Vec::new(),
+                over: None,
+                side,
+                span: span.span.clone(),
+            },
         ));
         Some(Expr { kind, ty, span })
     }
@@ -52,8 +76,13 @@ impl Checker<'_> {
     fn percentile_range(&mut self, reducer: Reducer, span: &Span) -> Option<()> {
         match reducer {
             Reducer::Percentile(percent) if !(0.0..=100.0).contains(&percent) => {
-                self.problems
-                    .push(Problem::error("out-of-range", format!("a percentile must be from 0 to 100, this is {percent}")).at(span));
+                self.problems.push(
+                    Problem::error(
+                        "out-of-range",
+                        format!("a percentile must be from 0 to 100, this is {percent}"),
+                    )
+                    .at(span),
+                );
                 None
             }
             _ => Some(()),
@@ -61,7 +90,12 @@ impl Checker<'_> {
     }
 
     /// The reducer of `NAME of signal`.
-    pub(super) fn reducer(&mut self, reducer: &Phrase, text: &Text, of_records: bool) -> Option<Reducer> {
+    pub(super) fn reducer(
+        &mut self,
+        reducer: &Phrase,
+        text: &Text,
+        of_records: bool,
+    ) -> Option<Reducer> {
         let place = text.place(reducer.range.clone());
         let found = match &reducer.node {
             Node::Percentile(percent) => Some(Reducer::Percentile(*percent)),
@@ -71,11 +105,19 @@ impl Checker<'_> {
         let Some(found) = found else {
             let word = if let Node::Path(path) = &reducer.node { path.as_str() } else { "" };
             if !self.is_failed(word) {
-                let numbers = self.names.parameter_blocks.keys().chain(self.names.defines.keys()).cloned().collect::<Vec<_>>();
+                let numbers = self
+                    .names
+                    .parameter_blocks
+                    .keys()
+                    .chain(self.names.defines.keys())
+                    .cloned()
+                    .collect::<Vec<_>>();
                 let reducers = REDUCERS.iter().map(|entry| entry.name).filter(|_| of_records);
                 let known: Vec<&str> = reducers.chain(numbers.iter().map(String::as_str)).collect();
-                let says = format!("`{word} of` is neither a value of a signal nor a share of a number");
-                self.problems.push(Problem::error("unknown-reducer", says).at(&place).suggest(word, known));
+                let says =
+                    format!("`{word} of` is neither a value of a signal nor a share of a number");
+                self.problems
+                    .push(Problem::error("unknown-reducer", says).at(&place).suggest(word, known));
             }
             return None;
         };
@@ -84,14 +126,24 @@ impl Checker<'_> {
     }
 
     /// `range of curvature`: a value taken from a named signal.
-    pub(super) fn reduced(&mut self, reducer: &Phrase, signal: &Phrase, text: &Text, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+    pub(super) fn reduced(
+        &mut self,
+        reducer: &Phrase,
+        signal: &Phrase,
+        text: &Text,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
         let place = text.place(reducer.range.clone());
         let found = self.reducer(reducer, text, scope.reduce.is_some())?;
         let Some(Reduce { axis, side, .. }) = scope.reduce else {
             self.problems.push(
                 Problem::error(
                     "no-records",
-                    format!("`{} of ...` needs the records of a section, which are not available here", found.in_words()),
+                    format!(
+                        "`{} of ...` needs the records of a section, which are not available here",
+                        found.in_words()
+                    ),
                 )
                 .at(span),
             );
@@ -107,7 +159,9 @@ impl Checker<'_> {
             _ => (signal, None),
         };
         let (signal, chain) = match &signal.node {
-            Node::Through(inner, filter) if over.is_none() => (inner.as_ref(), self.window_of(filter, text)?),
+            Node::Through(inner, filter) if over.is_none() => {
+                (inner.as_ref(), self.window_of(filter, text)?)
+            }
             _ => (signal, Vec::new()),
         };
         let signal = self.signal(signal, text, &at);
@@ -118,11 +172,19 @@ impl Checker<'_> {
         let signal = signal?;
         let axis = over.as_ref().map_or(axis, |over| over.dimension);
         let ty = Type::Number(found.gives(after(&chain, signal.dimension), axis));
-        let input = Input { taken: Taken::Reduced(found), signal: Some(signal), chain, over, side, span: span.span.clone() };
+        let input = Input {
+            taken: Taken::Reduced(found),
+            signal: Some(signal),
+            chain,
+            over,
+            side,
+            span: span.span.clone(),
+        };
         Some(Expr { kind: Kind::Input(add_input(scope, input)), ty, span: span.clone() })
     }
 
-    /// The steps of a filter that stands last before a number is taken: there, windows may be among them.
+    /// The steps of a filter that stands last before a number is taken: there, windows may be among
+    /// them.
     fn window_of(&mut self, filter: &At<String>, text: &Text) -> Option<Vec<Step>> {
         let steps = self.filter_named(&filter.node, &text.place(filter.range.clone()))?;
         self.step_order(&steps, false)?;
@@ -139,8 +201,10 @@ impl Checker<'_> {
         scope: &mut Scope,
     ) -> Option<Expr> {
         let (Some(reduce), [argument]) = (scope.reduce, arguments) else {
-            let says =
-                format!("`{}(...)` must contain one value of a signal; it can be used in the value of a quantity or in a check", name.node);
+            let says = format!(
+                "`{}(...)` must contain one value of a signal; it can be used in the value of a quantity or in a check",
+                name.node
+            );
             self.problems.push(Problem::error("side", says).at(span));
             return None;
         };
@@ -154,7 +218,10 @@ impl Checker<'_> {
     pub(super) fn path(&mut self, path: &str, span: &Origin, scope: &mut Scope) -> Option<Expr> {
         let expr = |kind, ty| Some(Expr { kind, ty, span: span.clone() });
         if scope.words.iter().any(|word| word == path) {
-            return expr(Kind::Constant(Scalar::Word(path.to_string())), Type::Word(scope.words.clone()));
+            return expr(
+                Kind::Constant(Scalar::Word(path.to_string())),
+                Type::Word(scope.words.clone()),
+            );
         }
         if let Some(pair) = scope.pair {
             match path {
@@ -175,8 +242,12 @@ impl Checker<'_> {
             return expr(Kind::LimitOf(path.to_string()), Type::Number(*dimension));
         }
         if let Some(statistic) = Statistic::named(path).filter(|_| scope.limits.is_some()) {
-            let says = format!("there is no other limit of the {} that this could refer to", statistic.title(self.ddof));
-            self.problems.push(Problem::error("no-such-limit", says).at(span).help(LIMITS_NOT_VALUES));
+            let says = format!(
+                "there is no other limit of the {} that this could refer to",
+                statistic.title(self.ddof)
+            );
+            self.problems
+                .push(Problem::error("no-such-limit", says).at(span).help(LIMITS_NOT_VALUES));
             return None;
         }
         if let Some(reducer) = Reducer::named(path) {
@@ -194,7 +265,9 @@ impl Checker<'_> {
         if let Some(define) = self.names.defines.get(path).cloned() {
             self.used_defines.insert(path.to_string());
             self.unconfirmed |= self.names.unconfirmed.contains_key(path);
-            return self.inside("define", path, span, |checker| checker.expr(&define.phrase, &define.text, scope));
+            return self.inside("define", path, span, |checker| {
+                checker.expr(&define.phrase, &define.text, scope)
+            });
         }
         if matches!(path, "true" | "false") {
             return expr(Kind::Constant(Scalar::Flag(path == "true")), Type::Flag);
@@ -213,14 +286,19 @@ impl Checker<'_> {
         None
     }
 
-    /// `start`, `end` and `length` of the section on the axis, unless the protocol has columns of these names.
+    /// `start`, `end` and `length` of the section on the axis, unless the protocol has columns of
+    /// these names.
     fn extent_path(&self, path: &str, span: &Origin, scope: &Scope) -> Option<Expr> {
         let axis = self.axis.as_ref().filter(|_| scope.section)?.unit.dimension;
         let number = |kind| Expr { kind, ty: Type::Number(axis), span: span.clone() };
         match path {
             "start" => Some(number(Kind::Start)),
             "end" => Some(number(Kind::End)),
-            "length" => Some(number(Kind::Binary(Operator::Subtract, Box::new(number(Kind::End)), Box::new(number(Kind::Start))))),
+            "length" => Some(number(Kind::Binary(
+                Operator::Subtract,
+                Box::new(number(Kind::End)),
+                Box::new(number(Kind::Start)),
+            ))),
             _ => None,
         }
     }
@@ -229,7 +307,11 @@ impl Checker<'_> {
     fn datum_path(&mut self, path: &str, span: &Origin, scope: &Scope) -> Option<Option<Expr>> {
         let (role, name) = path.split_once('.').map_or(("", path), |(role, name)| (role, name));
         let of = |data: &[super::plan::Datum], wanted: &str| {
-            if role.is_empty() || role == wanted { data.iter().position(|datum| datum.name == name) } else { None }
+            if role.is_empty() || role == wanted {
+                data.iter().position(|datum| datum.name == name)
+            } else {
+                None
+            }
         };
         let vehicle = of(&self.names.vehicle, "vehicle");
         let column = of(&self.names.columns, "section").or_else(|| {
@@ -238,9 +320,12 @@ impl Checker<'_> {
         });
         if column.is_some() && vehicle.is_some() {
             self.problems.push(
-                Problem::error("ambiguous", format!("`{name}` is both a vehicle datum and a section column"))
-                    .at(span)
-                    .help(format!("write `vehicle.{name}` or `section.{name}`")),
+                Problem::error(
+                    "ambiguous",
+                    format!("`{name}` is both a vehicle datum and a section column"),
+                )
+                .at(span)
+                .help(format!("write `vehicle.{name}` or `section.{name}`")),
             );
             return Some(None);
         }
@@ -248,12 +333,18 @@ impl Checker<'_> {
             let is_zone = matches!(self.zone.as_ref().map(|zone| &zone.kind), Some(Kind::Column(zone)) if *zone == index);
             let ty = datum_type(&self.names.columns[index].kind);
             if let Some(zone) = scope.zone.clone().filter(|_| is_zone) {
-                return Some(Some(Expr { kind: Kind::Constant(Scalar::Word(zone)), ty, span: span.clone() }));
+                return Some(Some(Expr {
+                    kind: Kind::Constant(Scalar::Word(zone)),
+                    ty,
+                    span: span.clone(),
+                }));
             }
             if scope.section {
                 return Some(Some(Expr { kind: Kind::Column(index), ty, span: span.clone() }));
             }
-            let says = format!("`{path}` differs between sections, but this expression has one value for all sections");
+            let says = format!(
+                "`{path}` differs between sections, but this expression has one value for all sections"
+            );
             let problem = Problem::error("no-section", says).at(span);
             // Only the scope of limits has the vehicle but no section.
             self.problems.push(match (scope.vehicle, is_zone) {
@@ -270,15 +361,21 @@ impl Checker<'_> {
             return Some(Some(Expr { kind: Kind::Vehicle(index), ty, span: span.clone() }));
         }
         self.problems.push(
-            Problem::error("no-vehicle", format!("`{path}` depends on the vehicle; expected a number that the protocol fixes"))
-                .at(span)
-                .help("make it a `parameter`, which a campaign can set"),
+            Problem::error(
+                "no-vehicle",
+                format!(
+                    "`{path}` depends on the vehicle; expected a number that the protocol fixes"
+                ),
+            )
+            .at(span)
+            .help("make it a `parameter`, which a campaign can set"),
         );
         Some(None)
     }
 
-    /// The column that says to which campaign a section belongs: it need not be declared, and is there once something asks for it. A column
-    /// that the protocol declares by this name goes before it.
+    /// The column that says to which campaign a section belongs: it need not be declared, and is
+    /// there once something asks for it. A column that the protocol declares by this name goes
+    /// before it.
     pub(super) fn campaign_column(&mut self, name: &str, span: &Span) -> Option<usize> {
         if let Some(known) = self.names.columns.iter().position(|datum| datum.name == name) {
             return Some(known);
@@ -302,7 +399,9 @@ impl Checker<'_> {
     pub(super) fn is_number_name(&self, phrase: &Phrase) -> bool {
         let Node::Path(path) = &phrase.node else { return false };
         let datum = |role: &str, data: &[super::plan::Datum], name: &str| {
-            data.iter().any(|datum| datum.name == name || path.strip_prefix(role).is_some_and(|rest| rest == datum.name))
+            data.iter().any(|datum| {
+                datum.name == name || path.strip_prefix(role).is_some_and(|rest| rest == datum.name)
+            })
         };
         Reducer::named(path).is_none()
             && (self.names.parameter_blocks.contains_key(path)
@@ -323,22 +422,34 @@ impl Checker<'_> {
         }
         if self.is_signal(path) {
             self.problems.push(
-                Problem::error("signal-not-number", format!("expected a number, `{path}` is a signal"))
-                    .at(span)
-                    .help(format!("take a number from it: `mean of {path}`")),
+                Problem::error(
+                    "signal-not-number",
+                    format!("expected a number, `{path}` is a signal"),
+                )
+                .at(span)
+                .help(format!("take a number from it: `mean of {path}`")),
             );
             return;
         }
         let digits = path.find(|c: char| !c.is_ascii_digit()).unwrap_or(0);
         if digits > 0 {
-            let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", &path[digits..])).at(span);
-            self.problems.push(match Unit::parse(&path[digits..]).err().and_then(|unknown| unknown.near) {
-                Some(near) => problem.help(format!("did you mean `{} {near}`?", &path[..digits])),
-                None => problem,
-            });
+            let problem = Problem::error(
+                "unknown-unit",
+                format!("`{}` is not a known unit", &path[digits..]),
+            )
+            .at(span);
+            self.problems.push(
+                match Unit::parse(&path[digits..]).err().and_then(|unknown| unknown.near) {
+                    Some(near) => {
+                        problem.help(format!("did you mean `{} {near}`?", &path[..digits]))
+                    }
+                    None => problem,
+                },
+            );
             return;
         }
-        let mut known: Vec<String> = self.names.parameter_blocks.keys().chain(self.names.defines.keys()).cloned().collect();
+        let mut known: Vec<String> =
+            self.names.parameter_blocks.keys().chain(self.names.defines.keys()).cloned().collect();
         if scope.pair.is_some() {
             known.extend(["simulated".to_string(), "measured".to_string()]);
         }
@@ -376,7 +487,8 @@ impl Checker<'_> {
         );
     }
 
-    /// The choice that a bare word stands for: the word itself, or the value of the choice parameter of this name.
+    /// The choice that a bare word stands for: the word itself, or the value of the choice
+    /// parameter of this name.
     pub(super) fn choice_word(&mut self, word: &str, span: &Span) -> Option<String> {
         if !self.names.parameter_blocks.contains_key(word) {
             return Some(word.to_string());

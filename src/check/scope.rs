@@ -75,12 +75,18 @@ impl Scope {
     }
 
     pub fn reducing(own: Option<Dimension>, axis: Dimension) -> Self {
-        Self { reduce: Some(Reduce { own, axis, side: InputSide::Own, metrics: false }), ..Self::new(true, true) }
+        Self {
+            reduce: Some(Reduce { own, axis, side: InputSide::Own, metrics: false }),
+            ..Self::new(true, true)
+        }
     }
 
     /// As [`Self::reducing`], with metrics of the own signal.
     pub fn comparing(own: Option<Dimension>, axis: Dimension) -> Self {
-        Self { reduce: Some(Reduce { own, axis, side: InputSide::Own, metrics: own.is_some() }), ..Self::new(true, true) }
+        Self {
+            reduce: Some(Reduce { own, axis, side: InputSide::Own, metrics: own.is_some() }),
+            ..Self::new(true, true)
+        }
     }
 
     pub fn pair(dimension: Dimension) -> Self {

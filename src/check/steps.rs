@@ -13,12 +13,14 @@ use crate::syntax::from_pest;
 use crate::syntax::phrase::{At, Item, Node, Phrase, Step as Written_};
 use crate::units::Dimension;
 
-/// Largest number of steps of a chain, including those of the filters that it names. Each is a pass over every record and a signal
-/// in memory.
+/// Largest number of steps of a chain, including those of the filters that it names. Each is a pass
+/// over every record and a signal in memory.
 const MOST_STEPS: usize = 32;
-/// Finest step of a grid along a length, in m. It is finer than the resolution of the distance in a record.
+/// Finest step of a grid along a length, in m. It is finer than the resolution of the distance in a
+/// record.
 const FINEST_LENGTH: f64 = 1e-4;
-/// Finest step of a grid along the time, in s. Records of test runs have sampling rates up to about 10 kHz.
+/// Finest step of a grid along the time, in s. Records of test runs have sampling rates up to about
+/// 10 kHz.
 const FINEST_TIME: f64 = 1e-5;
 
 /// The values of the slots and options of a wording.
@@ -35,14 +37,17 @@ pub(super) struct Filled {
 impl Filled {
     fn option_said(&mut self, name: &'static str, place: &Span) -> Result<(), Problem> {
         if let Some((_, first)) = self.said.iter().find(|(said, _)| *said == name) {
-            return Err(Problem::error("duplicate-option", format!("`{name}` is stated twice")).at(place).also(first, "the first"));
+            return Err(Problem::error("duplicate-option", format!("`{name}` is stated twice"))
+                .at(place)
+                .also(first, "the first"));
         }
         self.said.push((name, place.clone()));
         Ok(())
     }
 }
 
-/// Smallest extent of a window or grid, in m or s. Smaller ones are mistakes: no record has so many samples.
+/// Smallest extent of a window or grid, in m or s. Smaller ones are mistakes: no record has so many
+/// samples.
 const SMALLEST_EXTENT: f64 = 1e-6;
 
 impl StepSpec {
@@ -86,7 +91,11 @@ impl Checker<'_> {
             return Some(());
         }
         let says = format!("the filter has {count} steps; there can be at most {MOST_STEPS}");
-        self.problems.push(Problem::error("too-large", says).at(at).help("filters that use each other twice double at every level"));
+        self.problems.push(
+            Problem::error("too-large", says)
+                .at(at)
+                .help("filters that use each other twice double at every level"),
+        );
         None
     }
 
@@ -96,12 +105,21 @@ impl Checker<'_> {
         }
         let Some(block) = self.names.filters.get(name).cloned() else {
             let names: Vec<&str> = self.names.filters.keys().map(String::as_str).collect();
-            let steps =
-                STEPS.iter().filter_map(|entry| if let Some(Part::Word(word)) = entry.form.head.first() { Some(*word) } else { None });
+            let steps = STEPS.iter().filter_map(|entry| {
+                if let Some(Part::Word(word)) = entry.form.head.first() {
+                    Some(*word)
+                } else {
+                    None
+                }
+            });
             let mut known = names;
             known.extend(steps);
             known.dedup();
-            self.problems.push(Problem::error("unknown-filter", format!("no filter is called `{name}`")).at(span).suggest(name, known));
+            self.problems.push(
+                Problem::error("unknown-filter", format!("no filter is called `{name}`"))
+                    .at(span)
+                    .suggest(name, known),
+            );
             return None;
         };
         let result = self.inside("filter", name, span, |checker| {
@@ -122,20 +140,24 @@ impl Checker<'_> {
         result
     }
 
-    /// Checks the order of steps. After a window, the samples of the whole record are no longer available for a filter. After
-    /// resampling over a length, frequencies are in cycles per length. A named filter (`part`) may be used after a resampling
-    /// elsewhere.
+    /// Checks the order of steps. After a window, the samples of the whole record are no longer
+    /// available for a filter. After resampling over a length, frequencies are in cycles per
+    /// length. A named filter (`part`) may be used after a resampling elsewhere.
     pub(super) fn step_order(&mut self, steps: &[Step], part: bool) -> Option<()> {
         let mut window: Option<&Step> = None;
         let mut resampled: Option<&Step> = None;
         for step in steps {
-            let whole_record = step.kind.is_filter() || matches!(step.kind, StepSpec::Resample { .. });
+            let whole_record =
+                step.kind.is_filter() || matches!(step.kind, StepSpec::Resample { .. });
             if let Some(before) = window.filter(|_| whole_record) {
                 self.problems.push(
-                    Problem::error("step-order", "a filter over the whole record cannot follow a window inside the section")
-                        .at(&step.span)
-                        .also(&before.span, "the window")
-                        .help("put the filter before the window"),
+                    Problem::error(
+                        "step-order",
+                        "a filter over the whole record cannot follow a window inside the section",
+                    )
+                    .at(&step.span)
+                    .also(&before.span, "the window")
+                    .help("put the filter before the window"),
                 );
                 return None;
             }
@@ -143,18 +165,32 @@ impl Checker<'_> {
                 StepSpec::Window { .. } | StepSpec::RemoveMean => window = Some(step),
                 StepSpec::Resample { .. } => resampled = Some(step),
                 StepSpec::Butterworth { .. } | StepSpec::Transfer { .. } => {
-                    let over_length = resampled.filter(|step| matches!(step.kind, StepSpec::Resample { over_time: false, .. }));
+                    let over_length = resampled.filter(|step| {
+                        matches!(step.kind, StepSpec::Resample { over_time: false, .. })
+                    });
                     match over_length {
                         Some(before) if !step.per_length => {
-                            let problem = Problem::error("step-order", "after resampling over a length there are no frequencies in time")
-                                .at(&step.span);
-                            self.problems.push(problem.also(&before.span, "resampled here").help("write cycles per length: `0.33 1/m`"));
+                            let problem = Problem::error(
+                                "step-order",
+                                "after resampling over a length there are no frequencies in time",
+                            )
+                            .at(&step.span);
+                            self.problems.push(
+                                problem
+                                    .also(&before.span, "resampled here")
+                                    .help("write cycles per length: `0.33 1/m`"),
+                            );
                             return None;
                         }
                         None if step.per_length && !(part && resampled.is_none()) => {
-                            let problem =
-                                Problem::error("step-order", "cycles per length need a record with equal steps of length").at(&step.span);
-                            self.problems.push(problem.help("put `resample every 0.25 m` before it, or write a frequency in Hz"));
+                            let problem = Problem::error(
+                                "step-order",
+                                "cycles per length need a record with equal steps of length",
+                            )
+                            .at(&step.span);
+                            self.problems.push(problem.help(
+                                "put `resample every 0.25 m` before it, or write a frequency in Hz",
+                            ));
                             return None;
                         }
                         _ => {}
@@ -176,27 +212,40 @@ impl Checker<'_> {
                 Kind::Constant(Scalar::Flag(false)) => return Some(Vec::new()),
                 Kind::Constant(_) => {}
                 _ => {
-                    self.problems
-                        .push(Problem::error("not-constant", "the condition of a step can only depend on parameters").at(&condition.span));
+                    self.problems.push(
+                        Problem::error(
+                            "not-constant",
+                            "the condition of a step can only depend on parameters",
+                        )
+                        .at(&condition.span),
+                    );
                     return None;
                 }
             }
         }
         if let [part] = written.parts.as_slice()
             && let [At { node: Item::Word(word), range }] = part.as_slice()
-            && !STEPS.iter().any(|entry| entry.form.head == [Part::Word("magnitude")] && word == "magnitude")
+            && !STEPS
+                .iter()
+                .any(|entry| entry.form.head == [Part::Word("magnitude")] && word == "magnitude")
         {
             return self.filter_named(word, &text.place(range.clone()));
         }
         let written = self.with_choices(written, text, STEPS.iter().map(|entry| &entry.form));
-        let entry = self.find_form(&written, &span, "step", STEPS.iter().map(|entry| &entry.form))?;
+        let entry =
+            self.find_form(&written, &span, "step", STEPS.iter().map(|entry| &entry.form))?;
         let entry = &STEPS[entry];
         let filled = self.fill_form(&entry.form, &written, text, &span)?;
         Some(vec![self.spec(entry, &filled, &span)?])
     }
 
     /// Where no wording fits, words that are choice parameters are replaced by their values.
-    pub(super) fn with_choices<'f>(&mut self, mut step: Written_, text: &Text, mut forms: impl Iterator<Item = &'f Form>) -> Written_ {
+    pub(super) fn with_choices<'f>(
+        &mut self,
+        mut step: Written_,
+        text: &Text,
+        mut forms: impl Iterator<Item = &'f Form>,
+    ) -> Written_ {
         let Some(items) = step.parts.first_mut() else { return step };
         if forms.any(|form| fits(form, items)) {
             return step;
@@ -224,13 +273,25 @@ impl Checker<'_> {
         if let Some(index) = forms.clone().position(|form| fits(form, items)) {
             return Some(index);
         }
-        let said: Vec<&str> =
-            items.iter().filter_map(|item| if let Item::Word(word) = &item.node { Some(word.as_str()) } else { None }).collect();
-        let heads: Vec<&str> =
-            forms.clone().filter_map(|form| if let Some(Part::Word(word)) = form.head.first() { Some(*word) } else { None }).collect();
+        let said: Vec<&str> = items
+            .iter()
+            .filter_map(
+                |item| if let Item::Word(word) = &item.node { Some(word.as_str()) } else { None },
+            )
+            .collect();
+        let heads: Vec<&str> = forms
+            .clone()
+            .filter_map(|form| {
+                if let Some(Part::Word(word)) = form.head.first() { Some(*word) } else { None }
+            })
+            .collect();
         // `low pass` for `low-pass`.
         let joined = said.iter().take(2).copied().collect::<Vec<_>>().join("-");
-        let first = if heads.contains(&joined.as_str()) { joined.as_str() } else { said.first().copied().unwrap_or("") };
+        let first = if heads.contains(&joined.as_str()) {
+            joined.as_str()
+        } else {
+            said.first().copied().unwrap_or("")
+        };
         let wordings: Vec<String> = forms
             .filter(|form| matches!(form.head.first(), Some(Part::Word(word)) if *word == first || nearest(first, heads.iter().copied()) == Some(*word)))
             .map(|form| format!("`{}`", form.in_words()))
@@ -249,9 +310,19 @@ impl Checker<'_> {
         None
     }
 
-    pub(super) fn fill_form(&mut self, form: &Form, step: &Written_, text: &Text, span: &Span) -> Option<Filled> {
+    pub(super) fn fill_form(
+        &mut self,
+        form: &Form,
+        step: &Written_,
+        text: &Text,
+        span: &Span,
+    ) -> Option<Filled> {
         let mut filled = Filled {
-            options: form.numbers.iter().map(|option| Some((option.default?, Dimension::ONE))).collect(),
+            options: form
+                .numbers
+                .iter()
+                .map(|option| Some((option.default?, Dimension::ONE)))
+                .collect(),
             choices: form.choices.iter().map(|choice| choice.words[0]).collect(),
             ..Filled::default()
         };
@@ -268,11 +339,19 @@ impl Checker<'_> {
                 }
                 Part::Extent(name) => {
                     let (value, found) = self.constant_phrase(&item_phrase(item), text)?;
-                    self.suits(name, matches!(found, Dimension::LENGTH | Dimension::TIME), "a length or a time", found, &place)?;
+                    self.suits(
+                        name,
+                        matches!(found, Dimension::LENGTH | Dimension::TIME),
+                        "a length or a time",
+                        found,
+                        &place,
+                    )?;
                     self.positive(name, value, &place)?;
                     if value < SMALLEST_EXTENT {
                         let unit = if found == Dimension::TIME { "µs" } else { "µm" };
-                        let says = format!("the {name} is below 1 {unit}, finer than the samples of a record");
+                        let says = format!(
+                            "the {name} is below 1 {unit}, finer than the samples of a record"
+                        );
                         self.problems.push(Problem::error("out-of-range", says).at(&place));
                         return None;
                     }
@@ -281,7 +360,13 @@ impl Checker<'_> {
                 Part::Frequency(name) | Part::FrequencyOrZero(name) => {
                     let (value, found) = self.constant_phrase(&item_phrase(item), text)?;
                     let per_length = Dimension::ONE / Dimension::LENGTH;
-                    self.suits(name, found == Dimension::FREQUENCY || found == per_length, "a frequency", found, &place)?;
+                    self.suits(
+                        name,
+                        found == Dimension::FREQUENCY || found == per_length,
+                        "a frequency",
+                        found,
+                        &place,
+                    )?;
                     if !matches!(part, Part::FrequencyOrZero(_)) || value != 0.0 {
                         self.positive(name, value, &place)?;
                     }
@@ -295,11 +380,24 @@ impl Checker<'_> {
         Some(filled)
     }
 
-    pub(super) fn suits(&mut self, name: &str, ok: bool, needed: &str, found: Dimension, place: &Span) -> Option<()> {
+    pub(super) fn suits(
+        &mut self,
+        name: &str,
+        ok: bool,
+        needed: &str,
+        found: Dimension,
+        place: &Span,
+    ) -> Option<()> {
         if ok {
             return Some(());
         }
-        self.problems.push(Problem::error("unit-mismatch", format!("{name}: expected {needed}, this is {}", found.in_words())).at(place));
+        self.problems.push(
+            Problem::error(
+                "unit-mismatch",
+                format!("{name}: expected {needed}, this is {}", found.in_words()),
+            )
+            .at(place),
+        );
         None
     }
 
@@ -307,15 +405,28 @@ impl Checker<'_> {
         if value > 0.0 && value.is_finite() {
             return Some(());
         }
-        self.problems.push(Problem::error("out-of-range", format!("the {name} must be above zero")).at(place));
+        self.problems.push(
+            Problem::error("out-of-range", format!("the {name} must be above zero")).at(place),
+        );
         None
     }
 
     /// An option: `order 4`, `50 points`, `zero-phase`, or the name of a choice parameter.
-    fn option(&mut self, form: &Form, part: &[At<Item>], text: &Text, span: &Span, filled: &mut Filled) -> Option<()> {
-        let place = part.first().map_or_else(|| span.clone(), |first| text.place(first.range.start..part[part.len() - 1].range.end));
+    fn option(
+        &mut self,
+        form: &Form,
+        part: &[At<Item>],
+        text: &Text,
+        span: &Span,
+        filled: &mut Filled,
+    ) -> Option<()> {
+        let place = part.first().map_or_else(
+            || span.clone(),
+            |first| text.place(first.range.start..part[part.len() - 1].range.end),
+        );
         match part {
-            [At { node: Item::Word(word), .. }, value] | [value @ At { node: Item::Value(_), .. }, At { node: Item::Word(word), .. }] => {
+            [At { node: Item::Word(word), .. }, value]
+            | [value @ At { node: Item::Value(_), .. }, At { node: Item::Word(word), .. }] => {
                 if let Some(index) = form.numbers.iter().position(|option| option.name == word) {
                     self.note(filled.option_said(form.numbers[index].name, &place))?;
                     let (number, dimension) = self.constant_phrase(&item_phrase(value), text)?;
@@ -337,11 +448,24 @@ impl Checker<'_> {
             }
             _ => {}
         }
-        let mut known: Vec<String> = form.numbers.iter().map(|option| format!("{} <number>", option.name)).collect();
-        known.extend(form.choices.iter().flat_map(|choice| choice.words.iter().map(|word| (*word).to_string())));
-        let said = part.first().map_or(String::new(), |item| if let Item::Word(word) = &item.node { word.clone() } else { String::new() });
-        let what = if METRICS.iter().any(|entry| entry.form.head == form.head) { "metric" } else { "step" };
-        let problem = Problem::error("unknown-option", format!("this is not an option of the {what}")).at(&place);
+        let mut known: Vec<String> =
+            form.numbers.iter().map(|option| format!("{} <number>", option.name)).collect();
+        known.extend(
+            form.choices
+                .iter()
+                .flat_map(|choice| choice.words.iter().map(|word| (*word).to_string())),
+        );
+        let said = part.first().map_or(String::new(), |item| {
+            if let Item::Word(word) = &item.node { word.clone() } else { String::new() }
+        });
+        let what = if METRICS.iter().any(|entry| entry.form.head == form.head) {
+            "metric"
+        } else {
+            "step"
+        };
+        let problem =
+            Problem::error("unknown-option", format!("this is not an option of the {what}"))
+                .at(&place);
         self.problems.push(match nearest(&said, known.iter().map(String::as_str)) {
             Some(near) => problem.help(format!("did you mean `{near}`?")),
             None if known.is_empty() => problem.help("it has no option"),
@@ -361,8 +485,12 @@ impl Checker<'_> {
             return Some(());
         }
         let (finest, step) = (show_number(finest, *dimension), show_number(*step, *dimension));
-        let problem = Problem::error("out-of-range", format!("the step of {step} is finer than {finest}")).at(place);
-        self.problems.push(problem.help("a step far below the sample distance adds points but no information"));
+        let problem =
+            Problem::error("out-of-range", format!("the step of {step} is finer than {finest}"))
+                .at(place);
+        self.problems.push(
+            problem.help("a step far below the sample distance adds points but no information"),
+        );
         None
     }
 
@@ -389,29 +517,53 @@ impl Checker<'_> {
                     StepKind::BandPass => Band::BandPass(number(0), number(1)),
                     _ => Band::BandStop(number(0), number(1)),
                 };
-                if let (Some((low, a, _)), Some((high, b, place))) = (filled.numbers.first(), filled.numbers.get(1)) {
+                if let (Some((low, a, _)), Some((high, b, place))) =
+                    (filled.numbers.first(), filled.numbers.get(1))
+                {
                     self.suits("upper frequency", a == b, &a.in_words(), *b, place)?;
                     if low >= high {
-                        self.problems.push(Problem::error("out-of-range", "the lower frequency is not below the upper one").at(span));
+                        self.problems.push(
+                            Problem::error(
+                                "out-of-range",
+                                "the lower frequency is not below the upper one",
+                            )
+                            .at(span),
+                        );
                         return None;
                     }
                 }
                 let (order, _) = filled.options.first().copied().flatten()?;
                 if order.fract() != 0.0 || !(1.0..=20.0).contains(&order) {
                     self.problems.push(
-                        Problem::error("out-of-range", format!("the order must be a whole number from 1 to 20, this is {order}")).at(span),
+                        Problem::error(
+                            "out-of-range",
+                            format!(
+                                "the order must be a whole number from 1 to 20, this is {order}"
+                            ),
+                        )
+                        .at(span),
                     );
                     return None;
                 }
-                words.push(format!(", order {order}, {}, {}", filled.choices[0], filled.choices[1]));
+                words
+                    .push(format!(", order {order}, {}, {}", filled.choices[0], filled.choices[1]));
                 let phase = phase(filled.choices[0]);
-                let cutoff = if filled.choices[1] == "per-pass" { Cutoff::PerPass } else { Cutoff::AsApplied };
+                let cutoff = if filled.choices[1] == "per-pass" {
+                    Cutoff::PerPass
+                } else {
+                    Cutoff::AsApplied
+                };
                 StepSpec::Butterworth { band, order: order as usize, phase, cutoff }
             }
             StepKind::TransferFunction => {
                 let (gain, unit) = filled.options.first().copied().flatten()?;
                 factor = unit;
-                words.push(format!(", gain {}, {}, {}", show_number(gain, unit), filled.choices[0], filled.choices[1]));
+                words.push(format!(
+                    ", gain {}, {}, {}",
+                    show_number(gain, unit),
+                    filled.choices[0],
+                    filled.choices[1]
+                ));
                 self.transfer(entry, filled, span)?
             }
             StepKind::SlidingMean | StepKind::SlidingRms => {
@@ -424,7 +576,8 @@ impl Checker<'_> {
                     words.push(format!(", {}", filled.choices[1]));
                 }
                 self.not_too_fine(filled.numbers.get(1)?)?;
-                let ends = if filled.choices[0] == "integral" { Ends::Integral } else { Ends::Samples };
+                let ends =
+                    if filled.choices[0] == "integral" { Ends::Integral } else { Ends::Samples };
                 StepSpec::Window {
                     rms: entry.kind == StepKind::SlidingRms,
                     width: number(0),
@@ -436,13 +589,25 @@ impl Checker<'_> {
             }
             StepKind::Resample => {
                 self.not_too_fine(filled.numbers.first()?)?;
-                StepSpec::Resample { step: number(0), over_time: filled.numbers.first()?.1 == Dimension::TIME }
+                StepSpec::Resample {
+                    step: number(0),
+                    over_time: filled.numbers.first()?.1 == Dimension::TIME,
+                }
             }
             StepKind::RemoveMean => StepSpec::RemoveMean,
             StepKind::Magnitude => StepSpec::Magnitude,
         };
-        let per_length = filled.numbers.iter().any(|(_, dimension, _)| *dimension == Dimension::ONE / Dimension::LENGTH);
-        Some(Step { kind, words: words.join(" ").replace(" ,", ","), per_length, factor, span: span.clone() })
+        let per_length = filled
+            .numbers
+            .iter()
+            .any(|(_, dimension, _)| *dimension == Dimension::ONE / Dimension::LENGTH);
+        Some(Step {
+            kind,
+            words: words.join(" ").replace(" ,", ","),
+            per_length,
+            factor,
+            span: span.clone(),
+        })
     }
 }
 

@@ -9,9 +9,14 @@ use crate::problem::Problem;
 use crate::source::Span;
 
 impl Checker<'_> {
-    /// A transfer function: `transfer function poles 12.5 Hz quality 0.63 zero 12.5 Hz, gain 2`. Each frequency may be followed by
-    /// its quality factor.
-    pub(super) fn transfer(&mut self, entry: &StepEntry, filled: &Filled, span: &Span) -> Option<StepSpec> {
+    /// A transfer function: `transfer function poles 12.5 Hz quality 0.63 zero 12.5 Hz, gain 2`.
+    /// Each frequency may be followed by its quality factor.
+    pub(super) fn transfer(
+        &mut self,
+        entry: &StepEntry,
+        filled: &Filled,
+        span: &Span,
+    ) -> Option<StepSpec> {
         let mut numbers = filled.numbers.iter();
         let (_, dimension, _) = filled.numbers.first()?;
         // Poles and zeros.
@@ -27,7 +32,10 @@ impl Checker<'_> {
                 Part::Number(name, _) => {
                     let (quality, _, place) = numbers.next()?;
                     self.positive(name, *quality, place)?;
-                    found[which] = Some(Roots::Two { frequency: found[which]?.frequency(), quality: *quality });
+                    found[which] = Some(Roots::Two {
+                        frequency: found[which]?.frequency(),
+                        quality: *quality,
+                    });
                 }
                 _ => {
                     let (frequency, own, place) = numbers.next()?;
@@ -40,10 +48,12 @@ impl Checker<'_> {
         let [Some(poles), zeros] = found else { return None };
         let (gain, _) = filled.options.first().copied().flatten()?;
         if !(gain > 0.0 && gain.is_finite()) {
-            self.problems.push(Problem::error("out-of-range", "the gain must be above zero").at(span));
+            self.problems
+                .push(Problem::error("out-of-range", "the gain must be above zero").at(span));
             return None;
         }
-        let warping = if filled.choices[1] == "plain" { Warping::Plain } else { Warping::PreWarped };
+        let warping =
+            if filled.choices[1] == "plain" { Warping::Plain } else { Warping::PreWarped };
         let function = TransferFunction { poles, zeros, gain };
         Some(StepSpec::Transfer { function, phase: phase(filled.choices[0]), warping })
     }

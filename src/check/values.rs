@@ -4,8 +4,8 @@ use std::cell::RefCell;
 
 use super::plan::{Kind, Scalar};
 
-/// Values of the names in an expression. Each method may return an error that states why the value is missing; by default it is
-/// missing.
+/// Values of the names in an expression. Each method may return an error that states why the value
+/// is missing; by default it is missing.
 pub trait Values {
     fn vehicle(&self, _: usize) -> Result<Scalar, String> {
         Err("vehicle data are not known here".into())
@@ -27,7 +27,8 @@ pub trait Values {
     fn limit_of(&self, statistic: &str) -> Result<f64, String> {
         Err(format!("the limit of {statistic} is not known here"))
     }
-    /// By what share of the right side `<=` and `>=` may be missed: the rounding of numbers that were converted to SI and subtracted.
+    /// By what share of the right side `<=` and `>=` may be missed: the rounding of numbers that
+    /// were converted to SI and subtracted.
     fn rounding(&self) -> f64 {
         0.0
     }
@@ -100,8 +101,11 @@ pub fn leaf(kind: &Kind, values: &dyn Values) -> Result<Scalar, String> {
         Kind::Simulated => values.sides().map(|(simulated, _)| Scalar::Number(simulated)),
         Kind::Measured => values.sides().map(|(_, measured)| Scalar::Number(measured)),
         Kind::LimitOf(statistic) => values.limit_of(statistic).map(Scalar::Number),
-        Kind::Negative(_) | Kind::Not(_) | Kind::Power(..) | Kind::Binary(..) | Kind::Call(..) | Kind::Cases(..) => {
-            Err("an expression of several parts is no name".into())
-        }
+        Kind::Negative(_)
+        | Kind::Not(_)
+        | Kind::Power(..)
+        | Kind::Binary(..)
+        | Kind::Call(..)
+        | Kind::Cases(..) => Err("an expression of several parts is no name".into()),
     }
 }

@@ -16,7 +16,8 @@ use crate::units::Dimension;
 const VALIDATED: [&str; 2] = ["validated", "not validated"];
 /// Words of a verdict with a name.
 const HOLDS: [&str; 2] = ["holds", "does not hold"];
-/// Words of a report for a verdict that cannot be given or is not given yet. No verdict may use them.
+/// Words of a report for a verdict that cannot be given or is not given yet. No verdict may use
+/// them.
 const NEITHER: [&str; 2] = ["not assessable", "open"];
 /// Words in `of` that stand for all quantities of a kind.
 const KINDS: [&str; 3] = ["measured", "simulated", "compared"];
@@ -29,10 +30,23 @@ struct Names {
 
 impl Checker<'_> {
     /// All verdicts of the protocol, the overall one first.
-    pub(super) fn verdicts(&mut self, unnamed: Option<&Block>, head: &Block, quantities: &[Quantity]) -> Vec<VerdictRule> {
-        let blocks: Vec<Block> = self.blocks.iter().filter(|block| block.kind.text == "verdict" && block.name.is_some()).cloned().collect();
+    pub(super) fn verdicts(
+        &mut self,
+        unnamed: Option<&Block>,
+        head: &Block,
+        quantities: &[Quantity],
+    ) -> Vec<VerdictRule> {
+        let blocks: Vec<Block> = self
+            .blocks
+            .iter()
+            .filter(|block| block.kind.text == "verdict" && block.name.is_some())
+            .cloned()
+            .collect();
         let first = usize::from(unnamed.is_some() || blocks.is_empty());
-        let names = Names { names: blocks.iter().map(|block| block.name_text().to_string()).collect(), first };
+        let names = Names {
+            names: blocks.iter().map(|block| block.name_text().to_string()).collect(),
+            first,
+        };
         let mut verdicts = Vec::new();
         if first == 1 {
             verdicts.push(self.without_name(unnamed, head, quantities, &names));
@@ -46,11 +60,23 @@ impl Checker<'_> {
         verdicts
     }
 
-    fn without_name(&mut self, block: Option<&Block>, head: &Block, quantities: &[Quantity], names: &Names) -> VerdictRule {
+    fn without_name(
+        &mut self,
+        block: Option<&Block>,
+        head: &Block,
+        quantities: &[Quantity],
+        names: &Names,
+    ) -> VerdictRule {
         let all: Vec<usize> = (0..quantities.len()).collect();
-        let (words, own_words) = block.map_or_else(|| (VALIDATED.map(String::from), false), |block| self.verdict_words(block, VALIDATED));
+        let (words, own_words) = block.map_or_else(
+            || (VALIDATED.map(String::from), false),
+            |block| self.verdict_words(block, VALIDATED),
+        );
         let field = block.and_then(|block| block.field("validated"));
-        let rule = field.map_or_else(|| "when every limit holds".to_string(), |field| normalised(&field.value.text));
+        let rule = field.map_or_else(
+            || "when every limit holds".to_string(),
+            |field| normalised(&field.value.text),
+        );
         let decision = match field {
             Some(field) => self.decision(field, all, None, quantities, names),
             None => Decision::Limits { rule: Rule::EveryLimit, quantities: all },
@@ -71,9 +97,12 @@ impl Checker<'_> {
 
     fn with_name(&mut self, block: &Block, quantities: &[Quantity], names: &Names) -> VerdictRule {
         let (words, own_words) = self.verdict_words(block, HOLDS);
-        let (holds, person, of) = (block.field("holds"), block.field("judged by"), block.field("of"));
+        let (holds, person, of) =
+            (block.field("holds"), block.field("judged by"), block.field("of"));
         let about = self.about(of, quantities);
-        let mut criterion = holds.map_or_else(String::new, |field| format!("{} {}", words[0], normalised(&field.value.text)));
+        let mut criterion = holds.map_or_else(String::new, |field| {
+            format!("{} {}", words[0], normalised(&field.value.text))
+        });
         if let Some(of) = of {
             criterion = format!("{criterion} (of {})", normalised(&of.value.text));
         }
@@ -87,8 +116,13 @@ impl Checker<'_> {
             }
             (holds, _) => {
                 let says = match holds {
-                    None => format!("verdict `{}` has neither `holds` nor `judged by`", block.name_text()),
-                    Some(_) => format!("verdict `{}` has both `holds` and `judged by`", block.name_text()),
+                    None => format!(
+                        "verdict `{}` has neither `holds` nor `judged by`",
+                        block.name_text()
+                    ),
+                    Some(_) => {
+                        format!("verdict `{}` has both `holds` and `judged by`", block.name_text())
+                    }
                 };
                 let problem = Problem::error("verdict-rule", says).at(block.span());
                 self.problems.push(problem.help("write one of `holds` and `judged by`"));
@@ -113,7 +147,12 @@ impl Checker<'_> {
     /// The two words of a verdict, and whether the protocol states them.
     fn verdict_words(&mut self, block: &Block, default: [&str; 2]) -> ([String; 2], bool) {
         let Some(field) = block.field("words") else { return (default.map(String::from), false) };
-        let parts: Vec<String> = field.value.text.split(',').map(|word| normalised(word.trim().trim_matches('"'))).collect();
+        let parts: Vec<String> = field
+            .value
+            .text
+            .split(',')
+            .map(|word| normalised(word.trim().trim_matches('"')))
+            .collect();
         let wrong = match parts.as_slice() {
             [good, bad] if good == bad => Some("the two words of a verdict are the same".to_string()),
             [good, bad] if good.is_empty() || bad.is_empty() => Some("one of the two words is missing".to_string()),
@@ -140,8 +179,12 @@ impl Checker<'_> {
         let all = || (0..quantities.len()).collect();
         let Some(field) = of else { return all() };
         let Some(items) = from_pest::list(&field.value, self.problems) else { return all() };
-        let known: Vec<String> =
-            self.blocks.iter().filter(|block| block.kind.text == "quantity").map(|block| block.name_text().to_string()).collect();
+        let known: Vec<String> = self
+            .blocks
+            .iter()
+            .filter(|block| block.kind.text == "quantity")
+            .map(|block| block.name_text().to_string())
+            .collect();
         let mut found = BTreeSet::new();
         for item in &items {
             let name = item.node.as_str();
@@ -153,11 +196,20 @@ impl Checker<'_> {
                 let before = found.len();
                 found.extend((0..quantities.len()).filter(|&at| kind(&quantities[at]) == name));
                 if found.len() == before && !self.problems.any_error() {
-                    self.problems.push(Problem::error("unknown-quantity", format!("no quantity is {}", of_kind(name))).at(&at));
+                    self.problems.push(
+                        Problem::error(
+                            "unknown-quantity",
+                            format!("no quantity is {}", of_kind(name)),
+                        )
+                        .at(&at),
+                    );
                 }
             } else {
-                let problem = Problem::error("unknown-quantity", format!("there is no quantity `{name}`")).at(&at);
-                self.problems.push(problem.suggest(name, known.iter().map(String::as_str).chain(KINDS)));
+                let problem =
+                    Problem::error("unknown-quantity", format!("there is no quantity `{name}`"))
+                        .at(&at);
+                self.problems
+                    .push(problem.suggest(name, known.iter().map(String::as_str).chain(KINDS)));
             }
         }
         found.into_iter().collect()
@@ -166,44 +218,80 @@ impl Checker<'_> {
     /// Reports a field `of` where no limits count.
     fn needs_limits(&mut self, of: Option<&Field>, why: &str) {
         if let Some(field) = of {
-            let problem = Problem::error("verdict-of", format!("`of` names quantities whose limits count, but {why}")).at(&field.key.span);
+            let problem = Problem::error(
+                "verdict-of",
+                format!("`of` names quantities whose limits count, but {why}"),
+            )
+            .at(&field.key.span);
             self.problems.push(problem.help("remove `of`"));
         }
     }
 
-    fn decision(&mut self, field: &Field, about: Vec<usize>, of: Option<&Field>, quantities: &[Quantity], names: &Names) -> Decision {
+    fn decision(
+        &mut self,
+        field: &Field,
+        about: Vec<usize>,
+        of: Option<&Field>,
+        quantities: &[Quantity],
+        names: &Names,
+    ) -> Decision {
         let every = |quantities| Decision::Limits { rule: Rule::EveryLimit, quantities };
         let (count, of_limits) = match from_pest::verdict(&field.value, self.problems) {
             None | Some(Written::EveryLimit) => return every(about),
             Some(Written::AtLeast { count, of_limits }) => (count, of_limits),
             Some(Written::Over(over)) => {
                 self.needs_limits(of, "this rule uses other verdicts");
-                return self.over(&over, field, names).map_or_else(|| every(about), Decision::Verdicts);
+                return self
+                    .over(&over, field, names)
+                    .map_or_else(|| every(about), Decision::Verdicts);
             }
         };
         let (there, what) = match (of_limits, of) {
-            (true, _) => (about.iter().map(|&at| quantities[at].limits.len()).sum::<usize>(), "limits"),
+            (true, _) => {
+                (about.iter().map(|&at| quantities[at].limits.len()).sum::<usize>(), "limits")
+            }
             (false, Some(_)) => (about.len(), "quantities"),
-            (false, None) => (self.blocks.iter().filter(|block| block.kind.text == "quantity").count(), "quantities"),
+            (false, None) => (
+                self.blocks.iter().filter(|block| block.kind.text == "quantity").count(),
+                "quantities",
+            ),
         };
         match self.how_many(&count, field, there, what) {
-            Some(wanted) if of_limits => Decision::Limits { rule: Rule::AtLeastLimits(wanted), quantities: about },
-            Some(wanted) => Decision::Limits { rule: Rule::AtLeastQuantities(wanted), quantities: about },
+            Some(wanted) if of_limits => {
+                Decision::Limits { rule: Rule::AtLeastLimits(wanted), quantities: about }
+            }
+            Some(wanted) => {
+                Decision::Limits { rule: Rule::AtLeastQuantities(wanted), quantities: about }
+            }
             None => every(about),
         }
     }
 
     /// A whole number, not larger than the number of things there are.
-    fn how_many(&mut self, count: &Phrase, field: &Field, there: usize, what: &str) -> Option<usize> {
+    fn how_many(
+        &mut self,
+        count: &Phrase,
+        field: &Field,
+        there: usize,
+        what: &str,
+    ) -> Option<usize> {
         let place = field.value.place(count.range.clone());
         let (wanted, dimension) = self.constant_phrase(count, &field.value)?;
         if dimension != Dimension::ONE || wanted < 1.0 || wanted.fract() != 0.0 {
-            self.problems.push(Problem::error("not-a-count", "expected a whole number above zero").at(&place));
+            self.problems.push(
+                Problem::error("not-a-count", "expected a whole number above zero").at(&place),
+            );
             return None;
         }
         let wanted = wanted as usize;
         if wanted > there && !self.problems.any_error() {
-            self.problems.push(Problem::error("out-of-range", format!("the rule needs {wanted} {what}, there are {there}")).at(&place));
+            self.problems.push(
+                Problem::error(
+                    "out-of-range",
+                    format!("the rule needs {wanted} {what}, there are {there}"),
+                )
+                .at(&place),
+            );
         }
         Some(wanted)
     }
@@ -211,17 +299,22 @@ impl Checker<'_> {
     fn over(&mut self, over: &OverVerdicts, field: &Field, names: &Names) -> Option<Over> {
         // All parts are checked, so that all unknown names are reported.
         let all = |checker: &mut Self, parts: &[OverVerdicts]| {
-            let found: Vec<Option<Over>> = parts.iter().map(|part| checker.over(part, field, names)).collect();
+            let found: Vec<Option<Over>> =
+                parts.iter().map(|part| checker.over(part, field, names)).collect();
             found.into_iter().collect::<Option<Vec<_>>>()
         };
         Some(match over {
             OverVerdicts::Holds(name) => Over::Holds(self.verdict_named(name, field, names)?),
             OverVerdicts::Same(one, other) => {
-                let (one, other) = (self.verdict_named(one, field, names), self.verdict_named(other, field, names));
+                let (one, other) = (
+                    self.verdict_named(one, field, names),
+                    self.verdict_named(other, field, names),
+                );
                 Over::Same(one?, other?)
             }
             OverVerdicts::AtLeast { count, of } => {
-                let found: Vec<Option<usize>> = of.iter().map(|name| self.verdict_named(name, field, names)).collect();
+                let found: Vec<Option<usize>> =
+                    of.iter().map(|name| self.verdict_named(name, field, names)).collect();
                 let mut found = found.into_iter().collect::<Option<Vec<usize>>>()?;
                 found.sort_unstable();
                 found.dedup();
@@ -237,22 +330,34 @@ impl Checker<'_> {
         let found = names.names.iter().position(|known| *known == name.node);
         if found.is_none() {
             let at = field.value.place(name.range.clone());
-            let problem = Problem::error("unknown-verdict", format!("there is no verdict `{}`", name.node)).at(&at);
+            let problem =
+                Problem::error("unknown-verdict", format!("there is no verdict `{}`", name.node))
+                    .at(&at);
             self.problems.push(problem.suggest(&name.node, names.names.iter().map(String::as_str)));
         }
         Some(found? + names.first)
     }
 
     /// Finds verdicts that depend on themselves.
-    fn follow(&mut self, at: usize, verdicts: &[VerdictRule], from: &Span, done: &mut BTreeSet<usize>) {
+    fn follow(
+        &mut self,
+        at: usize,
+        verdicts: &[VerdictRule],
+        from: &Span,
+        done: &mut BTreeSet<usize>,
+    ) {
         let verdict = &verdicts[at];
-        let (Some(name), Decision::Verdicts(over)) = (&verdict.name, &verdict.decision) else { return };
+        let (Some(name), Decision::Verdicts(over)) = (&verdict.name, &verdict.decision) else {
+            return;
+        };
         if done.contains(&at) {
             return;
         }
         self.deeper(from, |checker| {
             checker.inside("verdict", name, from, |checker| {
-                over.verdicts().into_iter().for_each(|next| checker.follow(next, verdicts, &verdict.span, done));
+                over.verdicts()
+                    .into_iter()
+                    .for_each(|next| checker.follow(next, verdicts, &verdict.span, done));
                 Some(())
             })
         });
@@ -264,10 +369,16 @@ impl Checker<'_> {
         let about = |at: usize| {
             verdicts.iter().any(|verdict| matches!(&verdict.decision, Decision::Limits { quantities, .. } if quantities.contains(&at)))
         };
-        for (at, quantity) in quantities.iter().enumerate().filter(|(_, quantity)| !quantity.limits.is_empty()) {
+        for (at, quantity) in
+            quantities.iter().enumerate().filter(|(_, quantity)| !quantity.limits.is_empty())
+        {
             if !about(at) {
-                let says = format!("no verdict uses quantity `{}`: its limits have no effect", quantity.id);
-                self.problems.push(Problem::warning("quantity-without-verdict", says).at(&quantity.span));
+                let says = format!(
+                    "no verdict uses quantity `{}`: its limits have no effect",
+                    quantity.id
+                );
+                self.problems
+                    .push(Problem::warning("quantity-without-verdict", says).at(&quantity.span));
             }
         }
     }
@@ -284,7 +395,9 @@ fn notes(block: &Block) -> Vec<String> {
 /// The word of [`KINDS`] for a quantity.
 fn kind(quantity: &Quantity) -> &'static str {
     match quantity.evaluation.as_ref() {
-        Evaluation::Values { records: Records::Of(of), .. } if of.side == Side::Measured => "measured",
+        Evaluation::Values { records: Records::Of(of), .. } if of.side == Side::Measured => {
+            "measured"
+        }
         Evaluation::Values { records: Records::Of(_), .. } => "simulated",
         _ => "compared",
     }

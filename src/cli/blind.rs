@@ -60,11 +60,16 @@ impl Blinded {
         campaigns.sort();
         campaigns.dedup_by(|one, other| same(one, other));
         if campaigns.is_empty() {
-            return console.fail(Problem::error("no-campaigns", "these folders contain no campaign"), Exit::Wrong);
+            return console.fail(
+                Problem::error("no-campaigns", "these folders contain no campaign"),
+                Exit::Wrong,
+            );
         }
         let mut problems = Problems::default();
         // A fault of the catalogue is reported once, not for every campaign.
-        let usable = |catalogue: &Catalogue, problems: &mut Problems| Settings::read(catalogue, problems).is_some();
+        let usable = |catalogue: &Catalogue, problems: &mut Problems| {
+            Settings::read(catalogue, problems).is_some()
+        };
         let catalogue = load_catalogue(&self.catalogue, &mut problems);
         let catalogue = catalogue.filter(|catalogue| usable(catalogue, &mut problems));
         // So is one of the protocol.
@@ -82,15 +87,27 @@ impl Blinded {
             console.say(&format!("{} of {}: {}", at + 1, campaigns.len(), folder.display()));
             self.one(folder, &catalogue, &out, &diagnosed, console)
         };
-        let scored = match campaigns.par_iter().enumerate().with_max_len(1).map(one).collect::<Result<Vec<Case>, Problem>>() {
+        let scored = match campaigns
+            .par_iter()
+            .enumerate()
+            .with_max_len(1)
+            .map(one)
+            .collect::<Result<Vec<Case>, Problem>>()
+        {
             Ok(cases) => blind(cases),
             Err(problem) => return console.fail(problem, Exit::Unfinished),
         };
         if diagnosed.load(Ordering::Relaxed) == 0 {
-            return console.fail(Problem::error("no-diagnosis", "none of the campaigns could be diagnosed"), Exit::Wrong);
+            return console.fail(
+                Problem::error("no-diagnosis", "none of the campaigns could be diagnosed"),
+                Exit::Wrong,
+            );
         }
         let text = serde_json::to_string_pretty(&scored).unwrap_or_default() + "\n";
-        let page = match html::chapters_html("Diagnoses against withheld truths", &report::chapters(&scored)) {
+        let page = match html::chapters_html(
+            "Diagnoses against withheld truths",
+            &report::chapters(&scored),
+        ) {
             Ok(page) => page,
             Err(problems) => {
                 console.problems(&problems);
@@ -98,13 +115,18 @@ impl Blinded {
             }
         };
         let mut outputs = out.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let added = outputs.add("blind.json", text.as_bytes()).and_then(|()| outputs.add("blind.html", page.as_bytes()));
+        let added = outputs
+            .add("blind.json", text.as_bytes())
+            .and_then(|()| outputs.add("blind.html", page.as_bytes()));
         if let Err(exit) = console.commit(added.map(|()| outputs)) {
             return exit;
         }
         for score in &scored.scores {
             let value = score.value.map_or("-".to_string(), |value| format!("{value:.3}"));
-            let interval = score.low.zip(score.high).map_or(String::new(), |(low, high)| format!("  ({low:.2} to {high:.2})"));
+            let interval = score
+                .low
+                .zip(score.high)
+                .map_or(String::new(), |(low, high)| format!("  ({low:.2} to {high:.2})"));
             console.say(&format!("{:56} {:4}  {value}{interval}", score.name, score.cases));
         }
         Exit::Done
@@ -129,12 +151,17 @@ impl Blinded {
             references: &[],
             seed: self.seed,
         };
-        let name = folder.file_name().map_or_else(|| "campaign".to_string(), |name| name.to_string_lossy().into_owned());
+        let name = folder
+            .file_name()
+            .map_or_else(|| "campaign".to_string(), |name| name.to_string_lossy().into_owned());
         let places = |campaign: &Campaign| check_folder(&self.out, REPORT, campaign);
         let found = super::diagnose::diagnosed(&asked, &places, &|_| {}, &mut problems);
         console.problems(&problems);
         let Some((files, outcome)) = found else {
-            let fault = problems.0.first().map_or("no diagnosis".to_string(), |problem| problem.says.clone());
+            let fault = problems
+                .0
+                .first()
+                .map_or("no diagnosis".to_string(), |problem| problem.says.clone());
             return Ok(without(&name, fault));
         };
         diagnosed.fetch_add(1, Ordering::Relaxed);
@@ -142,8 +169,10 @@ impl Blinded {
         let mut outputs = out.lock().unwrap_or_else(PoisonError::into_inner);
         outputs.add(&format!("{name}/diagnosis.json"), diagnosis.as_bytes())?;
         drop(outputs);
-        let text = disk::read(&folder.join("truth.json"), LARGEST_TRUTH).map_err(|error| error.to_string());
-        let text = text.and_then(|bytes| String::from_utf8(bytes).map_err(|error| error.to_string()));
+        let text = disk::read(&folder.join("truth.json"), LARGEST_TRUTH)
+            .map_err(|error| error.to_string());
+        let text =
+            text.and_then(|bytes| String::from_utf8(bytes).map_err(|error| error.to_string()));
         let truth = match text.and_then(|text| Truth::read(&text)) {
             Ok(truth) => truth,
             Err(fault) => return Ok(without(&name, format!("truth.json: {fault}"))),
@@ -152,10 +181,23 @@ impl Blinded {
         Ok(case(&name, &outcome.diagnosis, &truth, really.as_ref(), &outcome.found.seen.sections))
     }
 
-    /// Influence of the true effects; nothing if there are none, or if the catalogue does not contain them.
-    fn true_effect(&self, folder: &Path, campaign: &Campaign, outcome: &Outcome, catalogue: &Catalogue, truth: &Truth) -> Option<Really> {
+    /// Influence of the true effects; nothing if there are none, or if the catalogue does not
+    /// contain them.
+    fn true_effect(
+        &self,
+        folder: &Path,
+        campaign: &Campaign,
+        outcome: &Outcome,
+        catalogue: &Catalogue,
+        truth: &Truth,
+    ) -> Option<Really> {
         let effects = truth.applied(catalogue).filter(|effects| !effects.is_empty())?;
-        let prepared = super::inputs::prepare(folder, self.protocol.as_deref(), &[], &mut Problems::default())?;
+        let prepared = super::inputs::prepare(
+            folder,
+            self.protocol.as_deref(),
+            &[],
+            &mut Problems::default(),
+        )?;
         effect_of_truth(campaign, &prepared.compiled, outcome, catalogue, &effects)
     }
 }

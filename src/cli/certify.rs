@@ -20,7 +20,8 @@ pub struct Certify {
     /// Folder of the campaign; several are evaluated as one.
     #[arg(required = true, value_name = "CAMPAIGN")]
     campaigns: Vec<PathBuf>,
-    /// Path of a protocol, or name of a shipped one [default: the one in campaign.yaml, else en14363-2016-annex-t]
+    /// Path of a protocol, or name of a shipped one [default: the one in campaign.yaml, else
+    /// en14363-2016-annex-t]
     #[arg(long, short)]
     protocol: Option<String>,
     /// Set a parameter of the protocol.
@@ -39,14 +40,17 @@ impl Certify {
             return exit;
         }
         let mut problems = Problems::default();
-        let prepared = prepare_all(&self.campaigns, self.protocol.as_deref(), &self.set, &mut problems);
+        let prepared =
+            prepare_all(&self.campaigns, self.protocol.as_deref(), &self.set, &mut problems);
         for campaign in prepared.iter().flat_map(|pool| &pool.campaigns) {
             if let Err(problem) = check_folder(&self.report.out, REPORT, campaign) {
                 problems.push(problem);
             }
         }
         console.problems(&problems);
-        let Some(Pool { compiled, campaigns, found: searched, .. }) = prepared.filter(|_| !problems.any_error()) else {
+        let Some(Pool { compiled, campaigns, found: searched, .. }) =
+            prepared.filter(|_| !problems.any_error())
+        else {
             return Exit::Wrong;
         };
         let key = match self.report.key(console) {
@@ -60,7 +64,11 @@ impl Certify {
         });
         bar.finish_and_clear();
         match found {
-            Ok(found) => self.report.write(&Certification { found: searched, ..found }, key.as_ref(), console),
+            Ok(found) => self.report.write(
+                &Certification { found: searched, ..found },
+                key.as_ref(),
+                console,
+            ),
             Err(problems) => {
                 console.problems(&problems);
                 Exit::Wrong

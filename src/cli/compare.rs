@@ -24,7 +24,8 @@ pub struct Compare {
     /// Folders of the campaigns; each is evaluated by itself.
     #[arg(required = true, value_name = "CAMPAIGN")]
     campaigns: Vec<PathBuf>,
-    /// Path of a protocol, or name of a shipped one; repeated for each. With two related ones, each changed rule is applied alone too.
+    /// Path of a protocol, or name of a shipped one; repeated for each. With two related ones, each
+    /// changed rule is applied alone too.
     #[arg(long, short, required = true)]
     protocol: Vec<String>,
     /// Output folder; created if missing.
@@ -33,7 +34,8 @@ pub struct Compare {
     /// Set a parameter of every protocol that has it.
     #[arg(long = "set", value_name = "NAME=VALUE")]
     set: Vec<String>,
-    /// Sizes of the disturbances, in standard deviations of the measured signal; `none` for no sensitivities [default: 0.1,0.2,0.4]
+    /// Sizes of the disturbances, in standard deviations of the measured signal; `none` for no
+    /// sensitivities [default: 0.1,0.2,0.4]
     #[arg(long, value_name = "SIZES")]
     sizes: Option<String>,
     /// Write comparison.json and the tables only, without the report.
@@ -65,7 +67,8 @@ impl Compare {
     fn prepared(&self, problems: &mut Problems) -> Option<Prepared> {
         let sizes = self.sizes(problems);
         let set = set_by_hand(&self.set, problems);
-        let campaigns: Vec<Option<Campaign>> = self.campaigns.iter().map(|folder| Campaign::open(folder, problems)).collect();
+        let campaigns: Vec<Option<Campaign>> =
+            self.campaigns.iter().map(|folder| Campaign::open(folder, problems)).collect();
         let families: Vec<_> = self.protocol.iter().map(|name| load(name, problems)).collect();
         let campaigns: Vec<Campaign> = campaigns.into_iter().collect::<Option<_>>()?;
         let families = families.into_iter().collect::<Option<_>>()?;
@@ -74,7 +77,8 @@ impl Compare {
                 problems.push(problem);
             }
         }
-        let set = set?.into_iter().map(|(name, value)| (name, value.text.trim().to_owned())).collect();
+        let set =
+            set?.into_iter().map(|(name, value)| (name, value.text.trim().to_owned())).collect();
         Prepared::new(families, campaigns, Settings { sizes: sizes?, set }, problems)
     }
 
@@ -83,7 +87,10 @@ impl Compare {
         if text == "none" {
             return Some(Vec::new());
         }
-        let wrong = |says: String| Problem::error("sizes", format!("`--sizes {text}`: {says}")).help("for example `--sizes 0.1,0.2,0.4`");
+        let wrong = |says: String| {
+            Problem::error("sizes", format!("`--sizes {text}`: {says}"))
+                .help("for example `--sizes 0.1,0.2,0.4`")
+        };
         match numbers(text) {
             Ok(sizes) if sizes.iter().all(|size| *size > 0.0 && *size <= 1.0) => Some(sizes),
             Ok(_) => {
@@ -99,7 +106,10 @@ impl Compare {
 
     /// Writes all files or none.
     fn write(&self, found: &Comparison, console: &Console) -> Exit {
-        let files = match deliver::comparison(found, if self.no_report { Reports::NONE } else { Reports::ALL }) {
+        let files = match deliver::comparison(
+            found,
+            if self.no_report { Reports::NONE } else { Reports::ALL },
+        ) {
             Ok(files) => files,
             Err(problems) => {
                 console.problems(&problems);
@@ -114,12 +124,22 @@ impl Compare {
                 .verdicts
                 .iter()
                 .map(|cell| {
-                    let why = cell.decided_by.clone().or_else(|| cell.reasons.first().cloned()).unwrap_or_default();
+                    let why = cell
+                        .decided_by
+                        .clone()
+                        .or_else(|| cell.reasons.first().cloned())
+                        .unwrap_or_default();
                     format!("  {}, {}: {} ({why})\n", cell.campaign, cell.protocol, cell.verdict)
                 })
                 .collect();
             let document = report::document(found);
-            console.print(&format!("{}\n\n{}\n{}\n{}", document.title, document.headline.word, document.sentence, cells.concat()));
+            console.print(&format!(
+                "{}\n\n{}\n{}\n{}",
+                document.title,
+                document.headline.word,
+                document.sentence,
+                cells.concat()
+            ));
             console.say(&format!("written: {}", self.out.display()));
         }
         Exit::Done

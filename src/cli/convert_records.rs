@@ -67,9 +67,15 @@ impl ConvertRecords {
         };
         match console.commit(Ok(outputs)) {
             Ok(()) => {
-                let counted = |count: usize, what: &str| if count == 0 { String::new() } else { format!(", {count} {what}") };
+                let counted = |count: usize, what: &str| {
+                    if count == 0 { String::new() } else { format!(", {count} {what}") }
+                };
                 let others = counted(done.copied, "copied") + &counted(done.missing, "missing");
-                console.say(&format!("written: {} records converted{others}, to {}", done.converted, self.out.display()));
+                console.say(&format!(
+                    "written: {} records converted{others}, to {}",
+                    done.converted,
+                    self.out.display()
+                ));
                 Exit::Done
             }
             Err(exit) => exit,

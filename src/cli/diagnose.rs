@@ -1,4 +1,5 @@
-//! `diagnose`: locates the gap, identifies the effects that cause it, and computes how far they reduce it.
+//! `diagnose`: locates the gap, identifies the effects that cause it, and computes how far they
+//! reduce it.
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -36,7 +37,8 @@ use crate::simulate::{Builtin, Section, Simulator, Strict};
 pub struct Diagnose {
     /// Folder of the campaign.
     campaign: PathBuf,
-    /// Path of a protocol, or name of a shipped one [default: the one in campaign.yaml, else en14363-2016-annex-t]
+    /// Path of a protocol, or name of a shipped one [default: the one in campaign.yaml, else
+    /// en14363-2016-annex-t]
     #[arg(long, short)]
     protocol: Option<String>,
     /// Catalogue of effects: a path, or the name of a shipped one.
@@ -48,7 +50,8 @@ pub struct Diagnose {
     /// Run each effect once on one section, print which features it changes, and stop.
     #[arg(long, conflicts_with_all = ["out", "write_improved"])]
     preflight: bool,
-    /// Campaign of the same vehicle in a known state, from which the standing discrepancy of the simulation is estimated; may be repeated.
+    /// Campaign of the same vehicle in a known state, from which the standing discrepancy of the
+    /// simulation is estimated; may be repeated.
     #[arg(long = "reference", value_name = "CAMPAIGN")]
     references: Vec<PathBuf>,
     /// Folder for a copy of the campaign whose simulation includes the named effects.
@@ -111,13 +114,16 @@ impl Diagnose {
             bar.tick();
         };
         let mut problems = Problems::default();
-        let places = |campaign: &Campaign| self.out.as_deref().map_or(Ok(()), |out| self.check_folders(out, campaign));
+        let places = |campaign: &Campaign| {
+            self.out.as_deref().map_or(Ok(()), |out| self.check_folders(out, campaign))
+        };
         let asked = self.asked();
         let Some(out) = self.out.clone() else {
             let found = preflighted(&asked, &trying, &mut problems);
             bar.finish_and_clear();
             console.problems(&problems);
-            return found.map_or_else(|| stopped(&problems), |found| console.print(&found.in_words()));
+            return found
+                .map_or_else(|| stopped(&problems), |found| console.print(&found.in_words()));
         };
         let outcome = diagnosed(&asked, &places, &trying, &mut problems);
         bar.finish_and_clear();
@@ -134,9 +140,16 @@ impl Diagnose {
         exit(&outcome.diagnosis)
     }
 
-    fn write(&self, out: &Path, campaign: &Campaign, outcome: &Outcome, console: &Console) -> Result<(), Problem> {
-        let files = deliver::diagnosis(outcome, Reports::ALL)
-            .map_err(|problems| problems.0.into_iter().next().unwrap_or_else(|| Problem::error("report", "no report")))?;
+    fn write(
+        &self,
+        out: &Path,
+        campaign: &Campaign,
+        outcome: &Outcome,
+        console: &Console,
+    ) -> Result<(), Problem> {
+        let files = deliver::diagnosis(outcome, Reports::ALL).map_err(|problems| {
+            problems.0.into_iter().next().unwrap_or_else(|| Problem::error("report", "no report"))
+        })?;
         let mut outputs = Outputs::new(out);
         files.iter().try_for_each(|(name, bytes)| outputs.add(name, bytes))?;
         // Both are written to disk before either is moved to its place.
@@ -156,7 +169,10 @@ impl Diagnose {
         self.resume.as_ref().map_or(Ok(()), |folder| check_folder(folder, &[], campaign))?;
         let Some(improved) = &self.write_improved else { return Ok(()) };
         if same(improved, out) {
-            let says = format!("the report and the improved simulation cannot both go to `{}`", improved.display());
+            let says = format!(
+                "the report and the improved simulation cannot both go to `{}`",
+                improved.display()
+            );
             return Err(Problem::error("output-is-input", says).help("give different folders"));
         }
         check_folder(improved, CAMPAIGN, campaign)
@@ -174,7 +190,8 @@ pub fn exit(diagnosis: &Diagnosis) -> Exit {
 /// Problems of a number that is present in the vehicle file.
 const WRONG: [&str; 2] = ["wrong-kind", "range"];
 
-/// The exit code of a diagnosis that was not finished: a simulator that fails is no fault of the inputs.
+/// The exit code of a diagnosis that was not finished: a simulator that fails is no fault of the
+/// inputs.
 fn stopped(problems: &Problems) -> Exit {
     const OF_SIMULATORS: [&str; 3] = ["simulator-failed", "simulator-timeout", "simulator-output"];
     let failed = problems.0.iter().any(|problem| OF_SIMULATORS.contains(&problem.code));
@@ -190,22 +207,33 @@ struct Opened {
     sections: Vec<Section>,
 }
 
-fn opened(asked: &Asked<'_>, places: &dyn Fn(&Campaign) -> Result<(), Problem>, problems: &mut Problems) -> Option<Opened> {
+fn opened(
+    asked: &Asked<'_>,
+    places: &dyn Fn(&Campaign) -> Result<(), Problem>,
+    problems: &mut Problems,
+) -> Option<Opened> {
     let Prepared { compiled, campaign } = prepare(asked.folder, asked.protocol, &[], problems)?;
     places(&campaign).map_err(|problem| problems.push(problem)).ok()?;
     let files = WithFiles::of(campaign, problems)?;
-    let (catalogue, settings, sections) = for_diagnosis(&files.campaign, asked.catalogue, problems)?;
+    let (catalogue, settings, sections) =
+        for_diagnosis(&files.campaign, asked.catalogue, problems)?;
     Some(Opened { compiled, files, catalogue, settings, sections })
 }
 
 /// Each effect once on one section.
-fn preflighted(asked: &Asked<'_>, trying: &(dyn Fn(&str) + Sync), problems: &mut Problems) -> Option<Preflight> {
+fn preflighted(
+    asked: &Asked<'_>,
+    trying: &(dyn Fn(&str) + Sync),
+    problems: &mut Problems,
+) -> Option<Preflight> {
     let Opened { files, catalogue, settings, sections, .. } = opened(asked, &|_| Ok(()), problems)?;
     let campaign = &files.campaign;
     let chosen = simulating(asked.simulator, campaign, &catalogue, problems)?;
     trying("each effect once");
     let simulator = chosen.as_ref().map(Chosen::simulator);
-    preflight(campaign, &sections, &catalogue, &settings, simulator).map_err(|found| problems.0.extend(found.0)).ok()
+    preflight(campaign, &sections, &catalogue, &settings, simulator)
+        .map_err(|found| problems.0.extend(found.0))
+        .ok()
 }
 
 /// Reads all inputs and diagnoses; `places` checks the output folders before the computation.
@@ -215,18 +243,33 @@ pub fn diagnosed(
     trying: &(dyn Fn(&str) + Sync),
     problems: &mut Problems,
 ) -> Option<(WithFiles, Outcome)> {
-    let Opened { compiled, files, catalogue, settings, sections } = opened(asked, places, problems)?;
+    let Opened { compiled, files, catalogue, settings, sections } =
+        opened(asked, places, problems)?;
     let campaign = &files.campaign;
-    let opened = asked.references.iter().map(|folder| WithFiles::open(folder, asked.protocol, &|_| Ok(()), problems));
+    let opened = asked
+        .references
+        .iter()
+        .map(|folder| WithFiles::open(folder, asked.protocol, &|_| Ok(()), problems));
     let references: Vec<WithFiles> = opened.collect::<Option<_>>()?;
-    let references: Vec<&Campaign> = references.iter().map(|reference| &reference.campaign).collect();
+    let references: Vec<&Campaign> =
+        references.iter().map(|reference| &reference.campaign).collect();
     for reference in &references {
-        reference.one_of_each().and_then(|()| reference.one_vehicle()).map_err(|problem| problems.push(problem)).ok()?;
+        reference
+            .one_of_each()
+            .and_then(|()| reference.one_vehicle())
+            .map_err(|problem| problems.push(problem))
+            .ok()?;
     }
     // A campaign as its own reference would remove the gap itself.
     if let Some(same) = asked.references.iter().find(|folder| same(folder, asked.folder)) {
-        let says = format!("`{}` is the campaign itself: its gap would be treated as a standing discrepancy", same.display());
-        problems.push(Problem::error("reference", says).help("give a campaign of the same vehicle in a known state"));
+        let says = format!(
+            "`{}` is the campaign itself: its gap would be treated as a standing discrepancy",
+            same.display()
+        );
+        problems.push(
+            Problem::error("reference", says)
+                .help("give a campaign of the same vehicle in a known state"),
+        );
         return None;
     }
     // A campaign, its simulator, and the cache of its simulations.
@@ -238,9 +281,14 @@ pub fn diagnosed(
         Some((chosen, cache.map_err(|problem| problems.push(problem)).ok()?))
     };
     let (chosen, cache) = with_all(campaign)?;
-    let of_references: Vec<_> = references.iter().copied().map(&mut with_all).collect::<Option<_>>()?;
-    // Another simulator runs each effect once on one section first: what is misspelt is told within seconds.
-    let strict = chosen.as_ref().filter(|chosen| chosen.is_external()).map(|chosen| Strict::new(chosen.simulator()));
+    let of_references: Vec<_> =
+        references.iter().copied().map(&mut with_all).collect::<Option<_>>()?;
+    // Another simulator runs each effect once on one section first: what is misspelt is told within
+    // seconds.
+    let strict = chosen
+        .as_ref()
+        .filter(|chosen| chosen.is_external())
+        .map(|chosen| Strict::new(chosen.simulator()));
     if let Some(strict) = &strict {
         trying("each effect once");
         let found = preflight(campaign, &sections, &catalogue, &settings, Some(strict));
@@ -248,7 +296,11 @@ pub fn diagnosed(
     }
     let own = || Some(strict.as_ref()? as &dyn Simulator);
     let references: Vec<Reference<'_>> = std::iter::zip(&references, &of_references)
-        .map(|(&campaign, (chosen, cache))| Reference { campaign, simulator: chosen.as_ref().map(Chosen::simulator), cache: cache.clone() })
+        .map(|(&campaign, (chosen, cache))| Reference {
+            campaign,
+            simulator: chosen.as_ref().map(Chosen::simulator),
+            cache: cache.clone(),
+        })
         .collect();
     let inputs = Inputs {
         references: &references,
@@ -261,8 +313,14 @@ pub fn diagnosed(
         trying,
     };
     let found = diagnose(&inputs, &compiled, sections);
-    let kept = of_references.iter().map(|(chosen, _)| chosen).chain([&chosen]).flatten().filter_map(Chosen::warning);
-    let resumed = inputs.references.iter().map(|reference| &reference.cache).chain([&inputs.cache]).flatten();
+    let kept = of_references
+        .iter()
+        .map(|(chosen, _)| chosen)
+        .chain([&chosen])
+        .flatten()
+        .filter_map(Chosen::warning);
+    let resumed =
+        inputs.references.iter().map(|reference| &reference.cache).chain([&inputs.cache]).flatten();
     kept.chain(resumed.filter_map(Cache::warning)).for_each(|problem| problems.push(problem));
     if let Some(problem) = strict.as_ref().and_then(Strict::failed) {
         problems.push(problem);
@@ -280,8 +338,8 @@ pub fn diagnosed(
     }
 }
 
-/// The simulator of a campaign. `Some(None)` if there is no model that can run: only effects of the measuring chain are then tested.
-/// `None` if the inputs are wrong.
+/// The simulator of a campaign. `Some(None)` if there is no model that can run: only effects of the
+/// measuring chain are then tested. `None` if the inputs are wrong.
 fn simulating<'a>(
     choice: Option<&SimulatorChoice>,
     campaign: &'a Campaign,
@@ -297,14 +355,18 @@ fn simulating<'a>(
         }
         _ if !Builtin::is_for(campaign) => {
             let says = "no simulator is given, and the vehicle file has no parameter of the built-in model of a rail vehicle";
-            let problem = Problem::warning("no-simulator", format!("{says}: only effects of the measuring chain are tested"));
+            let problem = Problem::warning(
+                "no-simulator",
+                format!("{says}: only effects of the measuring chain are tested"),
+            );
             problems.push(problem.help("name the simulator of the machine with `--simulator`"));
             None
         }
         _ => Builtin::new(campaign, &mut lacking).map(|model| Chosen::Builtin(Box::new(model))),
     };
     for problem in lacking.0 {
-        let severity = if WRONG.contains(&problem.code) { Severity::Error } else { Severity::Warning };
+        let severity =
+            if WRONG.contains(&problem.code) { Severity::Error } else { Severity::Warning };
         problems.push(Problem { severity, ..problem });
     }
     (problems.errors() == 0).then_some(chosen)
@@ -312,8 +374,11 @@ fn simulating<'a>(
 
 /// The cache in a folder, keyed by everything the simulations depend on.
 fn kept(folder: &Path, campaign: &Campaign) -> Result<Cache, Problem> {
-    let files: Vec<String> =
-        campaign.other_files(RecordKind::Measurement)?.iter().map(|(path, bytes)| format!("{path} {}", sha256(bytes))).collect();
+    let files: Vec<String> = campaign
+        .other_files(RecordKind::Measurement)?
+        .iter()
+        .map(|(path, bytes)| format!("{path} {}", sha256(bytes)))
+        .collect();
     let of = format!("{} {}", env!("CARGO_PKG_VERSION"), files.join(" "));
     Ok(Cache::new(folder, of))
 }

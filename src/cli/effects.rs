@@ -26,7 +26,11 @@ impl Effects {
         let catalogue = load_catalogue(&self.catalogue, &mut problems);
         console.problems(&problems);
         let Some(catalogue) = catalogue else { return Exit::Wrong };
-        if self.text { console.print_file(&catalogue.source.text) } else { console.print(&list(&catalogue)) }
+        if self.text {
+            console.print_file(&catalogue.source.text)
+        } else {
+            console.print(&list(&catalogue))
+        }
     }
 }
 
@@ -38,11 +42,24 @@ fn list(catalogue: &Catalogue) -> String {
             Action::Formulas(_) => "signals: expressions".to_string(),
             Action::Signals(operator, _) => format!("signals: {}", operator.name()),
         };
-        let _ = write!(out, "\n{}  ({}, {how})\n  {}: {}\n", effect.name, effect.acts.in_words(), effect.title, effect.means);
+        let _ = write!(
+            out,
+            "\n{}  ({}, {how})\n  {}: {}\n",
+            effect.name,
+            effect.acts.in_words(),
+            effect.title,
+            effect.means
+        );
         for parameter in &effect.parameters {
             let unit = parameter.unit.suffix();
-            let neutral = parameter.neutral.map_or("as in the vehicle file".to_string(), |value| format!("{value}{unit}"));
-            let _ = writeln!(out, "    {:42} {} to {}{unit}, neutral {neutral}", parameter.name, parameter.low, parameter.high);
+            let neutral = parameter
+                .neutral
+                .map_or("as in the vehicle file".to_string(), |value| format!("{value}{unit}"));
+            let _ = writeln!(
+                out,
+                "    {:42} {} to {}{unit}, neutral {neutral}",
+                parameter.name, parameter.low, parameter.high
+            );
         }
     }
     out

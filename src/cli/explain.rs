@@ -22,7 +22,8 @@ use crate::units::SYMBOLS;
 
 #[derive(Debug, Args)]
 pub struct Explain {
-    /// Path of a protocol, or name of a shipped one; without it, the functions of the language are listed.
+    /// Path of a protocol, or name of a shipped one; without it, the functions of the language are
+    /// listed.
     #[arg(value_name = "PROTOCOL")]
     protocol: Option<String>,
     /// [default: plan]
@@ -67,8 +68,15 @@ impl Explain {
             return console.fail(problem, Exit::Wrong);
         }
         let text = match &self.protocol {
-            None if matches!(self.format, Format::Text | Format::Json) => registry(self.format == Format::Json),
-            None => return console.fail(Problem::error("format", "without a protocol the format is text or json"), Exit::Wrong),
+            None if matches!(self.format, Format::Text | Format::Json) => {
+                registry(self.format == Format::Json)
+            }
+            None => {
+                return console.fail(
+                    Problem::error("format", "without a protocol the format is text or json"),
+                    Exit::Wrong,
+                );
+            }
             Some(name) => match self.stage_text(name, console) {
                 Ok(text) => text,
                 Err(exit) => return exit,
@@ -84,20 +92,33 @@ impl Explain {
     fn stage_text(&self, name: &str, console: &Console) -> Result<String, Exit> {
         let stage = self.stage.unwrap_or(Stage::Plan);
         if stage != Stage::Graph && matches!(self.format, Format::Dot | Format::Svg) {
-            return Err(console.fail(Problem::error("format", "only the graph can be drawn: add `--stage graph`"), Exit::Wrong));
+            return Err(console.fail(
+                Problem::error("format", "only the graph can be drawn: add `--stage graph`"),
+                Exit::Wrong,
+            ));
         }
         if stage != Stage::Needs && self.format == Format::Csv {
-            return Err(console.fail(Problem::error("format", "only the needs are a table: add `--stage needs`"), Exit::Wrong));
+            return Err(console.fail(
+                Problem::error("format", "only the needs are a table: add `--stage needs`"),
+                Exit::Wrong,
+            ));
         }
         let mut problems = Problems::default();
         let family = load(name, &mut problems);
         // The AST is printed as written; rules are checked for the later stages only.
         let checked = family.as_ref().filter(|_| stage != Stage::Ast);
-        let plan = checked.and_then(|family| check::check(family, &Overrides::new(), &mut problems));
+        let plan =
+            checked.and_then(|family| check::check(family, &Overrides::new(), &mut problems));
         console.problems(&problems);
-        let Some(family) = family.filter(|_| !problems.any_error()) else { return Err(Exit::Wrong) };
+        let Some(family) = family.filter(|_| !problems.any_error()) else {
+            return Err(Exit::Wrong);
+        };
         if stage == Stage::Ast {
-            return Ok(if self.format == Format::Json { pretty(&document_json(&family.merged)) } else { document_text(&family.merged) });
+            return Ok(if self.format == Format::Json {
+                pretty(&document_json(&family.merged))
+            } else {
+                document_text(&family.merged)
+            });
         }
         let Some(plan) = plan else { return Err(Exit::Wrong) };
         Ok(match (stage, self.format) {
@@ -131,10 +152,18 @@ fn pretty(value: &Value) -> String {
 fn document_text(document: &Document) -> String {
     let mut out = String::new();
     for block in &document.blocks {
-        let title = block.title.as_ref().map_or(String::new(), |title| format!(" \"{}\"", title.text));
-        let _ = writeln!(out, "{} {}{title}  ({})", block.kind.text, block.name_text(), block.span());
+        let title =
+            block.title.as_ref().map_or(String::new(), |title| format!(" \"{}\"", title.text));
+        let _ =
+            writeln!(out, "{} {}{title}  ({})", block.kind.text, block.name_text(), block.span());
         for field in &block.fields {
-            let _ = writeln!(out, "  {}: {}  ({})", field.key.text, check::normalised(&field.value.text), field.value.span);
+            let _ = writeln!(
+                out,
+                "  {}: {}  ({})",
+                field.key.text,
+                check::normalised(&field.value.text),
+                field.value.span
+            );
         }
     }
     out
@@ -154,17 +183,23 @@ fn document_json(document: &Document) -> Value {
 }
 
 fn plan_text(plan: &Plan) -> String {
-    let mut out = format!("{}: {}\naxis {} [{}]\n", plan.name, plan.title, plan.axis.column, plan.axis.unit);
+    let mut out =
+        format!("{}: {}\naxis {} [{}]\n", plan.name, plan.title, plan.axis.column, plan.axis.unit);
     for parameter in &plan.parameters {
         let _ = writeln!(out, "parameter {} = {}", parameter.name, parameter.value);
     }
     for record in &plan.records {
-        let members: Vec<&str> = record.members.iter().map(|member| member.value.as_str()).collect();
+        let members: Vec<&str> =
+            record.members.iter().map(|member| member.value.as_str()).collect();
         let members = if members.is_empty() { "all".to_string() } else { members.join(", ") };
         let _ = writeln!(out, "record {}: {}, {members}", record.name, record.side.in_words());
     }
     for zone in &plan.zones {
-        let _ = writeln!(out, "zone {}: {}; at least {} sections", zone.name, zone.condition_words, zone.minimum_sections);
+        let _ = writeln!(
+            out,
+            "zone {}: {}; at least {} sections",
+            zone.name, zone.condition_words, zone.minimum_sections
+        );
     }
     // A report or limit `for each zone` is written once.
     let mut written: Vec<&crate::source::Span> = Vec::new();
@@ -178,7 +213,8 @@ fn plan_text(plan: &Plan) -> String {
         let _ = writeln!(out, "check {}: {}", check.name, check.words);
     }
     for quantity in &plan.quantities {
-        let names: Vec<&str> = quantity.positions.iter().map(|position| position.name.as_str()).collect();
+        let names: Vec<&str> =
+            quantity.positions.iter().map(|position| position.name.as_str()).collect();
         let _ = writeln!(out, "quantity {} [{}]: {}", quantity.id, quantity.unit, quantity.title);
         let _ = writeln!(
             out,
@@ -205,7 +241,8 @@ fn plan_text(plan: &Plan) -> String {
         let _ = match &verdict.name {
             None => writeln!(out, "{}", verdict.criterion),
             Some(name) => {
-                let overall = if verdict.name == plan.overall().name { " (the overall verdict)" } else { "" };
+                let overall =
+                    if verdict.name == plan.overall().name { " (the overall verdict)" } else { "" };
                 let [good, bad] = &verdict.words;
                 writeln!(
                     out,
@@ -240,8 +277,11 @@ fn plan_json(plan: &Plan) -> Value {
         .iter()
         .map(|zone| json!({"zone": zone.name, "title": zone.title, "where": zone.condition_words, "minimum_sections": zone.minimum_sections}))
         .collect();
-    let parameters: Vec<Value> =
-        plan.parameters.iter().map(|parameter| json!({"name": parameter.name, "value": parameter.value})).collect();
+    let parameters: Vec<Value> = plan
+        .parameters
+        .iter()
+        .map(|parameter| json!({"name": parameter.name, "value": parameter.value}))
+        .collect();
     let mut json = json!({"name": plan.name, "title": plan.title, "parameters": parameters, "zones": zones, "quantities": quantities, "verdict": plan.overall().criterion});
     let verdicts: Vec<Value> = plan
         .verdicts
@@ -284,7 +324,8 @@ fn registry(as_json: bool) -> String {
             let _ = writeln!(out, "{}{}s", if last.is_empty() { "" } else { "\n" }, entry.kind);
             last = entry.kind;
         }
-        let _ = writeln!(out, "  {}\n      {}. {}", entry.wording, entry.signature, entry.in_words());
+        let _ =
+            writeln!(out, "  {}\n      {}. {}", entry.wording, entry.signature, entry.in_words());
     }
     let symbols: Vec<&str> = SYMBOLS.iter().map(|unit| unit.symbol).collect();
     let _ = writeln!(out, "\nunits\n  {}", symbols.join("  "));

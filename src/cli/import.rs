@@ -36,7 +36,8 @@ pub struct Import {
     /// The mapping: what the channels of the files are in the campaign; with `--draft` the files.
     #[arg(required = true, value_name = "MAPPING")]
     inputs: Vec<PathBuf>,
-    /// Output folder for the campaign; with `--draft` the file of the draft [default: standard output]
+    /// Output folder for the campaign; with `--draft` the file of the draft [default: standard
+    /// output]
     #[arg(long, required_unless_present = "draft")]
     out: Option<PathBuf>,
     /// Propose a mapping from the files themselves, to be completed by hand.
@@ -66,19 +67,28 @@ impl Import {
         }
         let ([path], Some(out)) = (&self.inputs[..], &self.out) else {
             let problem = Problem::error("several-mappings", "an import takes one mapping");
-            return console.fail(problem.help("to propose a mapping from files, add `--draft`"), Exit::Wrong);
+            return console
+                .fail(problem.help("to propose a mapping from files, add `--draft`"), Exit::Wrong);
         };
         let mut problems = Problems::default();
         let checked = checked(path, out, &mut problems);
         console.problems(&problems);
-        let Some((mapping, compiled)) = checked.filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        let Some((mapping, compiled)) = checked.filter(|_| !problems.any_error()) else {
+            return Exit::Wrong;
+        };
         let needs = compiled.as_ref().map(|compiled| needs(&compiled.plan, &compiled.graph));
         let bar = progress_bar(console, mapping.sections.names.len() * mapping.sides.len());
         let mut outputs = Outputs::of(SetKind::Campaign, out);
-        let done = crate::import::import(&mapping, needs.as_ref(), Format::from(self.records), &mut outputs, &|section| {
-            bar.set_message(plain(section));
-            bar.inc(1);
-        });
+        let done = crate::import::import(
+            &mapping,
+            needs.as_ref(),
+            Format::from(self.records),
+            &mut outputs,
+            &|section| {
+                bar.set_message(plain(section));
+                bar.inc(1);
+            },
+        );
         bar.finish_and_clear();
         match done {
             Ok(warnings) => console.problems(&warnings),
@@ -94,7 +104,10 @@ impl Import {
         let records = mapping.sections.names.len() * mapping.sides.len();
         let (count, word) = (mapping.sections.names.len(), mapping.sections.word);
         let ending = if word == "run" && count == 1 { "" } else { "s" };
-        console.say(&format!("written: {records} records of {count} {word}{ending} to {}", out.display()));
+        console.say(&format!(
+            "written: {records} records of {count} {word}{ending} to {}",
+            out.display()
+        ));
         if !console.quiet {
             look(&mapping, compiled.as_ref(), out, console);
         }
@@ -103,8 +116,12 @@ impl Import {
 
     fn propose(&self, console: &Console) -> Exit {
         let mut problems = Problems::default();
-        let compiled = load(&self.protocol, &mut problems).and_then(|family| compile(family, &Overrides::new(), &mut problems));
-        let named = Spanned::new(self.convention.clone(), Source::new("--convention", self.convention.clone()).whole());
+        let compiled = load(&self.protocol, &mut problems)
+            .and_then(|family| compile(family, &Overrides::new(), &mut problems));
+        let named = Spanned::new(
+            self.convention.clone(),
+            Source::new("--convention", self.convention.clone()).whole(),
+        );
         let convention = mapping::find_convention(&named, Path::new(""), &mut problems);
         console.problems(&problems);
         let (Some(compiled), Some(convention)) = (compiled, convention) else { return Exit::Wrong };
@@ -119,9 +136,15 @@ impl Import {
                 return Exit::Wrong;
             }
         };
-        relative_to(&mut groups, self.out.as_deref().and_then(Path::parent).unwrap_or(Path::new("")));
+        relative_to(
+            &mut groups,
+            self.out.as_deref().and_then(Path::parent).unwrap_or(Path::new("")),
+        );
         let needs = needs(&compiled.plan, &compiled.graph);
-        let (text, open) = draft(&groups, &With { needs: &needs, protocol: &self.protocol, convention: &convention });
+        let (text, open) = draft(
+            &groups,
+            &With { needs: &needs, protocol: &self.protocol, convention: &convention },
+        );
         let exit = match &self.out {
             Some(out) => console.write(out, text.as_bytes()),
             None => console.print_file(&text),
@@ -132,48 +155,78 @@ impl Import {
 }
 
 /// The mapping and its protocol, checked against each other before any record is read.
-fn checked(path: &Path, out: &Path, problems: &mut Problems) -> Option<(Mapping, Option<Compiled>)> {
-    let (source, _) = read_text(path, &path.display().to_string()).map_err(|problem| problems.push(problem)).ok()?;
+fn checked(
+    path: &Path,
+    out: &Path,
+    problems: &mut Problems,
+) -> Option<(Mapping, Option<Compiled>)> {
+    let (source, _) = read_text(path, &path.display().to_string())
+        .map_err(|problem| problems.push(problem))
+        .ok()?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mapping = mapping::read(&source, folder, problems);
     if same(out, if folder.as_os_str().is_empty() { Path::new(".") } else { folder }) {
-        let says = format!("the campaign cannot go to `{}`, the folder of the mapping", out.display());
-        problems.push(Problem::error("output-is-input", says).help("give another folder; it is created if it does not exist"));
+        let says =
+            format!("the campaign cannot go to `{}`, the folder of the mapping", out.display());
+        problems.push(
+            Problem::error("output-is-input", says)
+                .help("give another folder; it is created if it does not exist"),
+        );
     }
     let mapping = mapping?;
     for side in &mapping.sides {
         let pattern = &side.files;
         let inside = mapping.sections.names.iter().any(|name| {
             let (path, _) = mapping.place(&mapping.sections.fill(&pattern.value, &name.value));
-            path.parent().is_some_and(|parent| same(parent, &out.join(side.kind.key())) || same(parent, out))
+            path.parent()
+                .is_some_and(|parent| same(parent, &out.join(side.kind.key())) || same(parent, out))
         });
         if inside {
-            let says = format!("the campaign cannot go to `{}`: it contains files of the {}", out.display(), side.kind.key());
-            problems.push(Problem::error("output-is-input", says).at(&pattern.span).help("give another folder"));
+            let says = format!(
+                "the campaign cannot go to `{}`: it contains files of the {}",
+                out.display(),
+                side.kind.key()
+            );
+            problems.push(
+                Problem::error("output-is-input", says)
+                    .at(&pattern.span)
+                    .help("give another folder"),
+            );
         }
     }
     let compiled = for_import(&mapping, problems)?;
     Some((mapping, compiled))
 }
 
-/// What is told about the campaign that was made: exchanged channels, and the findings of the protocol.
+/// What is told about the campaign that was made: exchanged channels, and the findings of the
+/// protocol.
 fn look(mapping: &Mapping, compiled: Option<&Compiled>, out: &Path, console: &Console) {
     let mut problems = Problems::default();
-    let Some(mut campaign) = Campaign::open(out, &mut problems) else { return console.problems(&problems) };
+    let Some(mut campaign) = Campaign::open(out, &mut problems) else {
+        return console.problems(&problems);
+    };
     console.problems(&Problems(exchanged(mapping, &campaign)));
     let Some(compiled) = compiled else { return };
     match find::in_all(&compiled.plan, &compiled.graph, std::slice::from_mut(&mut campaign)) {
-        Ok(found) => found.iter().for_each(|found| console.say(&crate::report::found::in_words(found))),
+        Ok(found) => {
+            found.iter().for_each(|found| console.say(&crate::report::found::in_words(found)))
+        }
         Err(problems) => return console.problems(&problems),
     }
     let lacks = |side: Side, kind| compiled.plan.reads(side) && !campaign.has(kind);
-    if lacks(Side::Simulated, RecordKind::Simulation) || lacks(Side::Measured, RecordKind::Measurement) {
+    if lacks(Side::Simulated, RecordKind::Simulation)
+        || lacks(Side::Measured, RecordKind::Measurement)
+    {
         return console.say("the plausibility of the records is not examined: the campaign lacks a side that the protocol reads");
     }
     match certify(&compiled.only_telling(), &campaign, Settings { traces: 0 }, &|_| {}) {
         Ok(found) => {
             for section in found.sections.iter().filter(|section| !section.used) {
-                console.say(&format!("section {} is not used: {}", section.section, section.reason.clone().unwrap_or_default()));
+                console.say(&format!(
+                    "section {} is not used: {}",
+                    section.section,
+                    section.reason.clone().unwrap_or_default()
+                ));
             }
             let rows = findings::rows(&as_stated(&compiled.plan, found.findings));
             rows.iter().for_each(|row| console.say(&format!("finding: {}", findings::line(row))));
@@ -188,8 +241,20 @@ fn look(mapping: &Mapping, compiled: Option<&Compiled>, out: &Path, console: &Co
     }
 }
 
-/// Findings with the consequence that `certify` gives them. They were sought with rules that only tell, so that none hides another.
+/// Findings with the consequence that `certify` gives them. They were sought with rules that only
+/// tell, so that none hides another.
 fn as_stated(plan: &Plan, findings: Vec<Finding>) -> Vec<Finding> {
-    let of = |finding: &Finding| plan.plausibility.iter().find(|rule| rule.name == finding.code).map(|rule| consequence(rule.otherwise));
-    findings.into_iter().map(|finding| Finding { consequence: of(&finding).unwrap_or(finding.consequence), ..finding }).collect()
+    let of = |finding: &Finding| {
+        plan.plausibility
+            .iter()
+            .find(|rule| rule.name == finding.code)
+            .map(|rule| consequence(rule.otherwise))
+    };
+    findings
+        .into_iter()
+        .map(|finding| Finding {
+            consequence: of(&finding).unwrap_or(finding.consequence),
+            ..finding
+        })
+        .collect()
 }

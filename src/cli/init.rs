@@ -31,7 +31,8 @@ pub struct Init {
     /// A record whose header lists the channels.
     #[arg(long, value_name = "RECORD.csv")]
     channels_from: Option<PathBuf>,
-    /// Protocol that the new one extends: a shipped name, or a path; the campaign then has what it needs.
+    /// Protocol that the new one extends: a shipped name, or a path; the campaign then has what it
+    /// needs.
     #[arg(long, value_name = "PROTOCOL")]
     extends: Option<String>,
 }
@@ -81,9 +82,13 @@ impl Init {
             }
         };
         if listed.groups.is_empty() && self.extends.is_none() {
-            let at = headings.first().zip(headings.last()).map(|(first, last)| first.span.to(&last.span));
+            let at = headings
+                .first()
+                .zip(headings.last())
+                .map(|(first, last)| first.span.to(&last.span));
             let problem =
-                Problem::error("no-channels", "there is no channel besides axis and time").help("add those that are to be compared");
+                Problem::error("no-channels", "there is no channel besides axis and time")
+                    .help("add those that are to be compared");
             problems.push(at.map_or(problem.clone(), |at| problem.at(&at)));
             return None;
         }
@@ -105,7 +110,9 @@ impl Init {
         }
         let parent = family.as_ref().map(parent);
         let name = self.name();
-        let text = protocol::text(&name, listed.as_ref(), parent.as_ref()).map_err(|problem| problems.push(*problem)).ok()?;
+        let text = protocol::text(&name, listed.as_ref(), parent.as_ref())
+            .map_err(|problem| problems.push(*problem))
+            .ok()?;
         let source = Source::new(PROTOCOL, text);
         let find = |name: &str, from: &Source| match copies.iter().find(|(path, _)| path == name) {
             Some((_, source)) => Ok(Arc::clone(source)),
@@ -116,7 +123,9 @@ impl Init {
         let needs = needs::needs(&plan, &graph::from_plan(&plan));
         let mut files = vec![(PROTOCOL.to_string(), source.text.clone())];
         files.extend(copies.into_iter().map(|(path, source)| (path, source.text.clone())));
-        files.extend(campaign::files(&name, &needs).map_err(|problem| problems.push(*problem)).ok()?);
+        files.extend(
+            campaign::files(&name, &needs).map_err(|problem| problems.push(*problem)).ok()?,
+        );
         Some(files)
     }
 
@@ -130,31 +139,50 @@ impl Init {
 /// What a protocol in the draft says of its parent.
 fn parent(family: &Family) -> Parent<'_> {
     let document = &family.merged;
-    let named = document.blocks.iter().filter(|block| block.kind.text != "protocol").map(|block| block.name_text().to_string());
-    let name = document.blocks.iter().find(|block| block.kind.text == "protocol").map_or("", |block| block.name_text());
+    let named = document
+        .blocks
+        .iter()
+        .filter(|block| block.kind.text != "protocol")
+        .map(|block| block.name_text().to_string());
+    let name = document
+        .blocks
+        .iter()
+        .find(|block| block.kind.text == "protocol")
+        .map_or("", |block| block.name_text());
     let own = &family.sources[0];
-    let extends = if is_shipped(own) { name.to_string() } else { format!("\"{}\"", file_name(own)) };
+    let extends =
+        if is_shipped(own) { name.to_string() } else { format!("\"{}\"", file_name(own)) };
     Parent { name, extends, names: named.collect() }
 }
 
 fn is_shipped(source: &Source) -> bool {
-    library::names()
-        .any(|name| source.name == format!("protocols/{name}.fp") && library::shipped(name).is_some_and(|known| known.text == source.text))
+    library::names().any(|name| {
+        source.name == format!("protocols/{name}.fp")
+            && library::shipped(name).is_some_and(|known| known.text == source.text)
+    })
 }
 
 fn file_name(source: &Source) -> String {
-    Path::new(&source.name).file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+    Path::new(&source.name)
+        .file_name()
+        .map(|name| name.to_string_lossy().into_owned())
+        .unwrap_or_default()
 }
 
-/// The protocols of the chain that are not shipped. They go into the campaign, which can extend nothing outside of it.
+/// The protocols of the chain that are not shipped. They go into the campaign, which can extend
+/// nothing outside of it.
 fn copies(family: &Family, problems: &mut Problems) -> Vec<(String, Arc<Source>)> {
-    let own: Vec<&Arc<Source>> = family.sources.iter().filter(|source| !is_shipped(source)).collect();
+    let own: Vec<&Arc<Source>> =
+        family.sources.iter().filter(|source| !is_shipped(source)).collect();
     let folder = |source: &Source| Path::new(&source.name).parent().map(Path::to_path_buf);
     for source in &own {
         if folder(source) != folder(own[0]) || file_name(source) == PROTOCOL {
             let says = format!("`{}` cannot be copied beside the new protocol", source.name);
-            let problem = Problem::error("extends-outside", says).at(&source.span(0..source.text.lines().next().map_or(0, str::len)));
-            problems.push(problem.help(format!("the protocols that are extended stand in one folder, and none is called {PROTOCOL}")));
+            let problem = Problem::error("extends-outside", says)
+                .at(&source.span(0..source.text.lines().next().map_or(0, str::len)));
+            problems.push(problem.help(format!(
+                "the protocols that are extended stand in one folder, and none is called {PROTOCOL}"
+            )));
         }
     }
     own.into_iter().map(|source| (file_name(source), Arc::clone(source))).collect()
@@ -167,7 +195,9 @@ fn without_known(family: &Family, listed: &mut Listed, problems: &mut Problems) 
     let is_known = |column: &str| known.iter().any(|need| need.column == column);
     listed.groups.retain_mut(|group| {
         let single = group.positions.is_empty();
-        group.positions.retain(|position| !is_known(&format!("{}{}{position}", group.stem, group.separator)));
+        group
+            .positions
+            .retain(|position| !is_known(&format!("{}{}{position}", group.stem, group.separator)));
         if single { !is_known(&group.stem) } else { !group.positions.is_empty() }
     });
     listed.time = listed.time.take().filter(|_| plan.time.is_some());
@@ -181,20 +211,27 @@ pub fn check_folder(folder: &Path) -> Result<(), Problem> {
         return Ok(());
     }
     let names = disk::names(folder).map_err(|error| {
-        Problem::error("folder-not-empty", format!("`{shown}` is there and is no folder that can be read: {error}"))
-            .help("give another folder")
+        Problem::error(
+            "folder-not-empty",
+            format!("`{shown}` is there and is no folder that can be read: {error}"),
+        )
+        .help("give another folder")
     })?;
     match names.iter().map(|name| name.to_string_lossy().into_owned()).min() {
         None => Ok(()),
-        Some(first) => Err(Problem::error("folder-not-empty", format!("the folder `{shown}` is not empty: it has `{first}`"))
-            .help("give a folder that does not exist; nothing is overwritten")),
+        Some(first) => Err(Problem::error(
+            "folder-not-empty",
+            format!("the folder `{shown}` is not empty: it has `{first}`"),
+        )
+        .help("give a folder that does not exist; nothing is overwritten")),
     }
 }
 
 /// Writes all files, or none.
 pub fn write(folder: &Path, files: &[File]) -> Result<(), Problem> {
-    let failed =
-        |path: &Path, error: &std::io::Error| Problem::error("write-failed", format!("`{}` cannot be written: {error}", path.display()));
+    let failed = |path: &Path, error: &std::io::Error| {
+        Problem::error("write-failed", format!("`{}` cannot be written: {error}", path.display()))
+    };
     let mut written: Vec<PathBuf> = Vec::new();
     let mut one = |(inside, text): &File| {
         let path = folder.join(inside);

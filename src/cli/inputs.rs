@@ -9,8 +9,8 @@ use super::output::{Console, Exit};
 pub use crate::prepare::{Pool, Prepared, compiled_for, prepare, prepare_all, with_protocols};
 use crate::problem::Problem;
 
-/// Maximum number of records processed in parallel. Each takes a thread, and memory for its text and signals. The value exceeds the number
-/// of cores of the machines the program is used on.
+/// Maximum number of records processed in parallel. Each takes a thread, and memory for its text
+/// and signals. The value exceeds the number of cores of the machines the program is used on.
 const MOST_JOBS: usize = 256;
 
 /// Starts the requested number of threads.
@@ -21,7 +21,8 @@ pub fn start_jobs(jobs: Option<NonZeroUsize>, console: &Console) -> Result<(), E
     let Some(jobs) = jobs.map(NonZeroUsize::get) else { return Ok(()) };
     if jobs > MOST_JOBS {
         let says = format!("`--jobs {jobs}` exceeds the maximum of {MOST_JOBS}");
-        return Err(console.fail(Problem::error("jobs", says).help("omit it to use one per core"), Exit::Wrong));
+        return Err(console
+            .fail(Problem::error("jobs", says).help("omit it to use one per core"), Exit::Wrong));
     }
     // Fails only if the thread pool exists already, which is not the case here.
     let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs).build_global();

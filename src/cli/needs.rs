@@ -9,7 +9,19 @@ use crate::data::write::table_csv;
 use crate::run::needs::{ChannelNeed, DatumNeed, Needs, Users};
 
 /// Columns of the CSV form.
-const HEADER: [&str; 11] = ["kind", "record", "name", "channel", "title", "unit", "words", "range", "default", "required", "needed by"];
+const HEADER: [&str; 11] = [
+    "kind",
+    "record",
+    "name",
+    "channel",
+    "title",
+    "unit",
+    "words",
+    "range",
+    "default",
+    "required",
+    "needed by",
+];
 
 impl Users {
     fn all(&self) -> Vec<&str> {
@@ -19,12 +31,15 @@ impl Users {
 
 pub fn text(plan: &Plan, needs: &Needs) -> String {
     let mut out = format!("{}: {}\n", plan.name, plan.title);
-    for (heading, required) in [("channels", true), ("channels that rules look at only where they were recorded", false)] {
+    for (heading, required) in
+        [("channels", true), ("channels that rules look at only where they were recorded", false)]
+    {
         let mut lines: Vec<(&ChannelNeed, Vec<&str>)> = Vec::new();
         for need in needs.channels.iter().filter(|need| need.required == required) {
             // The same column of both sides is one line.
             let same = |(known, _): &&mut (&ChannelNeed, Vec<&str>)| {
-                (&known.column, &known.unit, known.users.all()) == (&need.column, &need.unit, need.users.all())
+                (&known.column, &known.unit, known.users.all())
+                    == (&need.column, &need.unit, need.users.all())
             };
             match lines.iter_mut().find(same) {
                 Some((_, records)) => records.push(need.record),
@@ -35,7 +50,14 @@ pub fn text(plan: &Plan, needs: &Needs) -> String {
             let _ = writeln!(out, "\n{heading}");
         }
         for (need, records) in lines {
-            let _ = writeln!(out, "  {} [{}], {}\n      {}", need.column, need.unit, records.join(" and "), users(&need.users, required));
+            let _ = writeln!(
+                out,
+                "  {} [{}], {}\n      {}",
+                need.column,
+                need.unit,
+                records.join(" and "),
+                users(&need.users, required)
+            );
         }
     }
     let tables = [
@@ -49,27 +71,49 @@ pub fn text(plan: &Plan, needs: &Needs) -> String {
         }
         for need in data {
             let unit = need.unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}]"));
-            let words = if need.words.is_empty() { String::new() } else { format!(": {}", need.words.join(", ")) };
+            let words = if need.words.is_empty() {
+                String::new()
+            } else {
+                format!(": {}", need.words.join(", "))
+            };
             let range = need.range.as_ref().map_or(String::new(), |range| format!(", {range}"));
             let found = of_sections && is_found(needs, need);
             let or_required = || if found { ", found in runs" } else { ", required" }.to_string();
-            let default = need.default.as_ref().map_or_else(or_required, |default| format!(", default {default}"));
-            let _ = writeln!(out, "  {}{unit}{words}{range}{default}\n      {}. {}", need.key, need.title, users(&need.users, false));
+            let default = need
+                .default
+                .as_ref()
+                .map_or_else(or_required, |default| format!(", default {default}"));
+            let _ = writeln!(
+                out,
+                "  {}{unit}{words}{range}{default}\n      {}. {}",
+                need.key,
+                need.title,
+                users(&need.users, false)
+            );
         }
     }
     out
 }
 
-/// Whether a column of the table of sections is found in the runs of a campaign without such a table.
+/// Whether a column of the table of sections is found in the runs of a campaign without such a
+/// table.
 fn is_found(needs: &Needs, need: &DatumNeed) -> bool {
     // The program finds names and places of sections itself.
     let given = ["section", "start", "end"];
-    needs.found.as_ref().is_some_and(|found| given.contains(&need.key.as_str()) || found.contains(&need.key))
+    needs
+        .found
+        .as_ref()
+        .is_some_and(|found| given.contains(&need.key.as_str()) || found.contains(&need.key))
 }
 
-/// Of a channel that numbers depend on, the plausibility rules are left out: they look at it only besides.
+/// Of a channel that numbers depend on, the plausibility rules are left out: they look at it only
+/// besides.
 fn users(users: &Users, required: bool) -> String {
-    let all: Vec<&str> = users.all().into_iter().filter(|user| !required || !user.starts_with("plausibility ")).collect();
+    let all: Vec<&str> = users
+        .all()
+        .into_iter()
+        .filter(|user| !required || !user.starts_with("plausibility "))
+        .collect();
     if all.is_empty() { "no rule uses it".to_string() } else { format!("for {}", all.join(", ")) }
 }
 
@@ -123,7 +167,11 @@ pub fn csv(needs: &Needs) -> String {
             need.users.all().join("; "),
         ]);
     }
-    for (kind, data) in [("section", &needs.sections), ("application", &needs.application), ("vehicle", &needs.vehicle)] {
+    for (kind, data) in [
+        ("section", &needs.sections),
+        ("application", &needs.application),
+        ("vehicle", &needs.vehicle),
+    ] {
         for need in data {
             rows.push(vec![
                 kind.into(),

@@ -30,7 +30,8 @@ pub struct New {
     /// Kind of machine: which effects the catalogue offers.
     #[arg(long, value_enum, default_value = "generic")]
     domain: Domain,
-    /// A simulated and a measured record of the same run, with units in their headers; may be repeated.
+    /// A simulated and a measured record of the same run, with units in their headers; may be
+    /// repeated.
     #[arg(long, num_args = 2, value_names = ["SIM.csv", "MEAS.csv"], required = true)]
     from: Vec<PathBuf>,
 }
@@ -64,14 +65,26 @@ impl New {
             .from
             .chunks_exact(2)
             .enumerate()
-            .map(|(at, pair)| Pair::read(format!("R{}", at + 1), &pair[0], &pair[1], &mut told, problems))
+            .map(|(at, pair)| {
+                Pair::read(format!("R{}", at + 1), &pair[0], &pair[1], &mut told, problems)
+            })
             .collect();
         let pairs: Vec<Pair> = pairs.into_iter().collect::<Option<_>>()?;
-        let name = self.folder.file_name().map(|name| name.to_string_lossy().into_owned()).filter(|name| !name.is_empty());
+        let name = self
+            .folder
+            .file_name()
+            .map(|name| name.to_string_lossy().into_owned())
+            .filter(|name| !name.is_empty());
         let name = name.unwrap_or_else(|| "campaign".into());
-        let made = files(&name, DOMAINS[self.domain as usize], &pairs).map_err(|problem| problems.push(problem)).ok()?;
+        let made = files(&name, DOMAINS[self.domain as usize], &pairs)
+            .map_err(|problem| problems.push(problem))
+            .ok()?;
         // What is written must be sound, whatever the columns are called.
-        let text = made.files.iter().find(|(path, _)| path == PROTOCOL_FILE).map(|(_, text)| text.clone())?;
+        let text = made
+            .files
+            .iter()
+            .find(|(path, _)| path == PROTOCOL_FILE)
+            .map(|(_, text)| text.clone())?;
         let family = family::read(&Source::new(PROTOCOL_FILE, text), &library::parent, problems);
         check::check(&family, &Overrides::new(), problems)?;
         problems.0.retain(|problem| problem.severity == crate::problem::Severity::Error);

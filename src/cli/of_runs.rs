@@ -1,4 +1,5 @@
-//! Campaigns of which each section must have records of its own, also where sections are parts of runs.
+//! Campaigns of which each section must have records of its own, also where sections are parts of
+//! runs.
 
 use std::path::Path;
 
@@ -28,16 +29,23 @@ impl WithFiles {
         if problems.any_error() {
             return None;
         }
-        let failed = |error: std::io::Error| Problem::error("write-failed", format!("no temporary folder can be made: {error}"));
+        let failed = |error: std::io::Error| {
+            Problem::error("write-failed", format!("no temporary folder can be made: {error}"))
+        };
         let folder = disk::scratch().map_err(|error| problems.push(failed(error))).ok()?;
         let mut outputs = Outputs::of(SetKind::Campaign, folder.path()).for_this_run();
-        cut(&campaign, Format::Parquet, &mut outputs).map_err(|found| problems.0.extend(found)).ok()?;
+        cut(&campaign, Format::Parquet, &mut outputs)
+            .map_err(|found| problems.0.extend(found))
+            .ok()?;
         outputs.commit().map_err(|problem| problems.push(problem)).ok()?;
-        Some(Self { campaign: with_protocols(Campaign::open(folder.path(), problems)?), _copy: Some(folder) })
+        Some(Self {
+            campaign: with_protocols(Campaign::open(folder.path(), problems)?),
+            _copy: Some(folder),
+        })
     }
 
-    /// Opens a campaign; the protocol finds sections in its runs if there is no table of sections. `places` checks the output folders
-    /// before anything is cut.
+    /// Opens a campaign; the protocol finds sections in its runs if there is no table of sections.
+    /// `places` checks the output folders before anything is cut.
     pub fn open(
         folder: &Path,
         protocol: Option<&str>,

@@ -41,7 +41,11 @@ impl Console {
             Color::Never => false,
             Color::Auto => terminal && std::env::var_os("NO_COLOR").is_none(),
         };
-        Self { quiet, color: wanted(std::io::stdout().is_terminal()), color_errors: wanted(std::io::stderr().is_terminal()) }
+        Self {
+            quiet,
+            color: wanted(std::io::stdout().is_terminal()),
+            color_errors: wanted(std::io::stderr().is_terminal()),
+        }
     }
 
     /// Prints a result to standard output. Control characters are made visible.
@@ -49,7 +53,8 @@ impl Console {
         self.put(&painted(&readable(text)))
     }
 
-    /// Prints the text of a file: unchanged if redirected, with visible control characters on a terminal.
+    /// Prints the text of a file: unchanged if redirected, with visible control characters on a
+    /// terminal.
     pub fn print_file(&self, text: &str) -> Exit {
         if std::io::stdout().is_terminal() { self.put(&readable(text)) } else { self.put(text) }
     }
@@ -64,9 +69,13 @@ impl Console {
         match std::io::stdout().lock().write_all(text.as_bytes()) {
             Ok(()) => Exit::Done,
             Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Exit::Done,
-            Err(error) => {
-                self.fail(Problem::error("write-failed", format!("standard output cannot be written: {error}")), Exit::Unfinished)
-            }
+            Err(error) => self.fail(
+                Problem::error(
+                    "write-failed",
+                    format!("standard output cannot be written: {error}"),
+                ),
+                Exit::Unfinished,
+            ),
         }
     }
 
@@ -79,7 +88,11 @@ impl Console {
 
     /// Text in the colour of a positive or a negative result.
     pub fn paint(&self, text: &str, holds: bool) -> String {
-        if self.color { format!("{}{text}{PLAIN}", if holds { GOOD } else { BAD }) } else { text.to_string() }
+        if self.color {
+            format!("{}{text}{PLAIN}", if holds { GOOD } else { BAD })
+        } else {
+            text.to_string()
+        }
     }
 
     pub fn problems(&self, problems: &Problems) {
@@ -104,7 +117,12 @@ impl Console {
     ///
     /// # Errors
     /// A file cannot be written; the exit code.
-    pub fn write_all(&self, kind: SetKind, folder: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Exit> {
+    pub fn write_all(
+        &self,
+        kind: SetKind,
+        folder: &Path,
+        files: &[(String, Vec<u8>)],
+    ) -> Result<(), Exit> {
         let mut outputs = Outputs::of(kind, folder);
         let added = files.iter().try_for_each(|(name, bytes)| outputs.add(name, bytes));
         self.commit(added.map(|()| outputs))
@@ -140,12 +158,16 @@ fn painted(text: &str) -> String {
 
 /// Text for a terminal; tabs are kept.
 fn readable(text: &str) -> String {
-    text.chars().map(|c| if acts(c) && !matches!(c, '\n' | '\t') { '\u{fffd}' } else { c }).collect()
+    text.chars()
+        .map(|c| if acts(c) && !matches!(c, '\n' | '\t') { '\u{fffd}' } else { c })
+        .collect()
 }
 
 /// JSON with control characters as `\uXXXX`; outside of strings it contains only line breaks.
 fn escaped(json: &str) -> String {
-    let escape = |c: char| if acts(c) && c != '\n' { format!("\\u{:04x}", u32::from(c)) } else { c.to_string() };
+    let escape = |c: char| {
+        if acts(c) && c != '\n' { format!("\\u{:04x}", u32::from(c)) } else { c.to_string() }
+    };
     json.chars().map(escape).collect()
 }
 

@@ -7,8 +7,16 @@ use crate::disk;
 use crate::problem::Problem;
 
 /// Names at the top level of a report folder.
-pub const REPORT: &[&str] =
-    &["results.json", "study.json", "diagnosis.json", "blind.json", "blind.html", "report.pdf", "report.html", "tables"];
+pub const REPORT: &[&str] = &[
+    "results.json",
+    "study.json",
+    "diagnosis.json",
+    "blind.json",
+    "blind.html",
+    "report.pdf",
+    "report.html",
+    "tables",
+];
 /// Names at the top level of a written campaign, which is copied with all files it names.
 pub const CAMPAIGN: &[&str] = &["campaign.yaml", "simulation"];
 
@@ -17,21 +25,29 @@ pub const CAMPAIGN: &[&str] = &["campaign.yaml", "simulation"];
 /// # Errors
 /// `not-a-folder`, before the computation.
 pub fn check_out(out: &Path) -> Result<(), Problem> {
-    let file = out.ancestors().find(|above| matches!(disk::kind(above), Ok(Some(disk::Kind::File(_) | disk::Kind::Other))));
+    let file = out.ancestors().find(|above| {
+        matches!(disk::kind(above), Ok(Some(disk::Kind::File(_) | disk::Kind::Other)))
+    });
     let Some(file) = file else { return Ok(()) };
-    let says = format!("the outputs cannot go to `{}`: `{}` is a file", out.display(), file.display());
-    Err(Problem::error("not-a-folder", says).help("give another folder; it is created if it does not exist"))
+    let says =
+        format!("the outputs cannot go to `{}`: `{}` is a file", out.display(), file.display());
+    Err(Problem::error("not-a-folder", says)
+        .help("give another folder; it is created if it does not exist"))
 }
 
-/// Refuses an output folder if files of the campaign would be overwritten; `names` are the outputs at its top level.
+/// Refuses an output folder if files of the campaign would be overwritten; `names` are the outputs
+/// at its top level.
 ///
 /// # Errors
 /// `output-is-input`, `not-a-folder`, before the computation.
 pub fn check_folder(out: &Path, names: &[&str], campaign: &Campaign) -> Result<(), Problem> {
     check_out(out)?;
     let refused = |why: String| {
-        Problem::error("output-is-input", format!("the outputs cannot go to `{}`: {why}", out.display()))
-            .help("give another folder; it is created if it does not exist")
+        Problem::error(
+            "output-is-input",
+            format!("the outputs cannot go to `{}`: {why}", out.display()),
+        )
+        .help("give another folder; it is created if it does not exist")
     };
     let Inputs { folder, folders, files } = campaign.inputs();
     let real = real(out).map_err(|error| refused(format!("it cannot be read: {error}")))?;
@@ -43,7 +59,10 @@ pub fn check_folder(out: &Path, names: &[&str], campaign: &Campaign) -> Result<(
         let hit = files.iter().chain(&folders).find(|input| input.starts_with(&written));
         if let Some(hit) = hit {
             let hit = hit.strip_prefix(&real).unwrap_or(hit);
-            return Err(refused(format!("`{}` is a file of the campaign and would be overwritten", hit.display())));
+            return Err(refused(format!(
+                "`{}` is a file of the campaign and would be overwritten",
+                hit.display()
+            )));
         }
     }
     Ok(())
@@ -70,7 +89,10 @@ pub fn check_file(out: &Path, inputs: &[&Path]) -> Result<(), Problem> {
 /// `output-is-input`.
 pub fn check_not_input(out: &Path, inputs: &[&Path]) -> Result<(), Problem> {
     match inputs.iter().find(|input| same(out, input)) {
-        Some(_) => Err(Problem::error("output-is-input", format!("`{}` is an input and cannot be overwritten", out.display()))),
+        Some(_) => Err(Problem::error(
+            "output-is-input",
+            format!("`{}` is an input and cannot be overwritten", out.display()),
+        )),
         None => Ok(()),
     }
 }

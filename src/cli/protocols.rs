@@ -17,13 +17,18 @@ pub fn check(names: &[String], console: &Console) -> Exit {
     let mut exit = Exit::Done;
     for name in names {
         let mut problems = Problems::default();
-        let plan = load(name, &mut problems).and_then(|family| check::check(&family, &Overrides::new(), &mut problems));
+        let plan = load(name, &mut problems)
+            .and_then(|family| check::check(&family, &Overrides::new(), &mut problems));
         console.problems(&problems);
         match plan {
             Some(plan) => console.say(&format!(
                 "{name}: {}, {}, {}: no errors",
                 counted(plan.quantities.len(), "quantity", "quantities"),
-                counted(plan.quantities.iter().map(|quantity| quantity.limits.len()).sum(), "limit", "limits"),
+                counted(
+                    plan.quantities.iter().map(|quantity| quantity.limits.len()).sum(),
+                    "limit",
+                    "limits"
+                ),
                 counted(plan.zones.len(), "zone", "zones")
             )),
             None => exit = Exit::Wrong,
@@ -68,7 +73,9 @@ pub fn fmt(paths: &[PathBuf], only_check: bool, console: &Console) -> Exit {
             changed.push((path, text));
         }
     }
-    if exit != Exit::Wrong && changed.iter().any(|(path, text)| console.write(path, text.as_bytes()) != Exit::Done) {
+    if exit != Exit::Wrong
+        && changed.iter().any(|(path, text)| console.write(path, text.as_bytes()) != Exit::Done)
+    {
         exit = Exit::Unfinished;
     }
     exit
@@ -129,19 +136,31 @@ pub fn list(name: Option<&str>, console: &Console) -> Exit {
         Some(name) => match library::shipped(name) {
             Some(source) => console.print_file(&source.text),
             None => {
-                let problem = Problem::error("no-such-protocol", format!("no shipped protocol is called `{name}`"));
+                let problem = Problem::error(
+                    "no-such-protocol",
+                    format!("no shipped protocol is called `{name}`"),
+                );
                 console.fail(problem.suggest(name, library::names()), Exit::Wrong)
             }
         },
         None => {
-            let width = library::SHIPPED.iter().map(|shipped| shipped.name.len()).max().unwrap_or(0);
+            let width =
+                library::SHIPPED.iter().map(|shipped| shipped.name.len()).max().unwrap_or(0);
             let text: String = library::SHIPPED
                 .iter()
                 .map(|shipped| {
                     let source = Source::new(shipped.name, shipped.text);
                     let document = syntax::read_text(&source, &mut Problems::default());
-                    let title = document.blocks.iter().find(|block| block.kind.text == "protocol").and_then(|block| block.title.clone());
-                    format!("{:width$}  {}\n", shipped.name, title.map_or(String::new(), |title| title.text))
+                    let title = document
+                        .blocks
+                        .iter()
+                        .find(|block| block.kind.text == "protocol")
+                        .and_then(|block| block.title.clone());
+                    format!(
+                        "{:width$}  {}\n",
+                        shipped.name,
+                        title.map_or(String::new(), |title| title.text)
+                    )
                 })
                 .collect();
             console.print(&text)

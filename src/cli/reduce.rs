@@ -1,4 +1,5 @@
-//! `reduce`: evaluates a part of the sections of a campaign to a file of values; `judge`: the report from such files.
+//! `reduce`: evaluates a part of the sections of a campaign to a file of values; `judge`: the
+//! report from such files.
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -21,7 +22,8 @@ pub struct Reduce {
     /// Folder of the campaign; several are evaluated as one.
     #[arg(required = true, value_name = "CAMPAIGN")]
     campaigns: Vec<PathBuf>,
-    /// Path of a protocol, or name of a shipped one [default: the one in campaign.yaml, else en14363-2016-annex-t]
+    /// Path of a protocol, or name of a shipped one [default: the one in campaign.yaml, else
+    /// en14363-2016-annex-t]
     #[arg(long, short)]
     protocol: Option<String>,
     /// File of values, such as values.parquet.
@@ -33,7 +35,8 @@ pub struct Reduce {
     /// Set a parameter of the protocol.
     #[arg(long = "set", value_name = "NAME=VALUE")]
     set: Vec<String>,
-    /// Keep no signals for the plots of the report. The records of the worst sections are then not read again.
+    /// Keep no signals for the plots of the report. The records of the worst sections are then not
+    /// read again.
     #[arg(long)]
     no_plots: bool,
     /// Number of records processed in parallel [default: one per core]
@@ -47,22 +50,39 @@ impl Reduce {
             return exit;
         }
         let mut problems = Problems::default();
-        let prepared = prepare_all(&self.campaigns, self.protocol.as_deref(), &self.set, &mut problems);
+        let prepared =
+            prepare_all(&self.campaigns, self.protocol.as_deref(), &self.set, &mut problems);
         let name = self.out.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        let folder = self.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let folder = self
+            .out
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty())
+            .unwrap_or(Path::new("."));
         for campaign in prepared.iter().flat_map(|pool| &pool.campaigns) {
-            if let Err(problem) = check_file(&self.out, &[]).and_then(|()| check_folder(folder, &[name], campaign)) {
+            if let Err(problem) =
+                check_file(&self.out, &[]).and_then(|()| check_folder(folder, &[name], campaign))
+            {
                 problems.push(problem);
             }
         }
-        if !problems.any_error() && self.out.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("parquet")) {
-            let says = format!("`{}` will be a Parquet table, whatever its name ends in", self.out.display());
+        if !problems.any_error()
+            && self.out.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("parquet"))
+        {
+            let says = format!(
+                "`{}` will be a Parquet table, whatever its name ends in",
+                self.out.display()
+            );
             problems.push(Problem::warning("values-name", says).help("name it `values.parquet`"));
         }
         console.problems(&problems);
-        let Some(Pool { compiled, campaigns, found, .. }) = prepared.filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        let Some(Pool { compiled, campaigns, found, .. }) =
+            prepared.filter(|_| !problems.any_error())
+        else {
+            return Exit::Wrong;
+        };
         let part = Part { shard: self.shard.unwrap_or(Shard::WHOLE), plots: !self.no_plots };
-        let bar = progress_bar(console, part.shard.range(Campaigns::from(&campaigns).sections()).len());
+        let bar =
+            progress_bar(console, part.shard.range(Campaigns::from(&campaigns).sections()).len());
         let values = values::reduce(&compiled, (&campaigns, found), part, &|section| {
             bar.set_message(plain(section));
             bar.inc(1);
@@ -90,7 +110,8 @@ impl Reduce {
 
 /// How many values of how many sections there are, and the sections that cannot be evaluated.
 fn told(values: &Values) -> String {
-    let rows: usize = values.sections.iter().flat_map(|(_, values)| &values.rows).map(Vec::len).sum();
+    let rows: usize =
+        values.sections.iter().flat_map(|(_, values)| &values.rows).map(Vec::len).sum();
     let units = values.head.basis.units();
     let fault = |(number, of_section): &(usize, SectionValues)| {
         let unit = units.get(*number)?;
@@ -98,7 +119,12 @@ fn told(values: &Values) -> String {
         Some(format!("  {} not used: {fault}\n", unit.name))
     };
     let faults: Vec<String> = values.sections.iter().filter_map(fault).collect();
-    format!("{rows} values of {} of {} sections\n{}", values.sections.len() - faults.len(), units.len(), faults.concat())
+    format!(
+        "{rows} values of {} of {} sections\n{}",
+        values.sections.len() - faults.len(),
+        units.len(),
+        faults.concat()
+    )
 }
 
 #[derive(Debug, Args)]
@@ -142,11 +168,15 @@ impl Judge {
 /// Opens files of values and puts them together.
 pub fn joined(paths: &[PathBuf], problems: &mut Problems) -> Option<Joined> {
     let in_folder = |path: &PathBuf, problem: Problem| match disk::is_folder(path) {
-        Ok(true) => problem.help(format!("name the files in it: `{}`", path.join("*.parquet").display())),
+        Ok(true) => {
+            problem.help(format!("name the files in it: `{}`", path.join("*.parquet").display()))
+        }
         _ => problem,
     };
-    let opened: Vec<Result<File, Problem>> =
-        paths.iter().map(|path| values::open(path).map_err(|problem| in_folder(path, problem))).collect();
+    let opened: Vec<Result<File, Problem>> = paths
+        .iter()
+        .map(|path| values::open(path).map_err(|problem| in_folder(path, problem)))
+        .collect();
     let mut files = Vec::new();
     for file in opened {
         match file {

@@ -52,7 +52,8 @@ impl Report {
         Settings { traces: if self.only == Only::Results { 0 } else { self.plots } }
     }
 
-    /// The key for signatures. The password is read before the computation, so that a wrong one is reported at once.
+    /// The key for signatures. The password is read before the computation, so that a wrong one is
+    /// reported at once.
     ///
     /// # Errors
     /// The key cannot be read; the exit code.
@@ -81,14 +82,23 @@ impl Report {
     }
 
     /// All files of the report, by path relative to the output folder.
-    fn files(&self, found: &Certification, key: Option<&SecretKey>) -> Result<Vec<(String, Vec<u8>)>, Problems> {
+    fn files(
+        &self,
+        found: &Certification,
+        key: Option<&SecretKey>,
+    ) -> Result<Vec<(String, Vec<u8>)>, Problems> {
         let pdf = matches!(self.only, Only::All | Only::Pdf);
         let html = matches!(self.only, Only::All | Only::Html);
         let mut files = deliver::certification(found, Reports { pdf, html })?;
         if let Some(key) = key {
-            let signed = files.iter().filter(|(name, _)| [REPORT_PDF, statement::FILE].contains(&name.as_str()));
-            let signed = signed.map(|(name, bytes)| Ok((format!("{name}{SIGNATURE}"), signature::sign(key, name, bytes)?.into_bytes())));
-            let signed = signed.collect::<Result<Vec<_>, _>>().map_err(|problem| Problems(vec![problem]))?;
+            let signed = files
+                .iter()
+                .filter(|(name, _)| [REPORT_PDF, statement::FILE].contains(&name.as_str()));
+            let signed = signed.map(|(name, bytes)| {
+                Ok((format!("{name}{SIGNATURE}"), signature::sign(key, name, bytes)?.into_bytes()))
+            });
+            let signed =
+                signed.collect::<Result<Vec<_>, _>>().map_err(|problem| Problems(vec![problem]))?;
             files.extend(signed);
         }
         Ok(files)
@@ -97,7 +107,9 @@ impl Report {
 
 /// The table of verdicts for the terminal.
 fn summary(found: &Certification, console: &Console) -> String {
-    let paint = |text: String, holds: Option<bool>| holds.map_or(text.clone(), |holds| console.paint(&text, holds));
+    let paint = |text: String, holds: Option<bool>| {
+        holds.map_or(text.clone(), |holds| console.paint(&text, holds))
+    };
     let mut out = format!("{}\n{}\n\n", found.campaign.name, found.protocol.title);
     let table = statistics(found, console);
     let further = estimated(found, console);
@@ -107,7 +119,11 @@ fn summary(found: &Certification, console: &Console) -> String {
     let used = found.sections.iter().filter(|section| section.used).count();
     out += &format!("{used} of {} sections used\n", found.sections.len());
     for section in found.sections.iter().filter(|section| !section.used) {
-        out += &format!("  {} not used: {}\n", section.section, section.reason.clone().unwrap_or_default());
+        out += &format!(
+            "  {} not used: {}\n",
+            section.section,
+            section.reason.clone().unwrap_or_default()
+        );
     }
     for row in findings::rows(&found.findings) {
         out += &format!("finding: {}\n", findings::line(&row));
@@ -116,13 +132,24 @@ fn summary(found: &Certification, console: &Console) -> String {
         out += &format!("note: {note}\n");
     }
     let holds = found.verdict == Verdict::Validated;
-    let title = found.verdicts.iter().find(|verdict| verdict.overall).map_or(String::new(), |verdict| format!(", {}", verdict.title));
-    out += &format!("\n{}\n", paint(format!("Verdict{title}: {}", found.verdict_in_words()), Some(holds)));
+    let title = found
+        .verdicts
+        .iter()
+        .find(|verdict| verdict.overall)
+        .map_or(String::new(), |verdict| format!(", {}", verdict.title));
+    out += &format!(
+        "\n{}\n",
+        paint(format!("Verdict{title}: {}", found.verdict_in_words()), Some(holds))
+    );
     for reason in &found.reasons {
         out += &format!("  {reason}\n");
     }
     for verdict in found.verdicts.iter().filter(|verdict| !verdict.overall) {
-        out += &format!("{}: {}\n", verdict.title, paint(verdict.word.clone(), verdict.outcome.holds()));
+        out += &format!(
+            "{}: {}\n",
+            verdict.title,
+            paint(verdict.word.clone(), verdict.outcome.holds())
+        );
         for reason in &verdict.reasons {
             out += &format!("  {reason}\n");
         }
@@ -151,9 +178,15 @@ fn ratio(statistic: &StatisticResult) -> String {
 
 /// Statistics that are told one by one: those of comparisons.
 fn statistics(found: &Certification, console: &Console) -> String {
-    let told: Vec<_> = found.quantities.iter().filter(|quantity| quantity.from.is_none() || quantity.statistics.is_empty()).collect();
-    let has_row =
-        |quantity: &&QuantityResult| !estimates::single(quantity).is_empty() || quantity.statistics.is_empty() && quantity.reason.is_some();
+    let told: Vec<_> = found
+        .quantities
+        .iter()
+        .filter(|quantity| quantity.from.is_none() || quantity.statistics.is_empty())
+        .collect();
+    let has_row = |quantity: &&QuantityResult| {
+        !estimates::single(quantity).is_empty()
+            || quantity.statistics.is_empty() && quantity.reason.is_some()
+    };
     if !told.iter().any(has_row) && !found.quantities.is_empty() {
         return String::new();
     }
@@ -167,7 +200,11 @@ fn statistics(found: &Certification, console: &Console) -> String {
         let open = quantity.holds.is_none() && quantity.reason.is_some();
         for (index, statistic) in estimates::single(quantity).into_iter().enumerate() {
             let name = if index == 0 { quantity.id.as_str() } else { "" };
-            let scope = if statistic.scope == "all" { String::new() } else { format!(", {}", statistic.scope) };
+            let scope = if statistic.scope == "all" {
+                String::new()
+            } else {
+                format!(", {}", statistic.scope)
+            };
             let unit = if index == 0 { quantity.unit.as_str() } else { "" };
             out += &format!(
                 "{name:width$}  {unit:>8}  {:<26} {:>5}  {:>4}  {:>12}  {:>12}  {:>8}  {}\n",
@@ -181,7 +218,9 @@ fn statistics(found: &Certification, console: &Console) -> String {
             );
         }
         match &quantity.reason {
-            Some(reason) if quantity.statistics.is_empty() => out += &format!("{:width$}  {reason}\n", quantity.id),
+            Some(reason) if quantity.statistics.is_empty() => {
+                out += &format!("{:width$}  {reason}\n", quantity.id)
+            }
             Some(reason) if open => out += &format!("{:width$}  not assessable: {reason}\n", ""),
             _ => {}
         }
@@ -189,20 +228,26 @@ fn statistics(found: &Certification, console: &Console) -> String {
     out
 }
 
-/// One line for each limit of assessed quantities and each limit by group: how many groups hold, and the largest ratio with its place.
+/// One line for each limit of assessed quantities and each limit by group: how many groups hold,
+/// and the largest ratio with its place.
 fn estimated(found: &Certification, console: &Console) -> String {
     let limits: Vec<_> = found
         .quantities
         .iter()
-        .flat_map(|quantity| estimates::condensed(quantity).into_iter().map(move |limit| (quantity, limit)))
+        .flat_map(|quantity| {
+            estimates::condensed(quantity).into_iter().map(move |limit| (quantity, limit))
+        })
         .collect();
     if limits.is_empty() {
         return String::new();
     }
-    let longest = |texts: &mut dyn Iterator<Item = usize>, least: usize| texts.max().unwrap_or(0).max(least);
+    let longest =
+        |texts: &mut dyn Iterator<Item = usize>, least: usize| texts.max().unwrap_or(0).max(least);
     let ids = longest(&mut limits.iter().map(|(quantity, _)| quantity.id.chars().count()), 8);
-    let titles = longest(&mut limits.iter().map(|(_, limit)| limit.results[0].title.chars().count()), 8);
-    let places = longest(&mut limits.iter().map(|(_, limit)| limit.decisive().scope.chars().count()), 10);
+    let titles =
+        longest(&mut limits.iter().map(|(_, limit)| limit.results[0].title.chars().count()), 8);
+    let places =
+        longest(&mut limits.iter().map(|(_, limit)| limit.decisive().scope.chars().count()), 10);
     let mut out = format!(
         "{:ids$}  {:>8}  {:titles$}  {:>12}  {:>12}  {:>9}  {:places$}  groups met\n",
         "quantity", "unit", "estimate", "largest", "limit", "|v|/limit", "where"

@@ -33,7 +33,8 @@ pub struct Sections {
     /// Path of a protocol, or name of a shipped one [default: the one in campaign.yaml]
     #[arg(long, short)]
     protocol: Option<String>,
-    /// Table of the sections that are found; in the folder of the campaign, `sections: sections.csv` in campaign.yaml then uses it.
+    /// Table of the sections that are found; in the folder of the campaign, `sections:
+    /// sections.csv` in campaign.yaml then uses it.
     #[arg(long, short, required_unless_present = "cut")]
     out: Option<PathBuf>,
     /// Folder for a copy of the campaign in which each section has records of its own.
@@ -56,16 +57,27 @@ impl Sections {
             return exit;
         }
         let mut problems = Problems::default();
-        let pool = compiled_for(std::slice::from_ref(&self.campaign), self.protocol.as_deref(), &self.set, &mut problems);
+        let pool = compiled_for(
+            std::slice::from_ref(&self.campaign),
+            self.protocol.as_deref(),
+            &self.set,
+            &mut problems,
+        );
         for campaign in pool.iter().flat_map(|pool| &pool.campaigns) {
             let inputs = campaign.inputs();
             let files: Vec<_> = inputs.files.iter().map(PathBuf::as_path).collect();
             let table = self.out.as_ref().map_or(Ok(()), |out| check_file(out, &files));
-            let copy = self.cut.as_ref().map_or(Ok(()), |folder| check_folder(folder, CAMPAIGN, campaign));
-            [table, copy].into_iter().filter_map(Result::err).for_each(|problem| problems.push(problem));
+            let copy =
+                self.cut.as_ref().map_or(Ok(()), |folder| check_folder(folder, CAMPAIGN, campaign));
+            [table, copy]
+                .into_iter()
+                .filter_map(Result::err)
+                .for_each(|problem| problems.push(problem));
         }
         console.problems(&problems);
-        let Some(Pool { compiled, campaigns, .. }) = pool.filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        let Some(Pool { compiled, campaigns, .. }) = pool.filter(|_| !problems.any_error()) else {
+            return Exit::Wrong;
+        };
         // A table that the campaign has can be cut by; it is not looked for again.
         let given = campaigns[0].sections.is_some() && self.out.is_none();
         let (campaign, told) = if given {
@@ -80,8 +92,14 @@ impl Sections {
             }
         };
         let campaign = with_protocols(campaign);
-        // The copy is complete beside its folder before the table is written: if one of them cannot be written, neither is.
-        let copy = match self.cut.as_ref().map(|folder| cut_to(folder, &campaign, Format::from(self.records), console)).transpose() {
+        // The copy is complete beside its folder before the table is written: if one of them cannot
+        // be written, neither is.
+        let copy = match self
+            .cut
+            .as_ref()
+            .map(|folder| cut_to(folder, &campaign, Format::from(self.records), console))
+            .transpose()
+        {
             Ok(copy) => copy,
             Err(exit) => return exit,
         };
@@ -91,7 +109,10 @@ impl Sections {
                 return written;
             }
         }
-        let records = match copy.map(|(outputs, records)| console.commit(Ok(outputs)).map(|()| records)).transpose() {
+        let records = match copy
+            .map(|(outputs, records)| console.commit(Ok(outputs)).map(|()| records))
+            .transpose()
+        {
             Ok(records) => records,
             Err(exit) => return exit,
         };
@@ -101,7 +122,11 @@ impl Sections {
             }
             self.out.iter().for_each(|out| console.say(&format!("written: {}", out.display())));
             for (folder, records) in self.cut.iter().zip(records) {
-                console.say(&format!("written: {records} records of {} sections to {}", campaign.names.len(), folder.display()));
+                console.say(&format!(
+                    "written: {records} records of {} sections to {}",
+                    campaign.names.len(),
+                    folder.display()
+                ));
             }
         }
         Exit::Done
@@ -109,7 +134,12 @@ impl Sections {
 }
 
 /// The copy with a record for each section, and their number.
-fn cut_to(folder: &Path, campaign: &Campaign, format: Format, console: &Console) -> Result<(Outputs, usize), Exit> {
+fn cut_to(
+    folder: &Path,
+    campaign: &Campaign,
+    format: Format,
+    console: &Console,
+) -> Result<(Outputs, usize), Exit> {
     let mut outputs = Outputs::of(SetKind::Campaign, folder);
     match cut(campaign, format, &mut outputs) {
         Ok(records) => Ok((outputs, records)),
@@ -125,7 +155,11 @@ fn words(found: &FoundSections) -> String {
     let mut out = format!("{}\n", in_words(found));
     let unit = &found.axis_unit;
     for run in &found.runs {
-        let _ = writeln!(out, "\n{}: {} to {} {unit}, {} sections", run.run, run.start, run.end, run.found);
+        let _ = writeln!(
+            out,
+            "\n{}: {} to {} {unit}, {} sections",
+            run.run, run.start, run.end, run.found
+        );
         if let Some(says) = drift_in_words(run, unit) {
             let _ = writeln!(out, "  {says}");
         }
@@ -138,7 +172,11 @@ fn words(found: &FoundSections) -> String {
         longest.sort_by(|a, b| a.from.total_cmp(&b.from));
         let _ = writeln!(out, "  longest stretches without a section:");
         for stretch in longest {
-            let _ = writeln!(out, "  {:>10} to {:>10} {unit}  {}", stretch.from, stretch.to, stretch.reason);
+            let _ = writeln!(
+                out,
+                "  {:>10} to {:>10} {unit}  {}",
+                stretch.from, stretch.to, stretch.reason
+            );
         }
     }
     out

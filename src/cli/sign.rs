@@ -11,7 +11,8 @@ use crate::provenance::signature::{PASSWORD, beside, content, new_keys, secret_k
 
 #[derive(Debug, Args)]
 pub struct Keygen {
-    /// Name of the keys: NAME.key is the secret key, NAME.pub the public key. Neither file may exist.
+    /// Name of the keys: NAME.key is the secret key, NAME.pub the public key. Neither file may
+    /// exist.
     name: PathBuf,
     /// Do not protect the secret key with a password.
     #[arg(long)]
@@ -23,7 +24,8 @@ pub struct Sign {
     /// Files to sign; each signature is written next to its file, as FILE.minisig.
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Secret key of `fishplate keygen` or minisign. The password is requested, or read from FISHPLATE_KEY_PASSWORD.
+    /// Secret key of `fishplate keygen` or minisign. The password is requested, or read from
+    /// FISHPLATE_KEY_PASSWORD.
     #[arg(long, value_name = "FILE")]
     key: PathBuf,
 }
@@ -42,8 +44,12 @@ impl Keygen {
         };
         let (secret, public) = (with(".key"), with(".pub"));
         if let Some(there) = [&secret, &public].into_iter().find(|path| disk::may_exist(path)) {
-            let problem = Problem::error("key-exists", format!("`{}` is there already; a key is never overwritten", there.display()));
-            return console.fail(problem.help("choose another name, or move the old key away"), Exit::Wrong);
+            let problem = Problem::error(
+                "key-exists",
+                format!("`{}` is there already; a key is never overwritten", there.display()),
+            );
+            return console
+                .fail(problem.help("choose another name, or move the old key away"), Exit::Wrong);
         }
         let keys = match new_keys(password(), !self.no_password) {
             Ok(keys) => keys,
@@ -57,7 +63,11 @@ impl Keygen {
         });
         match written {
             Ok(()) => {
-                console.say(&format!("written: {} (keep it secret), {} (publish it for verification)", secret.display(), public.display()));
+                console.say(&format!(
+                    "written: {} (keep it secret), {} (publish it for verification)",
+                    secret.display(),
+                    public.display()
+                ));
                 Exit::Done
             }
             Err(problem) => console.fail(problem, Exit::Unfinished),
@@ -67,8 +77,9 @@ impl Keygen {
 
 /// Creates a new file; only the owner can read a secret one.
 fn create(path: &Path, bytes: &[u8], secret: bool) -> Result<(), Problem> {
-    disk::create_new(path, bytes, secret)
-        .map_err(|error| Problem::error("write-failed", format!("`{}` cannot be written: {error}", path.display())))
+    disk::create_new(path, bytes, secret).map_err(|error| {
+        Problem::error("write-failed", format!("`{}` cannot be written: {error}", path.display()))
+    })
 }
 
 impl Sign {

@@ -25,14 +25,16 @@ use crate::model::integrate::{MOST_STEPS, Method, SAMPLE, Steps};
 pub use crate::prepare::load_catalogue;
 use crate::problem::{Problem, Problems, plain};
 use crate::simulate::{
-    Deviation, Made, Plan, Section, check_confined, effects_of_origin, record_file, sections, simulate, single, write_campaign,
+    Deviation, Made, Plan, Section, check_confined, effects_of_origin, record_file, sections,
+    simulate, single, write_campaign,
 };
 use crate::units::{Dimension, Unit, number};
 use crate::yaml;
 
 #[derive(Debug, Args)]
 pub struct Simulate {
-    /// Folder of a campaign; all its sections are simulated. Of runs, those are that the table of sections or the protocol gives.
+    /// Folder of a campaign; all its sections are simulated. Of runs, those are that the table of
+    /// sections or the protocol gives.
     #[arg(required_unless_present = "vehicle", conflicts_with_all = ["vehicle", "track", "speed", "output"])]
     campaign: Option<PathBuf>,
     /// Vehicle file; its contact profile is in the same folder.
@@ -44,15 +46,15 @@ pub struct Simulate {
     /// Speed in m/s, or with its unit: `120 km/h`.
     #[arg(long, requires = "vehicle")]
     speed: Option<String>,
-    /// Effect and its size; may be repeated: `friction=0.5`, `payload=3.5 t`, `sensor_gain=0.8 on Y_3R`,
-    /// `friction=0.2 in zones 3, 4`; `fishplate effects` lists them.
+    /// Effect and its size; may be repeated: `friction=0.5`, `payload=3.5 t`, `sensor_gain=0.8 on
+    /// Y_3R`, `friction=0.2 in zones 3, 4`; `fishplate effects` lists them.
     #[arg(long = "effect", value_name = "EFFECT[.PARAMETER]=VALUE")]
     effects: Vec<String>,
     /// Catalogue of effects: a path, or the name of a shipped one.
     #[arg(long = "effects", value_name = "CATALOGUE", default_value = library::CATALOGUES[0].name)]
     catalogue: String,
-    /// Protocol that finds the sections in the runs of a campaign: a path, or the name of a shipped one [default: the one in
-    /// campaign.yaml]
+    /// Protocol that finds the sections in the runs of a campaign: a path, or the name of a shipped
+    /// one [default: the one in campaign.yaml]
     #[arg(long, short, conflicts_with = "vehicle")]
     protocol: Option<String>,
     /// Output folder for the simulated campaign; created if missing.
@@ -63,13 +65,16 @@ pub struct Simulate {
     /// Method of integration of the reference vehicle model.
     #[arg(long, value_enum, default_value_t, conflicts_with = "simulator")]
     integrator: Integrator,
-    /// Largest step of integration of the reference vehicle model, in ms or with its unit: `0.25 ms`. At low speed steps are shorter.
+    /// Largest step of integration of the reference vehicle model, in ms or with its unit: `0.25
+    /// ms`. At low speed steps are shorter.
     #[arg(long, default_value = "1 ms", conflicts_with = "simulator")]
     step: String,
-    /// Add effects to the campaign's own simulation: its records + (simulator with effects - simulator without).
+    /// Add effects to the campaign's own simulation: its records + (simulator with effects -
+    /// simulator without).
     #[arg(long, requires = "campaign")]
     increment: bool,
-    /// Compare the simulator without effects with the campaign's simulation first, and print the deviation.
+    /// Compare the simulator without effects with the campaign's simulation first, and print the
+    /// deviation.
     #[arg(long, requires = "campaign")]
     baseline: bool,
     /// Format of the simulated records of a campaign.
@@ -119,13 +124,24 @@ impl Simulate {
     }
 
     /// Simulates every section of a campaign, and writes a campaign with the simulated records.
-    fn whole(&self, folder: &Path, (catalogue, effects): (&Catalogue, &[Applied]), steps: Steps, console: &Console) -> Exit {
+    fn whole(
+        &self,
+        folder: &Path,
+        (catalogue, effects): (&Catalogue, &[Applied]),
+        steps: Steps,
+        console: &Console,
+    ) -> Exit {
         let mut problems = Problems::default();
-        let places = |campaign: &Campaign| self.out.as_ref().map_or(Ok(()), |out| check_folder(out, CAMPAIGN, campaign));
+        let places = |campaign: &Campaign| {
+            self.out.as_ref().map_or(Ok(()), |out| check_folder(out, CAMPAIGN, campaign))
+        };
         let files = WithFiles::open(folder, self.protocol.as_deref(), &places, &mut problems);
         let prepared = files.as_ref().map(|files| &files.campaign).and_then(|campaign| {
             if self.increment || self.baseline {
-                campaign.only_one(RecordKind::Simulation).map_err(|problem| problems.push(problem)).ok()?;
+                campaign
+                    .only_one(RecordKind::Simulation)
+                    .map_err(|problem| problems.push(problem))
+                    .ok()?;
             }
             campaign.one_vehicle().map_err(|problem| problems.push(problem)).ok()?;
             let sections = sections(campaign, &mut problems)?;
@@ -140,7 +156,9 @@ impl Simulate {
             Some((campaign, chosen, sections))
         });
         console.problems(&problems);
-        let (Some((campaign, chosen, sections)), Some(out)) = (prepared.filter(|_| !problems.any_error()), &self.out) else {
+        let (Some((campaign, chosen, sections)), Some(out)) =
+            (prepared.filter(|_| !problems.any_error()), &self.out)
+        else {
             return Exit::Wrong;
         };
         if self.baseline {
@@ -164,7 +182,8 @@ impl Simulate {
             })
             .collect();
         bar.finish_and_clear();
-        let failed: Vec<Problem> = made.iter().filter_map(|made| made.as_ref().err().cloned()).collect();
+        let failed: Vec<Problem> =
+            made.iter().filter_map(|made| made.as_ref().err().cloned()).collect();
         if !failed.is_empty() {
             console.problems(&Problems(failed));
             return Exit::Unfinished;
@@ -182,7 +201,12 @@ impl Simulate {
         let added = write_campaign(&mut outputs, campaign, (format, records), Some(&made));
         match console.commit(added.map(|()| outputs)) {
             Ok(()) => {
-                console.say(&format!("written: {} sections to {}{}", sections.len(), out.display(), chosen.effort()));
+                console.say(&format!(
+                    "written: {} sections to {}{}",
+                    sections.len(),
+                    out.display(),
+                    chosen.effort()
+                ));
                 Exit::Done
             }
             Err(exit) => exit,
@@ -204,12 +228,23 @@ impl Simulate {
         }
         let (recorded, units) = chosen.recorded(campaign, section)?;
         let made = simulate(chosen.simulator(), catalogue, effects, section, Some(&recorded))?;
-        let unit = |channel: &str| units.iter().find(|(name, _)| name == channel).map_or_else(Unit::one, |(_, unit)| unit.clone());
+        let unit = |channel: &str| {
+            units
+                .iter()
+                .find(|(name, _)| name == channel)
+                .map_or_else(Unit::one, |(_, unit)| unit.clone())
+        };
         record_file(format, &made.signals, &unit)
     }
 
     /// Simulates one vehicle on one track.
-    fn one(&self, vehicle: &Path, (catalogue, effects): (&Catalogue, &[Applied]), steps: Steps, console: &Console) -> Exit {
+    fn one(
+        &self,
+        vehicle: &Path,
+        (catalogue, effects): (&Catalogue, &[Applied]),
+        steps: Steps,
+        console: &Console,
+    ) -> Exit {
         let (Some(track), Some(output)) = (&self.track, &self.output) else { return Exit::Wrong };
         if let Err(problem) = check_file(output, &[vehicle, track]) {
             return console.fail(problem, Exit::Wrong);
@@ -224,7 +259,10 @@ impl Simulate {
         let (Some(tree), Ok(speed)) = (tree, speed) else { return Exit::Wrong };
         let nowhere = Section::nowhere();
         if let Some(confined) = effects.iter().find(|applied| applied.confined.is_some()) {
-            let says = format!("`{}` is confined to some sections, but only one record is simulated", confined.effect);
+            let says = format!(
+                "`{}` is confined to some sections, but only one record is simulated",
+                confined.effect
+            );
             return console.fail(Problem::error("no-such-section", says), Exit::Wrong);
         }
         let plan = match Plan::new(catalogue, effects, &nowhere, None) {
@@ -233,7 +271,9 @@ impl Simulate {
         };
         let made = single((vehicle, &tree), track, speed, (&plan.settings, plan.shift()), steps);
         let file = made.and_then(|mut signals| {
-            let done = plan.operate(&mut signals, &nowhere).and_then(|()| record_file(Format::of(output), &signals, &unit));
+            let done = plan
+                .operate(&mut signals, &nowhere)
+                .and_then(|()| record_file(Format::of(output), &signals, &unit));
             done.map_err(|problem| Problems(vec![problem]))
         });
         match file {
@@ -251,7 +291,12 @@ impl Simulate {
 }
 
 /// Problems of effects with these sections, independent of the simulator.
-fn unusable(catalogue: &Catalogue, effects: &[Applied], sections: &[Section], chosen: &Chosen<'_>) -> Vec<Problem> {
+fn unusable(
+    catalogue: &Catalogue,
+    effects: &[Applied],
+    sections: &[Section],
+    chosen: &Chosen<'_>,
+) -> Vec<Problem> {
     let mut problems = check_confined(effects, sections);
     let simulator = chosen.simulator().catalogue_name();
     for section in sections {
@@ -263,8 +308,12 @@ fn unusable(catalogue: &Catalogue, effects: &[Applied], sections: &[Section], ch
                     found.dimension == unit.dimension && found.factor != unit.factor
                 };
                 problems.extend(catalogue.units.iter().find(differs).map(|(channel, unit)| {
-                    let says = format!("`{channel}` is recorded in {}, but the catalogue expects {unit}", chosen.unit(section, channel));
-                    Problem::error("unit-mismatch", says).help("set `units` in the catalogue to those of the records")
+                    let says = format!(
+                        "`{channel}` is recorded in {}, but the catalogue expects {unit}",
+                        chosen.unit(section, channel)
+                    );
+                    Problem::error("unit-mismatch", says)
+                        .help("set `units` in the catalogue to those of the records")
                 }));
             }
             Ok(_) => {}
@@ -273,7 +322,12 @@ fn unusable(catalogue: &Catalogue, effects: &[Applied], sections: &[Section], ch
     problems
 }
 
-fn say_baseline(console: &Console, chosen: &Chosen<'_>, deviations: &[Deviation], warning: Option<Problem>) {
+fn say_baseline(
+    console: &Console,
+    chosen: &Chosen<'_>,
+    deviations: &[Deviation],
+    warning: Option<Problem>,
+) {
     let largest = deviations.iter().max_by(|a, b| a.share().total_cmp(&b.share()));
     if let Some(worst) = largest {
         console.say(&format!(
@@ -289,19 +343,27 @@ fn say_baseline(console: &Console, chosen: &Chosen<'_>, deviations: &[Deviation]
 
 /// The unit of a channel of the model.
 fn unit(name: &str) -> Unit {
-    let unit = CHANNELS.iter().find(|(known, _)| *known == name).and_then(|(_, unit)| Unit::parse(unit).ok());
+    let unit = CHANNELS
+        .iter()
+        .find(|(known, _)| *known == name)
+        .and_then(|(_, unit)| Unit::parse(unit).ok());
     unit.unwrap_or_else(Unit::one)
 }
 
 /// The steps of a method. A sample is a whole number of them.
 fn steps(integrator: Integrator, written: &str) -> Result<Steps, Problem> {
-    let wrong = |says: String| Problem::error("step", says).help("write `--step 0.5` for ms, or `--step '0.5 ms'`");
+    let wrong = |says: String| {
+        Problem::error("step", says).help("write `--step 0.5` for ms, or `--step '0.5 ms'`")
+    };
     let milliseconds = Unit { text: "ms".into(), factor: SAMPLE, dimension: Dimension::TIME };
     let step = number::read(written, &milliseconds).map_err(|refused| wrong(refused.says))?.si;
     let parts = SAMPLE / step;
     if !(1.0 - 1e-9..=MOST_STEPS + 1e-9 * MOST_STEPS).contains(&parts) {
         let least = 1.0 / MOST_STEPS;
-        return Err(wrong(format!("a step of {} ms is outside the range of the model, {least} to 1 ms", step / SAMPLE)));
+        return Err(wrong(format!(
+            "a step of {} ms is outside the range of the model, {least} to 1 ms",
+            step / SAMPLE
+        )));
     }
     let method = match integrator {
         Integrator::RungeKutta => Method::RungeKutta,
@@ -313,13 +375,19 @@ fn steps(integrator: Integrator, written: &str) -> Result<Steps, Problem> {
 
 fn speed(written: Option<&str>) -> Result<f64, Problem> {
     let Some(written) = written else {
-        return Err(Problem::error("speed-missing", "no speed is given").help("write `--speed 30` for m/s, or `--speed '108 km/h'`"));
+        return Err(Problem::error("speed-missing", "no speed is given")
+            .help("write `--speed 30` for m/s, or `--speed '108 km/h'`"));
     };
-    let wrong = |says: String| Problem::error("speed", says).help("write `--speed 30` for m/s, or `--speed '108 km/h'`");
-    let unit = Unit { text: "m/s".into(), factor: 1.0, dimension: Dimension::LENGTH / Dimension::TIME };
+    let wrong = |says: String| {
+        Problem::error("speed", says).help("write `--speed 30` for m/s, or `--speed '108 km/h'`")
+    };
+    let unit =
+        Unit { text: "m/s".into(), factor: 1.0, dimension: Dimension::LENGTH / Dimension::TIME };
     let speed = number::read(written, &unit).map_err(|refused| wrong(refused.says))?.si;
     if !(1.0..=150.0).contains(&speed) {
-        return Err(wrong(format!("a speed of {speed:.1} m/s is outside the range of the model, 1 to 150 m/s")));
+        return Err(wrong(format!(
+            "a speed of {speed:.1} m/s is outside the range of the model, 1 to 150 m/s"
+        )));
     }
     Ok(speed)
 }

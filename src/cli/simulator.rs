@@ -12,14 +12,16 @@ use crate::effects::{Catalogue, Signals};
 use crate::model::integrate::Steps;
 use crate::problem::{Problem, Problems};
 use crate::simulate::{
-    Builtin, Cache, Deviation, External, Section, Simulator, Task, baseline_warning, deviations, in_units, read_program, recorded,
+    Builtin, Cache, Deviation, External, Section, Simulator, Task, baseline_warning, deviations,
+    in_units, read_program, recorded,
 };
 use crate::units::Unit;
 
 /// Arguments that choose a simulator.
 #[derive(Debug, Args)]
 pub struct SimulatorChoice {
-    /// File that describes another simulator, a program that is called once per record [default: the reference vehicle model]
+    /// File that describes another simulator, a program that is called once per record [default:
+    /// the reference vehicle model]
     #[arg(long, value_name = "SIM.YAML")]
     simulator: Option<PathBuf>,
     /// Folder for records of another simulator, so that no call is repeated
@@ -29,8 +31,8 @@ pub struct SimulatorChoice {
     /// Neither store nor reuse records of another simulator.
     #[arg(long, requires = "simulator", conflicts_with = "cache")]
     no_cache: bool,
-    /// Words before each call of another simulator that start it on another machine and wait for it, such as `srun -n1`
-    /// [default: calls run here]. All machines see the folder of the cache
+    /// Words before each call of another simulator that start it on another machine and wait for
+    /// it, such as `srun -n1` [default: calls run here]. All machines see the folder of the cache
     #[arg(long, value_name = "WORDS", requires = "cache", allow_hyphen_values = true)]
     launch: Option<String>,
 }
@@ -42,7 +44,8 @@ pub enum Chosen<'a> {
     External(Box<External<'a>>),
 }
 
-/// Largest deviation of the reference vehicle model from the campaign's simulation without a warning, as a share.
+/// Largest deviation of the reference vehicle model from the campaign's simulation without a
+/// warning, as a share.
 const TOLERANCE: f64 = 0.05;
 
 impl SimulatorChoice {
@@ -56,10 +59,18 @@ impl SimulatorChoice {
         let Some(file) = &self.simulator else {
             return Some(Chosen::Builtin(Box::new(Builtin::new(campaign, problems)?)));
         };
-        let (source, _) = read_text(file, &file.display().to_string()).map_err(|problem| problems.push(problem)).ok()?;
-        let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let (source, _) = read_text(file, &file.display().to_string())
+            .map_err(|problem| problems.push(problem))
+            .ok()?;
+        let folder =
+            file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut program = read_program(&source, folder, problems)?;
-        program.launch = self.launch.iter().flat_map(|words| words.split_whitespace()).map(str::to_string).collect();
+        program.launch = self
+            .launch
+            .iter()
+            .flat_map(|words| words.split_whitespace())
+            .map(str::to_string)
+            .collect();
         if let Some(folder) = &self.cache {
             check_folder(folder, &[], campaign).map_err(|problem| problems.push(problem)).ok()?;
         }
@@ -69,7 +80,9 @@ impl SimulatorChoice {
             (None, _) => Cache::temporary(),
         };
         let made = cache.and_then(|cache| External::new(campaign, program, cache));
-        made.map_err(|problem| problems.push(problem)).ok().map(|external| Chosen::External(Box::new(external)))
+        made.map_err(|problem| problems.push(problem))
+            .ok()
+            .map(|external| Chosen::External(Box::new(external)))
     }
 }
 
@@ -78,7 +91,9 @@ impl Chosen<'_> {
     #[must_use]
     pub fn integrated(self, steps: Steps) -> Self {
         match self {
-            Self::Builtin(model) if steps != Steps::from(1) => Self::Builtin(Box::new(model.integrated(steps))),
+            Self::Builtin(model) if steps != Steps::from(1) => {
+                Self::Builtin(Box::new(model.integrated(steps)))
+            }
             same => same,
         }
     }
@@ -102,34 +117,56 @@ impl Chosen<'_> {
         }
     }
 
-    /// The campaign's simulation of a section in the units of the simulator, with the unit of each channel.
-    pub fn recorded(&self, campaign: &Campaign, section: &Section) -> Result<(Signals, Vec<(String, Unit)>), Problem> {
+    /// The campaign's simulation of a section in the units of the simulator, with the unit of each
+    /// channel.
+    pub fn recorded(
+        &self,
+        campaign: &Campaign,
+        section: &Section,
+    ) -> Result<(Signals, Vec<(String, Unit)>), Problem> {
         let none = || Problem::error("unreadable", "the record cannot be read");
         let found = recorded(campaign, RecordKind::Simulation, section);
-        let (mut signals, mut units, _) = found.map_err(|problems| problems.into_iter().next().unwrap_or_else(none))?;
+        let (mut signals, mut units, _) =
+            found.map_err(|problems| problems.into_iter().next().unwrap_or_else(none))?;
         if let Self::Builtin(model) = self {
             in_units(&mut signals, &units, &|name| model.unit(name))?;
-            units.iter_mut().for_each(|(name, unit)| *unit = model.unit(name).unwrap_or_else(|| unit.clone()));
+            units
+                .iter_mut()
+                .for_each(|(name, unit)| *unit = model.unit(name).unwrap_or_else(|| unit.clone()));
         }
         Ok((signals, units))
     }
 
-    /// Compares the simulator without effects with the campaign's simulation: all deviations, and a warning if one is too large.
-    pub fn baseline(&self, campaign: &Campaign, sections: &[Section]) -> Result<(Vec<Deviation>, Option<Problem>), Vec<Problem>> {
+    /// Compares the simulator without effects with the campaign's simulation: all deviations, and a
+    /// warning if one is too large.
+    pub fn baseline(
+        &self,
+        campaign: &Campaign,
+        sections: &[Section],
+    ) -> Result<(Vec<Deviation>, Option<Problem>), Vec<Problem>> {
         let one = |section: &Section| match self {
             Self::External(program) => program.baseline(section),
             Self::Builtin(model) => {
                 let (recorded, _) = self.recorded(campaign, section)?;
-                deviations(&model.run(&Task { section, settings: &[], shift: 0.0, inside_only: false })?, &recorded, section)
+                deviations(
+                    &model.run(&Task { section, settings: &[], shift: 0.0, inside_only: false })?,
+                    &recorded,
+                    section,
+                )
             }
         };
         let all: Vec<Result<Vec<Deviation>, Problem>> = sections.par_iter().map(one).collect();
-        let failed: Vec<Problem> = all.iter().filter_map(|one| one.as_ref().err().cloned()).collect();
+        let failed: Vec<Problem> =
+            all.iter().filter_map(|one| one.as_ref().err().cloned()).collect();
         if !failed.is_empty() {
             return Err(failed);
         }
         let all: Vec<Deviation> = all.into_iter().flatten().flatten().collect();
-        let tolerance = if let Self::External(program) = self { program.program().tolerance } else { TOLERANCE };
+        let tolerance = if let Self::External(program) = self {
+            program.program().tolerance
+        } else {
+            TOLERANCE
+        };
         let warning = baseline_warning(self.simulator(), tolerance, &all);
         Ok((all, warning))
     }
@@ -144,7 +181,8 @@ impl Chosen<'_> {
         if let Self::External(program) = self { program.warning() } else { None }
     }
 
-    /// Number of calls of the program: ` (3 calls of NAME, 13 records from the cache)`; empty for the model.
+    /// Number of calls of the program: ` (3 calls of NAME, 13 records from the cache)`; empty for
+    /// the model.
     pub fn effort(&self) -> String {
         let Self::External(program) = self else { return String::new() };
         let (calls, found) = program.effort();

@@ -23,14 +23,19 @@ use crate::values::Joined;
 
 #[derive(Debug, Subcommand)]
 pub enum Study {
-    /// Evaluate all selections of sections: the share validated, the scatter, and the influence of each section.
-    #[command(after_help = "Example:\n  fishplate study sections examples/coach --out target/coach-sections")]
+    /// Evaluate all selections of sections: the share validated, the scatter, and the influence of
+    /// each section.
+    #[command(
+        after_help = "Example:\n  fishplate study sections examples/coach --out target/coach-sections"
+    )]
     Sections {
         #[command(flatten)]
         common: Common,
     },
     /// Shift the measurement against the simulation by given offsets, and evaluate each.
-    #[command(after_help = "Example:\n  fishplate study sync examples/coach --offsets=-5,-1,1,5 --out target/coach-sync")]
+    #[command(
+        after_help = "Example:\n  fishplate study sync examples/coach --offsets=-5,-1,1,5 --out target/coach-sync"
+    )]
     Sync {
         #[command(flatten)]
         common: Common,
@@ -51,9 +56,11 @@ pub enum Study {
     Parameters {
         #[command(flatten)]
         common: Common,
-        /// Parameter or rule, and its values. A rule is addressed by its words (`quantity NAME limit std`, `zone 4 minimum length`), all limits
-        /// of a statistic by `every limit std`, with factors as values. Values are a list, separated by `;` if they contain commas, or
-        /// `FROM..TO step STEP`; may be repeated [default: all parameters with a choice of words, over all words]
+        /// Parameter or rule, and its values. A rule is addressed by its words (`quantity NAME
+        /// limit std`, `zone 4 minimum length`), all limits of a statistic by `every limit std`,
+        /// with factors as values. Values are a list, separated by `;` if they contain commas, or
+        /// `FROM..TO step STEP`; may be repeated [default: all parameters with a choice of words,
+        /// over all words]
         #[arg(long, value_name = "NAME=VALUES")]
         vary: Vec<String>,
     },
@@ -61,10 +68,12 @@ pub enum Study {
 
 #[derive(Debug, Args)]
 pub struct Common {
-    /// Folder of the campaign; several are evaluated as one. `study sections` also takes files of values, of all parts.
+    /// Folder of the campaign; several are evaluated as one. `study sections` also takes files of
+    /// values, of all parts.
     #[arg(required = true, value_name = "CAMPAIGN")]
     campaigns: Vec<PathBuf>,
-    /// Path of a protocol, or name of a shipped one [default: the one in campaign.yaml, else en14363-2016-annex-t]
+    /// Path of a protocol, or name of a shipped one [default: the one in campaign.yaml, else
+    /// en14363-2016-annex-t]
     #[arg(long, short)]
     protocol: Option<String>,
     /// Output folder; created if missing.
@@ -76,7 +85,8 @@ pub struct Common {
     /// Number of sections per zone in a selection [default: the number required by the protocol]
     #[arg(long, value_parser = from_one)]
     take: Option<NonZeroUsize>,
-    /// Keep at most this number of sections per zone before selecting, so that the highest standard deviation is kept.
+    /// Keep at most this number of sections per zone before selecting, so that the highest standard
+    /// deviation is kept.
     #[arg(long, value_name = "SECTIONS", value_parser = from_one)]
     reduce: Option<NonZeroUsize>,
     /// Number of selections up to which all are evaluated; beyond it, random ones are drawn.
@@ -96,24 +106,33 @@ pub struct Common {
 impl Study {
     pub fn run(self, console: &Console) -> Exit {
         let common = match &self {
-            Self::Sections { common } | Self::Sync { common, .. } | Self::Parameters { common, .. } => common,
+            Self::Sections { common }
+            | Self::Sync { common, .. }
+            | Self::Parameters { common, .. } => common,
         };
         if let Err(exit) = start_jobs(common.jobs, console) {
             return exit;
         }
         let mut problems = common.wrong();
-        if common.campaigns.iter().all(|path| path.extension().is_some_and(|ending| ending == "parquet")) {
+        if common
+            .campaigns
+            .iter()
+            .all(|path| path.extension().is_some_and(|ending| ending == "parquet"))
+        {
             return self.of_values(common, problems, console);
         }
         let asked = self.asked(&mut problems);
-        let prepared = prepare_all(&common.campaigns, common.protocol.as_deref(), &common.set, &mut problems);
+        let prepared =
+            prepare_all(&common.campaigns, common.protocol.as_deref(), &common.set, &mut problems);
         for campaign in prepared.iter().flat_map(|pool| &pool.campaigns) {
             if let Err(problem) = check_folder(&common.out, REPORT, campaign) {
                 problems.push(problem);
             }
         }
         console.problems(&problems);
-        let Some((asked, prepared)) = asked.zip(prepared).filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        let Some((asked, prepared)) = asked.zip(prepared).filter(|_| !problems.any_error()) else {
+            return Exit::Wrong;
+        };
         let steps = match asked.ready(&prepared.compiled, Campaigns::from(&prepared.campaigns)) {
             Ok(steps) => steps,
             Err(problems) => {
@@ -122,10 +141,16 @@ impl Study {
             }
         };
         let bar = progress_bar(console, steps);
-        let found = asked.run(&prepared.compiled, Campaigns::from(&prepared.campaigns), &prepared.overrides, &common.settings(), &|step| {
-            bar.set_message(plain(step));
-            bar.inc(1);
-        });
+        let found = asked.run(
+            &prepared.compiled,
+            Campaigns::from(&prepared.campaigns),
+            &prepared.overrides,
+            &common.settings(),
+            &|step| {
+                bar.set_message(plain(step));
+                bar.inc(1);
+            },
+        );
         bar.finish_and_clear();
         match found {
             Ok(study) => write(common, &study, console),
@@ -140,14 +165,26 @@ impl Study {
     fn of_values(&self, common: &Common, mut problems: Problems, console: &Console) -> Exit {
         if !matches!(self, Self::Sections { .. }) {
             let says = "this study evaluates records again, and files of values contain none";
-            problems.push(Problem::error("values-unsuitable", says).help("give the campaign, or use `study sections`"));
+            problems.push(
+                Problem::error("values-unsuitable", says)
+                    .help("give the campaign, or use `study sections`"),
+            );
         }
         if common.protocol.is_some() || !common.set.is_empty() {
             let says = "values are of a protocol and its parameters already: `--protocol` and `--set` have no effect on them";
-            problems.push(Problem::error("values-unsuitable", says).help("give them to `fishplate reduce`"));
+            problems.push(
+                Problem::error("values-unsuitable", says).help("give them to `fishplate reduce`"),
+            );
         }
-        let joined = if problems.any_error() { None } else { joined(&common.campaigns, &mut problems) };
-        let several = |joined: &Joined| joined.sections().iter().flat_map(|(_, values)| values.rows.iter().flatten()).any(is_of_record);
+        let joined =
+            if problems.any_error() { None } else { joined(&common.campaigns, &mut problems) };
+        let several = |joined: &Joined| {
+            joined
+                .sections()
+                .iter()
+                .flat_map(|(_, values)| values.rows.iter().flatten())
+                .any(is_of_record)
+        };
         if joined.as_ref().is_some_and(several) {
             let says = "a selection takes one value of each section and signal, and the values are of several records";
             problems.push(Problem::error("several-records", says));
@@ -157,7 +194,8 @@ impl Study {
         let found = robustness::countable(&joined.compiled).and_then(|()| {
             let evaluated = joined.evaluated()?;
             if let Some(says) = evaluated.missing() {
-                let problem = Problem::error("values-missing", says).help("give the files of all parts");
+                let problem =
+                    Problem::error("values-missing", says).help("give the files of all parts");
                 return Err(Problems(vec![problem]));
             }
             let campaign = joined.head.about.info(evaluated.files.clone());
@@ -178,25 +216,38 @@ impl Study {
             Self::Sections { .. } => Some(Asked::Sections),
             Self::Sync { offsets, correct, farthest, .. } => {
                 if !(*farthest > 0.0 && farthest.is_finite()) {
-                    problems.push(Problem::error("farthest", format!("`--farthest {farthest}` must be above zero")));
+                    problems.push(Problem::error(
+                        "farthest",
+                        format!("`--farthest {farthest}` must be above zero"),
+                    ));
                     return None;
                 }
-                let wrong = |says| Problem::error("offsets", format!("`--offsets {offsets}`: {says}"));
+                let wrong =
+                    |says| Problem::error("offsets", format!("`--offsets {offsets}`: {says}"));
                 let help = "offsets are in the unit of the protocol's axis: `--offsets=-5,5`, or `--offsets=-5..5 step 1`";
-                let offsets = numbers(offsets).map_err(|says| problems.push(wrong(says).help(help))).ok()?;
-                Some(Asked::Sync(Synchronisation { offsets, farthest: *farthest, correct: *correct }))
+                let offsets =
+                    numbers(offsets).map_err(|says| problems.push(wrong(says).help(help))).ok()?;
+                Some(Asked::Sync(Synchronisation {
+                    offsets,
+                    farthest: *farthest,
+                    correct: *correct,
+                }))
             }
             Self::Parameters { vary, .. } => {
                 let mut all = Vec::new();
                 for vary in vary {
                     let Some((name, text)) = vary.split_once('=') else {
-                        problems.push(Problem::error("vary", format!("`--vary {vary}` has no `=`")).help("write `--vary name=values`"));
+                        problems.push(
+                            Problem::error("vary", format!("`--vary {vary}` has no `=`"))
+                                .help("write `--vary name=values`"),
+                        );
                         return None;
                     };
                     match values(text) {
                         Ok(values) => all.push(Vary { name: name.trim().to_owned(), values }),
                         Err(says) => {
-                            problems.push(Problem::error("vary", format!("`--vary {vary}`: {says}")));
+                            problems
+                                .push(Problem::error("vary", format!("`--vary {vary}`: {says}")));
                             return None;
                         }
                     }
@@ -215,7 +266,11 @@ fn is_of_record(row: &Row) -> bool {
 impl Common {
     fn settings(&self) -> Settings {
         Settings {
-            selections: study::Settings { most: self.enumerate.min(study::MOST), width: self.width, seed: self.seed },
+            selections: study::Settings {
+                most: self.enumerate.min(study::MOST),
+                width: self.width,
+                seed: self.seed,
+            },
             take: self.take.map(NonZeroUsize::get),
             reduce: self.reduce.map(NonZeroUsize::get),
         }
@@ -224,10 +279,16 @@ impl Common {
     fn wrong(&self) -> Problems {
         let mut problems = Problems::default();
         if !(self.width > 0.0 && self.width < 1.0) {
-            problems.push(Problem::error("width", format!("`--width {}` must be between 0 and 1", self.width)));
+            problems.push(Problem::error(
+                "width",
+                format!("`--width {}` must be between 0 and 1", self.width),
+            ));
         }
         if self.enumerate.is_nan() || self.enumerate < 0.0 {
-            problems.push(Problem::error("enumerate", format!("`--enumerate {}` is not a valid number of selections", self.enumerate)));
+            problems.push(Problem::error(
+                "enumerate",
+                format!("`--enumerate {}` is not a valid number of selections", self.enumerate),
+            ));
         }
         problems
     }
@@ -247,8 +308,18 @@ fn write(common: &Common, study: &found::Study, console: &Console) -> Exit {
     }
     if !console.quiet {
         let document = report::document(study);
-        let facts: Vec<String> = document.key_facts.iter().map(|fact| format!("  {}: {}\n", fact.name, fact.value)).collect();
-        console.print(&format!("{}\n\n{}\n{}\n{}", document.title, document.headline.word, document.sentence, facts.concat()));
+        let facts: Vec<String> = document
+            .key_facts
+            .iter()
+            .map(|fact| format!("  {}: {}\n", fact.name, fact.value))
+            .collect();
+        console.print(&format!(
+            "{}\n\n{}\n{}\n{}",
+            document.title,
+            document.headline.word,
+            document.sentence,
+            facts.concat()
+        ));
         console.say(&format!("written: {}", common.out.display()));
     }
     Exit::Done

@@ -22,8 +22,8 @@ use crate::report::visible::visible;
 pub struct Verify {
     /// A report of `certify`: report.pdf, its folder, or results.json.
     report: PathBuf,
-    /// Folder of the campaign, or of each campaign of a pool: the files are compared with the report, and the protocol in the report is
-    /// evaluated again.
+    /// Folder of the campaign, or of each campaign of a pool: the files are compared with the
+    /// report, and the protocol in the report is evaluated again.
     #[arg(value_name = "CAMPAIGN")]
     campaigns: Vec<PathBuf>,
     /// Public key for the signature: a file, or the key itself.
@@ -57,7 +57,8 @@ impl Verify {
         }
         if let Some(folder) = self.campaigns.iter().find(|folder| !disk::may_exist(folder)) {
             let says = format!("there is no campaign `{}`", folder.display());
-            return console.fail(crate::problem::Problem::error("folder-missing", says), Exit::Wrong);
+            return console
+                .fail(crate::problem::Problem::error("folder-missing", says), Exit::Wrong);
         }
         let opened = open(&self.report, self.protocol.as_deref());
         let (carried, given) = match opened {
@@ -73,7 +74,9 @@ impl Verify {
             return console.fail(problem, Exit::Wrong);
         }
         let key = self.public_key.as_deref().map(signature::public_key).transpose();
-        let signed = key.and_then(|key| signature::check(&carried.path, self.signature.as_deref(), key.as_ref()));
+        let signed = key.and_then(|key| {
+            signature::check(&carried.path, self.signature.as_deref(), key.as_ref())
+        });
         let signed = match signed {
             Ok(signed) => signed,
             Err(problem) => return console.fail(problem, Exit::Wrong),
@@ -101,7 +104,14 @@ impl Verify {
         };
         if !console.quiet || exit != Exit::Done {
             let most = if self.all { usize::MAX } else { MOST };
-            if console.print(&told(&carried, &checks, !self.campaigns.is_empty(), most, console.color)) != Exit::Done {
+            if console.print(&told(
+                &carried,
+                &checks,
+                !self.campaigns.is_empty(),
+                most,
+                console.color,
+            )) != Exit::Done
+            {
                 return Exit::Unfinished;
             }
         }
@@ -110,7 +120,10 @@ impl Verify {
 }
 
 /// Opens a report, and the protocol given for it.
-fn open(report: &std::path::Path, protocol: Option<&str>) -> Result<(Carried, Option<Family>), Problems> {
+fn open(
+    report: &std::path::Path,
+    protocol: Option<&str>,
+) -> Result<(Carried, Option<Family>), Problems> {
     let mut problems = Problems::default();
     let given = protocol.map(|name| load(name, &mut problems));
     if problems.any_error() {
@@ -140,26 +153,37 @@ fn told(carried: &Carried, checks: &[Check], campaign: bool, most: usize, color:
             Outcome::NotPossible => ("NOT POSSIBLE", "\u{1b}[31;1m"),
         };
         let word = format!("{word:<13}");
-        let word = if color && !paint.is_empty() { format!("{paint}{word}\u{1b}[0m") } else { word };
+        let word =
+            if color && !paint.is_empty() { format!("{paint}{word}\u{1b}[0m") } else { word };
         out += &format!("{word}{:<15} {}\n", check.name, visible(&check.says));
         for detail in check.details.iter().take(most) {
             out += &format!("{:28} {}\n", "", visible(detail));
         }
         if check.details.len() > most {
-            out += &format!("{:28} and {} more, shown with `--all`\n", "", check.details.len() - most);
+            out +=
+                &format!("{:28} and {} more, shown with `--all`\n", "", check.details.len() - most);
         }
     }
     let named = |outcome: Outcome| {
-        let found: Vec<&str> = checks.iter().filter(|check| check.outcome == outcome).map(|check| check.name).collect();
+        let found: Vec<&str> = checks
+            .iter()
+            .filter(|check| check.outcome == outcome)
+            .map(|check| check.name)
+            .collect();
         found.join(", ")
     };
     let (differ, open) = (named(Outcome::Differs), named(Outcome::NotPossible));
     out += "\n";
     out += &match (differ.is_empty() && open.is_empty(), campaign) {
-        (false, _) if differ.is_empty() => format!("Result: the check could not be completed ({open})\n"),
+        (false, _) if differ.is_empty() => {
+            format!("Result: the check could not be completed ({open})\n")
+        }
         (false, _) => format!("Result: differs ({differ})\n"),
         (true, true) => "Result: everything checked agrees\n".to_string(),
-        (true, false) => "Result: the report is consistent; give its campaign to check it against the data\n".to_string(),
+        (true, false) => {
+            "Result: the report is consistent; give its campaign to check it against the data\n"
+                .to_string()
+        }
     };
     out
 }
@@ -174,10 +198,12 @@ pub struct Trace {
     section: String,
     /// Name of the signal.
     signal: String,
-    /// Which record, where the campaign has several: `simpack`, or `simpack, run1` where it has several of both.
+    /// Which record, where the campaign has several: `simpack`, or `simpack, run1` where it has
+    /// several of both.
     #[arg(long)]
     record: Option<String>,
-    /// Folder of the campaign: rows and values are read and computed again. Repeated for each campaign of a pool.
+    /// Folder of the campaign: rows and values are read and computed again. Repeated for each
+    /// campaign of a pool.
     #[arg(long = "campaign", value_name = "DIR")]
     campaigns: Vec<PathBuf>,
     /// The protocol, if the report does not contain it; its SHA-256 must be the one in the results.
@@ -210,7 +236,12 @@ impl Trace {
         if problems.any_error() {
             return wrong(problems);
         }
-        let asked = Asked { quantity: &self.quantity, section: &self.section, signal: &self.signal, record: self.record.as_deref() };
+        let asked = Asked {
+            quantity: &self.quantity,
+            section: &self.section,
+            signal: &self.signal,
+            record: self.record.as_deref(),
+        };
         match trace(&carried, compiled.as_ref(), asked, &self.campaigns) {
             Ok(found) => {
                 let text: Vec<String> = found.text.split('\n').map(visible).collect();

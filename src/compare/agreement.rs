@@ -8,19 +8,33 @@ use crate::result::comparison::{Agreement, Cell, Score};
 pub fn agreement(names: &[&str], found: &[Found]) -> Vec<Agreement> {
     let scores: Vec<&Score> = found.iter().flat_map(|found| &found.scores).collect();
     let of = |protocol: &str, metric: Option<&str>| -> Vec<&Score> {
-        scores.iter().copied().filter(|score| score.protocol == protocol && score.metric.as_deref() == metric).collect()
+        scores
+            .iter()
+            .copied()
+            .filter(|score| score.protocol == protocol && score.metric.as_deref() == metric)
+            .collect()
     };
     let mut all = Vec::new();
     for (at, a) in names.iter().enumerate() {
         for (later, b) in names.iter().enumerate().skip(at + 1) {
             let pair = pair(&of(a, None), &of(b, None));
             let verdicts = Some(verdicts(found, at, later));
-            all.push(Agreement { of: "protocols".into(), a: (*a).into(), b: (*b).into(), verdicts, ..pair });
+            all.push(Agreement {
+                of: "protocols".into(),
+                a: (*a).into(),
+                b: (*b).into(),
+                verdicts,
+                ..pair
+            });
         }
     }
     for protocol in names {
         let mut metrics: Vec<&str> = Vec::new();
-        for metric in scores.iter().filter(|score| score.protocol == *protocol).filter_map(|score| score.metric.as_deref()) {
+        for metric in scores
+            .iter()
+            .filter(|score| score.protocol == *protocol)
+            .filter_map(|score| score.metric.as_deref())
+        {
             if !metrics.contains(&metric) {
                 metrics.push(metric);
             }
@@ -29,7 +43,13 @@ pub fn agreement(names: &[&str], found: &[Found]) -> Vec<Agreement> {
             for b in &metrics[at + 1..] {
                 let pair = pair(&of(protocol, Some(a)), &of(protocol, Some(b)));
                 let protocol = Some((*protocol).to_string());
-                all.push(Agreement { of: "metrics".into(), protocol, a: (*a).into(), b: (*b).into(), ..pair });
+                all.push(Agreement {
+                    of: "metrics".into(),
+                    protocol,
+                    a: (*a).into(),
+                    b: (*b).into(),
+                    ..pair
+                });
             }
         }
     }
@@ -67,7 +87,8 @@ fn pair(a: &[&Score], b: &[&Score]) -> Agreement {
     }
 }
 
-/// A value equal to its limit meets it; this much room is for the rounding of units and sums, as in a verdict.
+/// A value equal to its limit meets it; this much room is for the rounding of units and sums, as in
+/// a verdict.
 const EQUAL: f64 = 1e-12;
 
 fn meets(score: &Score) -> bool {

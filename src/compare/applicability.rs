@@ -1,4 +1,5 @@
-//! What a metric can be applied to, found by trying: one quantity, one section, doubled and exchanged records.
+//! What a metric can be applied to, found by trying: one quantity, one section, doubled and
+//! exchanged records.
 
 use super::found::Found;
 use super::metric::{self, Base};
@@ -7,7 +8,8 @@ use crate::result::comparison::{Applicability, Tried};
 use crate::result::{PairValue, QuantityResult, Verdict};
 use crate::run::{Evaluated, Judged};
 
-/// Values are the same, or twice as large, to this share of the largest: the rounding of filters over doubled records.
+/// Values are the same, or twice as large, to this share of the largest: the rounding of filters
+/// over doubled records.
 const SAME: f64 = 1e-9;
 
 /// Tries every metric of a protocol.
@@ -27,8 +29,17 @@ pub fn tried(
             Applicability {
                 protocol: protocol.into(),
                 quantities: own.len(),
-                scale: doubled.as_ref().map(|judged| pairs(base.judged, judged, &own)).as_deref().and_then(scale).map(str::to_string),
-                symmetric: exchanged.as_ref().map(|judged| pairs(base.judged, judged, &own)).as_deref().and_then(symmetric),
+                scale: doubled
+                    .as_ref()
+                    .map(|judged| pairs(base.judged, judged, &own))
+                    .as_deref()
+                    .and_then(scale)
+                    .map(str::to_string),
+                symmetric: exchanged
+                    .as_ref()
+                    .map(|judged| pairs(base.judged, judged, &own))
+                    .as_deref()
+                    .and_then(symmetric),
                 campaign: Some(campaign.into()),
                 metric: if limited { name } else { name + WITHOUT },
                 number_of_one_quantity: Tried::default(),
@@ -51,10 +62,16 @@ pub fn tried(
             }
         }
     }
-    let used: Vec<&str> = base.evaluated.sections().filter(|(_, fault)| fault.is_none()).map(|(name, _)| name).collect();
+    let used: Vec<&str> = base
+        .evaluated
+        .sections()
+        .filter(|(_, fault)| fault.is_none())
+        .map(|(name, _)| name)
+        .collect();
     for section in used {
         let judged = judge(&base.evaluated.with_sections(&|name| name == section));
-        let numbers: Vec<String> = (0..plan.quantities.len()).flat_map(|at| numbers(plan, &judged, at)).collect();
+        let numbers: Vec<String> =
+            (0..plan.quantities.len()).flat_map(|at| numbers(plan, &judged, at)).collect();
         for one in &mut found {
             let own = quantities(plan, one.metric.trim_end_matches(WITHOUT));
             // A section that a quantity leaves out says nothing about the metric.
@@ -74,7 +91,8 @@ const WITHOUT: &str = " (no limit)";
 fn quantities(plan: &Plan, name: &str) -> Vec<usize> {
     let has = |at: &usize| {
         let quantity = &plan.quantities[*at];
-        let limits = quantity.limits.iter().any(|limit| metric::name(quantity, Some(limit)) == name);
+        let limits =
+            quantity.limits.iter().any(|limit| metric::name(quantity, Some(limit)) == name);
         limits || quantity.limits.is_empty() && metric::name(quantity, None) == name
     };
     (0..plan.quantities.len()).filter(has).collect()
@@ -84,7 +102,8 @@ fn quantities(plan: &Plan, name: &str) -> Vec<usize> {
 fn numbers(plan: &Plan, judged: &Judged, at: usize) -> Vec<String> {
     let quantity = &judged.quantities[at];
     let statistics = quantity.statistics.iter().filter(|statistic| statistic.value.is_some());
-    let mut found: Vec<String> = statistics.map(|statistic| metric::of(plan, at, statistic)).collect();
+    let mut found: Vec<String> =
+        statistics.map(|statistic| metric::of(plan, at, statistic)).collect();
     if quantity.statistics.is_empty() && !quantity.values.is_empty() {
         found.push(metric::name(&plan.quantities[at], None) + WITHOUT);
     }
@@ -95,24 +114,37 @@ fn numbers(plan: &Plan, judged: &Judged, at: usize) -> Vec<String> {
 type Pairs<'a> = Vec<(&'a PairValue, &'a PairValue)>;
 
 fn pairs<'a>(before: &'a Judged, now: &'a Judged, quantities: &[usize]) -> Pairs<'a> {
-    let same = |(a, b): &(&PairValue, &PairValue)| a.section == b.section && a.signal == b.signal && a.taken == b.taken;
-    let of = |(a, b): (&'a QuantityResult, &'a QuantityResult)| a.values.iter().zip(&b.values).filter(same).collect::<Vec<_>>();
+    let same = |(a, b): &(&PairValue, &PairValue)| {
+        a.section == b.section && a.signal == b.signal && a.taken == b.taken
+    };
+    let of = |(a, b): (&'a QuantityResult, &'a QuantityResult)| {
+        a.values.iter().zip(&b.values).filter(same).collect::<Vec<_>>()
+    };
     quantities.iter().flat_map(|&at| of((&before.quantities[at], &now.quantities[at]))).collect()
 }
 
-/// Whether values stay (`relative`) or double (`absolute`) with the records. Differences of values that do not double themselves, such as
-/// those of a ratio of two channels, say nothing.
+/// Whether values stay (`relative`) or double (`absolute`) with the records. Differences of values
+/// that do not double themselves, such as those of a ratio of two channels, say nothing.
 fn scale(pairs: &[(&PairValue, &PairValue)]) -> Option<&'static str> {
-    let says = |(before, now): &&(&PairValue, &PairValue)| match (before.measured.or(before.simulated), now.measured.or(now.simulated)) {
+    let says = |(before, now): &&(&PairValue, &PairValue)| match (
+        before.measured.or(before.simulated),
+        now.measured.or(now.simulated),
+    ) {
         (Some(before), Some(now)) => (now - before).abs() > SAME * before.abs(),
         _ => true,
     };
-    let told: Vec<(f64, f64)> = pairs.iter().filter(says).map(|(before, now)| (before.difference, now.difference)).collect();
+    let told: Vec<(f64, f64)> = pairs
+        .iter()
+        .filter(says)
+        .map(|(before, now)| (before.difference, now.difference))
+        .collect();
     let largest = told.iter().map(|(before, now)| before.abs().max(now.abs())).fold(0.0, f64::max);
     if largest == 0.0 {
         return None;
     }
-    let all = |factor: f64| told.iter().all(|(before, now)| (now - factor * before).abs() <= SAME * largest);
+    let all = |factor: f64| {
+        told.iter().all(|(before, now)| (now - factor * before).abs() <= SAME * largest)
+    };
     Some(match (all(1.0), all(2.0)) {
         (true, _) => "relative",
         (_, true) => "absolute",
@@ -122,12 +154,18 @@ fn scale(pairs: &[(&PairValue, &PairValue)]) -> Option<&'static str> {
 
 /// Whether magnitudes stay the same; `None` where there is nothing to compare.
 fn symmetric(pairs: &[(&PairValue, &PairValue)]) -> Option<bool> {
-    let largest = pairs.iter().map(|(before, now)| before.difference.abs().max(now.difference.abs())).fold(0.0, f64::max);
-    let same = |(before, now): &(&PairValue, &PairValue)| (before.difference.abs() - now.difference.abs()).abs() <= SAME * largest;
+    let largest = pairs
+        .iter()
+        .map(|(before, now)| before.difference.abs().max(now.difference.abs()))
+        .fold(0.0, f64::max);
+    let same = |(before, now): &(&PairValue, &PairValue)| {
+        (before.difference.abs() - now.difference.abs()).abs() <= SAME * largest
+    };
     (!pairs.is_empty()).then(|| pairs.iter().all(same))
 }
 
-/// For each protocol the first campaign on which it has a verdict, else the first on which it can be evaluated.
+/// For each protocol the first campaign on which it has a verdict, else the first on which it can
+/// be evaluated.
 pub fn put_together(found: &[Found]) -> Vec<Applicability> {
     let protocols = found.first().map_or(0, |found| found.judgements.len());
     let of_protocol = |at: usize| {

@@ -39,28 +39,57 @@ pub fn found(
         .protocols
         .par_iter()
         .zip(&all.as_recorded)
-        .map(|(compiled, evaluated)| evaluated.as_ref().map(|evaluated| evaluated.judge(&compiled.plan, &compiled.graph)))
+        .map(|(compiled, evaluated)| {
+            evaluated.as_ref().map(|evaluated| evaluated.judge(&compiled.plan, &compiled.graph))
+        })
         .collect();
-    let judgement = |label: &str, compiled: &Compiled, evaluated: Result<&Evaluated, &Problems>, judged: Result<&Judged, &Problems>| match (
-        evaluated, judged,
-    ) {
-        (Ok(evaluated), Ok(judged)) => {
-            Judgement { cell: cell(name, label, compiled, evaluated, judged), ratios: ratios(name, label, compiled, judged) }
-        }
-        (Err(problems), _) | (_, Err(problems)) => Judgement { cell: not_assessable(name, label, problems), ratios: Vec::new() },
-    };
+    let judgement =
+        |label: &str,
+         compiled: &Compiled,
+         evaluated: Result<&Evaluated, &Problems>,
+         judged: Result<&Judged, &Problems>| match (evaluated, judged) {
+            (Ok(evaluated), Ok(judged)) => Judgement {
+                cell: cell(name, label, compiled, evaluated, judged),
+                ratios: ratios(name, label, compiled, judged),
+            },
+            (Err(problems), _) | (_, Err(problems)) => {
+                Judgement { cell: not_assessable(name, label, problems), ratios: Vec::new() }
+            }
+        };
     let of_protocol = |(at, label): (usize, &&str)| {
-        judgement(label, &compiled.protocols[at], all.as_recorded[at].as_ref(), judged[at].as_ref().map_err(|problems| *problems))
+        judgement(
+            label,
+            &compiled.protocols[at],
+            all.as_recorded[at].as_ref(),
+            judged[at].as_ref().map_err(|problems| *problems),
+        )
     };
     let judgements: Vec<Judgement> = names.iter().enumerate().map(of_protocol).collect();
     let mut evaluated = changed.iter();
-    let valid: Vec<_> = compiled.changed.iter().map(|changed| Some((changed.as_ref().ok()?, evaluated.next()?))).collect();
+    let valid: Vec<_> = compiled
+        .changed
+        .iter()
+        .map(|changed| Some((changed.as_ref().ok()?, evaluated.next()?)))
+        .collect();
     let of_change = |(compiled, evaluated): (&Compiled, &Result<Evaluated, Problems>)| {
-        let judged = evaluated.as_ref().map(|evaluated| evaluated.judge(&compiled.plan, &compiled.graph));
-        judgement(names[0], compiled, evaluated.as_ref(), judged.as_ref().map_err(|problems| *problems))
+        let judged =
+            evaluated.as_ref().map(|evaluated| evaluated.judge(&compiled.plan, &compiled.graph));
+        judgement(
+            names[0],
+            compiled,
+            evaluated.as_ref(),
+            judged.as_ref().map_err(|problems| *problems),
+        )
     };
-    let changed: Vec<Option<Judgement>> = valid.into_par_iter().map(|valid| valid.map(of_change)).collect();
-    let base = |at: usize| Some((&compiled.protocols[at], all.as_recorded[at].as_ref().ok()?, judged[at].as_ref().ok()?));
+    let changed: Vec<Option<Judgement>> =
+        valid.into_par_iter().map(|valid| valid.map(of_change)).collect();
+    let base = |at: usize| {
+        Some((
+            &compiled.protocols[at],
+            all.as_recorded[at].as_ref().ok()?,
+            judged[at].as_ref().ok()?,
+        ))
+    };
     let of_base = |at: usize| -> (Vec<Score>, Vec<Vec<Moved>>, Vec<Applicability>) {
         let Some((compiled, evaluated, judged)) = base(at) else { return Default::default() };
         let numbers = metric::numbers(&compiled.plan, judged);
@@ -68,7 +97,12 @@ pub fn found(
         let trial = |at_trial: usize| all.trials.get(at_trial).and_then(|trial| trial[at].as_ref());
         let disturbances = KINDS.len() * settings.sizes.len();
         let moved = sensitivity::moved(&base, &|at| trial(at), settings);
-        let tried = applicability::tried(&base, trial(disturbances), trial(disturbances + 1), (names[at], name));
+        let tried = applicability::tried(
+            &base,
+            trial(disturbances),
+            trial(disturbances + 1),
+            (names[at], name),
+        );
         (scores(name, names[at], compiled, evaluated), moved, tried)
     };
     let parts: Vec<_> = (0..names.len()).into_par_iter().map(of_base).collect();
@@ -93,8 +127,14 @@ pub fn found(
 /// The files of the campaign, and every record that some protocol read.
 fn files<'a>(campaign: &Campaign, evaluated: impl Iterator<Item = &'a Evaluated>) -> Vec<FileHash> {
     let own = campaign.files.iter();
-    let mut files: Vec<FileHash> =
-        own.map(|file| FileHash { path: file.path.clone(), sha256: file.sha256.clone(), bytes: file.bytes, record: None }).collect();
+    let mut files: Vec<FileHash> = own
+        .map(|file| FileHash {
+            path: file.path.clone(),
+            sha256: file.sha256.clone(),
+            bytes: file.bytes,
+            record: None,
+        })
+        .collect();
     for file in evaluated.flat_map(|evaluated| &evaluated.files) {
         if !files.iter().any(|known| known.path == file.path) {
             files.push(file.clone());
@@ -104,9 +144,14 @@ fn files<'a>(campaign: &Campaign, evaluated: impl Iterator<Item = &'a Evaluated>
 }
 
 fn not_assessable(campaign: &str, protocol: &str, problems: &Problems) -> Cell {
-    let errors: Vec<&str> =
-        problems.0.iter().filter(|problem| problem.severity == Severity::Error).map(|problem| problem.says.as_str()).collect();
-    let mut reasons: Vec<String> = errors.iter().take(REASONS).map(|says| (*says).to_string()).collect();
+    let errors: Vec<&str> = problems
+        .0
+        .iter()
+        .filter(|problem| problem.severity == Severity::Error)
+        .map(|problem| problem.says.as_str())
+        .collect();
+    let mut reasons: Vec<String> =
+        errors.iter().take(REASONS).map(|says| (*says).to_string()).collect();
     if errors.len() > REASONS {
         reasons.push(format!("and {} more", errors.len() - REASONS));
     }
@@ -125,33 +170,53 @@ fn not_assessable(campaign: &str, protocol: &str, problems: &Problems) -> Cell {
 /// Problems of a campaign that are told for one protocol.
 const REASONS: usize = 3;
 
-fn cell(campaign: &str, protocol: &str, compiled: &Compiled, evaluated: &Evaluated, judged: &Judged) -> Cell {
+fn cell(
+    campaign: &str,
+    protocol: &str,
+    compiled: &Compiled,
+    evaluated: &Evaluated,
+    judged: &Judged,
+) -> Cell {
     let plan = &compiled.plan;
     let about: Vec<usize> = match &plan.overall().decision {
         Decision::Limits { quantities, .. } => quantities.clone(),
         Decision::Verdicts(_) | Decision::Person(_) => (0..plan.quantities.len()).collect(),
     };
     let limits = about.iter().filter_map(|&at| judged.quantities.get(at));
-    let limits = limits.flat_map(|quantity| quantity.statistics.iter().map(move |statistic| (quantity, statistic)));
-    // One that does not hold is worse than any that does, also where no ratio can be formed.
-    let worst = limits.filter(|(_, statistic)| statistic.holds.is_some()).max_by(|(_, a), (_, b)| {
-        let rank = |holds: Option<bool>, ratio: Option<f64>| (holds == Some(false), ratio.unwrap_or(0.0));
-        let (a, b) = (rank(a.holds, a.normalised), rank(b.holds, b.normalised));
-        // The first of equal ones stands.
-        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(std::cmp::Ordering::Greater)
+    let limits = limits.flat_map(|quantity| {
+        quantity.statistics.iter().map(move |statistic| (quantity, statistic))
     });
-    let open = judged.verdicts.iter().any(|verdict| verdict.overall && verdict.outcome == Outcome::Open);
+    // One that does not hold is worse than any that does, also where no ratio can be formed.
+    let worst =
+        limits.filter(|(_, statistic)| statistic.holds.is_some()).max_by(|(_, a), (_, b)| {
+            let rank = |holds: Option<bool>, ratio: Option<f64>| {
+                (holds == Some(false), ratio.unwrap_or(0.0))
+            };
+            let (a, b) = (rank(a.holds, a.normalised), rank(b.holds, b.normalised));
+            // The first of equal ones stands.
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(std::cmp::Ordering::Greater)
+        });
+    let open =
+        judged.verdicts.iter().any(|verdict| verdict.overall && verdict.outcome == Outcome::Open);
     Cell {
         campaign: campaign.into(),
         protocol: protocol.into(),
-        verdict: if open { "open".into() } else { judged.own_word.clone().unwrap_or_else(|| judged.verdict.in_words().into()) },
+        verdict: if open {
+            "open".into()
+        } else {
+            judged.own_word.clone().unwrap_or_else(|| judged.verdict.in_words().into())
+        },
         holds: match judged.verdict {
             Verdict::Validated => Some(true),
             Verdict::NotValidated => Some(false),
             Verdict::NotAssessable => None,
         },
         decided_by: worst.map(|(quantity, statistic)| {
-            let scope = if statistic.scope == "all" { String::new() } else { format!(", {}", statistic.scope) };
+            let scope = if statistic.scope == "all" {
+                String::new()
+            } else {
+                format!(", {}", statistic.scope)
+            };
             format!("{}, {}{scope}", quantity.id, statistic.title)
         }),
         ratio: worst.and_then(|(_, statistic)| statistic.normalised),
@@ -185,20 +250,38 @@ fn ratios(campaign: &str, protocol: &str, compiled: &Compiled, judged: &Judged) 
 }
 
 /// The score of every section by every metric, and by the protocol as a whole.
-fn scores(campaign: &str, protocol: &str, compiled: &Compiled, evaluated: &Evaluated) -> Vec<Score> {
+fn scores(
+    campaign: &str,
+    protocol: &str,
+    compiled: &Compiled,
+    evaluated: &Evaluated,
+) -> Vec<Score> {
     let plan = &compiled.plan;
     let mut found: Vec<Score> = Vec::new();
     let mut add = |section: &str, metric: Option<String>, limited: bool, score: f64| match found
         .iter_mut()
-        .find(|known| known.section == section && known.metric == metric && known.limited == limited)
-    {
+        .find(|known| {
+            known.section == section && known.metric == metric && known.limited == limited
+        }) {
         Some(known) => known.score = known.score.max(score),
-        None => found.push(Score { campaign: campaign.into(), section: section.into(), protocol: protocol.into(), metric, score, limited }),
+        None => found.push(Score {
+            campaign: campaign.into(),
+            section: section.into(),
+            protocol: protocol.into(),
+            metric,
+            score,
+            limited,
+        }),
     };
     for one in evaluated.section_ratios(plan) {
         let quantity = &plan.quantities[one.quantity];
         let limit = one.limit.and_then(|limit| quantity.limits.get(limit));
-        add(&one.section, Some(metric::name(quantity, limit.map(AsRef::as_ref))), limit.is_some(), one.ratio);
+        add(
+            &one.section,
+            Some(metric::name(quantity, limit.map(AsRef::as_ref))),
+            limit.is_some(),
+            one.ratio,
+        );
         if limit.is_some() {
             add(&one.section, None, true, one.ratio);
         }

@@ -15,19 +15,31 @@ pub fn name(quantity: &Quantity, limit: Option<&Limit>) -> String {
 fn named(quantity: &Quantity, title: Option<&str>, each: bool) -> String {
     let title = title.unwrap_or("value");
     match quantity.evaluation.as_ref() {
-        Evaluation::Values { records: Records::Of(of), .. } => format!("{title} of {} values", of.side.in_words()),
-        Evaluation::Values { .. } if quantity.evaluation.of_repeats() => format!("{title} of repeats"),
-        Evaluation::Values { records: Records::Spread { .. }, .. } => format!("{title} of the spread"),
+        Evaluation::Values { records: Records::Of(of), .. } => {
+            format!("{title} of {} values", of.side.in_words())
+        }
+        Evaluation::Values { .. } if quantity.evaluation.of_repeats() => {
+            format!("{title} of repeats")
+        }
+        Evaluation::Values { records: Records::Spread { .. }, .. } => {
+            format!("{title} of the spread")
+        }
         Evaluation::Values { .. } if each => "each difference".to_string(),
         Evaluation::Values { .. } => title.to_string(),
-        Evaluation::Metric { .. } | Evaluation::Combined { .. } if each || title == "value" => quantity.words.comparison.clone(),
-        Evaluation::Metric { .. } | Evaluation::Combined { .. } => format!("{}, {title}", quantity.words.comparison),
+        Evaluation::Metric { .. } | Evaluation::Combined { .. } if each || title == "value" => {
+            quantity.words.comparison.clone()
+        }
+        Evaluation::Metric { .. } | Evaluation::Combined { .. } => {
+            format!("{}, {title}", quantity.words.comparison)
+        }
     }
 }
 
 /// The metric of a result.
 pub fn of(plan: &Plan, quantity: usize, statistic: &StatisticResult) -> String {
-    plan.quantities.get(quantity).map_or_else(String::new, |quantity| named(quantity, Some(&statistic.title), statistic.name == "each"))
+    plan.quantities.get(quantity).map_or_else(String::new, |quantity| {
+        named(quantity, Some(&statistic.title), statistic.name == "each")
+    })
 }
 
 /// The metrics of a protocol in the order of its quantities, and whether they have limits.
@@ -69,12 +81,22 @@ pub fn numbers(plan: &Plan, judged: &Judged) -> Vec<Number> {
         for statistic in &quantity.statistics {
             let Some(ratio) = signed(statistic) else { continue };
             let limit = format!("{} {} {}", quantity.id, statistic.title, statistic.scope);
-            found.push(Number { metric: of(plan, at, statistic), limited: true, of: limit, value: ratio });
+            found.push(Number {
+                metric: of(plan, at, statistic),
+                limited: true,
+                of: limit,
+                value: ratio,
+            });
         }
         if quantity.statistics.is_empty()
             && let (Some(value), Some(rule)) = (mean(quantity), plan.quantities.get(at))
         {
-            found.push(Number { metric: name(rule, None), limited: false, of: quantity.id.clone(), value });
+            found.push(Number {
+                metric: name(rule, None),
+                limited: false,
+                of: quantity.id.clone(),
+                value,
+            });
         }
     }
     found

@@ -1,4 +1,5 @@
-//! Protocols side by side over campaigns: verdicts, agreement, sensitivity, applicability, and what each difference of two protocols does.
+//! Protocols side by side over campaigns: verdicts, agreement, sensitivity, applicability, and what
+//! each difference of two protocols does.
 //!
 //! | file | content |
 //! |---|---|
@@ -13,29 +14,37 @@
 //!
 //! # Definitions
 //!
-//! **Metric.** The limits of a protocol that are about the same kind of number: for differences of values the estimate (`mean`, `standard
-//! deviation (n-1)`), for metrics of both signals the metric (`sprague-geers magnitude`), with its estimate where it is not `each`. The
-//! *numbers* of a metric are its ratios value / limit, one for each limit and group, with their sign; where every value has its own
-//! limit, the worst, without sign. A quantity without a limit has its mean value as its number.
+//! **Metric.** The limits of a protocol that are about the same kind of number: for differences of
+//! values the estimate (`mean`, `standard deviation (n-1)`), for metrics of both signals the metric
+//! (`sprague-geers magnitude`), with its estimate where it is not `each`. The *numbers* of a metric
+//! are its ratios value / limit, one for each limit and group, with their sign; where every value
+//! has its own limit, the worst, without sign. A quantity without a limit has its mean value as its
+//! number.
 //!
-//! **Score of a section.** The largest |value| / limit over the values of the section and the limits of a metric, or of a protocol. The
-//! limit of a pooled estimate stands for the values of the section too: |difference| over the limit of the mean, over that of the standard
-//! deviation. Up to 1, the section *meets* the requirement. Scores are the comparable units of agreement: contingency tables count
-//! sections met and not met, Spearman's correlation ranks them; sections of all campaigns together.
+//! **Score of a section.** The largest |value| / limit over the values of the section and the
+//! limits of a metric, or of a protocol. The limit of a pooled estimate stands for the values of
+//! the section too: |difference| over the limit of the mean, over that of the standard deviation.
+//! Up to 1, the section *meets* the requirement. Scores are the comparable units of agreement:
+//! contingency tables count sections met and not met, Spearman's correlation ranks them; sections
+//! of all campaigns together.
 //!
-//! **Disturbance of size x.** It changes the measured samples of a section by x times their standard deviation, as an rms over the section,
-//! before any filter: an offset of x standard deviations; a gain, and white noise, of that rms; for a shift in time, which all channels
-//! share, the rms is over the channels. `choice of sections` of size x leaves out the share x of the sections, drawn `sensitivity::DRAWS`
-//! times. The sensitivity is the root mean square of the change of a metric's numbers. Sections that are not used stay unused, and
-//! plausibility rules are not asked again.
+//! **Disturbance of size x.** It changes the measured samples of a section by x times their
+//! standard deviation, as an rms over the section, before any filter: an offset of x standard
+//! deviations; a gain, and white noise, of that rms; for a shift in time, which all channels share,
+//! the rms is over the channels. `choice of sections` of size x leaves out the share x of the
+//! sections, drawn `sensitivity::DRAWS` times. The sensitivity is the root mean square of the
+//! change of a metric's numbers. Sections that are not used stay unused, and plausibility rules are
+//! not asked again.
 //!
-//! **Applicability.** What a campaign gives if all but one section, or the values of all but one quantity, are withheld: whether the metric
-//! has a number, and whether the protocol has a verdict.
+//! **Applicability.** What a campaign gives if all but one section, or the values of all but one
+//! quantity, are withheld: whether the metric has a number, and whether the protocol has a verdict.
 //!
-//! **A rule by itself.** A difference is a block or a field of the protocols as merged with their ancestors (`check::diff`). It is made to
-//! the merged first protocol, which is then checked and evaluated as any other; so nothing is approximated. Where the result is no
-//! protocol, since the rule needs another one, that is said with the first problem. Protocols are compared rule by rule only if one extends
-//! the other, both extend the same, or half of the rules of the first stand in the second (`rules::related`).
+//! **A rule by itself.** A difference is a block or a field of the protocols as merged with their
+//! ancestors (`check::diff`). It is made to the merged first protocol, which is then checked and
+//! evaluated as any other; so nothing is approximated. Where the result is no protocol, since the
+//! rule needs another one, that is said with the first problem. Protocols are compared rule by rule
+//! only if one extends the other, both extend the same, or half of the rules of the first stand in
+//! the second (`rules::related`).
 
 mod agreement;
 mod applicability;
@@ -74,22 +83,33 @@ pub struct Settings {
 pub const SIZES: [f64; 3] = [0.1, 0.2, 0.4];
 
 /// A disturbance of records and its name.
-const KINDS: [(Kind, &str); 4] = [(Kind::Offset, "offset"), (Kind::Gain, "gain"), (Kind::Shift, "time shift"), (Kind::Noise, "noise")];
+const KINDS: [(Kind, &str); 4] = [
+    (Kind::Offset, "offset"),
+    (Kind::Gain, "gain"),
+    (Kind::Shift, "time shift"),
+    (Kind::Noise, "noise"),
+];
 
 /// The trials of a campaign, in the order of [`KINDS`] and sizes, then those for the applicability.
 fn trials(sizes: &[f64]) -> Vec<Trial> {
-    let disturbed = KINDS.iter().flat_map(|(kind, _)| sizes.iter().map(|size| Trial::Disturbed(Disturbance { kind: *kind, size: *size })));
+    let disturbed = KINDS.iter().flat_map(|(kind, _)| {
+        sizes.iter().map(|size| Trial::Disturbed(Disturbance { kind: *kind, size: *size }))
+    });
     disturbed.chain([Trial::Doubled, Trial::Exchanged]).collect()
 }
 
-/// The campaigns with the sections that the first protocol which looks for sections finds in their runs: all are compared on the same.
+/// The campaigns with the sections that the first protocol which looks for sections finds in their
+/// runs: all are compared on the same.
 fn with_found_sections(
     campaigns: Vec<(String, Campaign)>,
     compiled: &[Arc<CompiledAll>],
     problems: &mut Problems,
 ) -> Option<Vec<(String, Campaign)>> {
     let found = campaigns.into_iter().zip(compiled).map(|((name, campaign), compiled)| {
-        let Some(first) = compiled.protocols.iter().find(|one| find::applies(&one.plan, &campaign)) else { return Some((name, campaign)) };
+        let Some(first) = compiled.protocols.iter().find(|one| find::applies(&one.plan, &campaign))
+        else {
+            return Some((name, campaign));
+        };
         match find::find(&first.plan, &first.graph, &campaign, &|_| {}) {
             Ok(found) => Some((name, found.campaign)),
             Err(told) => {
@@ -107,24 +127,34 @@ pub struct Prepared {
     protocols: Vec<Subject>,
     campaigns: Vec<(String, Campaign)>,
     changes: Vec<Change>,
-    /// Number of differences of two protocols that have nothing in common; none of them is applied alone.
+    /// Number of differences of two protocols that have nothing in common; none of them is applied
+    /// alone.
     unrelated: Option<usize>,
     compiled: Vec<Arc<CompiledAll>>,
     settings: Settings,
 }
 
 impl Prepared {
-    /// Compiles every protocol with the parameters of each campaign. With two protocols, the first with each changed rule too.
+    /// Compiles every protocol with the parameters of each campaign. With two protocols, the first
+    /// with each changed rule too.
     ///
-    /// Problems: `protocol-twice`, `campaign-twice`, `unknown-parameter`; those of a protocol or of a value that is set.
-    pub fn new(families: Vec<Family>, campaigns: Vec<Campaign>, settings: Settings, problems: &mut Problems) -> Option<Self> {
+    /// Problems: `protocol-twice`, `campaign-twice`, `unknown-parameter`; those of a protocol or of
+    /// a value that is set.
+    pub fn new(
+        families: Vec<Family>,
+        campaigns: Vec<Campaign>,
+        settings: Settings,
+        problems: &mut Problems,
+    ) -> Option<Self> {
         let protocols = subject::protocols(families, problems);
         let campaigns = subject::campaigns(campaigns, problems);
         if problems.any_error() {
             return None;
         }
         let (changes, unrelated) = match protocols.as_slice() {
-            [before, after] if rules::related(before, after) => (rules::changes(before, after), None),
+            [before, after] if rules::related(before, after) => {
+                (rules::changes(before, after), None)
+            }
             [before, after] => (Vec::new(), Some(rules::changes(before, after).len())),
             _ => (Vec::new(), None),
         };
@@ -148,7 +178,9 @@ impl Prepared {
         let found: Vec<found::Found> = campaigns
             .iter()
             .zip(compiled)
-            .map(|((name, campaign), compiled)| campaign::found((name, campaign), &names, compiled, &trials, settings, progress))
+            .map(|((name, campaign), compiled)| {
+                campaign::found((name, campaign), &names, compiled, &trials, settings, progress)
+            })
             .collect();
         let counts: Counts = found.iter().map(|found| found.counts).sum();
         let protocols = self.compared();
@@ -165,8 +197,14 @@ impl Prepared {
                     files: found.files.clone(),
                 })
                 .collect(),
-            verdicts: found.iter().flat_map(|found| found.judgements.iter().map(|one| one.cell.clone())).collect(),
-            ratios: found.iter().flat_map(|found| found.judgements.iter().flat_map(|one| one.ratios.clone())).collect(),
+            verdicts: found
+                .iter()
+                .flat_map(|found| found.judgements.iter().map(|one| one.cell.clone()))
+                .collect(),
+            ratios: found
+                .iter()
+                .flat_map(|found| found.judgements.iter().flat_map(|one| one.ratios.clone()))
+                .collect(),
             agreement: agreement::agreement(&names, &found),
             sensitivity: sensitivity::curves(&names, &found, &settings.sizes),
             applicability: applicability::put_together(&found),
@@ -178,7 +216,9 @@ impl Prepared {
                 records_asked: counts.records_asked,
                 filters_run: counts.filters_run,
                 filters_asked: counts.filters_asked,
-                operations: compiled.first().map_or(0, |all| all.protocols.iter().map(|one| one.graph.nodes.len()).sum()),
+                operations: compiled
+                    .first()
+                    .map_or(0, |all| all.protocols.iter().map(|one| one.graph.nodes.len()).sum()),
                 sha256: crate::data::hash::sha256(hashes.as_bytes()),
             },
         }

@@ -13,31 +13,55 @@ pub fn changes(before: &Subject, after: &Subject) -> Vec<Change> {
     diff::changes(&before.family.merged, &after.family.merged)
 }
 
-/// Whether two protocols are variants of each other: they have a protocol in common that they are or extend, or half of the rules of the
-/// first stand in the second. Of others, no rule makes sense in the place of another.
+/// Whether two protocols are variants of each other: they have a protocol in common that they are
+/// or extend, or half of the rules of the first stand in the second. Of others, no rule makes sense
+/// in the place of another.
 pub fn related(before: &Subject, after: &Subject) -> bool {
     let (a, b) = (&before.family, &after.family);
-    let common = a.sources.iter().any(|source| b.sources.iter().any(|other| other.text == source.text));
+    let common =
+        a.sources.iter().any(|source| b.sources.iter().any(|other| other.text == source.text));
     common || 2 * diff::kept(&a.merged, &b.merged) >= a.merged.blocks.len()
 }
 
-/// Every difference by itself on every campaign, then all of them together. None of unrelated protocols.
-pub fn differences(changes: &[Change], compiled: &[Arc<CompiledAll>], found: &[Found]) -> Vec<Difference> {
+/// Every difference by itself on every campaign, then all of them together. None of unrelated
+/// protocols.
+pub fn differences(
+    changes: &[Change],
+    compiled: &[Arc<CompiledAll>],
+    found: &[Found],
+) -> Vec<Difference> {
     let mut all = Vec::new();
     for (at, change) in changes.iter().enumerate() {
         for (found, compiled) in found.iter().zip(compiled) {
             let deviation = &change.deviation;
-            let reason = compiled.changed.get(at).and_then(|changed| changed.as_ref().err().cloned());
+            let reason =
+                compiled.changed.get(at).and_then(|changed| changed.as_ref().err().cloned());
             let after = found.changed.get(at).and_then(Option::as_ref);
-            let one = Difference { before: deviation.before.clone(), after: deviation.after.clone(), ..difference(found, after, reason) };
-            all.push(Difference { rule: deviation.rule.clone(), words: words(&deviation.before, &deviation.after), ..one });
+            let one = Difference {
+                before: deviation.before.clone(),
+                after: deviation.after.clone(),
+                ..difference(found, after, reason)
+            };
+            all.push(Difference {
+                rule: deviation.rule.clone(),
+                words: words(&deviation.before, &deviation.after),
+                ..one
+            });
         }
     }
     if !changes.is_empty() {
         let number = changes.len();
         for found in found {
-            let words = if number == 1 { "the one difference".into() } else { format!("all {number} differences") };
-            all.push(Difference { rule: ALL.into(), words, ..difference(found, found.judgements.get(1), None) });
+            let words = if number == 1 {
+                "the one difference".into()
+            } else {
+                format!("all {number} differences")
+            };
+            all.push(Difference {
+                rule: ALL.into(),
+                words,
+                ..difference(found, found.judgements.get(1), None)
+            });
         }
     }
     all
@@ -69,17 +93,23 @@ fn difference(found: &Found, after: Option<&Judgement>, reason: Option<String>) 
         decided_by_after: after.and_then(|after| after.cell.decided_by.clone()),
         ratio_before: before.and_then(|before| before.cell.ratio),
         ratio_after: after.and_then(|after| after.cell.ratio),
-        limits_changed: before.zip(after).map(|(before, after)| changed(&before.ratios, &after.ratios)),
+        limits_changed: before
+            .zip(after)
+            .map(|(before, after)| changed(&before.ratios, &after.ratios)),
         reason,
     }
 }
 
 /// Limits that are new, gone, or have another value or bound.
 fn changed(before: &[Ratio], after: &[Ratio]) -> usize {
-    let same = |a: &Ratio, b: &Ratio| a.quantity == b.quantity && a.estimate == b.estimate && a.scope == b.scope;
+    let same = |a: &Ratio, b: &Ratio| {
+        a.quantity == b.quantity && a.estimate == b.estimate && a.scope == b.scope
+    };
     let other = |ratio: &&Ratio| {
         let known = before.iter().find(|known| same(known, ratio));
-        known.is_none_or(|known| known.value != ratio.value || known.limit != ratio.limit || known.holds != ratio.holds)
+        known.is_none_or(|known| {
+            known.value != ratio.value || known.limit != ratio.limit || known.holds != ratio.holds
+        })
     };
     let gone = before.iter().filter(|ratio| !after.iter().any(|known| same(known, ratio))).count();
     after.iter().filter(other).count() + gone

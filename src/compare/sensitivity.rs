@@ -9,7 +9,8 @@ use crate::metrics::disturb::{mixed, stream};
 use crate::result::comparison::{OfCampaign, Sensitivity};
 use crate::run::Evaluated;
 
-/// Choices of sections drawn for each size. The rms of a change over this many draws is known to about a quarter.
+/// Choices of sections drawn for each size. The rms of a change over this many draws is known to
+/// about a quarter.
 pub const DRAWS: usize = 8;
 
 /// Beside the disturbances of records.
@@ -18,15 +19,27 @@ const SECTIONS: &str = "choice of sections";
 impl Moved {
     fn add(&mut self, base: &[Number], now: &[Number]) {
         for number in now {
-            let before = base.iter().find(|known| known.of == number.of && known.metric == number.metric);
-            let at = self.metrics.iter().position(|known| known.metric == number.metric && known.limited == number.limited);
+            let before =
+                base.iter().find(|known| known.of == number.of && known.metric == number.metric);
+            let at = self
+                .metrics
+                .iter()
+                .position(|known| known.metric == number.metric && known.limited == number.limited);
             let at = at.unwrap_or_else(|| {
                 let metric = number.metric.clone();
-                self.metrics.push(OfMetric { metric, limited: number.limited, squares: 0.0, count: 0, largest: None });
+                self.metrics.push(OfMetric {
+                    metric,
+                    limited: number.limited,
+                    squares: 0.0,
+                    count: 0,
+                    largest: None,
+                });
                 self.metrics.len() - 1
             });
             let metric = &mut self.metrics[at];
-            metric.largest = Some(metric.largest.map_or(number.value.abs(), |known| known.max(number.value.abs())));
+            metric.largest = Some(
+                metric.largest.map_or(number.value.abs(), |known| known.max(number.value.abs())),
+            );
             if let Some(before) = before {
                 metric.squares += (number.value - before.value).powi(2);
                 metric.count += 1;
@@ -42,8 +55,13 @@ impl Moved {
     }
 }
 
-/// What a protocol does at every size of every disturbance, in the order of [`KINDS`], and of the choice of sections.
-pub fn moved<'a>(base: &Base<'_>, trial: &dyn Fn(usize) -> Option<&'a Evaluated>, settings: &Settings) -> Vec<Vec<Moved>> {
+/// What a protocol does at every size of every disturbance, in the order of [`KINDS`], and of the
+/// choice of sections.
+pub fn moved<'a>(
+    base: &Base<'_>,
+    trial: &dyn Fn(usize) -> Option<&'a Evaluated>,
+    settings: &Settings,
+) -> Vec<Vec<Moved>> {
     let sizes = &settings.sizes;
     let of_records = |kind: usize| {
         let at_size = |size: usize| {
@@ -67,12 +85,18 @@ pub fn moved<'a>(base: &Base<'_>, trial: &dyn Fn(usize) -> Option<&'a Evaluated>
 /// Why a section that was used is not in a trial.
 fn lost(base: &Evaluated, trial: &Evaluated) -> Option<String> {
     let both = base.sections().zip(trial.sections());
-    both.into_iter().find_map(|((_, before), (_, now))| now.filter(|_| before.is_none()).map(str::to_string))
+    both.into_iter()
+        .find_map(|((_, before), (_, now))| now.filter(|_| before.is_none()).map(str::to_string))
 }
 
 /// Some sections left out, in several draws.
 fn chosen(base: &Base<'_>, size: f64) -> Moved {
-    let used: Vec<&str> = base.evaluated.sections().filter(|(_, fault)| fault.is_none()).map(|(name, _)| name).collect();
+    let used: Vec<&str> = base
+        .evaluated
+        .sections()
+        .filter(|(_, fault)| fault.is_none())
+        .map(|(name, _)| name)
+        .collect();
     let mut moved = Moved::default();
     if used.len() < 2 {
         moved.reason = Some("there is one section".into());
@@ -86,9 +110,11 @@ fn chosen(base: &Base<'_>, size: f64) -> Moved {
     moved
 }
 
-/// The sections of a draw that are left out: more of them are the same ones and others. A section has the same lot in every protocol.
+/// The sections of a draw that are left out: more of them are the same ones and others. A section
+/// has the same lot in every protocol.
 fn drawn<'a>(sections: &[&'a str], draw: usize, out: usize) -> BTreeSet<&'a str> {
-    let mut lots: Vec<(u64, &str)> = sections.iter().map(|name| (mixed(stream([*name, &draw.to_string()])), *name)).collect();
+    let mut lots: Vec<(u64, &str)> =
+        sections.iter().map(|name| (mixed(stream([*name, &draw.to_string()])), *name)).collect();
     lots.sort_unstable();
     lots.into_iter().take(out).map(|(_, name)| name).collect()
 }
@@ -111,8 +137,15 @@ pub fn curves(names: &[&str], found: &[Found], sizes: &[f64]) -> Vec<Sensitivity
         }
         for (metric, limited) in metrics {
             for (kind, name) in KINDS.iter().map(|(_, name)| *name).chain([SECTIONS]).enumerate() {
-                let of = |size: usize| found.iter().filter_map(move |found| Some((found, found.moved[at].get(kind)?.get(size)?)));
-                all.push(Sensitivity { disturbance: name.into(), ..curve((protocol, &metric, limited), &of, found, sizes) });
+                let of = |size: usize| {
+                    found.iter().filter_map(move |found| {
+                        Some((found, found.moved[at].get(kind)?.get(size)?))
+                    })
+                };
+                all.push(Sensitivity {
+                    disturbance: name.into(),
+                    ..curve((protocol, &metric, limited), &of, found, sizes)
+                });
             }
         }
     }
@@ -125,7 +158,9 @@ fn curve<'a, I: Iterator<Item = (&'a Found, &'a Moved)>>(
     found: &[Found],
     sizes: &[f64],
 ) -> Sensitivity {
-    let own = |moved: &'a Moved| moved.metrics.iter().find(|known| known.metric == metric && known.limited == limited);
+    let own = |moved: &'a Moved| {
+        moved.metrics.iter().find(|known| known.metric == metric && known.limited == limited)
+    };
     let mut curve = Sensitivity {
         metric: metric.into(),
         protocol: protocol.into(),
@@ -137,7 +172,10 @@ fn curve<'a, I: Iterator<Item = (&'a Found, &'a Moved)>>(
         verdicts_changed: Vec::new(),
         verdicts: of(0).map(|(_, moved)| moved.verdicts).sum(),
         limited,
-        by_campaign: found.iter().map(|found| OfCampaign { campaign: found.campaign.clone(), values: Vec::new() }).collect(),
+        by_campaign: found
+            .iter()
+            .map(|found| OfCampaign { campaign: found.campaign.clone(), values: Vec::new() })
+            .collect(),
     };
     for size in 0..sizes.len() {
         let (mut squares, mut count, mut largest, mut reason) = (0.0, 0, None, None);
@@ -146,7 +184,10 @@ fn curve<'a, I: Iterator<Item = (&'a Found, &'a Moved)>>(
             let Some(metric) = own(moved) else { continue };
             squares += metric.squares;
             count += metric.count;
-            largest = metric.largest.map(|value| largest.map_or(value, |known: f64| known.max(value))).or(largest);
+            largest = metric
+                .largest
+                .map(|value| largest.map_or(value, |known: f64| known.max(value)))
+                .or(largest);
         }
         let value = (count > 0 && reason.is_none()).then(|| (squares / count as f64).sqrt());
         let none = || reason.clone().unwrap_or_else(|| "the metric has no number".into());
@@ -155,8 +196,14 @@ fn curve<'a, I: Iterator<Item = (&'a Found, &'a Moved)>>(
         curve.largest.push(largest.filter(|_| limited));
         curve.verdicts_changed.push(of(size).map(|(_, moved)| moved.verdicts_changed).sum());
         for of_campaign in &mut curve.by_campaign {
-            let moved = of(size).find(|(found, _)| found.campaign == of_campaign.campaign).and_then(|(_, moved)| own(moved));
-            of_campaign.values.push(moved.filter(|metric| metric.count > 0).map(|metric| (metric.squares / metric.count as f64).sqrt()));
+            let moved = of(size)
+                .find(|(found, _)| found.campaign == of_campaign.campaign)
+                .and_then(|(_, moved)| own(moved));
+            of_campaign.values.push(
+                moved
+                    .filter(|metric| metric.count > 0)
+                    .map(|metric| (metric.squares / metric.count as f64).sqrt()),
+            );
         }
     }
     curve

@@ -24,14 +24,24 @@ pub struct Subject {
 pub fn protocols(families: Vec<Family>, problems: &mut Problems) -> Vec<Subject> {
     let mut subjects: Vec<Subject> = Vec::new();
     for family in families {
-        let own = family.merged.blocks.iter().find(|block| block.kind.text == "protocol").map_or("", |block| block.name_text());
+        let own = family
+            .merged
+            .blocks
+            .iter()
+            .find(|block| block.kind.text == "protocol")
+            .map_or("", |block| block.name_text());
         let same = |known: &&Subject| {
             let (a, b) = (&known.family.sources, &family.sources);
             a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.text == b.text)
         };
         if let Some(known) = subjects.iter().find(same) {
-            let problem = Problem::error("protocol-twice", format!("the protocol `{}` is given twice", known.name));
-            problems.push(problem.help("give each protocol once; its variants differ in at least one rule"));
+            let problem = Problem::error(
+                "protocol-twice",
+                format!("the protocol `{}` is given twice", known.name),
+            );
+            problems.push(
+                problem.help("give each protocol once; its variants differ in at least one rule"),
+            );
             continue;
         }
         let file = family.sources.first().map_or_else(String::new, |source| source.file_name());
@@ -48,11 +58,14 @@ pub fn campaigns(opened: Vec<Campaign>, problems: &mut Problems) -> Vec<(String,
     for campaign in opened {
         let folder = campaign.inputs().folder;
         if let Some((name, _)) = named.iter().find(|(_, known)| known.inputs().folder == folder) {
-            problems
-                .push(Problem::error("campaign-twice", format!("the campaign `{name}` is given twice")).help("give each campaign once"));
+            problems.push(
+                Problem::error("campaign-twice", format!("the campaign `{name}` is given twice"))
+                    .help("give each campaign once"),
+            );
             continue;
         }
-        let file = folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let file =
+            folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let taken = |name: &str| named.iter().any(|(known, _)| known == name);
         let name = unused(&campaign.name, &file, taken);
         named.push((name, campaign));
@@ -78,10 +91,12 @@ pub struct CompiledAll {
     pub changed: Vec<Result<Compiled, String>>,
 }
 
-/// Compiles every protocol with the parameters of each campaign and of the command line, as far as it has them.
+/// Compiles every protocol with the parameters of each campaign and of the command line, as far as
+/// it has them.
 ///
 /// # Errors
-/// A protocol or a value of a parameter is not valid; no protocol has a parameter of the command line.
+/// A protocol or a value of a parameter is not valid; no protocol has a parameter of the command
+/// line.
 pub fn compiled(
     protocols: &[Subject],
     campaigns: &[(String, Campaign)],
@@ -90,9 +105,13 @@ pub fn compiled(
     problems: &mut Problems,
 ) -> Option<Vec<Arc<CompiledAll>>> {
     for (name, _) in &settings.set {
-        let known: Vec<&str> = protocols.iter().flat_map(|subject| parameters(&subject.family)).collect();
+        let known: Vec<&str> =
+            protocols.iter().flat_map(|subject| parameters(&subject.family)).collect();
         if !known.contains(&name.as_str()) {
-            let problem = Problem::error("unknown-parameter", format!("no protocol of the comparison has a parameter `{name}`"));
+            let problem = Problem::error(
+                "unknown-parameter",
+                format!("no protocol of the comparison has a parameter `{name}`"),
+            );
             problems.push(problem.suggest(name, known));
         }
     }
@@ -101,7 +120,10 @@ pub fn compiled(
     let mut all = Vec::new();
     for (_, campaign) in campaigns {
         let overrides = overrides(campaign, settings);
-        let key = format!("{:?}", overrides.iter().map(|(name, set)| (name, &set.text.text)).collect::<Vec<_>>());
+        let key = format!(
+            "{:?}",
+            overrides.iter().map(|(name, set)| (name, &set.text.text)).collect::<Vec<_>>()
+        );
         if let Some((_, compiled)) = known.iter().find(|(of, _)| *of == key) {
             all.push(Arc::clone(compiled));
             continue;
@@ -113,14 +135,22 @@ pub fn compiled(
     (!problems.any_error()).then_some(all)
 }
 
-fn compiled_with(protocols: &[Subject], changes: &[Change], overrides: &Overrides, problems: &mut Problems) -> Option<CompiledAll> {
+fn compiled_with(
+    protocols: &[Subject],
+    changes: &[Change],
+    overrides: &Overrides,
+    problems: &mut Problems,
+) -> Option<CompiledAll> {
     let mut all = Vec::new();
     for subject in protocols {
         let mut own = Problems::default();
-        let compiled = compile(subject.family.clone(), &of_protocol(&subject.family, overrides), &mut own);
+        let compiled =
+            compile(subject.family.clone(), &of_protocol(&subject.family, overrides), &mut own);
         // A warning of a protocol is told once, not for each campaign.
         for problem in own.0 {
-            if problem.severity == Severity::Error || !problems.0.iter().any(|known| known.says == problem.says) {
+            if problem.severity == Severity::Error
+                || !problems.0.iter().any(|known| known.says == problem.says)
+            {
                 problems.push(problem);
             }
         }
@@ -130,20 +160,30 @@ fn compiled_with(protocols: &[Subject], changes: &[Change], overrides: &Override
         return None;
     }
     let changed = protocols.first().map_or_else(Vec::new, |first| {
-        let one = |change: &Change| alone(&first.family, change, |family| of_protocol(family, overrides));
+        let one =
+            |change: &Change| alone(&first.family, change, |family| of_protocol(family, overrides));
         changes.iter().map(one).collect()
     });
     Some(CompiledAll { protocols: all, changed })
 }
 
 fn parameters(family: &Family) -> impl Iterator<Item = &str> {
-    family.merged.blocks.iter().filter(|block| block.kind.text == "parameter").map(|block| block.name_text())
+    family
+        .merged
+        .blocks
+        .iter()
+        .filter(|block| block.kind.text == "parameter")
+        .map(|block| block.name_text())
 }
 
 /// Those that a protocol has.
 fn of_protocol(family: &Family, overrides: &Overrides) -> Overrides {
     let has = |name: &String| parameters(family).any(|known| known == name);
-    overrides.iter().filter(|(name, _)| has(name)).map(|(name, set)| (name.clone(), set.clone())).collect()
+    overrides
+        .iter()
+        .filter(|(name, _)| has(name))
+        .map(|(name, set)| (name.clone(), set.clone()))
+        .collect()
 }
 
 /// Parameters of the campaign, and over them those of the command line.
@@ -167,7 +207,11 @@ fn overrides(campaign: &Campaign, settings: &Settings) -> Overrides {
 ///
 /// # Errors
 /// It is then no valid protocol: the first problem, which tells what the rule needs.
-fn alone(family: &Family, change: &Change, overrides: impl Fn(&Family) -> Overrides) -> Result<Compiled, String> {
+fn alone(
+    family: &Family,
+    change: &Change,
+    overrides: impl Fn(&Family) -> Overrides,
+) -> Result<Compiled, String> {
     let family = Family { merged: change.applied(&family.merged), ..family.clone() };
     let mut problems = Problems::default();
     let overrides = overrides(&family);

@@ -46,7 +46,10 @@ impl Blocks {
 
 fn send(to: &SyncSender<Message>, block: &Block<'_>, wanted: &[Wanted]) {
     let of = |wanted: &Wanted| block.columns.iter().find(|column| column.name == wanted.name);
-    let columns = wanted.iter().map(|wanted| of(wanted).map_or_else(Vec::new, |column| column.values.clone())).collect();
+    let columns = wanted
+        .iter()
+        .map(|wanted| of(wanted).map_or_else(Vec::new, |column| column.values.clone()))
+        .collect();
     // Who asked may have gone.
     let _ = to.send(Ok(columns));
 }

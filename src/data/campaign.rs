@@ -1,6 +1,7 @@
 //! A campaign folder: description, vehicle, sections, and the places of the records.
 //!
-//! Only the keys of the folder layout are defined here; all others are facts, which are printed or requested by name.
+//! Only the keys of the folder layout are defined here; all others are facts, which are printed or
+//! requested by name.
 
 mod facts;
 mod files;
@@ -63,20 +64,23 @@ pub struct Campaign {
     pub protocol: Option<Spanned<String>>,
     /// Origin of the simulated records, if they were written by a program.
     pub origin: Option<Origin>,
-    /// The whole vehicle file; an empty map if the campaign has none. Of several states the first: who needs one vehicle asks
-    /// [`Campaign::one_vehicle`].
+    /// The whole vehicle file; an empty map if the campaign has none. Of several states the first:
+    /// who needs one vehicle asks [`Campaign::one_vehicle`].
     pub vehicle: Node,
     /// The vehicle in each of its states, at least one.
     pub vehicles: Vec<VehicleState>,
-    /// Absent if the campaign has no section table; every measured record is then evaluated as a whole.
+    /// Absent if the campaign has no section table; every measured record is then evaluated as a
+    /// whole.
     pub sections: Option<Table>,
     /// Wanted operation, a point in each row; absent if the campaign does not say.
     pub application: Option<Table>,
     /// The names of the sections in the order of the table, or of the measured records, sorted.
     pub names: Vec<Cell>,
-    /// `campaign.yaml`, the vehicle file, the section table and the table of wanted operation, if present.
+    /// `campaign.yaml`, the vehicle file, the section table and the table of wanted operation, if
+    /// present.
     pub files: Vec<ReadFile>,
-    /// Files of its own protocol and of those that this one extends, as paths inside it; see [`Campaign::with_protocols`].
+    /// Files of its own protocol and of those that this one extends, as paths inside it; see
+    /// [`Campaign::with_protocols`].
     protocols: Vec<String>,
     folder: Folder,
     record_folders: Vec<RecordFolder>,
@@ -86,18 +90,26 @@ pub struct Campaign {
 impl Campaign {
     /// Opens a campaign by its folder or its `campaign.yaml`. Records are read later.
     ///
-    /// Problems: those of `read_text`, `yaml::load` and [`Table::read`]; `folder-missing`, `path-outside`, `path-invalid`,
-    /// `key-missing`, `wrong-kind`, `no-records`.
+    /// Problems: those of `read_text`, `yaml::load` and [`Table::read`]; `folder-missing`,
+    /// `path-outside`, `path-invalid`, `key-missing`, `wrong-kind`, `no-records`.
     pub fn open(path: &Path, problems: &mut Problems) -> Option<Self> {
-        let named = path.file_name().is_some_and(|name| name == CAMPAIGN_FILE) && !disk::is_folder(path).unwrap_or(false);
-        let folder = Folder::open(if named { parent(path) } else { path }).map_err(|problem| problems.push(problem)).ok()?;
+        let named = path.file_name().is_some_and(|name| name == CAMPAIGN_FILE)
+            && !disk::is_folder(path).unwrap_or(false);
+        let folder = Folder::open(if named { parent(path) } else { path })
+            .map_err(|problem| problems.push(problem))
+            .ok()?;
         Self::in_folder(folder, path, problems)
     }
 
-    /// Opens a campaign that is in memory, or in a folder with some of its files and records replaced by those in memory.
+    /// Opens a campaign that is in memory, or in a folder with some of its files and records
+    /// replaced by those in memory.
     ///
     /// Problems: as [`Campaign::open`].
-    pub fn with_memory(folder: Option<&Path>, memory: Memory, problems: &mut Problems) -> Option<Self> {
+    pub fn with_memory(
+        folder: Option<&Path>,
+        memory: Memory,
+        problems: &mut Problems,
+    ) -> Option<Self> {
         let at = match folder {
             Some(folder) => Folder::open(folder).map_err(|problem| problems.push(problem)).ok()?,
             None => Folder::nowhere(),
@@ -118,18 +130,30 @@ impl Campaign {
     fn in_folder(folder: Folder, path: &Path, problems: &mut Problems) -> Option<Self> {
         let before = problems.errors();
         let nowhere = Source::new(path.display().to_string(), "").whole();
-        let place = folder.place(CAMPAIGN_FILE, &nowhere).map_err(|problem| problems.push(problem)).ok()?;
+        let place =
+            folder.place(CAMPAIGN_FILE, &nowhere).map_err(|problem| problems.push(problem)).ok()?;
         let mut opening = Opening { folder, files: Vec::new(), problems };
         let on_disk = !opening.folder.memory().texts.contains_key(CAMPAIGN_FILE);
-        if on_disk && disk::is_folder(&opening.folder.real().join(disk::UNFINISHED)).unwrap_or(false) {
-            let says = format!("`{}` is incomplete: the run that wrote this campaign was interrupted", path.display());
-            opening.problems.push(Problem::error("unfinished-set", says).help("repeat that run, with the same `--out`"));
+        if on_disk
+            && disk::is_folder(&opening.folder.real().join(disk::UNFINISHED)).unwrap_or(false)
+        {
+            let says = format!(
+                "`{}` is incomplete: the run that wrote this campaign was interrupted",
+                path.display()
+            );
+            opening.problems.push(
+                Problem::error("unfinished-set", says)
+                    .help("repeat that run, with the same `--out`"),
+            );
             return None;
         }
         // Anything else that is not a plain file is reported when it is read.
         if on_disk && matches!(disk::kind(&place.path), Ok(None)) {
             let says = format!("there is no file `{}`", place.shown);
-            opening.problems.push(Problem::error("file-missing", says).help("a campaign is a folder with a file `campaign.yaml`"));
+            opening.problems.push(
+                Problem::error("file-missing", says)
+                    .help("a campaign is a folder with a file `campaign.yaml`"),
+            );
             return None;
         }
         let (source, tree) = opening.yaml(&place, None)?;
@@ -138,13 +162,20 @@ impl Campaign {
         (problems.errors() == before).then_some(campaign)
     }
 
-    /// A campaign that is not written yet: the tree of its `campaign.yaml`, whose parts may stand in other files, and its small files.
-    /// `names`: those of its records, of which none is read, for a campaign without a table of sections and without runs.
+    /// A campaign that is not written yet: the tree of its `campaign.yaml`, whose parts may stand
+    /// in other files, and its small files. `names`: those of its records, of which none is read,
+    /// for a campaign without a table of sections and without runs.
     ///
     /// Problems: as [`Campaign::open`].
-    pub fn not_written(tree: Node, memory: Memory, names: Vec<Cell>, problems: &mut Problems) -> Option<Self> {
+    pub fn not_written(
+        tree: Node,
+        memory: Memory,
+        names: Vec<Cell>,
+        problems: &mut Problems,
+    ) -> Option<Self> {
         let before = problems.errors();
-        let opening = Opening { folder: Folder::nowhere().with(memory), files: Vec::new(), problems };
+        let opening =
+            Opening { folder: Folder::nowhere().with(memory), files: Vec::new(), problems };
         let mut campaign = Self::of_tree(opening, Arc::clone(&tree.span.source), tree)?;
         if campaign.sections.is_none() && campaign.runs.is_empty() {
             campaign.names = names;
@@ -154,27 +185,39 @@ impl Campaign {
         (problems.errors() == before).then_some(campaign)
     }
 
-    /// Everything that `campaign.yaml` and its tables say; the names of the sections are not known yet.
+    /// Everything that `campaign.yaml` and its tables say; the names of the sections are not known
+    /// yet.
     fn of_tree(mut opening: Opening<'_>, source: Arc<Source>, tree: Node) -> Option<Self> {
         let before = opening.problems.errors();
         if !matches!(tree.value, Value::Map(_)) {
             opening.problems.push(
-                Problem::error("wrong-kind", format!("a campaign must be a map of keys and values, not {}", tree.kind_in_words()))
-                    .at(&tree.span),
+                Problem::error(
+                    "wrong-kind",
+                    format!(
+                        "a campaign must be a map of keys and values, not {}",
+                        tree.kind_in_words()
+                    ),
+                )
+                .at(&tree.span),
             );
             return None;
         }
         let name = opening.text(&tree, "name").map(|name| name.value);
         if name.is_none() && tree.get("name").is_none() {
-            opening.problems.push(Problem::error("key-missing", "the campaign has no `name`").at(&tree.span.part(0..0)));
+            opening.problems.push(
+                Problem::error("key-missing", "the campaign has no `name`")
+                    .at(&tree.span.part(0..0)),
+            );
         }
         let short_name = opening.text(&tree, facts::SHORT_NAME);
         opening.misspelt(&tree);
         let mut vehicles = opening.vehicles(&tree);
         let sections = opening.sections(&tree);
         let application = opening.application(&tree);
-        let record_folders =
-            RecordKind::ALL.into_iter().flat_map(|kind| members::read(&tree, kind, &opening.folder, opening.problems)).collect();
+        let record_folders = RecordKind::ALL
+            .into_iter()
+            .flat_map(|kind| members::read(&tree, kind, &opening.folder, opening.problems))
+            .collect();
         let runs = runs::read(&tree, &opening.folder, opening.problems);
         if let Some(table) = &sections {
             runs::check_column(table, &runs, opening.problems);
@@ -183,14 +226,20 @@ impl Campaign {
         let parameters = opening.parameters(&tree);
         let origin = opening.origin(&tree);
         if vehicles.is_empty() {
-            let data = Node { value: Value::Map(Vec::new()), span: tree.span.clone(), raw: String::new(), exact: false };
+            let data = Node {
+                value: Value::Map(Vec::new()),
+                span: tree.span.clone(),
+                raw: String::new(),
+                exact: false,
+            };
             vehicles.push(VehicleState { state: None, data });
         }
         let report = identification::read(&tree, opening.problems);
         let Opening { folder, files, problems } = opening;
         let campaign = Self {
             short_name: short_name.unwrap_or_else(|| {
-                let at = tree.get("name").map_or_else(|| tree.span.part(0..0), |node| node.span.clone());
+                let at =
+                    tree.get("name").map_or_else(|| tree.span.part(0..0), |node| node.span.clone());
                 Spanned::new(name.clone().unwrap_or_default(), at)
             }),
             name: name.unwrap_or_default(),
@@ -234,12 +283,19 @@ impl Campaign {
     /// # Errors
     /// `several-vehicles`: who asks needs one vehicle, and the campaign has one for each state.
     pub fn one_vehicle(&self) -> Result<(), Problem> {
-        let names: Vec<&str> = self.vehicles.iter().filter_map(|vehicle| vehicle.state.as_deref()).collect();
+        let names: Vec<&str> =
+            self.vehicles.iter().filter_map(|vehicle| vehicle.state.as_deref()).collect();
         if names.len() < 2 {
             return Ok(());
         }
-        let says = format!("the campaign has a vehicle file for each state ({}), and one vehicle is needed here", names.join(", "));
-        let at = self.tree.get("vehicle").map_or_else(|| self.tree.span.part(0..0), |node| node.span.clone());
+        let says = format!(
+            "the campaign has a vehicle file for each state ({}), and one vehicle is needed here",
+            names.join(", ")
+        );
+        let at = self
+            .tree
+            .get("vehicle")
+            .map_or_else(|| self.tree.span.part(0..0), |node| node.span.clone());
         let help = "name one file in a copy of campaign.yaml, with the sections of that state: `vehicle: vehicle.yaml`";
         Err(Problem::error("several-vehicles", says).at(&at).help(help))
     }

@@ -25,7 +25,8 @@ impl<'a> From<&'a Vec<Campaign>> for Campaigns<'a> {
     }
 }
 
-/// What stands between the name of a campaign and that of a section or file of it. Section names contain none.
+/// What stands between the name of a campaign and that of a section or file of it. Section names
+/// contain none.
 const BETWEEN: char = '/';
 
 /// The name of a section or file in the results of a pool: `series 2/S01`.
@@ -52,9 +53,11 @@ impl<'a> Campaigns<'a> {
         self.pooled().then(|| self.0[number].short_name.value.as_str())
     }
 
-    /// What a vehicle of a campaign is called, where there are several: `series 2`, `laden`, `series 2, laden`.
+    /// What a vehicle of a campaign is called, where there are several: `series 2`, `laden`,
+    /// `series 2, laden`.
     pub fn vehicle_name(self, number: usize, vehicle: &VehicleState) -> Option<String> {
-        let parts: Vec<&str> = self.name_of(number).into_iter().chain(vehicle.state.as_deref()).collect();
+        let parts: Vec<&str> =
+            self.name_of(number).into_iter().chain(vehicle.state.as_deref()).collect();
         (!parts.is_empty()).then(|| parts.join(", "))
     }
 
@@ -76,16 +79,28 @@ impl<'a> Campaigns<'a> {
         for (at, campaign) in self.0.iter().enumerate().filter(|_| self.pooled()) {
             let name = &campaign.short_name;
             if name.value.contains(BETWEEN) || name.value.contains(char::is_control) {
-                let says = format!("`{}` cannot be the name of one of several campaigns: it contains `{BETWEEN}`", name.value);
+                let says = format!(
+                    "`{}` cannot be the name of one of several campaigns: it contains `{BETWEEN}`",
+                    name.value
+                );
                 problems.push(Problem::error("name-invalid", says).at(&name.span).help(HELP));
             }
             let before = &self.0[..at];
-            if campaign.on_disk() && before.iter().any(|other| other.folder() == campaign.folder()) {
+            if campaign.on_disk() && before.iter().any(|other| other.folder() == campaign.folder())
+            {
                 let says = format!("the campaign `{}` is given twice", name.value);
-                problems.push(Problem::error("campaign-twice", says).at(&name.span).help("name each folder once"));
-            } else if let Some(other) = before.iter().find(|other| other.short_name.value == name.value) {
+                problems.push(
+                    Problem::error("campaign-twice", says)
+                        .at(&name.span)
+                        .help("name each folder once"),
+                );
+            } else if let Some(other) =
+                before.iter().find(|other| other.short_name.value == name.value)
+            {
                 let says = format!("two campaigns are called `{}`", name.value);
-                let problem = Problem::error("duplicate-name", says).at(&name.span).also(&other.short_name.span, "the first");
+                let problem = Problem::error("duplicate-name", says)
+                    .at(&name.span)
+                    .also(&other.short_name.span, "the first");
                 problems.push(problem.help(HELP));
             }
         }

@@ -1,6 +1,7 @@
 //! One line of a CSV file: its cells with their places, and column headings `name [unit]`.
 //!
-//! The `csv` crate gives the row of a field but not its column, which messages need. Tests compare the cells with those of the crate.
+//! The `csv` crate gives the row of a field but not its column, which messages need. Tests compare
+//! the cells with those of the crate.
 
 use std::ops::Range;
 
@@ -21,7 +22,8 @@ pub(super) struct RawCell {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct StrayQuote(pub Range<usize>);
 
-/// Splits a line without its line break. Quoted cells may contain commas and doubled quotes, but no line breaks.
+/// Splits a line without its line break. Quoted cells may contain commas and doubled quotes, but no
+/// line breaks.
 pub(super) fn split(line: &str) -> Result<Vec<RawCell>, StrayQuote> {
     let mut cells = Vec::new();
     let mut from = 0;
@@ -90,15 +92,18 @@ impl Heading {
     pub fn unit(&self, wanted: Option<Dimension>) -> Result<Unit, Problem> {
         let name = &self.name;
         let Some(written) = &self.unit else {
-            let needed = wanted.map_or(String::new(), |dimension| format!("; {} is needed", dimension.in_words()));
+            let needed = wanted
+                .map_or(String::new(), |dimension| format!("; {} is needed", dimension.in_words()));
             return Err(Problem::error("unit-missing", format!("the column `{name}` has no unit{needed}"))
                 .at(&self.span)
                 .help(format!("write the unit in square brackets: `{name} [...]`, or `{name} [-]` for a plain number")));
         };
         let unit = Unit::parse(&written.text).map_err(|unknown| {
-            let problem =
-                Problem::error("unknown-unit", format!("the unit of the column `{name}`: `{}` is not a known unit", unknown.word))
-                    .at(&written.span);
+            let problem = Problem::error(
+                "unknown-unit",
+                format!("the unit of the column `{name}`: `{}` is not a known unit", unknown.word),
+            )
+            .at(&written.span);
             match unknown.near {
                 Some(near) => problem.meant(near),
                 None => problem,
@@ -147,7 +152,10 @@ pub(super) fn headings(line: &Span, problems: &mut Vec<Problem>) -> Option<Vec<H
         .map(|cell| {
             let span = line.part(cell.place.clone());
             let (name, unit) = name_and_unit(&cell.text);
-            let unit = unit.map(|range| HeadingUnit { text: cell.text[range.clone()].trim().to_string(), span: span.part(range) });
+            let unit = unit.map(|range| HeadingUnit {
+                text: cell.text[range.clone()].trim().to_string(),
+                span: span.part(range),
+            });
             Heading { name: name.to_string(), unit, span }
         })
         .collect();
@@ -161,26 +169,32 @@ pub(super) fn headings(line: &Span, problems: &mut Vec<Problem>) -> Option<Vec<H
     good.then_some(headings)
 }
 
-/// Lines that end with a carriage return alone: the whole file is one line, of which only the header is shown.
+/// Lines that end with a carriage return alone: the whole file is one line, of which only the
+/// header is shown.
 fn carriage_returns(line: &Span) -> Option<Problem> {
     let end = line.text().trim_end_matches('\r').find('\r')?;
     let header = Source::excerpt(line.source.name.clone(), &line.text()[..end], line.line());
-    let problem = Problem::error("line-ends", "the lines end with a carriage return (CR) alone").at(&header.whole());
+    let problem = Problem::error("line-ends", "the lines end with a carriage return (CR) alone")
+        .at(&header.whole());
     Some(problem.help("save the file with the line ends of Windows (CR LF) or Linux (LF)"))
 }
 
 /// The first columns with the name of another one, and how many there are more.
 pub(super) fn duplicates(headings: &[Heading]) -> Vec<Problem> {
-    let mut sorted: Vec<&Heading> = headings.iter().filter(|heading| !heading.name.is_empty()).collect();
+    let mut sorted: Vec<&Heading> =
+        headings.iter().filter(|heading| !heading.name.is_empty()).collect();
     sorted.sort_by(|a, b| (&a.name, a.span.start).cmp(&(&b.name, b.span.start)));
     let twice = sorted.windows(2).filter(|pair| pair[0].name == pair[1].name);
     let file = headings.first().map_or("", |heading| heading.span.source.name.as_str());
     let mut faults = Faults::new(file);
     for pair in twice {
         faults.push(|| {
-            Problem::error("duplicate-column", format!("two columns are called `{}`", shortened(&pair[1].name)))
-                .at(&pair[1].span)
-                .also(&pair[0].span, "the first of them")
+            Problem::error(
+                "duplicate-column",
+                format!("two columns are called `{}`", shortened(&pair[1].name)),
+            )
+            .at(&pair[1].span)
+            .also(&pair[0].span, "the first of them")
         });
     }
     faults.into_vec()
@@ -189,45 +203,68 @@ pub(super) fn duplicates(headings: &[Heading]) -> Vec<Problem> {
 /// `Y_1R,kN,Q_1R,kN`: a cell that is a unit and nothing else, behind a name that has none.
 pub(super) fn unit_in_cell(headings: &[Heading]) -> Option<Problem> {
     let is_unit = |heading: &Heading| heading.unit.is_none() && Unit::parse(&heading.name).is_ok();
-    let [name, unit] = headings.windows(2).find(|pair| pair[0].unit.is_none() && !is_unit(&pair[0]) && is_unit(&pair[1]))? else {
+    let [name, unit] = headings
+        .windows(2)
+        .find(|pair| pair[0].unit.is_none() && !is_unit(&pair[0]) && is_unit(&pair[1]))?
+    else {
         return None;
     };
-    let says = format!("the unit of `{}` stands in a cell of its own: the comma parts columns", shortened(&name.name));
+    let says = format!(
+        "the unit of `{}` stands in a cell of its own: the comma parts columns",
+        shortened(&name.name)
+    );
     let problem = Problem::error("units-in-cell", says).at(&unit.span).also(&name.span, "its name");
-    Some(problem.help(format!("write the unit behind the name, in one cell: `{} [{}]`", name.name, unit.name)))
+    Some(problem.help(format!(
+        "write the unit behind the name, in one cell: `{} [{}]`",
+        name.name, unit.name
+    )))
 }
 
 /// A header without a comma that is parted by something else.
 fn other_separator(line: &Span) -> Option<Problem> {
     let text = line.text();
-    [(';', "semicolon-separated", "semicolons"), ('\t', "tab-separated", "tabs")].into_iter().find_map(|(separator, code, word)| {
-        let at = text.find(separator).filter(|_| !text.contains(','))?;
-        Some(
-            Problem::error(code, format!("the columns are separated by {word}, not by commas"))
-                .at(&line.part(at..at + 1))
-                .help("write a comma between the columns and a point in the numbers"),
-        )
-    })
+    [(';', "semicolon-separated", "semicolons"), ('\t', "tab-separated", "tabs")]
+        .into_iter()
+        .find_map(|(separator, code, word)| {
+            let at = text.find(separator).filter(|_| !text.contains(','))?;
+            Some(
+                Problem::error(code, format!("the columns are separated by {word}, not by commas"))
+                    .at(&line.part(at..at + 1))
+                    .help("write a comma between the columns and a point in the numbers"),
+            )
+        })
 }
 
 pub(super) fn stray_quote(span: &Span) -> Problem {
-    Problem::error("stray-quote", "a quoted cell is not closed, or text follows its closing quote").at(span)
+    Problem::error("stray-quote", "a quoted cell is not closed, or text follows its closing quote")
+        .at(span)
 }
 
 /// A line with too few or too many cells; too many are most likely due to decimal commas.
 pub(super) fn ragged(line: &Span, cells: &[RawCell], columns: usize) -> Problem {
-    let whole = |cell: &RawCell| cell.text.trim_start_matches(['-', '+']).bytes().all(|byte| byte.is_ascii_digit());
+    let whole = |cell: &RawCell| {
+        cell.text.trim_start_matches(['-', '+']).bytes().all(|byte| byte.is_ascii_digit())
+    };
     let counts = format!("the row has {} values, the header {columns} columns", cells.len());
-    // With decimal commas there is an additional cell for most numbers, and no cell contains a point.
+    // With decimal commas there is an additional cell for most numbers, and no cell contains a
+    // point.
     let excess = cells.len().saturating_sub(columns);
     if 2 * excess >= columns && excess <= columns && cells.iter().rev().take(columns).all(whole) {
-        return Problem::error("decimal-comma", format!("{counts}: the numbers seem to have decimal commas"))
-            .at(line)
-            .help("write numbers with a point");
+        return Problem::error(
+            "decimal-comma",
+            format!("{counts}: the numbers seem to have decimal commas"),
+        )
+        .at(line)
+        .help("write numbers with a point");
     }
     let (at, label) = match cells.get(columns) {
-        Some(extra) => (line.part(extra.place.start..line.end - line.start), "beyond the last column"),
-        None => (cells.last().map_or_else(|| line.clone(), |last| line.part(last.place.clone())), "the last value"),
+        Some(extra) => {
+            (line.part(extra.place.start..line.end - line.start), "beyond the last column")
+        }
+        None => (
+            cells.last().map_or_else(|| line.clone(), |last| line.part(last.place.clone())),
+            "the last value",
+        ),
     };
     Problem::error("ragged-row", counts).at(&at).label(label)
 }
@@ -240,9 +277,17 @@ pub(super) fn number(text: &str) -> Result<f64, (&'static str, String)> {
     match fast_float2::parse::<f64, _>(text) {
         Ok(number) if number.is_finite() => Ok(number),
         Ok(_) => Err(("not-finite", format!("`{text}` is not a finite number"))),
-        Err(_) if text.is_empty() => Err(("not-a-number", "the cell is empty; expected a number".to_string())),
-        Err(_) if text.matches(',').count() == 1 && fast_float2::parse::<f64, _>(text.replace(',', ".")).is_ok() => {
-            Err(("decimal-comma", format!("`{text}` has a decimal comma; numbers are written with a point")))
+        Err(_) if text.is_empty() => {
+            Err(("not-a-number", "the cell is empty; expected a number".to_string()))
+        }
+        Err(_)
+            if text.matches(',').count() == 1
+                && fast_float2::parse::<f64, _>(text.replace(',', ".")).is_ok() =>
+        {
+            Err((
+                "decimal-comma",
+                format!("`{text}` has a decimal comma; numbers are written with a point"),
+            ))
         }
         Err(_) => Err(("not-a-number", format!("`{}` is not a number", shortened(text)))),
     }
@@ -251,7 +296,11 @@ pub(super) fn number(text: &str) -> Result<f64, (&'static str, String)> {
 /// Cell text for a message, shortened, since a cell can be as long as the file.
 pub(super) fn shortened(text: &str) -> String {
     const MOST: usize = 40;
-    if text.chars().count() <= MOST { text.to_string() } else { text.chars().take(MOST).chain(['…']).collect() }
+    if text.chars().count() <= MOST {
+        text.to_string()
+    } else {
+        text.chars().take(MOST).chain(['…']).collect()
+    }
 }
 
 #[cfg(test)]
@@ -264,7 +313,8 @@ mod tests {
     fn places_leave_out_quotes_and_blanks() {
         let line = "a, \"b, c\" ,,\"d \"\"e\"\"\"";
         let cells = split(line).expect("well formed");
-        let text: Vec<_> = cells.iter().map(|cell| (cell.text.as_str(), &line[cell.place.clone()])).collect();
+        let text: Vec<_> =
+            cells.iter().map(|cell| (cell.text.as_str(), &line[cell.place.clone()])).collect();
         assert_eq!(text, [("a", "a"), ("b, c", "b, c"), ("", ""), ("d \"e\"", "d \"\"e\"\"")]);
         assert!(split("\"a").is_err() && split("\"a\"b,c").is_err());
         assert_eq!(split("").map(|cells| cells.len()), Ok(1));

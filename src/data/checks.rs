@@ -1,4 +1,5 @@
-//! Checks of the samples of a record: constant sampling rate without gaps, increasing axis, section inside the record.
+//! Checks of the samples of a record: constant sampling rate without gaps, increasing axis, section
+//! inside the record.
 
 use std::ops::Range;
 
@@ -8,7 +9,8 @@ use crate::source::Span;
 
 /// A step of the clock longer than the median by this factor is a gap.
 const GAP: f64 = 1.5;
-/// Allowed deviation of a step, as a share of the median step, in addition to the rounding of the time stamps.
+/// Allowed deviation of a step, as a share of the median step, in addition to the rounding of the
+/// time stamps.
 const JITTER: f64 = 0.01;
 /// A sampling rate within this share of an integer is set to the integer.
 const WHOLE: f64 = 1e-3;
@@ -37,18 +39,29 @@ pub struct Section {
     pub at: Option<Span>,
 }
 
-/// Checks the column `clock`, which must have constant steps, and the column `axis`, on which the section is given; both may be the same.
+/// Checks the column `clock`, which must have constant steps, and the column `axis`, on which the
+/// section is given; both may be the same.
 ///
-/// The rate is (n - 1) / (last - first), rounded to an integer if it is within 0.1 % of one: time stamps are often rounded.
+/// The rate is (n - 1) / (last - first), rounded to an integer if it is within 0.1 % of one: time
+/// stamps are often rounded.
 ///
 /// # Errors
-/// `unknown-channel` if the record was read without the column; `too-short`; `time-not-increasing`; `gap`; `uneven-step`;
-/// `axis-not-increasing`; `section-reversed`; `outside-record`; `section-empty`.
-pub fn check_axis(record: &Record, clock: &str, axis: &str, section: Option<&Section>) -> Result<Axis, Vec<Problem>> {
+/// `unknown-channel` if the record was read without the column; `too-short`; `time-not-increasing`;
+/// `gap`; `uneven-step`; `axis-not-increasing`; `section-reversed`; `outside-record`;
+/// `section-empty`.
+pub fn check_axis(
+    record: &Record,
+    clock: &str,
+    axis: &str,
+    section: Option<&Section>,
+) -> Result<Axis, Vec<Problem>> {
     let column = |name: &str| {
-        record
-            .column(name)
-            .ok_or_else(|| vec![Problem::error("unknown-channel", format!("`{}` was read without its column `{name}`", record.shown))])
+        record.column(name).ok_or_else(|| {
+            vec![Problem::error(
+                "unknown-channel",
+                format!("`{}` was read without its column `{name}`", record.shown),
+            )]
+        })
     };
     let (clock, axis) = (column(clock)?, column(axis)?);
     let mut problems = Vec::new();
@@ -58,13 +71,16 @@ pub fn check_axis(record: &Record, clock: &str, axis: &str, section: Option<&Sec
     {
         problems.push(not_increasing("axis-not-increasing", record, axis, row));
     }
-    let Some(sampling_rate) = sampling_rate.filter(|_| problems.is_empty()) else { return Err(problems) };
+    let Some(sampling_rate) = sampling_rate.filter(|_| problems.is_empty()) else {
+        return Err(problems);
+    };
     let rows = match section {
         Some(section) => check_section(record, axis, section).map_err(|problem| vec![problem])?,
         None => 0..record.rows,
     };
     let times = &clock.values;
-    let (before, after) = (times[rows.start] - times[0], times[record.rows - 1] - times[rows.end - 1]);
+    let (before, after) =
+        (times[rows.start] - times[0], times[record.rows - 1] - times[rows.end - 1]);
     Ok(Axis { sampling_rate, rows, before, after })
 }
 
@@ -75,11 +91,20 @@ fn first_fall(values: &[f64]) -> Option<usize> {
 
 fn not_increasing(code: &'static str, record: &Record, column: &Column, row: usize) -> Problem {
     let [from, to] = [row, row + 1].map(|row| number(column, column.values[row]));
-    let does = if from == to { format!("stays at {from}") } else { format!("goes back from {from} to {to}") };
+    let does = if from == to {
+        format!("stays at {from}")
+    } else {
+        format!("goes back from {from} to {to}")
+    };
     placed(
         Problem::error(
             code,
-            format!("`{}` {does} at row {} of `{}`; it must increase", column.name, record.row_shown(row + 1), record.shown),
+            format!(
+                "`{}` {does} at row {} of `{}`; it must increase",
+                column.name,
+                record.row_shown(row + 1),
+                record.shown
+            ),
         ),
         record,
         row + 1,
@@ -96,7 +121,11 @@ fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> 
     if times.len() < 3 {
         problems.push(Problem::error(
             "too-short",
-            format!("`{}` has {} samples; a sampling rate cannot be determined", record.shown, times.len()),
+            format!(
+                "`{}` has {} samples; a sampling rate cannot be determined",
+                record.shown,
+                times.len()
+            ),
         ));
         return None;
     }
@@ -119,7 +148,10 @@ fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> 
         problems.push(placed(Problem::error("gap", says), record, row + 1, clock));
     }
     if gaps.len() > TOLD {
-        problems.push(Problem::error("more-problems", format!("and {} more gaps in `{}`", gaps.len() - TOLD, record.shown)));
+        problems.push(Problem::error(
+            "more-problems",
+            format!("and {} more gaps in `{}`", gaps.len() - TOLD, record.shown),
+        ));
     }
     if !gaps.is_empty() {
         return None;
@@ -133,8 +165,10 @@ fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> 
             record.shown,
             number(clock, 1.0 / rate)
         );
-        problems
-            .push(placed(Problem::error("uneven-step", says), record, row + 1, clock).help("records must have a constant sampling rate"));
+        problems.push(
+            placed(Problem::error("uneven-step", says), record, row + 1, clock)
+                .help("records must have a constant sampling rate"),
+        );
         return None;
     }
     Some(whole(rate))
@@ -153,13 +187,13 @@ pub struct Steps {
     pub uneven: Option<usize>,
 }
 
-/// Looks at the steps of times, two at least, that increase. `factor`: the unit in which they are written, in SI units; times are often
-/// rounded in it.
+/// Looks at the steps of times, two at least, that increase. `factor`: the unit in which they are
+/// written, in SI units; times are often rounded in it.
 pub fn steps(times: &[f64], factor: f64) -> Steps {
     let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let resolution = resolution(times, factor);
-    // The median is the usual step even with gaps. Rounded stamps change many steps by the resolution; if only few steps differ, rounding
-    // is not the reason.
+    // The median is the usual step even with gaps. Rounded stamps change many steps by the
+    // resolution; if only few steps differ, rounding is not the reason.
     let usual = median(&steps);
     let unusual = steps.iter().filter(|step| (*step - usual).abs() > 1e-6 * usual).count();
     let rounding = if unusual * 100 < steps.len() { 0.0 } else { resolution };
@@ -178,13 +212,15 @@ pub fn whole(rate: f64) -> f64 {
     if (rate - rate.round()).abs() < WHOLE * rate { rate.round() } else { rate }
 }
 
-/// The power of ten of which all time stamps of a file are multiples, in SI units: the resolution of their rounding.
+/// The power of ten of which all time stamps of a file are multiples, in SI units: the resolution
+/// of their rounding.
 fn resolution(times: &[f64], factor: f64) -> f64 {
     const MOST_DECIMALS: i32 = 9;
     (0..=MOST_DECIMALS)
         .map(|decimals| 10f64.powi(decimals))
         .find(|scale| {
-            // A stamp of 1000 s has an error of 1e-13 s, one part in 10^4 of the smallest resolution tested.
+            // A stamp of 1000 s has an error of 1e-13 s, one part in 10^4 of the smallest
+            // resolution tested.
             times.iter().all(|time| {
                 let scaled = time / factor * scale;
                 (scaled - scaled.round()).abs() < 1e-3
@@ -203,14 +239,21 @@ fn median(values: &[f64]) -> f64 {
 ///
 /// # Errors
 /// `section-reversed`, `outside-record`, `section-empty`.
-pub fn check_section(record: &Record, axis: &Column, section: &Section) -> Result<Range<usize>, Problem> {
+pub fn check_section(
+    record: &Record,
+    axis: &Column,
+    section: &Section,
+) -> Result<Range<usize>, Problem> {
     let at = |problem: Problem| match &section.at {
         Some(span) => problem.at(span),
         None => problem,
     };
     let (start, end) = (number(axis, section.start), number(axis, section.end));
     if section.start >= section.end {
-        return Err(at(Problem::error("section-reversed", format!("the section ends at {end}, not after its start at {start}"))));
+        return Err(at(Problem::error(
+            "section-reversed",
+            format!("the section ends at {end}, not after its start at {start}"),
+        )));
     }
     let values = &axis.values;
     let (first, last) = (values[0], values[values.len() - 1]);
@@ -231,9 +274,13 @@ pub fn check_section(record: &Record, axis: &Column, section: &Section) -> Resul
         );
         return Err(at(Problem::error("outside-record", says)));
     }
-    let rows = values.partition_point(|value| *value < section.start)..values.partition_point(|value| *value <= section.end);
+    let rows = values.partition_point(|value| *value < section.start)
+        ..values.partition_point(|value| *value <= section.end);
     if rows.is_empty() {
-        return Err(at(Problem::error("section-empty", format!("no sample of `{}` lies between {start} and {end}", record.shown))));
+        return Err(at(Problem::error(
+            "section-empty",
+            format!("no sample of `{}` lies between {start} and {end}", record.shown),
+        )));
     }
     Ok(rows)
 }
@@ -259,9 +306,11 @@ mod tests {
 
     fn record(rows: impl IntoIterator<Item = (String, f64)>) -> (Record, std::path::PathBuf) {
         let file = tempfile::NamedTempFile::new().expect("a temporary file");
-        let text: String = rows.into_iter().map(|(time, distance)| format!("{time},{distance}\n")).collect();
+        let text: String =
+            rows.into_iter().map(|(time, distance)| format!("{time},{distance}\n")).collect();
         std::fs::write(file.path(), format!("time [s],distance [m]\n{text}")).expect("writable");
-        let wanted = [Wanted::new("time", Dimension::TIME), Wanted::new("distance", Dimension::LENGTH)];
+        let wanted =
+            [Wanted::new("time", Dimension::TIME), Wanted::new("distance", Dimension::LENGTH)];
         let record = read_record(file.path(), "r.csv", &wanted).expect("well formed");
         // The file is kept, since messages read the line again.
         let (_, path) = file.keep().expect("kept");
@@ -269,22 +318,32 @@ mod tests {
     }
 
     fn even(n: u32, rate: f64, decimals: usize) -> Vec<(String, f64)> {
-        (0..n).map(|k| (format!("{:.decimals$}", f64::from(k) / rate), 10.0 + f64::from(k) * 0.2)).collect()
+        (0..n)
+            .map(|k| (format!("{:.decimals$}", f64::from(k) / rate), 10.0 + f64::from(k) * 0.2))
+            .collect()
     }
 
-    fn check(rows: Vec<(String, f64)>, section: Option<(f64, f64)>) -> Result<Axis, Vec<(&'static str, String)>> {
+    fn check(
+        rows: Vec<(String, f64)>,
+        section: Option<(f64, f64)>,
+    ) -> Result<Axis, Vec<(&'static str, String)>> {
         let (record, path) = record(rows);
         let section = section.map(|(start, end)| Section { start, end, at: None });
         let checked = check_axis(&record, "time", "distance", section.as_ref());
         std::fs::remove_file(path).expect("removable");
-        checked.map_err(|problems| problems.into_iter().map(|problem| (problem.code, problem.says)).collect())
+        checked.map_err(|problems| {
+            problems.into_iter().map(|problem| (problem.code, problem.says)).collect()
+        })
     }
 
     #[test]
     fn rates_survive_rounded_time_stamps() {
         // n samples at a known rate, printed with few decimals.
-        for (rate, decimals) in [(200.0, 3), (300.0, 3), (400.0, 3), (256.0, 3), (1000.0, 3), (333.0, 4), (2048.0, 6)] {
-            let axis = check(even(2000, rate, decimals), None).unwrap_or_else(|faults| panic!("{rate}: {faults:?}"));
+        for (rate, decimals) in
+            [(200.0, 3), (300.0, 3), (400.0, 3), (256.0, 3), (1000.0, 3), (333.0, 4), (2048.0, 6)]
+        {
+            let axis = check(even(2000, rate, decimals), None)
+                .unwrap_or_else(|faults| panic!("{rate}: {faults:?}"));
             assert_eq!((axis.sampling_rate, axis.rows), (rate, 0..2000), "{rate}");
         }
         let axis = check(even(2000, 33.4, 6), None).expect("even");
@@ -314,7 +373,11 @@ mod tests {
         back[50].0 = back[48].0.clone();
         assert_eq!(
             check(back, None).expect_err("goes back")[0],
-            ("time-not-increasing", "`time` goes back from 0.245 s to 0.24 s at row 52 of `r.csv`; it must increase".to_string())
+            (
+                "time-not-increasing",
+                "`time` goes back from 0.245 s to 0.24 s at row 52 of `r.csv`; it must increase"
+                    .to_string()
+            )
         );
 
         let mut twice = even(100, 200.0, 3);
@@ -329,7 +392,8 @@ mod tests {
 
     #[test]
     fn faults_of_the_section_say_by_how_much() {
-        let faults = |start, end| check(even(401, 200.0, 3), Some((start, end))).expect_err("outside");
+        let faults =
+            |start, end| check(even(401, 200.0, 3), Some((start, end))).expect_err("outside");
         assert_eq!(
             faults(5.0, 95.5),
             [("outside-record", "the section from 5 m to 95.5 m is not inside `r.csv`, which has `distance` from 10 m to 90 m: 5 m at the start and 5.5 m at the end missing".to_string())]

@@ -21,38 +21,58 @@ const KEY: &str = "records_cut";
 const TABLE: &str = "cut.csv";
 /// The table of sections.
 const SECTIONS: &str = "sections.csv";
-/// Significant digits of the numbers: those that a run has are kept, and the rounding of units is not.
+/// Significant digits of the numbers: those that a run has are kept, and the rounding of units is
+/// not.
 const DIGITS: usize = 12;
 
 /// Adds all files of the copy to the outputs; gives the number of records.
 ///
 /// # Errors
-/// `no-runs`; of reading a run; `no-sections`, `unknown-run`: a section is not part of a run; of writing.
-pub fn cut(campaign: &Campaign, format: Format, outputs: &mut Outputs) -> Result<usize, Vec<Problem>> {
+/// `no-runs`; of reading a run; `no-sections`, `unknown-run`: a section is not part of a run; of
+/// writing.
+pub fn cut(
+    campaign: &Campaign,
+    format: Format,
+    outputs: &mut Outputs,
+) -> Result<usize, Vec<Problem>> {
     let one = |problem: Problem| vec![problem];
     if campaign.runs().is_empty() {
-        let problem = Problem::error("no-runs", "the campaign has no runs to cut sections from").at(&campaign.tree.span.part(0..0));
+        let problem = Problem::error("no-runs", "the campaign has no runs to cut sections from")
+            .at(&campaign.tree.span.part(0..0));
         return Err(one(problem.help("each of its sections has records of its own already")));
     }
     let Some(table) = &campaign.sections else {
-        let problem = Problem::error("no-sections", "the campaign has no table of sections, and none were looked for");
+        let problem = Problem::error(
+            "no-sections",
+            "the campaign has no table of sections, and none were looked for",
+        );
         return Err(one(problem
             .at(&campaign.runs_span())
             .help("name a protocol with `use found sections`, or a table with a column `run`")));
     };
-    let mut rows = vec![["record", "sha256", "run", "cut from", "sha256 of that file"].map(str::to_string).to_vec()];
+    let mut rows = vec![
+        ["record", "sha256", "run", "cut from", "sha256 of that file"].map(str::to_string).to_vec(),
+    ];
     let mut kinds = BTreeMap::new();
     for name in &campaign.names {
         let Some(run) = campaign.run_of(name) else {
             let says = format!("section `{}` is not part of a run", name.value);
-            return Err(one(Problem::error("unknown-run", says).at(&name.span).help(format!("name the run in the column `{RUN_COLUMN}`"))));
+            return Err(one(Problem::error("unknown-run", says)
+                .at(&name.span)
+                .help(format!("name the run in the column `{RUN_COLUMN}`"))));
         };
         for kind in RecordKind::ALL.into_iter().filter(|kind| run.has(*kind)) {
             let (record, from) = stretch(campaign, table, run, kind, name)?;
             let inside = format!("{}/{}.{}", kind.key(), name.value, format.ending());
             let bytes = bytes(&record, format).map_err(one)?;
             outputs.add(&inside, &bytes).map_err(one)?;
-            rows.push(vec![inside, sha256(&bytes), run.name.value.clone(), from, record.sha256.clone()]);
+            rows.push(vec![
+                inside,
+                sha256(&bytes),
+                run.name.value.clone(),
+                from,
+                record.sha256.clone(),
+            ]);
             kinds.insert(kind.key(), ());
         }
     }
@@ -63,12 +83,20 @@ pub fn cut(campaign: &Campaign, format: Format, outputs: &mut Outputs) -> Result
 }
 
 /// All channels of a section with what is beside it, and the file that they are from.
-fn stretch(campaign: &Campaign, table: &Table, run: &Run, kind: RecordKind, name: &Cell) -> Result<(Record, String), Vec<Problem>> {
+fn stretch(
+    campaign: &Campaign,
+    table: &Table,
+    run: &Run,
+    kind: RecordKind,
+    name: &Cell,
+) -> Result<(Record, String), Vec<Problem>> {
     let one = |problem: Problem| vec![problem];
     let source = campaign.run_source(run, kind).map_err(one)?;
     let (axis, start, end) = extent(table, name)?;
     let moved = match kind {
-        RecordKind::Measurement => campaign.offset(name).map_err(one)?.map_or(0.0, |(_, offset)| offset),
+        RecordKind::Measurement => {
+            campaign.offset(name).map_err(one)?.map_or(0.0, |(_, offset)| offset)
+        }
         RecordKind::Simulation | RecordKind::Track => 0.0,
     };
     // As much as the evaluation of a section in a run reads.
@@ -103,7 +131,9 @@ fn bytes(record: &Record, format: Format) -> Result<Vec<u8>, Problem> {
     let rounded = |value: f64| format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value) + 0.0;
     let columns = record.columns.iter().map(|column| FileColumn {
         heading: format!("{} [{}]", column.name, column.unit),
-        values: Values::Numbers(column.values.iter().map(|value| rounded(column.unit.from_si(*value))).collect()),
+        values: Values::Numbers(
+            column.values.iter().map(|value| rounded(column.unit.from_si(*value))).collect(),
+        ),
         digits: None,
     });
     let columns: Vec<FileColumn> = columns.collect();
@@ -114,24 +144,49 @@ fn bytes(record: &Record, format: Format) -> Result<Vec<u8>, Problem> {
 }
 
 /// The files of the copy but its records.
-fn rest(campaign: &Campaign, table: &Table, kinds: Vec<&str>, outputs: &mut Outputs) -> Result<(), Problem> {
+fn rest(
+    campaign: &Campaign,
+    table: &Table,
+    kinds: Vec<&str>,
+    outputs: &mut Outputs,
+) -> Result<(), Problem> {
     let at = campaign.tree.span.part(0..0);
-    let named = campaign.tree.get("sections").and_then(Node::scalar_text).map(|written| written.trim().to_string());
-    let table_inside = named.map(|named| campaign.place(&Spanned::new(named, at.clone()))).transpose()?.map(|place| place.inside);
+    let named = campaign
+        .tree
+        .get("sections")
+        .and_then(Node::scalar_text)
+        .map(|written| written.trim().to_string());
+    let table_inside = named
+        .map(|named| campaign.place(&Spanned::new(named, at.clone())))
+        .transpose()?
+        .map(|place| place.inside);
     for inside in campaign.plain_files()? {
-        if inside != CAMPAIGN_FILE && inside != TABLE && Some(&inside) != table_inside.as_ref() && inside != SECTIONS {
+        if inside != CAMPAIGN_FILE
+            && inside != TABLE
+            && Some(&inside) != table_inside.as_ref()
+            && inside != SECTIONS
+        {
             let place = campaign.place(&Spanned::new(inside.clone(), at.clone()))?;
             outputs.add(&inside, &read_any(&place.path, &place.shown)?)?;
         }
     }
     outputs.add(SECTIONS, with_facts(campaign, table).as_bytes())?;
     let written = [KEY, ORIGIN_KEY, RUNS, "sections"];
-    let kept = campaign.tree.entries().iter().filter(|(key, _)| !written.contains(&key.text.as_str()));
-    let mut entries: Vec<(&str, Entry<'_>)> = kept.map(|(key, node)| (key.text.as_str(), Entry::Node(node))).collect();
+    let kept =
+        campaign.tree.entries().iter().filter(|(key, _)| !written.contains(&key.text.as_str()));
+    let mut entries: Vec<(&str, Entry<'_>)> =
+        kept.map(|(key, node)| (key.text.as_str(), Entry::Node(node))).collect();
     entries.push(("sections", Entry::Text(SECTIONS)));
     entries.extend(kinds.iter().map(|kind| (*kind, Entry::Text(kind))));
     if let Some(node) = campaign.tree.get(ORIGIN_KEY) {
-        entries.push((ORIGIN_KEY, if matches!(node.value, Value::Map(_)) { Entry::Node(node) } else { Entry::Text(ORIGIN_FILE) }));
+        entries.push((
+            ORIGIN_KEY,
+            if matches!(node.value, Value::Map(_)) {
+                Entry::Node(node)
+            } else {
+                Entry::Text(ORIGIN_FILE)
+            },
+        ));
     }
     entries.push((KEY, Entry::Text(TABLE)));
     outputs.add(CAMPAIGN_FILE, campaign_yaml(&entries).as_bytes())
@@ -141,19 +196,32 @@ fn rest(campaign: &Campaign, table: &Table, kinds: Vec<&str>, outputs: &mut Outp
 fn with_facts(campaign: &Campaign, table: &Table) -> String {
     let mut facts: Vec<(&str, Option<&str>)> = Vec::new();
     for fact in campaign.runs().iter().flat_map(|run| &run.facts) {
-        let new = table.column(&fact.name).is_none() && facts.iter().all(|(name, _)| *name != fact.name);
+        let new =
+            table.column(&fact.name).is_none() && facts.iter().all(|(name, _)| *name != fact.name);
         facts.extend(new.then_some((fact.name.as_str(), fact.unit.as_deref())));
     }
     let keep = |column: &usize| table.columns[*column].name != RUN_COLUMN;
     let heading = |column: usize| table.columns[column].span.text().trim_matches('"').to_string();
-    let of_fact = |(name, unit): &(&str, Option<&str>)| unit.map_or_else(|| (*name).to_string(), |unit| format!("{name} [{unit}]"));
+    let of_fact = |(name, unit): &(&str, Option<&str>)| {
+        unit.map_or_else(|| (*name).to_string(), |unit| format!("{name} [{unit}]"))
+    };
     let columns: Vec<usize> = (0..table.columns.len()).filter(keep).collect();
-    let mut rows = vec![columns.iter().map(|&column| heading(column)).chain(facts.iter().map(of_fact)).collect::<Vec<_>>()];
+    let mut rows = vec![
+        columns
+            .iter()
+            .map(|&column| heading(column))
+            .chain(facts.iter().map(of_fact))
+            .collect::<Vec<_>>(),
+    ];
     for (row, name) in campaign.names.iter().enumerate() {
-        let cells = columns.iter().map(|&column| table.cell(row, column).map_or_else(String::new, |cell| cell.value.clone()));
+        let cells = columns.iter().map(|&column| {
+            table.cell(row, column).map_or_else(String::new, |cell| cell.value.clone())
+        });
         let run = campaign.run_of(name);
-        let of_run =
-            facts.iter().map(|(fact, _)| run.and_then(|run| run.fact(fact)).map_or_else(String::new, |fact| fact.value.value.clone()));
+        let of_run = facts.iter().map(|(fact, _)| {
+            run.and_then(|run| run.fact(fact))
+                .map_or_else(String::new, |fact| fact.value.value.clone())
+        });
         rows.push(cells.chain(of_run).collect());
     }
     table_csv(&rows)

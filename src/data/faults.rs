@@ -1,4 +1,5 @@
-//! The first problems of a file and the number of further ones: a file in a wrong format has one in every row.
+//! The first problems of a file and the number of further ones: a file in a wrong format has one in
+//! every row.
 
 use crate::problem::{Problem, Problems};
 
@@ -29,7 +30,10 @@ impl<'a> Faults<'a> {
     pub fn into_vec(mut self) -> Vec<Problem> {
         if self.more > 0 {
             let word = if self.more == 1 { "problem" } else { "problems" };
-            self.problems.push(Problem::error("more-problems", format!("and {} more {word} in `{}`", self.more, self.file)));
+            self.problems.push(Problem::error(
+                "more-problems",
+                format!("and {} more {word} in `{}`", self.more, self.file),
+            ));
         }
         self.problems
     }

@@ -14,7 +14,9 @@ use crate::source::Source;
 /// `folder-missing`, `path-outside`, `path-invalid`, `file-unreadable`.
 pub fn fingerprint(campaign: &Path, inside: &str) -> Result<Option<(String, u64)>, Problem> {
     let place = Folder::open(campaign)?.place(inside, &Source::new("", "").whole())?;
-    let unreadable = |why: &dyn std::fmt::Display| Problem::error("file-unreadable", format!("`{inside}` cannot be read: {why}"));
+    let unreadable = |why: &dyn std::fmt::Display| {
+        Problem::error("file-unreadable", format!("`{inside}` cannot be read: {why}"))
+    };
     match disk::kind(&place.path) {
         Ok(Some(Kind::File(_))) => {}
         Ok(Some(_)) => return Err(unreadable(&"it is not a plain file")),

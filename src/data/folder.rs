@@ -10,14 +10,16 @@ use crate::disk;
 use crate::problem::{Problem, nearest};
 use crate::source::{Source, Span};
 
-/// Small files and records of a campaign that are in memory, by their paths inside it. A record has no ending: `measurement/S01`.
+/// Small files and records of a campaign that are in memory, by their paths inside it. A record has
+/// no ending: `measurement/S01`.
 #[derive(Clone, Debug, Default)]
 pub struct Memory {
     pub texts: BTreeMap<String, Vec<u8>>,
     pub records: BTreeMap<String, Arc<Frame>>,
 }
 
-/// The folder of a campaign that is wholly in memory: a path that no system accepts, so that no file is found by accident.
+/// The folder of a campaign that is wholly in memory: a path that no system accepts, so that no
+/// file is found by accident.
 const NOWHERE: &str = "\0";
 
 #[derive(Clone, Debug)]
@@ -42,7 +44,8 @@ pub struct Place {
 }
 
 impl Place {
-    /// The path of a file in this folder, inside the campaign; the folder may be that of the campaign itself.
+    /// The path of a file in this folder, inside the campaign; the folder may be that of the
+    /// campaign itself.
     pub fn below(&self, name: &str) -> String {
         if self.inside.is_empty() { name.to_string() } else { format!("{}/{name}", self.inside) }
     }
@@ -50,12 +53,19 @@ impl Place {
 
 impl Folder {
     pub fn open(folder: &Path) -> Result<Self, Problem> {
-        let unreadable =
-            |error: std::io::Error| Problem::error("folder-unreadable", format!("`{}` cannot be read: {error}", folder.display()));
+        let unreadable = |error: std::io::Error| {
+            Problem::error(
+                "folder-unreadable",
+                format!("`{}` cannot be read: {error}", folder.display()),
+            )
+        };
         let there = disk::is_folder(folder).map_err(unreadable)?;
         match disk::real(folder).map_err(unreadable)?.filter(|_| there) {
             Some(real) => Ok(Self { shown: folder.to_path_buf(), real, memory: Arc::default() }),
-            None => Err(Problem::error("folder-missing", format!("there is no folder `{}`", folder.display()))),
+            None => Err(Problem::error(
+                "folder-missing",
+                format!("there is no folder `{}`", folder.display()),
+            )),
         }
     }
 
@@ -92,11 +102,18 @@ impl Folder {
             return Ok((source, hash, bytes.len() as u64));
         }
         self.missing(place)?;
-        let (source, hash) = read_text(&place.path, &place.shown).map_err(|problem| near_file(problem, place))?;
+        let (source, hash) =
+            read_text(&place.path, &place.shown).map_err(|problem| near_file(problem, place))?;
         match disk::kind(&place.path) {
             Ok(Some(disk::Kind::File(size))) => Ok((source, hash, size)),
-            Ok(_) => Err(Problem::error("file-missing", format!("`{}` went away while it was read", place.shown))),
-            Err(error) => Err(Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", place.shown))),
+            Ok(_) => Err(Problem::error(
+                "file-missing",
+                format!("`{}` went away while it was read", place.shown),
+            )),
+            Err(error) => Err(Problem::error(
+                "file-unreadable",
+                format!("`{}` cannot be read: {error}", place.shown),
+            )),
         }
     }
 
@@ -116,7 +133,8 @@ impl Folder {
         if self.on_disk() {
             return Ok(());
         }
-        let problem = Problem::error("file-missing", format!("there is no `{}` in memory", place.inside));
+        let problem =
+            Problem::error("file-missing", format!("there is no `{}` in memory", place.inside));
         Err(problem.suggest(&place.inside, self.memory.texts.keys().map(String::as_str)))
     }
 
@@ -130,15 +148,18 @@ impl Folder {
         Path::new(shown).strip_prefix(&self.shown).ok().and_then(Path::to_str).unwrap_or(shown)
     }
 
-    /// A path in the campaign, which must stay in the folder, also after symbolic links are resolved. It need not exist.
+    /// A path in the campaign, which must stay in the folder, also after symbolic links are
+    /// resolved. It need not exist.
     pub fn place(&self, written: &str, at: &Span) -> Result<Place, Problem> {
         let outside = |how: &str| {
             Problem::error("path-outside", format!("`{written}` {how}"))
                 .at(at)
                 .help("paths must be relative to the campaign's folder and stay inside it")
         };
-        // `\` and drive letters are checked explicitly, so that the result is the same on all systems.
-        let drive = written.as_bytes().get(1) == Some(&b':') && written.starts_with(|letter: char| letter.is_ascii_alphabetic());
+        // `\` and drive letters are checked explicitly, so that the result is the same on all
+        // systems.
+        let drive = written.as_bytes().get(1) == Some(&b':')
+            && written.starts_with(|letter: char| letter.is_ascii_alphabetic());
         if written.starts_with(['/', '\\']) || drive {
             return Err(outside("is an absolute path"));
         }
@@ -159,27 +180,43 @@ impl Folder {
         if !self.on_disk() {
             return Ok(Place { path, shown: inside.clone(), inside });
         }
-        let real =
-            disk::real(&path).map_err(|error| Problem::error("file-unreadable", format!("`{written}` cannot be read: {error}")).at(at))?;
+        let real = disk::real(&path).map_err(|error| {
+            Problem::error("file-unreadable", format!("`{written}` cannot be read: {error}")).at(at)
+        })?;
         if real.is_some_and(|real| !real.starts_with(&self.real)) {
             return Err(outside("is a symbolic link out of the campaign's folder"));
         }
-        let shown = if self.shown.as_os_str().is_empty() { inside.clone() } else { self.shown.join(&inside).display().to_string() };
+        let shown = if self.shown.as_os_str().is_empty() {
+            inside.clone()
+        } else {
+            self.shown.join(&inside).display().to_string()
+        };
         Ok(Place { path, shown, inside })
     }
 }
 
 /// Names a file beside one that is missing, if its name is similar.
 fn near_file(problem: Problem, place: &Place) -> Problem {
-    let (Some(folder), Some(name)) = (place.path.parent(), place.path.file_name().and_then(|name| name.to_str())) else { return problem };
+    let (Some(folder), Some(name)) =
+        (place.path.parent(), place.path.file_name().and_then(|name| name.to_str()))
+    else {
+        return problem;
+    };
     if problem.code != "file-missing" {
         return problem;
     }
-    let beside: Vec<String> = disk::names(folder).unwrap_or_default().iter().filter_map(|name| Some(name.to_str()?.to_string())).collect();
+    let beside: Vec<String> = disk::names(folder)
+        .unwrap_or_default()
+        .iter()
+        .filter_map(|name| Some(name.to_str()?.to_string()))
+        .collect();
     match nearest(name, beside.iter().map(String::as_str)) {
-        Some(near) => {
-            problem.meant(&place.inside.rsplit_once('/').map_or_else(|| near.to_string(), |(above, _)| format!("{above}/{near}")))
-        }
+        Some(near) => problem.meant(
+            &place
+                .inside
+                .rsplit_once('/')
+                .map_or_else(|| near.to_string(), |(above, _)| format!("{above}/{near}")),
+        ),
         None => problem,
     }
 }
@@ -190,7 +227,9 @@ fn near_file(problem: Problem, place: &Place) -> Problem {
 /// `path-outside` if it is not a single file name on every system.
 pub(super) fn check_file_name(name: &str, at: &Span) -> Result<(), Problem> {
     let says = if name.contains(['/', '\\', ':']) || name.starts_with('.') {
-        format!("`{name}` is used as a file name and must not contain `/`, `\\` or `:` or begin with a point")
+        format!(
+            "`{name}` is used as a file name and must not contain `/`, `\\` or `:` or begin with a point"
+        )
     } else if name.chars().any(char::is_control) {
         "a file name must not contain control characters".to_string()
     } else if name.is_empty() || name.len() > 200 {
@@ -211,7 +250,9 @@ mod tests {
         std::fs::create_dir(temp.path().join("data")).expect("made");
         std::fs::write(temp.path().join("data/vehicle.yaml"), "mass: 1 t").expect("written");
         let folder = Folder::open(temp.path()).expect("there");
-        let place = |written: &str| folder.place(written, &Source::new("t", "x").whole()).expect("a place inside");
+        let place = |written: &str| {
+            folder.place(written, &Source::new("t", "x").whole()).expect("a place inside")
+        };
         let near = |written: &str| folder.read_text(&place(written)).expect_err("missing").near;
         assert_eq!(near("data/vehicel.yaml").as_deref(), Some("data/vehicle.yaml"));
         assert_eq!(near("data/something.yaml"), None);
@@ -224,11 +265,14 @@ mod tests {
         std::fs::create_dir(temp.path().join("in")).expect("made");
         let folder = Folder::open(temp.path()).expect("there");
         let span = Source::new("t", "x").whole();
-        let place = |written: &str| folder.place(written, &span).map(|place| place.inside).map_err(|problem| problem.code);
+        let place = |written: &str| {
+            folder.place(written, &span).map(|place| place.inside).map_err(|problem| problem.code)
+        };
         assert_eq!(place("in"), Ok("in".into()));
         assert_eq!(place("./in//S01.csv"), Ok("in/S01.csv".into()));
         assert_eq!(place("in\\S01.csv"), Ok("in/S01.csv".into()));
-        for bad in ["/etc/passwd", "..", "in/../../x", "C:\\x", "c:x", "\\\\server\\x", "in\\..\\x"] {
+        for bad in ["/etc/passwd", "..", "in/../../x", "C:\\x", "c:x", "\\\\server\\x", "in\\..\\x"]
+        {
             assert_eq!(place(bad), Err("path-outside"), "{bad}");
         }
         for bad in ["", " ", "a\0b"] {

@@ -1,4 +1,5 @@
-//! The block `report` of `campaign.yaml`: identification of the report, customer, test item, equipment and dates.
+//! The block `report` of `campaign.yaml`: identification of the report, customer, test item,
+//! equipment and dates.
 
 use crate::problem::{Problem, Problems};
 use crate::yaml::{Key, Node, Value};
@@ -18,7 +19,12 @@ pub struct Field {
 }
 
 impl Field {
-    const fn new(group: Option<&'static str>, key: &'static str, title: &'static str, clause: Option<&'static str>) -> Self {
+    const fn new(
+        group: Option<&'static str>,
+        key: &'static str,
+        title: &'static str,
+        clause: Option<&'static str>,
+    ) -> Self {
         Self { group, key, title, clause }
     }
 }
@@ -58,7 +64,8 @@ pub type Stated = (&'static Field, Option<String>);
 
 /// All fields in the order of [`FIELDS`]; missing ones are `None`.
 ///
-/// Problems: `unknown-key` (with the nearest one), `key-twice`, `wrong-kind`, `report-date` (not a date).
+/// Problems: `unknown-key` (with the nearest one), `key-twice`, `wrong-kind`, `report-date` (not a
+/// date).
 pub fn read(tree: &Node, problems: &mut Problems) -> Vec<Stated> {
     let mut found: Vec<Stated> = FIELDS.iter().map(|field| (field, None)).collect();
     let Some(block) = tree.get(REPORT_KEY) else { return found };
@@ -70,7 +77,10 @@ pub fn read(tree: &Node, problems: &mut Problems) -> Vec<Stated> {
             }
         }
         _ => {
-            let says = format!("`{REPORT_KEY}` must be a map of keys and values, not {}", block.kind_in_words());
+            let says = format!(
+                "`{REPORT_KEY}` must be a map of keys and values, not {}",
+                block.kind_in_words()
+            );
             problems.push(Problem::error("wrong-kind", says).at(&block.span));
         }
     }
@@ -79,26 +89,38 @@ pub fn read(tree: &Node, problems: &mut Problems) -> Vec<Stated> {
 
 fn entry(key: &Key, node: &Node, found: &mut [Stated], problems: &mut Problems) {
     let name = plain(&key.text);
-    if let Some(group) = FIELDS.iter().filter_map(|field| field.group).find(|group| *group == name) {
+    if let Some(group) = FIELDS.iter().filter_map(|field| field.group).find(|group| *group == name)
+    {
         match &node.value {
             Value::Map(entries) => {
                 for (inner, node) in entries {
                     let name = plain(&inner.text);
-                    match FIELDS.iter().position(|field| field.group == Some(group) && field.key == name) {
+                    match FIELDS
+                        .iter()
+                        .position(|field| field.group == Some(group) && field.key == name)
+                    {
                         Some(at) => state(at, inner, node, found, problems),
-                        None => problems.push(unknown(inner, &format!("`{group}` of a report"), members(group))),
+                        None => problems.push(unknown(
+                            inner,
+                            &format!("`{group}` of a report"),
+                            members(group),
+                        )),
                     }
                 }
             }
             // A test item given as text.
             _ if node.scalar_text().is_some() && members(group).any(|key| key == "description") => {
-                let at = FIELDS.iter().position(|field| field.group == Some(group) && field.key == "description");
+                let at = FIELDS
+                    .iter()
+                    .position(|field| field.group == Some(group) && field.key == "description");
                 at.into_iter().for_each(|at| state(at, key, node, found, problems));
             }
             Value::Null => {}
             _ => {
-                let keys = members(group).map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ");
-                let says = format!("`{group}` must be a map with {keys}, not {}", node.kind_in_words());
+                let keys =
+                    members(group).map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ");
+                let says =
+                    format!("`{group}` must be a map with {keys}, not {}", node.kind_in_words());
                 problems.push(Problem::error("wrong-kind", says).at(&node.span));
             }
         }
@@ -118,7 +140,10 @@ fn entry(key: &Key, node: &Node, found: &mut [Stated], problems: &mut Problems) 
             let alone = FIELDS.iter().filter(|field| field.group.is_none()).map(|field| field.key);
             let problem = unknown(key, "a report", alone.chain(groups).chain(dates));
             problems.push(match CAMPAIGN_KEYS.contains(&key.text.as_str()) {
-                true => problem.help(format!("`{}` is a key of the campaign: it stands at the left margin", key.text)),
+                true => problem.help(format!(
+                    "`{}` is a key of the campaign: it stands at the left margin",
+                    key.text
+                )),
                 false => problem,
             });
         }
@@ -126,7 +151,8 @@ fn entry(key: &Key, node: &Node, found: &mut [Stated], problems: &mut Problems) 
 }
 
 /// Keys of `campaign.yaml` that may have been indented into the block.
-const CAMPAIGN_KEYS: [&str; 8] = ["name", "vehicle", "sections", "measurement", "simulation", "track", "parameters", "protocol"];
+const CAMPAIGN_KEYS: [&str; 8] =
+    ["name", "vehicle", "sections", "measurement", "simulation", "track", "parameters", "protocol"];
 
 /// Keys of a map inside the block.
 fn members(group: &'static str) -> impl Iterator<Item = &'static str> {
@@ -136,20 +162,30 @@ fn members(group: &'static str) -> impl Iterator<Item = &'static str> {
 fn unknown<'a>(key: &Key, of: &str, known: impl Iterator<Item = &'a str>) -> Problem {
     let mut known: Vec<&str> = known.collect();
     known.dedup();
-    let problem = Problem::error("unknown-key", format!("{of} has no key `{}`", key.text)).at(&key.span);
+    let problem =
+        Problem::error("unknown-key", format!("{of} has no key `{}`", key.text)).at(&key.span);
     let suggested = problem.suggest(&plain(&key.text), known.iter().copied());
-    if suggested.help.is_some() { suggested } else { suggested.help(format!("the keys are {}", known.join(", "))) }
+    if suggested.help.is_some() {
+        suggested
+    } else {
+        suggested.help(format!("the keys are {}", known.join(", ")))
+    }
 }
 
 fn state(at: usize, key: &Key, node: &Node, found: &mut [Stated], problems: &mut Problems) {
     let field = found[at].0;
     let text = match &node.value {
         Value::Null => return,
-        Value::List(items) => items.iter().map(Node::scalar_text).collect::<Option<Vec<_>>>().map(|items| items.join("; ")),
+        Value::List(items) => items
+            .iter()
+            .map(Node::scalar_text)
+            .collect::<Option<Vec<_>>>()
+            .map(|items| items.join("; ")),
         _ => node.scalar_text().map(str::to_owned),
     };
     let Some(text) = text else {
-        let says = format!("`{}` must be text or a list of texts, not {}", key.text, node.kind_in_words());
+        let says =
+            format!("`{}` must be text or a list of texts, not {}", key.text, node.kind_in_words());
         return problems.push(Problem::error("wrong-kind", says).at(&node.span));
     };
     let text = text.trim().to_owned();
@@ -158,10 +194,20 @@ fn state(at: usize, key: &Key, node: &Node, found: &mut [Stated], problems: &mut
     }
     if (field.group, field.key) == (DATES, ISSUE) && date(&text).is_none() {
         let says = format!("`{text}` is not a valid date of issue");
-        return problems.push(Problem::error("report-date", says).at(&node.span).help("write year-month-day, such as 2026-03-31"));
+        return problems.push(
+            Problem::error("report-date", says)
+                .at(&node.span)
+                .help("write year-month-day, such as 2026-03-31"),
+        );
     }
     if found[at].1.is_some() {
-        return problems.push(Problem::error("key-twice", format!("the {} is stated twice", field.title.to_lowercase())).at(&key.span));
+        return problems.push(
+            Problem::error(
+                "key-twice",
+                format!("the {} is stated twice", field.title.to_lowercase()),
+            )
+            .at(&key.span),
+        );
     }
     found[at].1 = Some(text);
 }
@@ -174,9 +220,12 @@ fn plain(key: &str) -> String {
 /// Year, month and day of `2026-03-31`; `None` if this is not a valid date.
 pub fn date(text: &str) -> Option<(i32, u8, u8)> {
     let form = text.len() == 10
-        && text.bytes().enumerate().all(|(at, byte)| if at == 4 || at == 7 { byte == b'-' } else { byte.is_ascii_digit() });
+        && text.bytes().enumerate().all(|(at, byte)| {
+            if at == 4 || at == 7 { byte == b'-' } else { byte.is_ascii_digit() }
+        });
     let number = |range: std::ops::Range<usize>| text.get(range)?.parse::<u16>().ok();
-    let (year, month, day) = if form { (number(0..4)?, number(5..7)?, number(8..10)?) } else { return None };
+    let (year, month, day) =
+        if form { (number(0..4)?, number(5..7)?, number(8..10)?) } else { return None };
     let leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
     let days = match month {
         2 if leap => 29,
@@ -196,8 +245,13 @@ mod tests {
     fn stated(text: &str) -> (Vec<(String, String)>, String) {
         let mut problems = Problems::default();
         let source = Source::new("campaign.yaml", text);
-        let found = crate::yaml::load(&source, &mut problems).map(|tree| read(&tree, &mut problems)).unwrap_or_default();
-        let given = found.into_iter().filter_map(|(field, value)| Some((field.title.to_owned(), value?))).collect();
+        let found = crate::yaml::load(&source, &mut problems)
+            .map(|tree| read(&tree, &mut problems))
+            .unwrap_or_default();
+        let given = found
+            .into_iter()
+            .filter_map(|(field, value)| Some((field.title.to_owned(), value?)))
+            .collect();
         (given, problems.render(false))
     }
 
@@ -214,7 +268,10 @@ mod tests {
             ("Calibration and traceability", "a; b"),
         ];
         assert_eq!(given, want.map(|(a, b)| (a.to_owned(), b.to_owned())));
-        assert_eq!(stated("report:\n  test item: coach\n  dates: {test: spring}\n").0[0].1, "coach");
+        assert_eq!(
+            stated("report:\n  test item: coach\n  dates: {test: spring}\n").0[0].1,
+            "coach"
+        );
         assert!(stated("name: x\n").0.is_empty() && stated("report:\n").1.is_empty());
     }
 
@@ -228,19 +285,34 @@ mod tests {
             ("report: [a]\n", "must be a map"),
             ("report:\n  number: {a: b}\n", "text or a list"),
             ("report:\n  date of issue: 2026-02-30\n", "is not a valid date of issue"),
-            ("report:\n  date of issue: 2026-02-01\n  dates: {issue: 2026-02-02}\n", "stated twice"),
+            (
+                "report:\n  date of issue: 2026-02-01\n  dates: {issue: 2026-02-02}\n",
+                "stated twice",
+            ),
         ] {
             let problems = stated(text).1;
-            assert!(problems.contains(says) && problems.contains("campaign.yaml:"), "{text}: {problems}");
+            assert!(
+                problems.contains(says) && problems.contains("campaign.yaml:"),
+                "{text}: {problems}"
+            );
         }
     }
 
     #[test]
     fn days_of_the_calendar() {
         assert_eq!(date("2024-02-29"), Some((2024, 2, 29)));
-        assert_eq!((date("2023-02-29"), date("1900-02-29"), date("2000-02-29").is_some()), (None, None, true));
         assert_eq!(
-            (date("2026-13-01"), date("2026-04-31"), date("26-04-01"), date("2026/04/01"), date("0000-01-01")),
+            (date("2023-02-29"), date("1900-02-29"), date("2000-02-29").is_some()),
+            (None, None, true)
+        );
+        assert_eq!(
+            (
+                date("2026-13-01"),
+                date("2026-04-31"),
+                date("26-04-01"),
+                date("2026/04/01"),
+                date("0000-01-01")
+            ),
             (None, None, None, None, None)
         );
     }

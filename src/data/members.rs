@@ -1,4 +1,5 @@
-//! The folders of records of a campaign: one of each kind, or several simulations or runs with a name each.
+//! The folders of records of a campaign: one of each kind, or several simulations or runs with a
+//! name each.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -48,7 +49,11 @@ impl RecordFolder {
     /// # Errors
     /// As [`Known::stored`].
     pub fn object(&self, section: &str) -> Result<Stored, Problem> {
-        let url = format!("{}/{section}.{}", self.folder.value.trim_end_matches('/'), Format::Parquet.ending());
+        let url = format!(
+            "{}/{section}.{}",
+            self.folder.value.trim_end_matches('/'),
+            Format::Parquet.ending()
+        );
         let known = {
             // Nothing is half-written under the lock, so a panic of another thread does no harm.
             let mut objects = self.objects.lock().unwrap_or_else(PoisonError::into_inner);
@@ -78,12 +83,21 @@ const LONGEST: usize = 200;
 
 /// Reads the folders of one kind: a folder, a list of folders, or a map of names and folders.
 ///
-/// Problems: `wrong-kind`, `no-records` for an empty list, `name-invalid`, `duplicate-name`, and those of [`Folder::place`].
-pub(super) fn read(tree: &Node, kind: RecordKind, folder: &Folder, problems: &mut Problems) -> Vec<RecordFolder> {
+/// Problems: `wrong-kind`, `no-records` for an empty list, `name-invalid`, `duplicate-name`, and
+/// those of [`Folder::place`].
+pub(super) fn read(
+    tree: &Node,
+    kind: RecordKind,
+    folder: &Folder,
+    problems: &mut Problems,
+) -> Vec<RecordFolder> {
     let Some(node) = tree.get(kind.key()) else { return Vec::new() };
     let several = matches!(node.value, Value::List(_) | Value::Map(_)) && kind != RecordKind::Track;
     if !several {
-        return text(node, kind.key(), problems).map(|folder| of(kind, None, None, folder)).into_iter().collect();
+        return text(node, kind.key(), problems)
+            .map(|folder| of(kind, None, None, folder))
+            .into_iter()
+            .collect();
     }
     let mut found: Vec<(Spanned<String>, Spanned<String>)> = Vec::new();
     for item in node.items() {
@@ -99,7 +113,9 @@ pub(super) fn read(tree: &Node, kind: RecordKind, folder: &Folder, problems: &mu
     for (key, item) in node.entries() {
         let Some(written) = text(item, &key.text, problems) else { continue };
         match inside(folder, &written) {
-            Ok(_) => found.push((Spanned::new(key.text.trim().to_string(), key.span.clone()), written)),
+            Ok(_) => {
+                found.push((Spanned::new(key.text.trim().to_string(), key.span.clone()), written))
+            }
             Err(problem) => problems.push(problem),
         }
     }
@@ -115,11 +131,25 @@ pub(super) fn read(tree: &Node, kind: RecordKind, folder: &Folder, problems: &mu
         let before = &found[..at];
         if let Some((first, _)) = before.iter().find(|(known, _)| known.value == name.value) {
             let says = format!("two records are named `{}`", name.value);
-            let help = format!("give each its own name: `{}: {{name: folder, other: folder}}`", kind.key());
-            problems.push(Problem::error("duplicate-name", says).at(&name.span).also(&first.span, "the first").help(help));
-        } else if let Some((_, first)) = before.iter().find(|(_, known)| same_folder(folder, known, written)) {
+            let help = format!(
+                "give each its own name: `{}: {{name: folder, other: folder}}`",
+                kind.key()
+            );
+            problems.push(
+                Problem::error("duplicate-name", says)
+                    .at(&name.span)
+                    .also(&first.span, "the first")
+                    .help(help),
+            );
+        } else if let Some((_, first)) =
+            before.iter().find(|(_, known)| same_folder(folder, known, written))
+        {
             let says = format!("the folder `{}` is given twice", written.value);
-            problems.push(Problem::error("duplicate-name", says).at(&written.span).also(&first.span, "the first"));
+            problems.push(
+                Problem::error("duplicate-name", says)
+                    .at(&written.span)
+                    .also(&first.span, "the first"),
+            );
         }
     }
     let one = found.len() == 1;
@@ -130,13 +160,28 @@ pub(super) fn read(tree: &Node, kind: RecordKind, folder: &Folder, problems: &mu
     found.into_iter().map(named).collect()
 }
 
-fn of(kind: RecordKind, name: Option<Arc<str>>, called: Option<Arc<str>>, folder: Spanned<String>) -> RecordFolder {
-    RecordFolder { kind, name, called, folder, strangers: OnceLock::new(), place: OnceLock::new(), objects: Arc::default() }
+fn of(
+    kind: RecordKind,
+    name: Option<Arc<str>>,
+    called: Option<Arc<str>>,
+    folder: Spanned<String>,
+) -> RecordFolder {
+    RecordFolder {
+        kind,
+        name,
+        called,
+        folder,
+        strangers: OnceLock::new(),
+        place: OnceLock::new(),
+        objects: Arc::default(),
+    }
 }
 
 fn text(node: &Node, key: &str, problems: &mut Problems) -> Option<Spanned<String>> {
     match node.scalar_text() {
-        Some(text) if !text.trim().is_empty() => Some(Spanned::new(text.to_string(), node.span.clone())),
+        Some(text) if !text.trim().is_empty() => {
+            Some(Spanned::new(text.to_string(), node.span.clone()))
+        }
         _ => {
             let says = format!("`{key}` must be text; this is {}", node.kind_in_words());
             problems.push(Problem::error("wrong-kind", says).at(&node.span));
@@ -147,7 +192,12 @@ fn text(node: &Node, key: &str, problems: &mut Problems) -> Option<Spanned<Strin
 
 /// Names are joined by commas where records are compared: `simpack, run1`.
 fn check_name(name: &Spanned<String>) -> Result<(), Problem> {
-    let fine = |name: &str| !name.is_empty() && name.len() <= LONGEST && !name.contains(',') && !name.contains(char::is_control);
+    let fine = |name: &str| {
+        !name.is_empty()
+            && name.len() <= LONGEST
+            && !name.contains(',')
+            && !name.contains(char::is_control)
+    };
     if fine(&name.value) {
         return Ok(());
     }
@@ -172,8 +222,17 @@ fn inside(folder: &Folder, written: &Spanned<String>) -> Result<String, Problem>
 /// What needs one record of a kind, and finds several.
 pub(super) fn several(kind: RecordKind, folders: &[&RecordFolder], at: &Span) -> Problem {
     let names: Vec<&str> = folders.iter().filter_map(|folder| folder.name.as_deref()).collect();
-    let says = format!("the campaign has {} records of the {}, and one is needed here", names.len(), kind.key());
-    let help = format!("name one folder: `{}: {}`; there are {}", kind.key(), folders[0].folder.value, names.join(", "));
+    let says = format!(
+        "the campaign has {} records of the {}, and one is needed here",
+        names.len(),
+        kind.key()
+    );
+    let help = format!(
+        "name one folder: `{}: {}`; there are {}",
+        kind.key(),
+        folders[0].folder.value,
+        names.join(", ")
+    );
     Problem::error("several-records", says).at(at).help(help)
 }
 
@@ -189,8 +248,15 @@ mod tests {
         let mut problems = Problems::default();
         let tree = yaml::load(&Source::new("campaign.yaml", text), &mut problems).expect("YAML");
         let found = read(&tree, RecordKind::Simulation, &folder, &mut problems);
-        assert!(problems.0.iter().all(|problem| problem.at.is_some()), "{}", problems.render(false));
-        let found = found.into_iter().map(|one| (one.name.map(|name| name.to_string()), one.folder.value)).collect();
+        assert!(
+            problems.0.iter().all(|problem| problem.at.is_some()),
+            "{}",
+            problems.render(false)
+        );
+        let found = found
+            .into_iter()
+            .map(|one| (one.name.map(|name| name.to_string()), one.folder.value))
+            .collect();
         (found, problems.0.iter().map(|problem| problem.code).collect())
     }
 
@@ -204,8 +270,14 @@ mod tests {
         for text in ["simulation: a\n", "simulation: [a]\n", "simulation: {x: a}\n"] {
             assert_eq!(of_text(text), one, "{text}");
         }
-        assert_eq!(of_text("simulation: [s/a, ./b/]\n"), (vec![named("a", "s/a"), named("b", "./b/")], vec![]));
-        assert_eq!(of_text("simulation:\n  x: s/a\n  y: t/a\n"), (vec![named("x", "s/a"), named("y", "t/a")], vec![]));
+        assert_eq!(
+            of_text("simulation: [s/a, ./b/]\n"),
+            (vec![named("a", "s/a"), named("b", "./b/")], vec![])
+        );
+        assert_eq!(
+            of_text("simulation:\n  x: s/a\n  y: t/a\n"),
+            (vec![named("x", "s/a"), named("y", "t/a")], vec![])
+        );
         assert_eq!(of_text("measurement: a\n"), (vec![], vec![]));
         let stored = of_text("simulation: ['s3://b/x/', b]\n");
         assert_eq!(stored, (vec![named("x", "s3://b/x/"), named("b", "b")], vec![]));

@@ -1,5 +1,5 @@
-//! Reads and writes campaigns. All input is checked. No names of channels, quantities or columns are defined here; the caller requests
-//! them.
+//! Reads and writes campaigns. All input is checked. No names of channels, quantities or columns
+//! are defined here; the caller requests them.
 //!
 //! | file | content |
 //! |---|---|

@@ -1,4 +1,5 @@
-//! Origin of the records of a campaign written by a program: `origin.yaml`, named by the key `origin` of `campaign.yaml`.
+//! Origin of the records of a campaign written by a program: `origin.yaml`, named by the key
+//! `origin` of `campaign.yaml`.
 
 pub use super::imported::{Imported, ImportedRecord};
 
@@ -53,14 +54,24 @@ pub struct OriginFile {
 }
 
 impl OriginEffect {
-    /// `friction = 0.23`, `sensor_gain: gain = 0.8 on Y_3R`, `payload: payload.mass = 3500 kg in zone 4`
+    /// `friction = 0.23`, `sensor_gain: gain = 0.8 on Y_3R`, `payload: payload.mass = 3500 kg in
+    /// zone 4`
     pub fn in_words(&self, equals: &str) -> String {
-        let value = |value: f64, unit: &str| format!("{}{}", short(value), if unit == "-" { String::new() } else { format!(" {unit}") });
+        let value = |value: f64, unit: &str| {
+            format!(
+                "{}{}",
+                short(value),
+                if unit == "-" { String::new() } else { format!(" {unit}") }
+            )
+        };
         let mut words = match &self.parameters[..] {
             [(_, one, unit)] => format!("{}{equals}{}", self.effect, value(*one, unit)),
             [] => self.effect.clone(),
             several => {
-                let all: Vec<String> = several.iter().map(|(name, one, unit)| format!("{name}{equals}{}", value(*one, unit))).collect();
+                let all: Vec<String> = several
+                    .iter()
+                    .map(|(name, one, unit)| format!("{name}{equals}{}", value(*one, unit)))
+                    .collect();
                 format!("{} ({})", self.effect, all.join(", "))
             }
         };
@@ -83,12 +94,14 @@ impl Origin {
         self.effects.iter().map(|effect| effect.in_words(equals)).collect::<Vec<_>>().join(" and ")
     }
 
-    /// Reads the file, or the map in `campaign.yaml`. Unknown keys, from other programs, are ignored.
+    /// Reads the file, or the map in `campaign.yaml`. Unknown keys, from other programs, are
+    /// ignored.
     ///
     /// Problems: `wrong-kind`.
     pub fn read(node: &Node, problems: &mut Problems) -> Option<Self> {
         if !matches!(node.value, Value::Map(_)) {
-            let says = format!("an origin must be a map of keys and values, not {}", node.kind_in_words());
+            let says =
+                format!("an origin must be a map of keys and values, not {}", node.kind_in_words());
             problems.push(Problem::error("wrong-kind", says).at(&node.span));
             return None;
         }
@@ -99,9 +112,18 @@ impl Origin {
             command: text("command").unwrap_or_default(),
             campaign: text("campaign").unwrap_or_default(),
             simulator: text("simulator"),
-            effects: items(node, "effects", problems).into_iter().filter_map(|node| effect(node, problems)).collect(),
-            fitted_to: items(node, "fitted to", problems).into_iter().filter_map(|node| file(node, problems)).collect(),
-            sources: items(node, "sources", problems).into_iter().filter_map(|node| file(node, problems)).collect(),
+            effects: items(node, "effects", problems)
+                .into_iter()
+                .filter_map(|node| effect(node, problems))
+                .collect(),
+            fitted_to: items(node, "fitted to", problems)
+                .into_iter()
+                .filter_map(|node| file(node, problems))
+                .collect(),
+            sources: items(node, "sources", problems)
+                .into_iter()
+                .filter_map(|node| file(node, problems))
+                .collect(),
             imported: Imported::read(node, problems),
         };
         (problems.errors() == before).then_some(origin)
@@ -121,13 +143,20 @@ impl Origin {
         out += if self.effects.is_empty() { "effects: []\n" } else { "effects:\n" };
         for effect in &self.effects {
             out += &format!("- effect: {}\n", yaml_text(&effect.effect));
-            out += if effect.parameters.is_empty() { "  parameters: []\n" } else { "  parameters:\n" };
+            out +=
+                if effect.parameters.is_empty() { "  parameters: []\n" } else { "  parameters:\n" };
             for (name, value, unit) in &effect.parameters {
-                out += &format!("  - name: {}\n    value: {value}\n    unit: {}\n", yaml_text(name), yaml_text(unit));
+                out += &format!(
+                    "  - name: {}\n    value: {value}\n    unit: {}\n",
+                    yaml_text(name),
+                    yaml_text(unit)
+                );
             }
             if !effect.channels.is_empty() {
                 out += "  channels:\n";
-                out.extend(effect.channels.iter().map(|channel| format!("  - {}\n", yaml_text(channel))));
+                out.extend(
+                    effect.channels.iter().map(|channel| format!("  - {}\n", yaml_text(channel))),
+                );
             }
             if let Some(place) = &effect.confined_to {
                 out += &format!("  confined to: {}\n", yaml_text(place));
@@ -136,7 +165,11 @@ impl Origin {
         for (key, files) in [("fitted to", &self.fitted_to), ("sources", &self.sources)] {
             out += &format!("{key}:{}\n", if files.is_empty() { " []" } else { "" });
             for file in files {
-                out += &format!("- path: {}\n  sha256: {}\n", yaml_text(&file.path), yaml_text(&file.sha256));
+                out += &format!(
+                    "- path: {}\n  sha256: {}\n",
+                    yaml_text(&file.path),
+                    yaml_text(&file.sha256)
+                );
             }
         }
         out + &self.imported.as_ref().map_or(String::new(), Imported::text)
@@ -162,13 +195,18 @@ fn items<'a>(node: &'a Node, key: &str, problems: &mut Problems) -> Vec<&'a Node
 fn text(node: &Node, key: &str, problems: &mut Problems) -> Option<String> {
     let found = node.get(key).and_then(Node::scalar_text).map(str::to_string);
     if found.is_none() {
-        problems.push(Problem::error("wrong-kind", format!("`{key}` must be given, as text")).at(&node.span));
+        problems.push(
+            Problem::error("wrong-kind", format!("`{key}` must be given, as text")).at(&node.span),
+        );
     }
     found
 }
 
 fn file(node: &Node, problems: &mut Problems) -> Option<OriginFile> {
-    Some(OriginFile { path: text(node, "path", problems)?, sha256: text(node, "sha256", problems)? })
+    Some(OriginFile {
+        path: text(node, "path", problems)?,
+        sha256: text(node, "sha256", problems)?,
+    })
 }
 
 fn effect(node: &Node, problems: &mut Problems) -> Option<OriginEffect> {
@@ -176,12 +214,18 @@ fn effect(node: &Node, problems: &mut Problems) -> Option<OriginEffect> {
     let mut parameters = Vec::new();
     for one in items(node, "parameters", problems) {
         let Some(value) = one.get("value").and_then(Node::number) else {
-            problems.push(Problem::error("wrong-kind", "a parameter must have a `value` that is a number").at(&one.span));
+            problems.push(
+                Problem::error("wrong-kind", "a parameter must have a `value` that is a number")
+                    .at(&one.span),
+            );
             continue;
         };
         parameters.push((text(one, "name", problems)?, value, text(one, "unit", problems)?));
     }
-    let channels = items(node, "channels", problems).iter().filter_map(|one| one.scalar_text().map(str::to_string)).collect();
+    let channels = items(node, "channels", problems)
+        .iter()
+        .filter_map(|one| one.scalar_text().map(str::to_string))
+        .collect();
     let confined_to = node.get("confined to").and_then(Node::scalar_text).map(str::to_string);
     Some(OriginEffect { effect, parameters, channels, confined_to })
 }
@@ -202,7 +246,10 @@ mod tests {
     fn what_is_written_is_read_back() {
         let effect = |name: &str, parameters: &[(&str, f64, &str)]| OriginEffect {
             effect: name.into(),
-            parameters: parameters.iter().map(|(name, value, unit)| ((*name).into(), *value, (*unit).into())).collect(),
+            parameters: parameters
+                .iter()
+                .map(|(name, value, unit)| ((*name).into(), *value, (*unit).into()))
+                .collect(),
             ..OriginEffect::default()
         };
         let gain = OriginEffect {
@@ -226,7 +273,12 @@ mod tests {
             imported: Some(Imported { mapping: "name: x\n".into(), ..Imported::default() }),
         };
         let (found, problems) = read(&origin.text());
-        assert_eq!((found.as_ref(), problems.0.len()), (Some(&origin), 0), "{}", problems.render(false));
+        assert_eq!(
+            (found.as_ref(), problems.0.len()),
+            (Some(&origin), 0),
+            "{}",
+            problems.render(false)
+        );
         assert_eq!(
             origin.effects_in_words(" = "),
             "friction = 0.23 and sensor_gain = 0.812 on Y_3R in zone 3, 4 and payload (a = 3500 kg, b = -0.1 m)"
@@ -244,7 +296,14 @@ mod tests {
             "effects:\n- effect: a\n  parameters:\n  - name: a\n",
         ] {
             let (found, problems) = read(text);
-            assert!(found.is_none() && problems.0.iter().all(|problem| problem.code == "wrong-kind" && problem.at.is_some()), "{text}");
+            assert!(
+                found.is_none()
+                    && problems
+                        .0
+                        .iter()
+                        .all(|problem| problem.code == "wrong-kind" && problem.at.is_some()),
+                "{text}"
+            );
         }
         assert!(read("mapping: map.yaml\n").0.is_some());
     }

@@ -1,7 +1,8 @@
 //! One sampled record: the requested columns as numbers in SI units.
 //!
-//! Records are almost all of the data of a campaign. A row is therefore parsed in one pass over its bytes (`rows`); only an irregular row
-//! is parsed again cell by cell to determine the fault (`fault`).
+//! Records are almost all of the data of a campaign. A row is therefore parsed in one pass over its
+//! bytes (`rows`); only an irregular row is parsed again cell by cell to determine the fault
+//! (`fault`).
 
 mod columnar;
 mod decoded;
@@ -111,7 +112,9 @@ impl Format {
 
     /// Of a file; every other ending is read as CSV.
     pub fn of(path: &Path) -> Self {
-        let parquet = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(Self::Parquet.ending()));
+        let parquet = path
+            .extension()
+            .is_some_and(|ending| ending.eq_ignore_ascii_case(Self::Parquet.ending()));
         if parquet { Self::Parquet } else { Self::Csv }
     }
 
@@ -125,7 +128,9 @@ impl Format {
 
     /// The name of a record without its ending.
     pub fn stem(name: &str) -> Option<&str> {
-        Self::ALL.into_iter().find_map(|format| name.strip_suffix(format.ending())?.strip_suffix('.'))
+        Self::ALL
+            .into_iter()
+            .find_map(|format| name.strip_suffix(format.ending())?.strip_suffix('.'))
     }
 }
 
@@ -146,7 +151,8 @@ impl Record {
         self.columns.iter().find(|column| column.name == name)
     }
 
-    /// The number of sample `row` (from 0) in messages: the line of a text, whose header is line 1; else the row, from 1.
+    /// The number of sample `row` (from 0) in messages: the line of a text, whose header is line 1;
+    /// else the row, from 1.
     pub fn row_shown(&self, row: usize) -> usize {
         let before = match &self.from {
             Origin::File(path) if Format::of(path) == Format::Csv => 2,
@@ -155,13 +161,18 @@ impl Record {
         self.first_row + row + before
     }
 
-    /// The place in the file of sample `row` (from 0), or of its cell in a column. The file is read again.
+    /// The place in the file of sample `row` (from 0), or of its cell in a column. The file is read
+    /// again.
     pub fn place(&self, row: usize, column: Option<&Column>) -> Option<Span> {
         let row = self.first_row + row;
         let path = match &self.from {
             Origin::Memory(frame) => return frame.place(row, column),
-            Origin::Object(stored) => return columnar::place(At::Object(stored), &self.shown, row, column),
-            Origin::File(path) if Format::of(path) == Format::Parquet => return columnar::place(At::Disk(path), &self.shown, row, column),
+            Origin::Object(stored) => {
+                return columnar::place(At::Object(stored), &self.shown, row, column);
+            }
+            Origin::File(path) if Format::of(path) == Format::Parquet => {
+                return columnar::place(At::Disk(path), &self.shown, row, column);
+            }
             Origin::File(path) => path,
         };
         let mut bytes = Vec::new();
@@ -170,7 +181,8 @@ impl Record {
         // There are no blank lines between rows, so sample 0 is in line 2.
         let line = text.split('\n').nth(row + 1)?.trim_end_matches('\r');
         let whole = Source::excerpt(self.shown.as_str(), line, row + 2).whole();
-        let cell = column.and_then(|column| Some(cells::split(line).ok()?.get(column.position)?.place.clone()));
+        let cell = column
+            .and_then(|column| Some(cells::split(line).ok()?.get(column.position)?.place.clone()));
         Some(cell.map_or(whole.clone(), |place| whole.part(place)))
     }
 }
@@ -180,12 +192,15 @@ impl Record {
 /// `shown` is the name of the file in messages.
 ///
 /// # Errors
-/// At most a handful of problems and how many more there are. Of the file: `file-missing`, `file-unreadable`, `file-empty`,
-/// `file-too-large`, `encoding`, `no-rows`. Of its header: `semicolon-separated`, `tab-separated`, `stray-quote`, `duplicate-column`,
-/// `unknown-channel`, `unit-missing`, `unknown-unit`, `unit-mismatch`, `units-in-row`, `units-in-cell`. Of a row: `header-repeated`, `ragged-row`, `truncated-row`, `blank-line`,
-/// `stray-quote`, `not-a-number`, `not-finite`, `decimal-comma`.
+/// At most a handful of problems and how many more there are. Of the file: `file-missing`,
+/// `file-unreadable`, `file-empty`, `file-too-large`, `encoding`, `no-rows`. Of its header:
+/// `semicolon-separated`, `tab-separated`, `stray-quote`, `duplicate-column`, `unknown-channel`,
+/// `unit-missing`, `unknown-unit`, `unit-mismatch`, `units-in-row`, `units-in-cell`. Of a row:
+/// `header-repeated`, `ragged-row`, `truncated-row`, `blank-line`, `stray-quote`, `not-a-number`,
+/// `not-finite`, `decimal-comma`.
 ///
-/// Of a Parquet file: `format-mislabelled`, `format-not-read` (compression, encryption), `file-damaged`, `unit-conflict`.
+/// Of a Parquet file: `format-mislabelled`, `format-not-read` (compression, encryption),
+/// `file-damaged`, `unit-conflict`.
 pub fn read_record(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
     if Format::of(path) == Format::Parquet {
         return columnar::read(At::Disk(path), shown, wanted);
@@ -206,7 +221,12 @@ thread_local! {
     static BUFFER: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
 }
 
-fn read_into(bytes: &mut Vec<u8>, path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
+fn read_into(
+    bytes: &mut Vec<u8>,
+    path: &Path,
+    shown: &str,
+    wanted: &[Wanted],
+) -> Result<Record, Vec<Problem>> {
     read_large(path, shown, bytes).map_err(|problem| vec![problem])?;
     if bytes.starts_with(columnar::MAGIC) && bytes.ends_with(columnar::MAGIC) {
         let problem = Problem::error("format-mislabelled", format!("`{shown}` is a Parquet file"));
@@ -215,15 +235,26 @@ fn read_into(bytes: &mut Vec<u8>, path: &Path, shown: &str, wanted: &[Wanted]) -
     let text = decode(bytes, shown).map_err(|problem| vec![problem])?;
     let (headings, body) = header(text, shown)?;
     let found = find_columns(&headings, wanted, shown);
-    let mut columns = found.map_err(|problems| match header_fault::units_elsewhere(text, body, &headings, shown) {
-        Some(problem) => vec![problem],
-        None => problems,
+    let mut columns = found.map_err(|problems| {
+        match header_fault::units_elsewhere(text, body, &headings, shown) {
+            Some(problem) => vec![problem],
+            None => problems,
+        }
     })?;
     let mut hash = Hasher::default();
     // The byte order mark.
     hash.add(&bytes[..bytes.len() - text.len()]);
-    let read = rows::read(text, body, headings.len(), &mut columns, rows::Part { shown, before: 0 }, Some(&mut hash));
-    let rows = read.map_err(|problems| header_fault::repeated(text, body, shown).map_or(problems, |problem| vec![problem]))?;
+    let read = rows::read(
+        text,
+        body,
+        headings.len(),
+        &mut columns,
+        rows::Part { shown, before: 0 },
+        Some(&mut hash),
+    );
+    let rows = read.map_err(|problems| {
+        header_fault::repeated(text, body, shown).map_or(problems, |problem| vec![problem])
+    })?;
     let channels = headings.into_iter().map(|heading| heading.name).collect();
     Ok(Record {
         shown: shown.to_string(),
@@ -272,7 +303,11 @@ fn header(text: &str, shown: &str) -> Result<(Vec<Heading>, usize), Vec<Problem>
     }
 }
 
-fn find_columns(headings: &[Heading], wanted: &[Wanted], shown: &str) -> Result<Vec<Column>, Vec<Problem>> {
+fn find_columns(
+    headings: &[Heading],
+    wanted: &[Wanted],
+    shown: &str,
+) -> Result<Vec<Column>, Vec<Problem>> {
     let mut columns: Vec<Column> = Vec::with_capacity(wanted.len());
     let mut faults = Faults::new(shown);
     let mut lacking: Vec<&str> = Vec::new();
@@ -287,7 +322,12 @@ fn find_columns(headings: &[Heading], wanted: &[Wanted], shown: &str) -> Result<
         match headings[position].unit(wanted.dimension) {
             // A column requested twice is read once.
             Ok(_) if columns.iter().any(|column| column.position == position) => {}
-            Ok(unit) => columns.push(Column { name: wanted.name.clone(), unit, values: Vec::new(), position }),
+            Ok(unit) => columns.push(Column {
+                name: wanted.name.clone(),
+                unit,
+                values: Vec::new(),
+                position,
+            }),
             Err(problem) => wrong.push((&headings[position], problem)),
         }
     }

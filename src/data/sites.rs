@@ -1,4 +1,5 @@
-//! Sections of the same site: the same stretch of track measured more than once. Sites are independent, sections of one site are not.
+//! Sections of the same site: the same stretch of track measured more than once. Sites are
+//! independent, sections of one site are not.
 
 use std::collections::HashMap;
 
@@ -15,16 +16,18 @@ const FIRST: &str = "leave `repeat of` empty for the section that was measured f
 const NAMED: usize = 5;
 const START: &str = "start";
 const END: &str = "end";
-/// Two sections of one track are one site if they share at least this part of the shorter one. Successive sections may share a few metres;
-/// sections that share most of their irregularities do not count twice.
+/// Two sections of one track are one site if they share at least this part of the shorter one.
+/// Successive sections may share a few metres; sections that share most of their irregularities do
+/// not count twice.
 const SHARED: f64 = 0.5;
 
 /// For each row, the first row of its site.
 ///
-/// Rows belong to one site if the column `site` says so, if one is the other's `repeat of`, or if a column `track` names the same track for
-/// both and they overlap by half. `site` has priority.
+/// Rows belong to one site if the column `site` says so, if one is the other's `repeat of`, or if a
+/// column `track` names the same track for both and they overlap by half. `site` has priority.
 ///
-/// Problems: `unknown-section` if `repeat of` names no other row, `repeat-circle` if rows repeat each other.
+/// Problems: `unknown-section` if `repeat of` names no other row, `repeat-circle` if rows repeat
+/// each other.
 pub fn sites(table: &Table, problems: &mut Problems) -> Vec<usize> {
     let rows = table.rows.len();
     let site = Column::of(table, SITE);
@@ -34,7 +37,8 @@ pub fn sites(table: &Table, problems: &mut Problems) -> Vec<usize> {
         let first = *firsts.entry(name).or_insert(row);
         sets.join(first, row);
     }
-    let apart = |a: usize, b: usize| matches!((site.text(a), site.text(b)), (Some(a), Some(b)) if a != b);
+    let apart =
+        |a: usize, b: usize| matches!((site.text(a), site.text(b)), (Some(a), Some(b)) if a != b);
     let repeat = Column::of(table, REPEAT_OF);
     for row in 0..rows {
         let Some(cell) = repeat.cell(row) else { continue };
@@ -68,7 +72,8 @@ pub fn originals(table: &Table) -> Vec<Option<usize>> {
     (0..table.rows.len()).map(of).collect()
 }
 
-/// A problem for each circle of rows, at the first of them: one of its sections must have been measured first.
+/// A problem for each circle of rows, at the first of them: one of its sections must have been
+/// measured first.
 fn circles(table: &Table, problems: &mut Problems) {
     let originals = originals(table);
     let (names, repeat): (Vec<&Cell>, _) = (table.names().collect(), Column::of(table, REPEAT_OF));
@@ -85,15 +90,23 @@ fn circles(table: &Table, problems: &mut Problems) {
             continue;
         }
         let mut circle = vec![at];
-        circle.extend(std::iter::successors(originals[at], |next| originals[*next]).take_while(|next| *next != at));
-        let first = circle.iter().enumerate().min_by_key(|(_, row)| **row).map_or(0, |(first, _)| first);
+        circle.extend(
+            std::iter::successors(originals[at], |next| originals[*next])
+                .take_while(|next| *next != at),
+        );
+        let first =
+            circle.iter().enumerate().min_by_key(|(_, row)| **row).map_or(0, |(first, _)| first);
         circle.rotate_left(first);
-        let mut told: Vec<String> = circle.iter().take(NAMED).map(|row| format!("`{}`", names[*row].value)).collect();
+        let mut told: Vec<String> =
+            circle.iter().take(NAMED).map(|row| format!("`{}`", names[*row].value)).collect();
         if circle.len() > NAMED {
             told.push(format!("... ({} sections)", circle.len()));
         }
         told.push(format!("`{}`", names[circle[0]].value));
-        let mut problem = Problem::error("repeat-circle", format!("sections repeat each other: {}", told.join(" repeats ")));
+        let mut problem = Problem::error(
+            "repeat-circle",
+            format!("sections repeat each other: {}", told.join(" repeats ")),
+        );
         if let Some(cell) = repeat.cell(circle[0]) {
             problem = problem.at(&cell.span);
         }
@@ -103,30 +116,43 @@ fn circles(table: &Table, problems: &mut Problems) {
 
 fn no_repeat(table: &Table, row: usize, cell: &Cell) -> Problem {
     if table.row_named(&cell.value) == Some(row) {
-        let problem = Problem::error("repeat-circle", format!("`{}` repeats itself", cell.value)).at(&cell.span);
+        let problem = Problem::error("repeat-circle", format!("`{}` repeats itself", cell.value))
+            .at(&cell.span);
         return problem.help(FIRST);
     }
     let says = format!("`{REPEAT_OF}` names `{}`, which is not another section", cell.value);
-    let others = table.names().enumerate().filter(|(other, _)| *other != row).map(|(_, name)| name.value.as_str());
-    let problem = Problem::error("unknown-section", says).at(&cell.span).suggest(&cell.value, others);
+    let others = table
+        .names()
+        .enumerate()
+        .filter(|(other, _)| *other != row)
+        .map(|(_, name)| name.value.as_str());
+    let problem =
+        Problem::error("unknown-section", says).at(&cell.span).suggest(&cell.value, others);
     match problem.help {
         Some(_) => problem,
-        None => problem.help(format!("name the section that was measured before, or use a column `{SITE}`")),
+        None => problem
+            .help(format!("name the section that was measured before, or use a column `{SITE}`")),
     }
 }
 
 /// Pairs of rows on the same named track that share at least [`SHARED`] of the shorter one.
 fn overlaps(table: &Table) -> Vec<(usize, usize)> {
-    let (track, start, end) = (Column::of(table, TRACK), Column::of(table, START), Column::of(table, END));
+    let (track, start, end) =
+        (Column::of(table, TRACK), Column::of(table, START), Column::of(table, END));
     let extent = |row| Some((track.text(row)?, start.number(row)?, end.number(row)?));
-    let mut known: Vec<(usize, (&str, f64, f64))> = (0..table.rows.len()).filter_map(|row| Some((row, extent(row)?))).collect();
+    let mut known: Vec<(usize, (&str, f64, f64))> =
+        (0..table.rows.len()).filter_map(|row| Some((row, extent(row)?))).collect();
     known.sort_by(|(_, a), (_, b)| a.0.cmp(b.0).then(a.1.total_cmp(&b.1)));
     let mut found = Vec::new();
     for (at, (row, (name, low, high))) in known.iter().enumerate() {
-        let behind = known[at + 1..].iter().take_while(|(_, (other, start, _))| other == name && start < high);
+        let behind = known[at + 1..]
+            .iter()
+            .take_while(|(_, (other, start, _))| other == name && start < high);
         found.extend(
             behind
-                .filter(|(_, (_, start, end))| high.min(*end) - start >= SHARED * (high - low).min(end - start))
+                .filter(|(_, (_, start, end))| {
+                    high.min(*end) - start >= SHARED * (high - low).min(end - start)
+                })
                 .map(|(other, _)| (*row.min(other), *row.max(other))),
         );
     }
@@ -182,7 +208,13 @@ mod tests {
 
     fn of(text: &str) -> (Vec<usize>, Problems) {
         let mut problems = Problems::default();
-        let table = Table::parse(Source::new("sections.csv", text), String::new(), Some("section"), &mut problems).expect("a table");
+        let table = Table::parse(
+            Source::new("sections.csv", text),
+            String::new(),
+            Some("section"),
+            &mut problems,
+        )
+        .expect("a table");
         let found = sites(&table, &mut problems);
         (found, problems)
     }
@@ -190,15 +222,28 @@ mod tests {
     #[test]
     fn a_repeat_of_a_repeat_is_no_circle() {
         let table = |of: [&str; 5]| {
-            let rows = ["A", "B", "C", "D", "E"].iter().zip(of).map(|(name, of)| format!("{name},{of}\n")).collect::<String>();
+            let rows = ["A", "B", "C", "D", "E"]
+                .iter()
+                .zip(of)
+                .map(|(name, of)| format!("{name},{of}\n"))
+                .collect::<String>();
             super::tests::of(&format!("section,repeat of\n{rows}")).1.0
         };
         assert_eq!(table(["", "A", "B", "B", ""]), []);
-        let says = |of| table(of).into_iter().map(|problem| (problem.code, problem.says)).collect::<Vec<_>>();
+        let says = |of| {
+            table(of).into_iter().map(|problem| (problem.code, problem.says)).collect::<Vec<_>>()
+        };
         // C leads into a circle and is no part of it.
-        let circle = |names: &str| ("repeat-circle", format!("sections repeat each other: {names}"));
-        assert_eq!(says(["B", "A", "B", "E", "D"]), [circle("`A` repeats `B` repeats `A`"), circle("`D` repeats `E` repeats `D`")]);
-        assert_eq!(says(["C", "A", "B", "A", ""]), [circle("`A` repeats `C` repeats `B` repeats `A`")]);
+        let circle =
+            |names: &str| ("repeat-circle", format!("sections repeat each other: {names}"));
+        assert_eq!(
+            says(["B", "A", "B", "E", "D"]),
+            [circle("`A` repeats `B` repeats `A`"), circle("`D` repeats `E` repeats `D`")]
+        );
+        assert_eq!(
+            says(["C", "A", "B", "A", ""]),
+            [circle("`A` repeats `C` repeats `B` repeats `A`")]
+        );
         assert_eq!(says(["C", "D", "D", "C", ""]), [circle("`C` repeats `D` repeats `C`")]);
         // A leads into it at D, and B stands first in the table.
         assert_eq!(says(["D", "D", "", "B", ""]), [circle("`B` repeats `D` repeats `B`")]);
@@ -246,7 +291,10 @@ mod tests {
         ] {
             let problems = of(text).1.0;
             assert_eq!((problems.len(), problems[0].code), (1, code));
-            assert!(problems[0].help.as_ref().is_some_and(|found| found.starts_with(help)), "{problems:?}");
+            assert!(
+                problems[0].help.as_ref().is_some_and(|found| found.starts_with(help)),
+                "{problems:?}"
+            );
         }
     }
 }

@@ -11,7 +11,8 @@ use crate::problem::{Problem, Problems};
 use crate::source::{Source, Span, Spanned};
 use crate::units::Dimension;
 
-/// A table with the same number of cells in every row, and a name per row if it was read with a key.
+/// A table with the same number of cells in every row, and a name per row if it was read with a
+/// key.
 #[derive(Clone, Debug)]
 pub struct Table {
     pub source: Arc<Source>,
@@ -30,11 +31,18 @@ pub struct Table {
 pub type Cell = Spanned<String>;
 
 impl Table {
-    /// Reads a table. With a key, the column of that name, or else the first column, has the names of the rows.
+    /// Reads a table. With a key, the column of that name, or else the first column, has the names
+    /// of the rows.
     ///
-    /// Problems: those of [`read_text`]; `semicolon-separated`, `tab-separated`, `stray-quote`, `duplicate-column`; per row `blank-line`,
-    /// `header-repeated`, `ragged-row`, `decimal-comma`, `name-missing`, `duplicate-name`; `no-rows`.
-    pub fn read(path: &Path, shown: &str, key: Option<&str>, problems: &mut Problems) -> Option<Self> {
+    /// Problems: those of [`read_text`]; `semicolon-separated`, `tab-separated`, `stray-quote`,
+    /// `duplicate-column`; per row `blank-line`, `header-repeated`, `ragged-row`, `decimal-comma`,
+    /// `name-missing`, `duplicate-name`; `no-rows`.
+    pub fn read(
+        path: &Path,
+        shown: &str,
+        key: Option<&str>,
+        problems: &mut Problems,
+    ) -> Option<Self> {
         match read_text(path, shown) {
             Ok((source, sha256)) => Self::parse(source, sha256, key, problems),
             Err(problem) => {
@@ -50,14 +58,24 @@ impl Table {
     /// The first of the problems of a table that is read.
     pub fn of_text(name: &str, text: &str) -> Result<Self, Problem> {
         let mut problems = Problems::default();
-        let table = Self::parse(Source::new(name, text), super::hash::sha256(text.as_bytes()), Some(""), &mut problems);
+        let table = Self::parse(
+            Source::new(name, text),
+            super::hash::sha256(text.as_bytes()),
+            Some(""),
+            &mut problems,
+        );
         table.ok_or_else(|| {
             let says = format!("the table `{name}` cannot be made");
             problems.0.into_iter().next().unwrap_or_else(|| Problem::error("internal", says))
         })
     }
 
-    pub(super) fn parse(source: Arc<Source>, sha256: String, key: Option<&str>, problems: &mut Problems) -> Option<Self> {
+    pub(super) fn parse(
+        source: Arc<Source>,
+        sha256: String,
+        key: Option<&str>,
+        problems: &mut Problems,
+    ) -> Option<Self> {
         let name = source.name.clone();
         let mut faults = Faults::new(&name);
         let mut lines = lines(&source);
@@ -70,9 +88,12 @@ impl Table {
             return None;
         };
         let key = key.map(|key| columns.iter().position(|column| column.name == key).unwrap_or(0));
-        let rows: Vec<Vec<Cell>> = lines.filter_map(|line| row(&line, (&header, &columns), &mut faults)).collect();
+        let rows: Vec<Vec<Cell>> =
+            lines.filter_map(|line| row(&line, (&header, &columns), &mut faults)).collect();
         if rows.is_empty() && faults.is_empty() {
-            faults.push(|| Problem::error("no-rows", "the table has a header and no rows").at(&columns[0].span));
+            faults.push(|| {
+                Problem::error("no-rows", "the table has a header and no rows").at(&columns[0].span)
+            });
         }
         let mut table = Self { source, sha256, columns, rows, key, named: HashMap::new() };
         table.check_names(&mut faults);
@@ -110,12 +131,18 @@ impl Table {
         let mut first: HashMap<&str, &Span> = HashMap::new();
         for name in self.names() {
             if name.value.is_empty() {
-                faults.push(|| Problem::error("name-missing", format!("the row has no `{}`", column.name)).at(&name.span));
+                faults.push(|| {
+                    Problem::error("name-missing", format!("the row has no `{}`", column.name))
+                        .at(&name.span)
+                });
             } else if let Some(before) = first.get(name.value.as_str()) {
                 faults.push(|| {
-                    Problem::error("duplicate-name", format!("two rows are called `{}`", name.value))
-                        .at(&name.span)
-                        .also(before, "the first of them")
+                    Problem::error(
+                        "duplicate-name",
+                        format!("two rows are called `{}`", name.value),
+                    )
+                    .at(&name.span)
+                    .also(before, "the first of them")
                 });
             } else {
                 first.insert(&name.value, &name.span);
@@ -157,8 +184,13 @@ impl Table {
     /// A column as numbers in SI; `None` where a cell is empty.
     ///
     /// # Errors
-    /// Of the heading (see [`Heading::unit`]) or of every cell that is not a finite number: `not-a-number`, `not-finite`, `decimal-comma`.
-    pub fn numbers(&self, column: usize, dimension: Option<Dimension>) -> Result<Vec<Option<f64>>, Vec<Problem>> {
+    /// Of the heading (see [`Heading::unit`]) or of every cell that is not a finite number:
+    /// `not-a-number`, `not-finite`, `decimal-comma`.
+    pub fn numbers(
+        &self,
+        column: usize,
+        dimension: Option<Dimension>,
+    ) -> Result<Vec<Option<f64>>, Vec<Problem>> {
         let Some(heading) = self.columns.get(column) else { return Ok(Vec::new()) };
         let unit = heading.unit(dimension).map_err(|problem| vec![problem])?;
         let mut faults = Faults::new(&self.source.name);
@@ -167,7 +199,9 @@ impl Table {
             match cells::number(&cell.value) {
                 _ if cell.value.is_empty() => values.push(None),
                 Ok(number) => values.push(Some(unit.to_si(number))),
-                Err((code, says)) => faults.push(|| Problem::error(code, format!("`{}`: {says}", heading.name)).at(&cell.span)),
+                Err((code, says)) => faults.push(|| {
+                    Problem::error(code, format!("`{}`: {says}", heading.name)).at(&cell.span)
+                }),
             }
         }
         faults.finish(values)
@@ -186,7 +220,11 @@ fn lines(source: &Arc<Source>) -> impl Iterator<Item = Span> {
     })
 }
 
-fn row(line: &Span, (header, columns): (&Span, &[Heading]), faults: &mut Faults<'_>) -> Option<Vec<Cell>> {
+fn row(
+    line: &Span,
+    (header, columns): (&Span, &[Heading]),
+    faults: &mut Faults<'_>,
+) -> Option<Vec<Cell>> {
     if line.text().trim().is_empty() {
         faults.push(|| Problem::error("blank-line", "blank line between the rows").at(line));
         return None;
@@ -194,7 +232,9 @@ fn row(line: &Span, (header, columns): (&Span, &[Heading]), faults: &mut Faults<
     // Two tables that were put together.
     if columns.len() > 1 && line.text().trim_end() == header.text().trim_end() {
         faults.push(|| {
-            let problem = Problem::error("header-repeated", "the header stands between the rows again").at(line);
+            let problem =
+                Problem::error("header-repeated", "the header stands between the rows again")
+                    .at(line);
             problem.also(header, "the header").help("remove this line")
         });
         return None;
@@ -202,7 +242,9 @@ fn row(line: &Span, (header, columns): (&Span, &[Heading]), faults: &mut Faults<
     match cells::split(line.text()) {
         Err(StrayQuote(place)) => faults.push(|| cells::stray_quote(&line.part(place))),
         Ok(cells) if cells.len() == columns.len() => {
-            return Some(cells.into_iter().map(|cell| Cell::new(cell.text, line.part(cell.place))).collect());
+            return Some(
+                cells.into_iter().map(|cell| Cell::new(cell.text, line.part(cell.place))).collect(),
+            );
         }
         Ok(cells) => faults.push(|| cells::ragged(line, &cells, columns.len())),
     }
@@ -217,7 +259,8 @@ mod tests {
 
     fn parse(text: &str) -> (Option<Table>, Problems) {
         let mut problems = Problems::default();
-        let table = Table::parse(Source::new("t", text), String::new(), Some("section"), &mut problems);
+        let table =
+            Table::parse(Source::new("t", text), String::new(), Some("section"), &mut problems);
         (table, problems)
     }
 
@@ -227,31 +270,60 @@ mod tests {
     fn cells_keep_their_place_and_units_are_applied() {
         let (table, problems) = parse(SAMPLE);
         let table = table.unwrap_or_else(|| panic!("{}", problems.render(false)));
-        assert_eq!(table.names().map(|cell| cell.value.as_str()).collect::<Vec<_>>(), ["S01", "S02"]);
+        assert_eq!(
+            table.names().map(|cell| cell.value.as_str()).collect::<Vec<_>>(),
+            ["S01", "S02"]
+        );
         let cell = table.cell(0, 4).expect("there");
         assert_eq!((cell.value.as_str(), cell.span.to_string()), ("a, b", "t:2:16".to_string()));
         assert_eq!(table.cell(1, 4).map(|cell| cell.span.to_string()), Some("t:3:17".into()));
         assert_eq!(table.numbers(3, Some(Dimension::LENGTH)), Ok(vec![None, Some(-250.0)]));
-        assert_eq!(table.numbers(2, Some(Dimension::TIME)).map_err(|problems| problems[0].code), Err("unit-mismatch"));
-        assert_eq!(table.numbers(4, None).map_err(|problems| problems[0].code), Err("unit-missing"));
-        assert_eq!(table.need_column("strat").map_err(|problem| problem.help), Err(Some("did you mean `start`?".into())));
+        assert_eq!(
+            table.numbers(2, Some(Dimension::TIME)).map_err(|problems| problems[0].code),
+            Err("unit-mismatch")
+        );
+        assert_eq!(
+            table.numbers(4, None).map_err(|problems| problems[0].code),
+            Err("unit-missing")
+        );
+        assert_eq!(
+            table.need_column("strat").map_err(|problem| problem.help),
+            Err(Some("did you mean `start`?".into()))
+        );
         assert_eq!(table.row_named("S02"), Some(1));
     }
 
     #[test]
     fn carriage_returns_alone_are_told() {
         let (table, problems) = parse("section,speed [km/h]\rS01,100\rS02,100\r");
-        let told: Vec<_> = problems.0.iter().map(|problem| (problem.code, problem.at.as_ref().map(|at| at.text().len()))).collect();
-        assert_eq!((table.is_none(), told), (true, vec![("line-ends", Some("section,speed [km/h]".len()))]));
+        let told: Vec<_> = problems
+            .0
+            .iter()
+            .map(|problem| (problem.code, problem.at.as_ref().map(|at| at.text().len())))
+            .collect();
+        assert_eq!(
+            (table.is_none(), told),
+            (true, vec![("line-ends", Some("section,speed [km/h]".len()))])
+        );
     }
 
     #[test]
     fn a_header_among_the_rows() {
         let (table, problems) = parse("section,zone [-]\r\nS01,1\r\nsection,zone [-]\r\nS02,2\r\n");
-        let places: Vec<_> = problems.0.iter().map(|problem| (problem.code, problem.at.as_ref().map(ToString::to_string))).collect();
-        assert_eq!((table.is_none(), places), (true, vec![("header-repeated", Some("t:3:1".to_string()))]));
+        let places: Vec<_> = problems
+            .0
+            .iter()
+            .map(|problem| (problem.code, problem.at.as_ref().map(ToString::to_string)))
+            .collect();
+        assert_eq!(
+            (table.is_none(), places),
+            (true, vec![("header-repeated", Some("t:3:1".to_string()))])
+        );
         // A section may be called as the column is.
-        assert!(parse("section,zone [-]\nsection,1\n").0.is_some() && parse("section\nsection\n").0.is_some());
+        assert!(
+            parse("section,zone [-]\nsection,1\n").0.is_some()
+                && parse("section\nsection\n").0.is_some()
+        );
     }
 
     #[test]

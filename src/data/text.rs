@@ -11,11 +11,12 @@ use crate::source::{Source, Span};
 
 /// Maximum size of a YAML file or table in bytes; typical ones have a few thousand.
 const SMALL: u64 = 16 << 20;
-/// Maximum size of a record in bytes: a hundred channels at 1 kHz for about twenty minutes. A worker holds one such text and its numbers,
-/// which take about the same again.
+/// Maximum size of a record in bytes: a hundred channels at 1 kHz for about twenty minutes. A
+/// worker holds one such text and its numbers, which take about the same again.
 pub const LARGEST_RECORD: u64 = 1 << 30;
-/// Maximum length of a line of a record in bytes: ten thousand channels with headings of a hundred characters. A file without lines (zeros,
-/// an image, a sparse file) is reported after this number of bytes.
+/// Maximum length of a line of a record in bytes: ten thousand channels with headings of a hundred
+/// characters. A file without lines (zeros, an image, a sparse file) is reported after this number
+/// of bytes.
 pub const LONGEST_LINE: usize = 1 << 20;
 /// Maximum length of a line of a small text in bytes: a table with a thousand columns.
 const LONGEST_TEXT_LINE: usize = 64 << 10;
@@ -40,7 +41,10 @@ pub fn read_text(path: &Path, shown: &str) -> Result<(Arc<Source>, String), Prob
 /// `file-empty`, `file-too-large`, `encoding`, `line-too-long`.
 pub fn text_of(bytes: &[u8], shown: &str) -> Result<(Arc<Source>, String), Problem> {
     if bytes.len() as u64 > SMALL {
-        return Err(Problem::error("file-too-large", format!("`{shown}` has more than {} MB", SMALL >> 20)));
+        return Err(Problem::error(
+            "file-too-large",
+            format!("`{shown}` has more than {} MB", SMALL >> 20),
+        ));
     }
     let text = decode(bytes, shown)?;
     if text.trim().is_empty() {
@@ -57,8 +61,13 @@ pub fn text_of(bytes: &[u8], shown: &str) -> Result<(Arc<Source>, String), Probl
 pub fn check_lines(text: &str, shown: &str) -> Result<(), Problem> {
     match text.split('\n').position(|line| line.len() > LONGEST_TEXT_LINE) {
         Some(at) => {
-            let says = format!("line {} of `{shown}` has more than {} kB", at + 1, LONGEST_TEXT_LINE >> 10);
-            Err(Problem::error("line-too-long", says).help("break the line, or check whether this is the right file"))
+            let says = format!(
+                "line {} of `{shown}` has more than {} kB",
+                at + 1,
+                LONGEST_TEXT_LINE >> 10
+            );
+            Err(Problem::error("line-too-long", says)
+                .help("break the line, or check whether this is the right file"))
         }
         None => Ok(()),
     }
@@ -144,16 +153,18 @@ pub(super) fn unreadable(shown: &str, why: &dyn std::fmt::Display) -> Problem {
     Problem::error("file-unreadable", format!("`{shown}` {UNREADABLE} {why}"))
 }
 
-/// The size of a plain file. Other kinds are refused before they are opened, since reading a pipe could block for ever.
+/// The size of a plain file. Other kinds are refused before they are opened, since reading a pipe
+/// could block for ever.
 fn size(path: &Path, shown: &str, limit: u64) -> Result<u64, Problem> {
     match disk::kind(path).map_err(|error| unreadable(shown, &error))? {
         None => Err(Problem::error("file-missing", format!("there is no file `{shown}`"))),
         Some(Kind::Folder) => Err(unreadable(shown, &"it is a folder")),
         Some(Kind::Other) => Err(unreadable(shown, &"it is not a plain file")),
-        Some(Kind::File(size)) if size > limit => {
-            Err(Problem::error("file-too-large", format!("`{shown}` has {} MB; the maximum is {} MB", size >> 20, limit >> 20))
-                .help("split it, or leave out channels and samples that are not needed"))
-        }
+        Some(Kind::File(size)) if size > limit => Err(Problem::error(
+            "file-too-large",
+            format!("`{shown}` has {} MB; the maximum is {} MB", size >> 20, limit >> 20),
+        )
+        .help("split it, or leave out channels and samples that are not needed")),
         Some(Kind::File(size)) => Ok(size),
     }
 }
@@ -162,12 +173,23 @@ fn size(path: &Path, shown: &str, limit: u64) -> Result<u64, Problem> {
 ///
 /// # Errors
 /// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`.
-pub fn read_bytes(path: &Path, shown: &str, limit: u64, buffer: &mut Vec<u8>) -> Result<(), Problem> {
+pub fn read_bytes(
+    path: &Path,
+    shown: &str,
+    limit: u64,
+    buffer: &mut Vec<u8>,
+) -> Result<(), Problem> {
     read_bounded(path, shown, limit, None, buffer)
 }
 
 /// Refuses a file of another format by its name.
-fn read_bounded(path: &Path, shown: &str, limit: u64, longest: Option<usize>, buffer: &mut Vec<u8>) -> Result<(), Problem> {
+fn read_bounded(
+    path: &Path,
+    shown: &str,
+    limit: u64,
+    longest: Option<usize>,
+    buffer: &mut Vec<u8>,
+) -> Result<(), Problem> {
     match other_format(path, shown) {
         Some(problem) => Err(problem),
         None => read_whole(path, shown, limit, longest, buffer),
@@ -175,7 +197,13 @@ fn read_bounded(path: &Path, shown: &str, limit: u64, longest: Option<usize>, bu
 }
 
 /// With a maximum line length, reading stops at a longer line.
-fn read_whole(path: &Path, shown: &str, limit: u64, longest: Option<usize>, buffer: &mut Vec<u8>) -> Result<(), Problem> {
+fn read_whole(
+    path: &Path,
+    shown: &str,
+    limit: u64,
+    longest: Option<usize>,
+    buffer: &mut Vec<u8>,
+) -> Result<(), Problem> {
     let unreadable = |error: std::io::Error| unreadable(shown, &error);
     let size = size(path, shown, limit)?;
     buffer.clear();
@@ -190,7 +218,8 @@ fn read_whole(path: &Path, shown: &str, limit: u64, longest: Option<usize>, buff
         }
     }
     // One byte more than the size, so that the end is detected without reallocation.
-    let rest = usize::try_from(size).unwrap_or(usize::MAX).saturating_sub(buffer.len()).saturating_add(1);
+    let rest =
+        usize::try_from(size).unwrap_or(usize::MAX).saturating_sub(buffer.len()).saturating_add(1);
     disk::reserve(buffer, rest, path).map_err(unreadable)?;
     let mut line = memchr::memrchr(b'\n', buffer).map_or(0, |end| end + 1);
     loop {
@@ -207,7 +236,10 @@ fn read_whole(path: &Path, shown: &str, limit: u64, longest: Option<usize>, buff
         }
     }
     if buffer.len() as u64 > limit {
-        return Err(Problem::error("file-too-large", format!("`{shown}` grew beyond {} MB while it was read", limit >> 20)));
+        return Err(Problem::error(
+            "file-too-large",
+            format!("`{shown}` grew beyond {} MB while it was read", limit >> 20),
+        ));
     }
     if buffer.is_empty() { Err(empty(shown)) } else { Ok(()) }
 }
@@ -245,13 +277,18 @@ fn empty(shown: &str) -> Problem {
 /// The text of a file without its byte order mark.
 ///
 /// # Errors
-/// `encoding`: the name of the encoding if it can be detected, else the first byte that is not UTF-8, with its row.
+/// `encoding`: the name of the encoding if it can be detected, else the first byte that is not
+/// UTF-8, with its row.
 pub fn decode<'a>(bytes: &'a [u8], shown: &str) -> Result<&'a str, Problem> {
     decode_from(bytes, shown, 1)
 }
 
 /// The same of a part of a file that begins with a line.
-pub(super) fn decode_from<'a>(bytes: &'a [u8], shown: &str, first_line: usize) -> Result<&'a str, Problem> {
+pub(super) fn decode_from<'a>(
+    bytes: &'a [u8],
+    shown: &str,
+    first_line: usize,
+) -> Result<&'a str, Problem> {
     const HELP: &str = "save the file as UTF-8";
     let wide = match bytes {
         _ if first_line > 1 => None,
@@ -259,13 +296,18 @@ pub(super) fn decode_from<'a>(bytes: &'a [u8], shown: &str, first_line: usize) -
         [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => Some("UTF-32"),
         [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => Some("UTF-16"),
         // In UTF-16 without a mark, every other byte of Latin text is zero.
-        [0, second, 0, fourth, ..] | [second, 0, fourth, 0, ..] if *second != 0 && *fourth != 0 => Some("UTF-16"),
+        [0, second, 0, fourth, ..] | [second, 0, fourth, 0, ..] if *second != 0 && *fourth != 0 => {
+            Some("UTF-16")
+        }
         _ => None,
     };
     if let Some(encoding) = wide {
-        return Err(Problem::error("encoding", format!("`{shown}` is {encoding} text, not UTF-8")).help(HELP));
+        return Err(Problem::error("encoding", format!("`{shown}` is {encoding} text, not UTF-8"))
+            .help(HELP));
     }
-    let without_mark = |text: &'a str| if first_line > 1 { text } else { text.strip_prefix('\u{feff}').unwrap_or(text) };
+    let without_mark = |text: &'a str| {
+        if first_line > 1 { text } else { text.strip_prefix('\u{feff}').unwrap_or(text) }
+    };
     std::str::from_utf8(bytes).map(without_mark).map_err(|error| {
         let at = error.valid_up_to();
         let byte = bytes.get(at).copied().unwrap_or(0);
@@ -273,18 +315,23 @@ pub(super) fn decode_from<'a>(bytes: &'a [u8], shown: &str, first_line: usize) -
             1 => format!("byte {} of `{shown}`, hexadecimal {byte:02x}, is not UTF-8", at + 1),
             _ => format!("a byte of `{shown}`, hexadecimal {byte:02x}, is not UTF-8"),
         };
-        let problem = Problem::error("encoding", says).at(&line_of_bytes(bytes, at, shown, first_line));
+        let problem =
+            Problem::error("encoding", says).at(&line_of_bytes(bytes, at, shown, first_line));
         match latin(byte) {
-            Some(letter) => problem.label(format!("`{letter}` if the file is Windows-1252")).help(HELP),
+            Some(letter) => {
+                problem.label(format!("`{letter}` if the file is Windows-1252")).help(HELP)
+            }
             None => problem.help(HELP),
         }
     })
 }
 
-/// The character of a byte in Windows-1252, which many measuring systems write; only letters and unit signs.
+/// The character of a byte in Windows-1252, which many measuring systems write; only letters and
+/// unit signs.
 fn latin(byte: u8) -> Option<char> {
     let letter = char::from(byte);
-    (letter.is_alphabetic() || matches!(letter, '°' | '²' | '³' | 'µ' | '±' | '·')).then_some(letter)
+    (letter.is_alphabetic() || matches!(letter, '°' | '²' | '³' | 'µ' | '±' | '·'))
+        .then_some(letter)
 }
 
 /// The line around an invalid byte, with replacement characters.
@@ -306,7 +353,10 @@ mod tests {
     fn wrong_encodings_are_named_or_placed() {
         assert_eq!(decode("\u{feff}ab".as_bytes(), "f"), Ok("ab"));
         for bytes in [&b"\xff\xfea\0"[..], b"\xfe\xff\0a", b"a\0b\0", b"\0a\0b"] {
-            assert!(decode(bytes, "f").is_err_and(|problem| problem.says.contains("UTF-16")), "{bytes:?}");
+            assert!(
+                decode(bytes, "f").is_err_and(|problem| problem.says.contains("UTF-16")),
+                "{bytes:?}"
+            );
         }
         let problem = decode(b"one\r\nK\xf6ln\r\n", "f").expect_err("Latin-1");
         assert_eq!(problem.at.map(|at| at.to_string()), Some("f:2:2".into()));

@@ -4,7 +4,9 @@ mod columnar;
 mod digits;
 mod format;
 
-pub use columnar::{FileColumn, Layout, Values, csv, csv_header, csv_rows, parquet, parquet_in_groups};
+pub use columnar::{
+    FileColumn, Layout, Values, csv, csv_header, csv_rows, parquet, parquet_in_groups,
+};
 pub use digits::Digits;
 pub use format::{Entry, OutColumn, campaign_yaml, record, record_csv, table_csv, yaml_text};
 
@@ -14,7 +16,8 @@ use std::path::Path;
 use crate::disk::{self, ScratchFile, Set, SetKind};
 use crate::problem::Problem;
 
-/// Writes a file under a temporary name in the same folder, then renames it. The folder is created if missing.
+/// Writes a file under a temporary name in the same folder, then renames it. The folder is created
+/// if missing.
 ///
 /// # Errors
 /// `write-failed`; the file is then unchanged.
@@ -30,11 +33,16 @@ pub fn keep(path: &Path, bytes: &[u8]) -> Result<(), Problem> {
     written(path, bytes, disk::keep)
 }
 
-fn written(path: &Path, bytes: &[u8], how: fn(&Path, &[u8]) -> io::Result<()>) -> Result<(), Problem> {
+fn written(
+    path: &Path,
+    bytes: &[u8],
+    how: fn(&Path, &[u8]) -> io::Result<()>,
+) -> Result<(), Problem> {
     if path.file_name().is_none() {
         return Err(failed(path, &"this is not a file name"));
     }
-    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder =
+        path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let done = disk::make_folder(folder).and_then(|()| match disk::is_folder(path)? {
         true => Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")),
         false => how(path, bytes),
@@ -46,7 +54,8 @@ fn failed(path: &Path, why: &dyn std::fmt::Display) -> Problem {
     Problem::error("write-failed", format!("`{}` cannot be written: {why}", path.display()))
 }
 
-/// A set of files: none is in its place before all are on the disk, and a previous set is removed from its places first.
+/// A set of files: none is in its place before all are on the disk, and a previous set is removed
+/// from its places first.
 ///
 /// If dropped without [`Outputs::commit`], nothing is changed.
 #[derive(Debug)]
@@ -96,7 +105,8 @@ impl Outputs {
         self.set.close(file).map_err(|error| self.not_added(inside, &error))
     }
 
-    /// A temporary file without a name on the disk of the folder, for what does not fit into the memory.
+    /// A temporary file without a name on the disk of the folder, for what does not fit into the
+    /// memory.
     ///
     /// # Errors
     /// `write-failed`.
@@ -106,20 +116,25 @@ impl Outputs {
 
     fn not_added(&self, inside: &str, error: &io::Error) -> Problem {
         match error.kind() {
-            io::ErrorKind::InvalidInput => {
-                Problem::error("path-outside", format!("`{inside}` is not a path inside the output folder, or is given twice"))
-            }
+            io::ErrorKind::InvalidInput => Problem::error(
+                "path-outside",
+                format!("`{inside}` is not a path inside the output folder, or is given twice"),
+            ),
             _ => failed(&self.set.path(inside), error),
         }
     }
 
     /// A warning if the set of an interrupted run was completed.
     pub fn mended(&self) -> Option<Problem> {
-        let says = format!("an earlier run was interrupted while it wrote to `{}`; its files were put into place", self.folder.display());
+        let says = format!(
+            "an earlier run was interrupted while it wrote to `{}`; its files were put into place",
+            self.folder.display()
+        );
         self.set.mended().then(|| Problem::warning("unfinished-set", says))
     }
 
-    /// Puts every file into its place, and removes files of the previous set that are not in this one.
+    /// Puts every file into its place, and removes files of the previous set that are not in this
+    /// one.
     ///
     /// # Errors
     /// `write-failed`; the previous set is then complete.
@@ -178,7 +193,11 @@ mod tests {
         let temp = tempfile::tempdir().expect("a temporary folder");
         let mut outputs = Outputs::new(temp.path());
         for bad in ["", "..", "../x", "/x", "a/../../x"] {
-            assert_eq!(outputs.add(bad, b"").map_err(|problem| problem.code), Err("path-outside"), "{bad}");
+            assert_eq!(
+                outputs.add(bad, b"").map_err(|problem| problem.code),
+                Err("path-outside"),
+                "{bad}"
+            );
         }
         fs::write(temp.path().join("file"), b"").expect("written");
         outputs.add("file/x", b"").expect("beside its place");

@@ -1,6 +1,9 @@
-//! Diagnosis of a campaign: identification of effects, the corrected simulation, and the protocol evaluated again.
+//! Diagnosis of a campaign: identification of effects, the corrected simulation, and the protocol
+//! evaluated again.
 
-use super::answer::shrink::{applied, compare, folds, improved, of_sections, shares, trained, within};
+use super::answer::shrink::{
+    applied, compare, folds, improved, of_sections, shares, trained, within,
+};
 use super::held_out::HeldOut;
 use super::inputs::Inputs;
 use super::run::{Found, find};
@@ -20,7 +23,10 @@ use crate::problem::{Problem, Problems};
 use crate::result::Certification;
 use crate::result::diagnosis::{Diagnosis, HeldOut as OnHeldOut};
 use crate::run::Settings as RunSettings;
-use crate::simulate::{Made, Section, Simulator, Units, effects_of_origin, record_file, recorded, with_records, write_campaign};
+use crate::simulate::{
+    Made, Section, Simulator, Units, effects_of_origin, record_file, recorded, with_records,
+    write_campaign,
+};
 use crate::units::Unit;
 
 /// The diagnosis and the data it was derived from.
@@ -50,24 +56,46 @@ pub struct Outcome {
 ///
 /// # Errors
 /// The campaign cannot be compared or evaluated, or a simulation fails.
-pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Section>) -> Result<Outcome, Problems> {
+pub fn diagnose(
+    inputs: &Inputs<'_>,
+    compiled: &Compiled,
+    mut sections: Vec<Section>,
+) -> Result<Outcome, Problems> {
     let compiled = &compiled.only_telling();
     let mut problems = Problems::default();
-    crate::diagnose::features::columns::in_words_of(compiled, inputs.settings, inputs.campaign, &mut sections, &mut problems);
+    crate::diagnose::features::columns::in_words_of(
+        compiled,
+        inputs.settings,
+        inputs.campaign,
+        &mut sections,
+        &mut problems,
+    );
     let (_, mut units, _) = match sections.first() {
-        Some(first) => recorded(inputs.campaign, crate::data::RecordKind::Simulation, first).map_err(Problems)?,
-        None => return Err(Problems(vec![Problem::error("no-sections", "the campaign has no sections")])),
+        Some(first) => recorded(inputs.campaign, crate::data::RecordKind::Simulation, first)
+            .map_err(Problems)?,
+        None => {
+            return Err(Problems(vec![Problem::error(
+                "no-sections",
+                "the campaign has no sections",
+            )]));
+        }
     };
     if let Some(simulator) = inputs.simulator {
-        units.iter_mut().for_each(|(name, unit)| *unit = simulator.unit(name).unwrap_or_else(|| unit.clone()));
+        units
+            .iter_mut()
+            .for_each(|(name, unit)| *unit = simulator.unit(name).unwrap_or_else(|| unit.clone()));
     }
-    let (sections, held) = HeldOut::split(inputs.campaign, sections).map_err(|problem| Problems(vec![problem]))?;
+    let (sections, held) =
+        HeldOut::split(inputs.campaign, sections).map_err(|problem| Problems(vec![problem]))?;
     let Some(mut found) = find(inputs, sections, &mut problems) else { return Err(problems) };
     let (what, held) = match held {
-        Some((held, sections)) => (Some(held), unseen_sections(inputs, &found, sections, &mut problems)?),
+        Some((held, sections)) => {
+            (Some(held), unseen_sections(inputs, &found, sections, &mut problems)?)
+        }
         None => (None, Vec::new()),
     };
-    let fitted: Vec<String> = found.seen.sections.iter().map(|observed| observed.section.name().to_string()).collect();
+    let fitted: Vec<String> =
+        found.seen.sections.iter().map(|observed| observed.section.name().to_string()).collect();
     let fitted: Vec<&str> = fitted.iter().map(String::as_str).collect();
     (inputs.trying)("the protocol");
     let quiet = |_: &str| {};
@@ -75,18 +103,26 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Sect
     let settings = RunSettings { traces: 0 };
     let before = certify(compiled, inputs.campaign, settings, &quiet)?;
     // The records were read before by `find`: both must compare the same sections.
-    let unread = |section: &&crate::result::SectionResult| section.reason.as_ref().is_some_and(|reason| reason.contains(UNREADABLE));
+    let unread = |section: &&crate::result::SectionResult| {
+        section.reason.as_ref().is_some_and(|reason| reason.contains(UNREADABLE))
+    };
     if let Some(section) = before.sections.iter().find(unread) {
-        let says = format!("section {} could not be read again: {}", section.section, section.reason.as_deref().unwrap_or_default());
+        let says = format!(
+            "section {} could not be read again: {}",
+            section.section,
+            section.reason.as_deref().unwrap_or_default()
+        );
         return Err(one(Problem::error("file-unreadable", says)));
     }
     let mut after = None;
     let mut shrink = None;
     let mut records = Vec::new();
     let mut added = Vec::new();
-    let mut held_records: Vec<Signals> = held.iter().map(|observed| observed.simulated.clone()).collect();
+    let mut held_records: Vec<Signals> =
+        held.iter().map(|observed| observed.simulated.clone()).collect();
     let with = |found: &Found, records: &[Signals], held_records: &[Signals]| {
-        let named = named(found, records).chain(held.iter().map(|observed| observed.section.name()).zip(held_records));
+        let named = named(found, records)
+            .chain(held.iter().map(|observed| observed.section.name()).zip(held_records));
         evaluated(inputs.campaign, compiled, named, &units, settings)
     };
     let as_recorded = held_records.clone();
@@ -102,55 +138,104 @@ pub fn diagnose(inputs: &Inputs<'_>, compiled: &Compiled, mut sections: Vec<Sect
         high: None,
     };
     while !found.answer.chosen.members.is_empty() {
-        if let Some((either, reason)) = super::answer::causes::nothing_out_of_the_ordinary(&found, inputs.settings) {
+        if let Some((either, reason)) =
+            super::answer::causes::nothing_out_of_the_ordinary(&found, inputs.settings)
+        {
             found.refuse(either, reason, inputs);
             continue;
         }
         (inputs.trying)("the protocol with the effects");
         let all = applied(&found, &found.answer.chosen.members);
-        held_records = improved(&held, inputs.catalogue, inputs.simulator, &|_| all.clone()).map_err(one)?;
+        held_records =
+            improved(&held, inputs.catalogue, inputs.simulator, &|_| all.clone()).map_err(one)?;
         let made = with(&found, &unseen(inputs, &found, None)?, &held_records)?;
         let fit_before = of_sections(&before, &fitted);
-        if let Some((idle, reason)) = idle(inputs, &found, &fit_before, &of_sections(&made, &fitted), &evaluate)? {
+        if let Some((idle, reason)) =
+            idle(inputs, &found, &fit_before, &of_sections(&made, &fitted), &evaluate)?
+        {
             found.refuse(idle, reason, inputs);
             continue;
         }
-        let noise = noisy(&found, inputs.seed).map(|records| evaluate(&found, &records)).transpose()?;
+        let noise =
+            noisy(&found, inputs.seed).map(|records| evaluate(&found, &records)).transpose()?;
         if held_out.named {
             let names: Vec<&str> = held_out.sections.iter().map(String::as_str).collect();
             let there = within(&before, &made, &names, inputs.seed);
             (held_out.before, held_out.after) = (Some(there.before), Some(there.after));
-            (held_out.fraction_removed, held_out.low, held_out.high) = (Some(there.fraction_removed), Some(there.low), Some(there.high));
+            (held_out.fraction_removed, held_out.low, held_out.high) =
+                (Some(there.fraction_removed), Some(there.low), Some(there.high));
         }
-        shrink = Some(compare(&fit_before, &of_sections(&made, &fitted), noise.as_ref(), inputs.seed, shares(&found)));
+        shrink = Some(compare(
+            &fit_before,
+            &of_sections(&made, &fitted),
+            noise.as_ref(),
+            inputs.seed,
+            shares(&found),
+        ));
         after = Some(made);
-        records = improved(&found.seen.sections, inputs.catalogue, inputs.simulator, &|_| all.clone()).map_err(one)?;
+        records =
+            improved(&found.seen.sections, inputs.catalogue, inputs.simulator, &|_| all.clone())
+                .map_err(one)?;
         added = effects_of_origin(&all, inputs.catalogue);
         break;
     }
     let protocol = (before.verdict, after.as_ref().map(|after: &Certification| after.verdict));
-    let mut diagnosis = super::answer::words::diagnosis(inputs, &found, &units, protocol, (shrink, held_out));
-    diagnosis.pictures = super::answer::pictures::pictures(inputs.settings, &found, &records, &units);
+    let mut diagnosis =
+        super::answer::words::diagnosis(inputs, &found, &units, protocol, (shrink, held_out));
+    diagnosis.pictures =
+        super::answer::pictures::pictures(inputs.settings, &found, &records, &units);
     let simulator = inputs.simulator.map(|simulator| simulator.name().to_string());
     let held = held.into_iter().zip(held_records).collect();
-    Ok(Outcome { diagnosis, found, before, after, improved: records, held, units, added, simulator, warnings: problems })
+    Ok(Outcome {
+        diagnosis,
+        found,
+        before,
+        after,
+        improved: records,
+        held,
+        units,
+        added,
+        simulator,
+        warnings: problems,
+    })
 }
 
 /// Reads the held-out sections.
-fn unseen_sections(inputs: &Inputs<'_>, found: &Found, sections: Vec<Section>, problems: &mut Problems) -> Result<Vec<Observed>, Problems> {
+fn unseen_sections(
+    inputs: &Inputs<'_>,
+    found: &Found,
+    sections: Vec<Section>,
+    problems: &mut Problems,
+) -> Result<Vec<Observed>, Problems> {
     let declared = |name: &str| found.declared.get(name);
     let unit = |channel: &str| inputs.simulator?.unit(channel);
-    let read = Observations::read(inputs.campaign, sections, inputs.catalogue, inputs.settings, &declared, &unit, problems);
+    let read = Observations::read(
+        inputs.campaign,
+        sections,
+        inputs.catalogue,
+        inputs.settings,
+        &declared,
+        &unit,
+        problems,
+    );
     read.map(|seen| seen.sections).ok_or_else(|| Problems(std::mem::take(&mut problems.0)))
 }
 
 /// Records by the name of their section.
-fn named<'a>(found: &'a Found, records: &'a [Signals]) -> impl Iterator<Item = (&'a str, &'a Signals)> {
+fn named<'a>(
+    found: &'a Found,
+    records: &'a [Signals],
+) -> impl Iterator<Item = (&'a str, &'a Signals)> {
     found.seen.sections.iter().map(|observed| observed.section.name()).zip(records)
 }
 
-/// Records with the effects. The sizes for a section are fitted to the other folds. `without` excludes one member.
-fn unseen(inputs: &Inputs<'_>, found: &Found, without: Option<usize>) -> Result<Vec<Signals>, Problems> {
+/// Records with the effects. The sizes for a section are fitted to the other folds. `without`
+/// excludes one member.
+fn unseen(
+    inputs: &Inputs<'_>,
+    found: &Found,
+    without: Option<usize>,
+) -> Result<Vec<Signals>, Problems> {
     let folds = folds(&found.strata);
     let effects = |fold: &Vec<usize>| {
         let mut effects = applied(found, &trained(found, fold));
@@ -158,11 +243,18 @@ fn unseen(inputs: &Inputs<'_>, found: &Found, without: Option<usize>) -> Result<
         effects
     };
     let fitted: Vec<Vec<Applied>> = folds.iter().map(effects).collect();
-    let of = |at: usize| folds.iter().position(|fold| fold.contains(&at)).map_or_else(Vec::new, |fold| fitted[fold].clone());
-    improved(&found.seen.sections, inputs.catalogue, inputs.simulator, &of).map_err(|problem| Problems(vec![problem]))
+    let of = |at: usize| {
+        folds
+            .iter()
+            .position(|fold| fold.contains(&at))
+            .map_or_else(Vec::new, |fold| fitted[fold].clone())
+    };
+    improved(&found.seen.sections, inputs.catalogue, inputs.simulator, &of)
+        .map_err(|problem| Problems(vec![problem]))
 }
 
-/// The measured records with the declared white noise added once more; nothing where no noise is declared.
+/// The measured records with the declared white noise added once more; nothing where no noise is
+/// declared.
 fn noisy(found: &Found, seed: u64) -> Option<Vec<Signals>> {
     let seen = &found.seen;
     seen.noise.iter().any(|sd| *sd > 0.0).then(|| {
@@ -170,7 +262,11 @@ fn noisy(found: &Found, seed: u64) -> Option<Vec<Signals>> {
         let mut with_noise = |observed: &Observed| {
             let mut signals = observed.measured.clone();
             for (channel, sd) in seen.layout.channels.iter().zip(&seen.noise) {
-                let values = signals.channels.iter_mut().filter(|known| known.name == channel.name).flat_map(|known| &mut known.values);
+                let values = signals
+                    .channels
+                    .iter_mut()
+                    .filter(|known| known.name == channel.name)
+                    .flat_map(|known| &mut known.values);
                 values.for_each(|value| *value += sd * random.next());
             }
             signals
@@ -181,8 +277,9 @@ fn noisy(found: &Found, seed: u64) -> Option<Vec<Signals>> {
 
 type Evaluate<'a> = &'a dyn Fn(&Found, &[Signals]) -> Result<Certification, Problems>;
 
-/// The member that removes the smallest share of the gap on sections excluded from the fit, if that share is too small, and the reason.
-/// Effects that change no quantity of the protocol are not judged.
+/// The member that removes the smallest share of the gap on sections excluded from the fit, if that
+/// share is too small, and the reason. Effects that change no quantity of the protocol are not
+/// judged.
 fn idle(
     inputs: &Inputs<'_>,
     found: &Found,
@@ -193,16 +290,22 @@ fn idle(
     let count = found.answer.chosen.members.len();
     let mut worst: Option<(usize, f64)> = None;
     for member in 0..count {
-        let without = if count == 1 { before.clone() } else { evaluate(found, &unseen(inputs, found, Some(member))?)? };
+        let without = if count == 1 {
+            before.clone()
+        } else {
+            evaluate(found, &unseen(inputs, found, Some(member))?)?
+        };
         let earned = compare(&without, after, None, inputs.seed, Vec::new());
         let Some(touched) = earned.touched else { continue };
         // Means over signals may hide a change of single values.
         let by_value = 1.0 - (1.0 - touched.variance_explained).max(0.0).sqrt();
         let most = touched.fraction_removed.max(earned.fraction_removed).max(by_value);
-        // The protocol has few numbers. An effect with strong evidence is therefore refused only if it increases the gap.
+        // The protocol has few numbers. An effect with strong evidence is therefore refused only if
+        // it increases the gap.
         let member_of = &found.answer.chosen.members[member];
         let strength = member_of.evidence / (STRONG * found.rates.bars.first);
-        let least = if strength >= 1.0 && !member_of.doubtful { -EARNED * strength } else { EARNED };
+        let least =
+            if strength >= 1.0 && !member_of.doubtful { -EARNED * strength } else { EARNED };
         if most < least && worst.is_none_or(|(_, least)| most < least) {
             worst = Some((member, most));
         }
@@ -217,7 +320,8 @@ fn idle(
 pub struct Really {
     /// Length of the whitened change, in standard deviations.
     pub detectability: f64,
-    /// With several effects: the smallest part of one effect that no size of the others reproduces, in standard deviations.
+    /// With several effects: the smallest part of one effect that no size of the others reproduces,
+    /// in standard deviations.
     pub weakest: Option<f64>,
     /// Share of the gap that the effects remove.
     pub removed: f64,
@@ -225,7 +329,8 @@ pub struct Really {
     pub cells: Vec<String>,
 }
 
-/// Influence of effects that are known to be true, added to the simulation. Nothing if they cannot be added.
+/// Influence of effects that are known to be true, added to the simulation. Nothing if they cannot
+/// be added.
 #[must_use]
 pub fn effect_of_truth(
     campaign: &Campaign,
@@ -237,23 +342,46 @@ pub fn effect_of_truth(
     let found = &outcome.found;
     let model = crate::simulate::Builtin::new(campaign, &mut Problems::default());
     let simulator = model.as_ref().map(|model| model as &dyn Simulator);
-    let records = improved(&found.seen.sections, catalogue, simulator, &|_| effects.to_vec()).ok()?;
+    let records =
+        improved(&found.seen.sections, catalogue, simulator, &|_| effects.to_vec()).ok()?;
     let changed = |records: &[Signals]| -> Vec<f64> {
-        let features: Vec<f64> = records.iter().enumerate().flat_map(|(at, signals)| found.seen.of(at, signals, true)).collect();
+        let features: Vec<f64> = records
+            .iter()
+            .enumerate()
+            .flat_map(|(at, signals)| found.seen.of(at, signals, true))
+            .collect();
         less(&features, &found.ground.simulated)
     };
     let change = changed(&records);
     let beside = |at: usize| {
-        let others: Vec<Applied> = effects.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, one)| one.clone()).collect();
-        let records = improved(&found.seen.sections, catalogue, simulator, &|_| others.clone()).ok()?;
+        let others: Vec<Applied> = effects
+            .iter()
+            .enumerate()
+            .filter(|(other, _)| *other != at)
+            .map(|(_, one)| one.clone())
+            .collect();
+        let records =
+            improved(&found.seen.sections, catalogue, simulator, &|_| others.clone()).ok()?;
         let others = changed(&records);
-        Some(across(&found.allowed.alone.whitener.apply(&less(&change, &others)), &found.allowed.alone.whitener.apply(&others)))
+        Some(across(
+            &found.allowed.alone.whitener.apply(&less(&change, &others)),
+            &found.allowed.alone.whitener.apply(&others),
+        ))
     };
     let several = if effects.len() > 1 { 0..effects.len() } else { 0..0 };
-    let held = outcome.held.iter().map(|(observed, _)| (observed.section.name(), &observed.simulated));
+    let held =
+        outcome.held.iter().map(|(observed, _)| (observed.section.name(), &observed.simulated));
     let made = named(found, &records).chain(held);
-    let made = evaluated(campaign, &compiled.only_telling(), made, &outcome.units, RunSettings { traces: 0 }).ok()?;
-    let fitted: Vec<&str> = found.seen.sections.iter().map(|observed| observed.section.name()).collect();
+    let made = evaluated(
+        campaign,
+        &compiled.only_telling(),
+        made,
+        &outcome.units,
+        RunSettings { traces: 0 },
+    )
+    .ok()?;
+    let fitted: Vec<&str> =
+        found.seen.sections.iter().map(|observed| observed.section.name()).collect();
     let (before, made) = (of_sections(&outcome.before, &fitted), of_sections(&made, &fitted));
     let settings = Settings::read(catalogue, &mut Problems::default())?;
     Some(Really {
@@ -267,7 +395,12 @@ pub fn effect_of_truth(
 /// Length of the component of a whitened change that is orthogonal to another.
 fn across(change: &[f64], other: &[f64]) -> f64 {
     let along = dot(change, other) / dot(other, other).max(f64::MIN_POSITIVE);
-    change.iter().zip(other).map(|(change, other)| (change - along * other).powi(2)).sum::<f64>().sqrt()
+    change
+        .iter()
+        .zip(other)
+        .map(|(change, other)| (change - along * other).powi(2))
+        .sum::<f64>()
+        .sqrt()
 }
 
 /// The protocol evaluated on the campaign with other simulated records, in memory.
@@ -278,19 +411,32 @@ fn evaluated<'a>(
     units: &Units,
     settings: RunSettings,
 ) -> Result<Certification, Problems> {
-    let unit = |name: &str| units.iter().find(|(known, _)| known == name).map_or_else(Unit::one, |(_, unit)| unit.clone());
+    let unit = |name: &str| {
+        units
+            .iter()
+            .find(|(known, _)| known == name)
+            .map_or_else(Unit::one, |(_, unit)| unit.clone())
+    };
     let copy = with_records(campaign, records, &unit)?;
     certify(compiled, &copy, settings, &|_| {})
 }
 
-/// Writes the campaign with the named effects added to its simulation, and with an origin that states them. Without a named effect, the
-/// simulation is written as it was read. No file is in place before the outputs are committed.
+/// Writes the campaign with the named effects added to its simulation, and with an origin that
+/// states them. Without a named effect, the simulation is written as it was read. No file is in
+/// place before the outputs are committed.
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write_improved(outputs: &mut Outputs, campaign: &Campaign, outcome: &Outcome, format: Format) -> Result<(), Problem> {
-    let as_read = || outcome.found.seen.sections.iter().map(|observed| observed.simulated.clone()).collect();
-    let records: Vec<Signals> = if outcome.improved.is_empty() { as_read() } else { outcome.improved.clone() };
+pub fn write_improved(
+    outputs: &mut Outputs,
+    campaign: &Campaign,
+    outcome: &Outcome,
+    format: Format,
+) -> Result<(), Problem> {
+    let as_read =
+        || outcome.found.seen.sections.iter().map(|observed| observed.simulated.clone()).collect();
+    let records: Vec<Signals> =
+        if outcome.improved.is_empty() { as_read() } else { outcome.improved.clone() };
     let held = outcome.held.iter().map(|(observed, signals)| (observed.section.name(), signals));
     let records = named(&outcome.found, &records).chain(held);
     let made = Made {
@@ -310,15 +456,22 @@ fn write_records<'a>(
     (format, records, units): (Format, impl Iterator<Item = (&'a str, &'a Signals)>, &Units),
     made: Option<&Made<'_>>,
 ) -> Result<(), Problem> {
-    let unit = |name: &str| units.iter().find(|(known, _)| known == name).map_or_else(Unit::one, |(_, unit)| unit.clone());
-    let files: Result<Vec<(&str, Vec<u8>)>, Problem> =
-        records.map(|(section, signals)| Ok((section, record_file(format, signals, &unit)?))).collect();
+    let unit = |name: &str| {
+        units
+            .iter()
+            .find(|(known, _)| known == name)
+            .map_or_else(Unit::one, |(_, unit)| unit.clone())
+    };
+    let files: Result<Vec<(&str, Vec<u8>)>, Problem> = records
+        .map(|(section, signals)| Ok((section, record_file(format, signals, &unit)?)))
+        .collect();
     write_campaign(outputs, campaign, (format, files?.into_iter()), made)
 }
 
 #[cfg(test)]
 mod tests {
-    /// A change with components 3 along and 4 across another has the orthogonal length 4; a parallel change has 0.
+    /// A change with components 3 along and 4 across another has the orthogonal length 4; a
+    /// parallel change has 0.
     #[test]
     fn what_no_size_of_another_adds_is_across_it() {
         assert!((super::across(&[3.0, 4.0, 0.0], &[2.0, 0.0, 0.0]) - 4.0).abs() < 1e-12);

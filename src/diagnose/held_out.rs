@@ -25,32 +25,57 @@ impl std::fmt::Display for HeldOut {
 }
 
 impl HeldOut {
-    /// Splits the sections into those of the fit and the held-out ones. Nothing is held out where the campaign does not say so.
+    /// Splits the sections into those of the fit and the held-out ones. Nothing is held out where
+    /// the campaign does not say so.
     ///
     /// # Errors
-    /// `wrong-kind` for a text of another form; `unknown-column`; `no-sections` where no section is held out, or none is left.
+    /// `wrong-kind` for a text of another form; `unknown-column`; `no-sections` where no section is
+    /// held out, or none is left.
     pub fn split(campaign: &Campaign, sections: Vec<Section>) -> Result<Split, Problem> {
         let named = |fact: &&Fact| fact.group.is_empty() && fact.name.replace('_', " ") == KEY;
         let Some(fact) = campaign.facts.iter().find(named) else { return Ok((sections, None)) };
         let held = Self::read(&fact.text).ok_or_else(|| {
-            let says = format!("`{KEY}` must name a column of the section table and its values, not `{}`", fact.text);
-            Problem::error("wrong-kind", says).at(&fact.span).help(format!("for example `{KEY}: run = P`"))
+            let says = format!(
+                "`{KEY}` must name a column of the section table and its values, not `{}`",
+                fact.text
+            );
+            Problem::error("wrong-kind", says)
+                .at(&fact.span)
+                .help(format!("for example `{KEY}: run = P`"))
         })?;
-        let columns = || sections.iter().flat_map(|section| section.facts.iter().map(|fact| fact.name.as_str()));
+        let columns = || {
+            sections.iter().flat_map(|section| section.facts.iter().map(|fact| fact.name.as_str()))
+        };
         if held.column != "section" && !columns().any(|column| column == held.column) {
-            let says = format!("the section table has no column `{}`, by which data are held out", held.column);
+            let says = format!(
+                "the section table has no column `{}`, by which data are held out",
+                held.column
+            );
             let known = columns().collect::<std::collections::BTreeSet<_>>();
-            return Err(Problem::error("unknown-column", says).at(&fact.span).suggest(&held.column, known));
+            return Err(Problem::error("unknown-column", says)
+                .at(&fact.span)
+                .suggest(&held.column, known));
         }
-        let inside = |section: &Section| section.fact(&held.column).is_some_and(|value| held.values.iter().any(|one| one == value));
-        let missing = held.values.iter().find(|value| sections.iter().all(|section| section.fact(&held.column) != Some(value)));
+        let inside = |section: &Section| {
+            section
+                .fact(&held.column)
+                .is_some_and(|value| held.values.iter().any(|one| one == value))
+        };
+        let missing = held
+            .values
+            .iter()
+            .find(|value| sections.iter().all(|section| section.fact(&held.column) != Some(value)));
         if let Some(missing) = missing {
             let says = format!("no section has `{missing}` in the column `{}`", held.column);
             return Err(Problem::error("no-sections", says).at(&fact.span));
         }
         let (out, kept): (Vec<Section>, Vec<Section>) = sections.into_iter().partition(inside);
         if kept.is_empty() {
-            return Err(Problem::error("no-sections", format!("`{KEY}: {held}` leaves no section for the fit")).at(&fact.span));
+            return Err(Problem::error(
+                "no-sections",
+                format!("`{KEY}: {held}` leaves no section for the fit"),
+            )
+            .at(&fact.span));
         }
         Ok((kept, Some((held, out))))
     }
@@ -59,7 +84,8 @@ impl HeldOut {
         let (column, values) = text.split_once('=')?;
         let values: Vec<String> = values.split(',').map(|value| value.trim().to_string()).collect();
         let column = column.trim().to_string();
-        (!column.is_empty() && values.iter().all(|value| !value.is_empty())).then_some(Self { column, values })
+        (!column.is_empty() && values.iter().all(|value| !value.is_empty()))
+            .then_some(Self { column, values })
     }
 }
 

@@ -42,8 +42,13 @@ impl std::fmt::Debug for Inputs<'_> {
     }
 }
 
-/// The value of a simulator parameter without any effect: from the vehicle file, else its neutral value.
+/// The value of a simulator parameter without any effect: from the vehicle file, else its neutral
+/// value.
 #[must_use]
 pub fn value_of(campaign: &Campaign, key: &str) -> Option<f64> {
-    campaign.vehicle.lookup(key).and_then(|node| crate::simulate::number_of(node, key)).or_else(|| parameter(key)?.neutral)
+    campaign
+        .vehicle
+        .lookup(key)
+        .and_then(|node| crate::simulate::number_of(node, key))
+        .or_else(|| parameter(key)?.neutral)
 }

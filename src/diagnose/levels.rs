@@ -1,18 +1,23 @@
-//! Every constant of the diagnosis that can change an answer, by the step that uses it: its unit, and why it has this value.
+//! Every constant of the diagnosis that can change an answer, by the step that uses it: its unit,
+//! and why it has this value.
 //!
-//! A value without a source is a judgement. None is fitted to a campaign; where results were looked at before a value was set, this is said.
+//! A value without a source is a judgement. None is fitted to a campaign; where results were looked
+//! at before a value was set, this is said.
 
 pub mod common {
     /// Half the width of a 90 % interval, in standard errors.
     pub const NINETY: f64 = 1.645;
-    /// Bootstrap resamples of the sections (Efron and Tibshirani 1993, ch. 13: some hundred for a standard error, more for tails).
+    /// Bootstrap resamples of the sections (Efron and Tibshirani 1993, ch. 13: some hundred for a
+    /// standard error, more for tails).
     pub const RESAMPLES: usize = 400;
 }
 
 pub mod settings {
-    /// Default of the largest lag in m. A larger lag means that the records belong to different places.
+    /// Default of the largest lag in m. A larger lag means that the records belong to different
+    /// places.
     pub const FURTHEST: f64 = 50.0;
-    /// Default of the share of campaigns with nothing hidden in which an effect may reach the required evidence by chance.
+    /// Default of the share of campaigns with nothing hidden in which an effect may reach the
+    /// required evidence by chance.
     pub const FALSE_NAMES: f64 = 0.04;
 }
 
@@ -28,7 +33,8 @@ pub mod faults {
     pub const STILL: f64 = 0.5;
     /// Variation of the simulation meanwhile, as a share of its range in the section.
     pub const MOVES: f64 = 0.02;
-    /// A channel is saturated if it reaches its extreme value this many times, for this many consecutive samples.
+    /// A channel is saturated if it reaches its extreme value this many times, for this many
+    /// consecutive samples.
     pub const TIMES: usize = 3;
     pub const ROW: usize = 3;
 }
@@ -36,24 +42,27 @@ pub mod faults {
 pub mod features {
     /// Share of the samples at either end that is replaced (Winsorised).
     pub const SPIKES: f64 = 0.01;
-    /// A record is inverted if its best negative correlation exceeds the best positive one by this factor; records with a low correlation
-    /// reach smaller factors by chance.
+    /// A record is inverted if its best negative correlation exceeds the best positive one by this
+    /// factor; records with a low correlation reach smaller factors by chance.
     pub const INVERTED: f64 = 1.35;
 }
 
 pub mod increments {
     /// Order of the low-pass, in each of two directions, that limits the frequencies compared.
     pub const LIMIT_ORDER: usize = 4;
-    /// Largest order of the autoregressive filter; the order is that of the least AIC (Akaike 1974).
+    /// Largest order of the autoregressive filter; the order is that of the least AIC (Akaike
+    /// 1974).
     pub const ORDER: usize = 12;
-    /// A change that is to this share of its length a combination of the changes before it adds no direction.
+    /// A change that is to this share of its length a combination of the changes before it adds no
+    /// direction.
     pub const NEW: f64 = 1e-3;
     /// Least number of samples per direction and coefficient of the filter.
     pub const SAMPLES: usize = 4;
 }
 
 pub mod observations {
-    /// Sampling rates follow from rounded time stamps; a band that ends at half the rate is then allowed.
+    /// Sampling rates follow from rounded time stamps; a band that ends at half the rate is then
+    /// allowed.
     pub const ROUNDED: f64 = 1e-3;
 }
 
@@ -62,15 +71,16 @@ pub mod scatter {
     pub const BLOCK: f64 = 1.0;
     /// Bootstrap draws.
     pub const DRAWS: usize = 60;
-    /// From this ratio of the second-largest to the largest correlation on, the lag is not unique and is not used.
+    /// From this ratio of the second-largest to the largest correlation on, the lag is not unique
+    /// and is not used.
     pub const AS_ALIKE: f64 = 0.8;
 }
 
 pub mod covariance {
     /// Standard deviation of a gain that the campaign declares without a number.
     pub const GAIN: f64 = 0.02;
-    /// Variance of the logarithm of an rms, times bandwidth and length of the record: that of noise in a band is 1 / (4 B T) (Bendat and
-    /// Piersol, section 8.5).
+    /// Variance of the logarithm of an rms, times bandwidth and length of the record: that of noise
+    /// in a band is 1 / (4 B T) (Bendat and Piersol, section 8.5).
     pub const BAND_SCATTER: f64 = 0.25;
     /// Variance of a gain, times the length of the record in s.
     pub const GAIN_SCATTER: f64 = 0.1;
@@ -79,32 +89,38 @@ pub mod covariance {
 }
 
 pub mod whiten {
-    /// Number of differences that are whitened together: enough for a product of matrices to be fast.
+    /// Number of differences that are whitened together: enough for a product of matrices to be
+    /// fast.
     pub const TOGETHER: usize = 64;
 }
 
 pub mod metric {
-    /// A component of the model error below this variance, in units of the allowed difference, is left out.
+    /// A component of the model error below this variance, in units of the allowed difference, is
+    /// left out.
     pub const NEGLIGIBLE: f64 = 1e-3;
 }
 
 pub mod recorded {
-    /// Seed of the noise. One seed for all channels and sections, so that their order and a change of sides do not change an answer.
+    /// Seed of the noise. One seed for all channels and sections, so that their order and a change
+    /// of sides do not change an answer.
     pub const SEED: u64 = 0x5EED;
 }
 
 pub mod sensitivity {
-    /// Step of the finite differences, in standard deviations: large against the scatter of contact solutions, small enough to be linear.
+    /// Step of the finite differences, in standard deviations: large against the scatter of contact
+    /// solutions, small enough to be linear.
     pub const STEP: f64 = 1.5;
 }
 
 pub mod standing {
-    /// Standard deviation of the part of a discrepancy that varies between campaigns, as a share of the whole: engineering judgement.
+    /// Standard deviation of the part of a discrepancy that varies between campaigns, as a share of
+    /// the whole: engineering judgement.
     pub const OWN: f64 = 0.5;
 }
 
 pub mod locate {
-    /// Least change of a cell by the true effect, in standard deviations, for the score of the location.
+    /// Least change of a cell by the true effect, in standard deviations, for the score of the
+    /// location.
     pub const MOVED: f64 = 3.0;
 }
 
@@ -114,8 +130,9 @@ pub mod cells {
 }
 
 pub mod invariants {
-    /// Probability of the deviation, among all invariants tested (Bonferroni), below which it is significant. The covariance of sums of
-    /// forces is small and well known, so that this level is not stricter.
+    /// Probability of the deviation, among all invariants tested (Bonferroni), below which it is
+    /// significant. The covariance of sums of forces is small and well known, so that this level is
+    /// not stricter.
     pub const CHANCE: f64 = 0.01;
     /// Least share of the deviation that the causes must remove.
     pub const TAKES: f64 = 0.5;
@@ -132,14 +149,17 @@ pub mod shapes {
     pub const USABLE: f64 = 0.9;
     /// Least number of points of a spectrum.
     pub const LEAST_POINTS: f64 = 4.0;
-    /// Least ratio of the largest to the smallest speed that discriminates frequency from wavelength.
+    /// Least ratio of the largest to the smallest speed that discriminates frequency from
+    /// wavelength.
     pub const SPREAD: f64 = 1.2;
     /// Least share of the resamples that agree on the scaling.
     pub const SURE: f64 = 0.95;
-    /// Least significance of the largest difference, in standard errors, and its least size as a ratio.
+    /// Least significance of the largest difference, in standard errors, and its least size as a
+    /// ratio.
     pub const ERRORS: f64 = 4.0;
     pub const LARGE: f64 = 1.25;
-    /// Numbers of waves per wheel revolution that are reported, and their relative tolerance; higher numbers would match by chance.
+    /// Numbers of waves per wheel revolution that are reported, and their relative tolerance;
+    /// higher numbers would match by chance.
     pub const TURNS: [f64; 2] = [1.0, 2.0];
     pub const WHOLE: f64 = 0.06;
     /// Least share of the variance explained by the mean row for a sentence in the report.
@@ -149,16 +169,18 @@ pub mod shapes {
 pub mod trends {
     /// Correlation from which the campaign does not discriminate two covariates.
     pub const TOGETHER: f64 = 0.8;
-    /// Probability below which a trend of the residual is certain, among all trends tested (Bonferroni). It is small because the allowed
-    /// discrepancy is a judgement.
+    /// Probability below which a trend of the residual is certain, among all trends tested
+    /// (Bonferroni). It is small because the allowed discrepancy is a judgement.
     pub const CERTAIN: f64 = 1e-5;
 }
 
 pub mod further {
-    /// Number of candidates simulated together with the members, and their least distance from neutral as a share of the threshold.
+    /// Number of candidates simulated together with the members, and their least distance from
+    /// neutral as a share of the threshold.
     pub const TRIED: usize = 3;
     pub const FAR: f64 = 0.5;
-    /// How often a chosen candidate is simulated again, and the relative change of the other sizes that requires it.
+    /// How often a chosen candidate is simulated again, and the relative change of the other sizes
+    /// that requires it.
     pub const ROUNDS: usize = 3;
     pub const MOVED: f64 = 0.02;
     /// Distance of further simulated sizes from a size, as a share of its distance from neutral.
@@ -166,14 +188,17 @@ pub mod further {
 }
 
 pub mod workshop {
-    /// How far beyond the plausible range an operation is applied, as a share of the distance from neutral.
+    /// How far beyond the plausible range an operation is applied, as a share of the distance from
+    /// neutral.
     pub const BEYOND: f64 = 0.2;
 }
 
 pub mod chosen {
-    /// Declared standard deviations from which an effect on a tolerated parameter is named: the declared value is itself an estimate.
+    /// Declared standard deviations from which an effect on a tolerated parameter is named: the
+    /// declared value is itself an estimate.
     pub const TOLERANCE_SD: f64 = 3.5;
-    /// Share of the evidence that a confinement must add: excluding the sections that fit worst always adds some.
+    /// Share of the evidence that a confinement must add: excluding the sections that fit worst
+    /// always adds some.
     pub const CONFINED: f64 = 0.15;
     /// Cosine of two whitened changes below which the members compensate each other.
     pub const UNDONE: f64 = -0.6;
@@ -185,23 +210,25 @@ pub mod chosen {
 pub mod converge {
     /// Least evidence of a cause: real discrepancies deviate from the assumed covariance.
     pub const FLOOR: f64 = 30.0;
-    /// The same for an operation on the signals, which such discrepancies do not affect: half as much; 10 is called very strong (Kass and
-    /// Raftery 1995).
+    /// The same for an operation on the signals, which such discrepancies do not affect: half as
+    /// much; 10 is called very strong (Kass and Raftery 1995).
     pub const FLOOR_EXACT: f64 = 15.0;
     /// Least evidence that a confinement adds; its choice has a price as well.
     pub const CONFINED: f64 = 15.0;
     /// Largest number of effects in an answer.
     pub const MOST: usize = 3;
-    /// All sizes of a candidate are simulated from this share of the largest evidence on, and from this evidence on.
+    /// All sizes of a candidate are simulated from this share of the largest evidence on, and from
+    /// this evidence on.
     pub const NEAR: f64 = 0.5;
     pub const WORTH: f64 = 10.0;
 }
 
 pub mod calibration {
-    /// Campaigns drawn from the covariance, with nothing hidden, for the required evidence and the rate of false names: 200 resolve half a
-    /// per cent.
+    /// Campaigns drawn from the covariance, with nothing hidden, for the required evidence and the
+    /// rate of false names: 200 resolve half a per cent.
     pub const NOTHING_HIDDEN: usize = 200;
-    /// Campaigns drawn with a single effect, with two effects, and with an effect that the search does not know.
+    /// Campaigns drawn with a single effect, with two effects, and with an effect that the search
+    /// does not know.
     pub const SINGLES: usize = 60;
     pub const PAIRS: usize = 20;
     pub const OUTSIDE: usize = 20;
@@ -217,77 +244,91 @@ pub mod fit {
 }
 
 pub mod guards {
-    /// Least share of the evidence without any one section, unless the remaining evidence is sufficient by itself.
+    /// Least share of the evidence without any one section, unless the remaining evidence is
+    /// sufficient by itself.
     pub const KEPT: f64 = 0.5;
     pub const ENOUGH: f64 = 60.0;
-    /// Where one section shows most of an effect, the others need this share of their expected evidence, and very strong evidence (Kass and
-    /// Raftery 1995).
+    /// Where one section shows most of an effect, the others need this share of their expected
+    /// evidence, and very strong evidence (Kass and Raftery 1995).
     pub const EXPECTED: f64 = 0.5;
     pub const VERY_STRONG: f64 = 10.0;
-    /// A view contradicts an effect if its share of the size is below this, by this many standard errors below the joint size.
+    /// A view contradicts an effect if its share of the size is below this, by this many standard
+    /// errors below the joint size.
     pub const SOME: f64 = 0.45;
     pub const SURE: f64 = 3.0;
-    /// Standard error of a view's size, as a share of the joint size, up to which the view is compared.
+    /// Standard error of a view's size, as a share of the joint size, up to which the view is
+    /// compared.
     pub const PRECISE: f64 = 0.35;
-    /// Quantile of Cochran's Q from which views differ, and the least difference of their sizes, as a share of the joint size.
+    /// Quantile of Cochran's Q from which views differ, and the least difference of their sizes, as
+    /// a share of the joint size.
     pub const HETEROGENEOUS: f64 = 0.99;
     pub const DIFFERENT: f64 = 0.6;
-    /// Model error as a share of the size in any view; in addition, as a share of the whole effect, limited to a share of the expected
-    /// change in the view.
+    /// Model error as a share of the size in any view; in addition, as a share of the whole effect,
+    /// limited to a share of the expected change in the view.
     pub const MODEL: f64 = 0.15;
     pub const SPILL: f64 = 0.1;
     pub const SPILT: f64 = 0.3;
 }
 
 pub mod joint {
-    /// Rounds in which the model error is computed again for the fitted sizes, and the change of the shares that ends them.
+    /// Rounds in which the model error is computed again for the fitted sizes, and the change of
+    /// the shares that ends them.
     pub const ROUNDS: usize = 3;
     pub const ALIKE: f64 = 0.01;
-    /// Turns of the alternating fit, and its convergence criterion as a share of chi-squared. Similar changes converge slowly.
+    /// Turns of the alternating fit, and its convergence criterion as a share of chi-squared.
+    /// Similar changes converge slowly.
     pub const TURNS: usize = 200;
     pub const CONVERGED: f64 = 1e-8;
 }
 
 pub mod lack {
-    /// Lack of fit of a channel from which the residual is significant, in standard deviations of chi-squared.
+    /// Lack of fit of a channel from which the residual is significant, in standard deviations of
+    /// chi-squared.
     pub const LACK: f64 = 5.0;
-    /// Largest ratio of the excess of the channels with a member to that without it: some effects increase other channels.
+    /// Largest ratio of the excess of the channels with a member to that without it: some effects
+    /// increase other channels.
     pub const WORSE: f64 = 1.1;
     /// Increase of the excess that is negligible against some thousand features.
     pub const LITTLE: f64 = 10.0;
-    /// The gap is unexplained if more than this share of the excess remains in several channels, or in one that exceeds [`LACK`] by this
-    /// factor.
+    /// The gap is unexplained if more than this share of the excess remains in several channels, or
+    /// in one that exceeds [`LACK`] by this factor.
     pub const MOST_LEFT: f64 = 0.5;
     pub const FAR_BEYOND: f64 = 3.0;
-    /// One section in this many may be an outlier, such as a wheelset that reaches the flange on one side of the comparison only.
+    /// One section in this many may be an outlier, such as a wheelset that reaches the flange on
+    /// one side of the comparison only.
     pub const ONE_IN: usize = 8;
 }
 
 pub mod place {
-    /// A tolerance whose change of the features is below this, in standard deviations of all else, is not simulated again: the scatter of
-    /// contact solutions alone reaches about one.
+    /// A tolerance whose change of the features is below this, in standard deviations of all else,
+    /// is not simulated again: the scatter of contact solutions alone reaches about one.
     pub const MATTERS: f64 = 1.5;
     /// Relative difference of sizes up to which the simulated tolerances are reused.
     pub const ALIKE: f64 = 0.1;
 }
 
 pub mod sets {
-    /// Number of candidates whose joint evidence is computed, of those with the most evidence for what a set leaves; and their least one.
-    /// With the members fixed, an effect similar to a member has little evidence left.
+    /// Number of candidates whose joint evidence is computed, of those with the most evidence for
+    /// what a set leaves; and their least one. With the members fixed, an effect similar to a
+    /// member has little evidence left.
     pub const TRIED: usize = 16;
     pub const WORTH: f64 = 5.0;
-    /// Number of first effects beside which every second one is tried. The best single effect need not be a member of the best pair.
+    /// Number of first effects beside which every second one is tried. The best single effect need
+    /// not be a member of the best pair.
     pub const FIRSTS: usize = 5;
-    /// Gain of evidence from which another candidate replaces a member: the least called positive (Kass and Raftery 1995).
+    /// Gain of evidence from which another candidate replaces a member: the least called positive
+    /// (Kass and Raftery 1995).
     pub const BETTER: f64 = 2.0;
     /// Rounds of replacement.
     pub const ROUNDS: usize = 4;
 }
 
 pub mod settle {
-    /// Range of a lag between half and one and a half times an effect, in standard deviations, from which the lag is excluded.
+    /// Range of a lag between half and one and a half times an effect, in standard deviations, from
+    /// which the lag is excluded.
     pub const JUMP: f64 = 5.0;
-    /// Maximum number of refits with the fitted sizes simulated, and the convergence criterion as a share of the size.
+    /// Maximum number of refits with the fitted sizes simulated, and the convergence criterion as a
+    /// share of the size.
     pub const ROUNDS: usize = 3;
     pub const ALIKE: f64 = 0.01;
 }
@@ -295,7 +336,8 @@ pub mod settle {
 pub mod stability {
     /// Candidates with at least this share of a member's evidence are compared with it.
     pub const NEAR: f64 = 0.3;
-    /// Least share of the resamples in which a member must be first, that is, have the most evidence.
+    /// Least share of the resamples in which a member must be first, that is, have the most
+    /// evidence.
     pub const FIRST: f64 = 0.5;
     /// Share of the resamples from which a member counts as certain, of either sign.
     pub const SURE: f64 = 0.95;
@@ -305,14 +347,15 @@ pub mod suspects {
     /// Factors simulated for every parameter (1 is neutral), and further ones for the strongest.
     pub const COARSE: [f64; 2] = [0.45, 1.8];
     pub const FINE: [f64; 5] = [0.25, 0.35, 0.7, 1.3, 2.5];
-    /// Maximum number of parameters with further factors, and their least evidence as a share of the answer's.
+    /// Maximum number of parameters with further factors, and their least evidence as a share of
+    /// the answer's.
     pub const MOST: usize = 2;
     pub const NEAR: f64 = 0.15;
     /// Maximum number of refits with the fitted factor simulated, and the convergence criterion.
     pub const ROUNDS: usize = 2;
     pub const ALIKE: f64 = 0.02;
-    /// Evidence in excess of the answer's from which the verdict is ambiguous: the threshold of a single cause. With this share of the
-    /// answer's evidence in excess, the answer is rejected.
+    /// Evidence in excess of the answer's from which the verdict is ambiguous: the threshold of a
+    /// single cause. With this share of the answer's evidence in excess, the answer is rejected.
     pub const BETTER: f64 = 30.0;
     pub const BETTER_SHARE: f64 = 0.5;
     /// Cosine of two whitened changes above which they count as the same cause.
@@ -328,7 +371,8 @@ pub mod pictures {
 }
 
 pub mod causes {
-    /// Error of the interpolation between simulated sizes, as a share of the size; one standard deviation.
+    /// Error of the interpolation between simulated sizes, as a share of the size; one standard
+    /// deviation.
     pub const INTERPOLATION: f64 = 0.02;
 }
 
@@ -337,12 +381,13 @@ pub mod rivals {
     pub const NEAREST: f64 = 8.0;
     /// The same as a share of the member's evidence: the model error of large effects is large.
     pub const NEAREST_SHARE: f64 = 0.12;
-    /// Prior weight of a cause outside the catalogue against the answer: in general, where a vehicle parameter outside the catalogue explains
-    /// more, and where a residual remains.
+    /// Prior weight of a cause outside the catalogue against the answer: in general, where a
+    /// vehicle parameter outside the catalogue explains more, and where a residual remains.
     pub const OUTSIDE: f64 = 0.05;
     pub const OUTSIDE_SUSPECTED: f64 = 1.0;
     pub const OUTSIDE_UNEXPLAINED: f64 = 4.0;
-    /// Divisor of the evidence before it becomes a probability: real discrepancies deviate from the assumed covariance.
+    /// Divisor of the evidence before it becomes a probability: real discrepancies deviate from the
+    /// assumed covariance.
     pub const TEMPERATURE: f64 = 4.0;
     /// Distance from which two causes are not confused by chance, in standard deviations.
     pub const TOLD_APART: f64 = 5.0;
@@ -351,7 +396,8 @@ pub mod rivals {
 pub mod shrink {
     /// Number of folds for cross-validation, stratified.
     pub const FOLDS: usize = 4;
-    /// An effect touches a quantity if the root mean square change of its values exceeds this share of the limit of their standard deviation.
+    /// An effect touches a quantity if the root mean square change of its values exceeds this share
+    /// of the limit of their standard deviation.
     pub const TOUCHED: f64 = 0.1;
 }
 
@@ -361,8 +407,9 @@ pub mod steady {
 }
 
 pub mod verdict {
-    /// Ratio of chi-squared to the number of features from which the fit is refuted: what is left is then on average 1.4 times as large as
-    /// noise, tolerances and model discrepancy together. Below a quarter, they are more than twice as large as what is left.
+    /// Ratio of chi-squared to the number of features from which the fit is refuted: what is left
+    /// is then on average 1.4 times as large as noise, tolerances and model discrepancy together.
+    /// Below a quarter, they are more than twice as large as what is left.
     pub const MISFIT: f64 = 2.0;
     pub const ROOMY: f64 = 0.25;
 }
@@ -375,8 +422,9 @@ pub mod words {
 pub mod campaign {
     /// Least share of the gap that an effect must remove in the quantities that it changes.
     pub const EARNED: f64 = 0.05;
-    /// Evidence, in thresholds, from which an effect need not reduce the gap. It may then increase the gap by [`EARNED`] times the evidence
-    /// in these units, since a gap masked by a second effect increases when one of the two is corrected.
+    /// Evidence, in thresholds, from which an effect need not reduce the gap. It may then increase
+    /// the gap by [`EARNED`] times the evidence in these units, since a gap masked by a second
+    /// effect increases when one of the two is corrected.
     pub const STRONG: f64 = 4.0 / 3.0;
 }
 

@@ -1,6 +1,12 @@
-//! Diagnosis: where simulation and measurement differ, which effect is the cause, and how far the gap decreases with the effect added.
+//! Diagnosis: where simulation and measurement differ, which effect is the cause, and how far the
+//! gap decreases with the effect added.
 
-#![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_possible_wrap)]
+#![allow(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_possible_wrap
+)]
 
 pub mod answer;
 mod campaign;

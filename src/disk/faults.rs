@@ -1,4 +1,5 @@
-//! Test hook that lets file operations fail. Without a hook, each operation costs one read of a flag.
+//! Test hook that lets file operations fail. Without a hook, each operation costs one read of a
+//! flag.
 
 use std::fmt::Debug;
 use std::io;

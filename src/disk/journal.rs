@@ -1,4 +1,5 @@
-//! Journal of a set of files: written before the commit point, and read by the next run if a run was interrupted after it.
+//! Journal of a set of files: written before the commit point, and read by the next run if a run
+//! was interrupted after it.
 
 use std::io;
 use std::path::{Component, Path};
@@ -8,7 +9,8 @@ pub const JOURNAL: &str = "journal";
 /// First line: the format version.
 const HEAD: &str = "fishplate set 1";
 
-/// The files that a set installs in its folder and removes from it. Paths are relative, without links, with `/`.
+/// The files that a set installs in its folder and removes from it. Paths are relative, without
+/// links, with `/`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Journal {
     /// In the order of their numbers, which are the names of the files until they are in place.
@@ -18,7 +20,9 @@ pub struct Journal {
 
 impl Journal {
     pub fn text(&self) -> String {
-        let lines = |what: &str, paths: &[String]| paths.iter().map(|path| format!("{what} {path}\n")).collect::<String>();
+        let lines = |what: &str, paths: &[String]| {
+            paths.iter().map(|path| format!("{what} {path}\n")).collect::<String>()
+        };
         format!("{HEAD}\n{}{}end\n", lines("put", &self.installs), lines("remove", &self.removes))
     }
 
@@ -44,7 +48,9 @@ impl Journal {
 /// Whether a path stays inside the folder, and fits a line.
 pub fn plain(path: &str) -> bool {
     let parts = Path::new(path).components();
-    !path.is_empty() && !path.contains(['\n', '\r', '\0']) && parts.into_iter().all(|part| matches!(part, Component::Normal(_)))
+    !path.is_empty()
+        && !path.contains(['\n', '\r', '\0'])
+        && parts.into_iter().all(|part| matches!(part, Component::Normal(_)))
 }
 
 #[cfg(test)]
@@ -53,7 +59,8 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read_and_nothing_less() {
-        let journal = Journal { installs: vec!["a b.csv".into(), "t/x".into()], removes: vec!["old".into()] };
+        let journal =
+            Journal { installs: vec!["a b.csv".into(), "t/x".into()], removes: vec!["old".into()] };
         let text = journal.text();
         assert_eq!(Journal::read(&text).ok(), Some(journal));
         for cut in 0..text.len() - 1 {

@@ -1,7 +1,7 @@
 //! Access to the file system: every read, write, rename, sync and removal goes through this module.
 //!
-//! A test can therefore let any single operation fail, or end the program there, and check the result ([`faults`]). A test of the
-//! layers forbids `std::fs` everywhere else.
+//! A test can therefore let any single operation fail, or end the program there, and check the
+//! result ([`faults`]). A test of the layers forbids `std::fs` everywhere else.
 //!
 //! | file | content |
 //! |---|---|
@@ -54,7 +54,13 @@ pub fn kind(path: &Path) -> io::Result<Option<Kind>> {
 /// Whether an error means that nothing exists at the path.
 pub fn missing(error: &io::Error) -> bool {
     // A name that is too long or contains NUL cannot exist.
-    matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory | ErrorKind::InvalidFilename | ErrorKind::InvalidInput)
+    matches!(
+        error.kind(),
+        ErrorKind::NotFound
+            | ErrorKind::NotADirectory
+            | ErrorKind::InvalidFilename
+            | ErrorKind::InvalidInput
+    )
 }
 
 /// Whether a plain file exists.
@@ -65,7 +71,8 @@ pub fn is_file(path: &Path) -> io::Result<bool> {
     Ok(matches!(kind(path)?, Some(Kind::File(_))))
 }
 
-/// Whether a plain file exists, or the system gives an error; the error is then reported when the file is read.
+/// Whether a plain file exists, or the system gives an error; the error is then reported when the
+/// file is read.
 pub fn may_be_file(path: &Path) -> bool {
     is_file(path).unwrap_or(true)
 }
@@ -126,7 +133,9 @@ pub fn owner(path: &Path) -> io::Result<u32> {
 /// The system's error.
 pub fn names(folder: &Path) -> io::Result<Vec<OsString>> {
     pass(Op::List, folder)?;
-    let mut names = fs::read_dir(folder)?.map(|entry| Ok(entry?.file_name())).collect::<io::Result<Vec<_>>>()?;
+    let mut names = fs::read_dir(folder)?
+        .map(|entry| Ok(entry?.file_name()))
+        .collect::<io::Result<Vec<_>>>()?;
     names.sort();
     Ok(names)
 }
@@ -138,7 +147,8 @@ pub struct Reader {
     path: PathBuf,
 }
 
-/// Opens a file for reading. The caller must exclude other kinds before: reading a pipe could block for ever.
+/// Opens a file for reading. The caller must exclude other kinds before: reading a pipe could block
+/// for ever.
 ///
 /// # Errors
 /// The system's error.
@@ -167,11 +177,14 @@ impl Seek for Reader {
 pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     let size = match kind(path)? {
         Some(Kind::File(size)) => size,
-        Some(Kind::Folder) => return Err(io::Error::new(ErrorKind::IsADirectory, "it is a folder")),
+        Some(Kind::Folder) => {
+            return Err(io::Error::new(ErrorKind::IsADirectory, "it is a folder"));
+        }
         Some(Kind::Other) => return Err(io::Error::other("it is not a plain file")),
         None => return Err(ErrorKind::NotFound.into()),
     };
-    let too_large = || io::Error::new(ErrorKind::FileTooLarge, format!("it has more than {} MB", limit >> 20));
+    let too_large =
+        || io::Error::new(ErrorKind::FileTooLarge, format!("it has more than {} MB", limit >> 20));
     if size > limit {
         return Err(too_large());
     }
@@ -206,7 +219,8 @@ const LARGEST_VARIABLES: u64 = 4 << 20;
 /// `OutOfMemory`.
 pub fn reserve<T>(of: &mut Vec<T>, more: usize, path: &Path) -> io::Result<()> {
     pass(Op::Reserve, path)?;
-    of.try_reserve_exact(more).map_err(|_| io::Error::new(ErrorKind::OutOfMemory, "there is not enough memory"))
+    of.try_reserve_exact(more)
+        .map_err(|_| io::Error::new(ErrorKind::OutOfMemory, "there is not enough memory"))
 }
 
 /// A new file open for writing.
@@ -219,7 +233,10 @@ pub(crate) struct Writer {
 /// Creates a file that does not exist yet.
 fn create(path: &Path) -> io::Result<Writer> {
     pass(Op::Create, path)?;
-    Ok(Writer { file: File::options().write(true).create_new(true).open(path)?, path: path.to_path_buf() })
+    Ok(Writer {
+        file: File::options().write(true).create_new(true).open(path)?,
+        path: path.to_path_buf(),
+    })
 }
 
 impl Writer {
@@ -241,7 +258,8 @@ impl Writer {
     }
 }
 
-/// Threads that wait for the disk at the same time. More save little: on a local disk a wait is about as short as a thread takes to begin.
+/// Threads that wait for the disk at the same time. More save little: on a local disk a wait is
+/// about as short as a thread takes to begin.
 const WAITING: usize = 4;
 
 /// On return the bytes of all files are on the disk.
@@ -251,9 +269,13 @@ fn sync_together(files: &[Writer]) -> io::Result<()> {
     std::thread::scope(|scope| {
         let mut parts = files.chunks(files.len().div_ceil(WAITING).max(1));
         let own = parts.next().unwrap_or_default();
-        let others: Vec<_> = parts.map(|part| (part, std::thread::Builder::new().spawn_scoped(scope, move || wait(part)))).collect();
+        let others: Vec<_> = parts
+            .map(|part| (part, std::thread::Builder::new().spawn_scoped(scope, move || wait(part))))
+            .collect();
         let ended = others.into_iter().map(|(part, thread)| match thread {
-            Ok(thread) => thread.join().unwrap_or_else(|_| Err(io::Error::other("a thread that waited for the disk ended"))),
+            Ok(thread) => thread.join().unwrap_or_else(|_| {
+                Err(io::Error::other("a thread that waited for the disk ended"))
+            }),
             // There are no more threads: this one waits.
             Err(_) => wait(part),
         });
@@ -295,7 +317,11 @@ pub(crate) fn make_folders(folder: &Path, made: &mut Vec<PathBuf>) -> io::Result
             Err(error) => return Err(error),
         }
     }
-    if is_folder(folder)? { Ok(()) } else { Err(io::Error::new(ErrorKind::NotADirectory, "it is not a folder")) }
+    if is_folder(folder)? {
+        Ok(())
+    } else {
+        Err(io::Error::new(ErrorKind::NotADirectory, "it is not a folder"))
+    }
 }
 
 /// Creates a folder and its parents.
@@ -334,7 +360,9 @@ fn hold(folder: &Path) -> io::Result<Option<Hold>> {
         let file = File::open(folder)?;
         match file.try_lock() {
             Ok(()) => Ok(Some(Hold(file))),
-            Err(fs::TryLockError::WouldBlock) => Err(io::Error::new(ErrorKind::ResourceBusy, "another run is writing there")),
+            Err(fs::TryLockError::WouldBlock) => {
+                Err(io::Error::new(ErrorKind::ResourceBusy, "another run is writing there"))
+            }
             // The file system does not support locks.
             Err(fs::TryLockError::Error(_)) => Ok(None),
         }

@@ -1,9 +1,10 @@
 //! Sets of files with one commit point.
 //!
-//! The files are written to a folder inside the output folder, with a journal of the files they replace, and synced together. One rename of
-//! that folder is the commit point. Then the files of the previous set are removed from their places, and the new ones installed. A run that
-//! was interrupted in between is completed by the next one. Old and new files are never mixed: first only old files are in place, then only
-//! new ones.
+//! The files are written to a folder inside the output folder, with a journal of the files they
+//! replace, and synced together. One rename of that folder is the commit point. Then the files of
+//! the previous set are removed from their places, and the new ones installed. A run that was
+//! interrupted in between is completed by the next one. Old and new files are never mixed: first
+//! only old files are in place, then only new ones.
 
 use std::collections::HashSet;
 use std::io::{self, ErrorKind, Write};
@@ -13,8 +14,8 @@ use sha2::{Digest, Sha256};
 
 use super::journal::{JOURNAL, Journal, plain};
 use super::{
-    Hold, Kind, ScratchFile, Writer, create, hold, is_file, is_folder, is_link, kind, make_folders, names, read, remove_file,
-    remove_folder, rename, sync_folder, sync_together,
+    Hold, Kind, ScratchFile, Writer, create, hold, is_file, is_folder, is_link, kind, make_folders,
+    names, read, remove_file, remove_folder, rename, sync_folder, sync_together,
 };
 
 /// Prefix of the names that this module uses in an output folder.
@@ -25,10 +26,12 @@ const NEW: &str = ".fishplate-new";
 pub const UNFINISHED: &str = ".fishplate-unfinished";
 /// How the name of a signature ends that lies beside its file.
 pub const SIGNATURE: &str = ".minisig";
-/// Largest file before, in bytes, that is compared with the one in its place; its signature goes if it is larger.
+/// Largest file before, in bytes, that is compared with the one in its place; its signature goes if
+/// it is larger.
 const LARGEST_SIGNED: u64 = 512 << 20;
-/// Most files of a set that are open until they are synced together. A sync may take some milliseconds, whatever the size of the file, and
-/// several at the same time are hardly longer than one.
+/// Most files of a set that are open until they are synced together. A sync may take some
+/// milliseconds, whatever the size of the file, and several at the same time are hardly longer than
+/// one.
 const AT_ONCE: usize = 16;
 /// Largest manifest and journal in bytes: a hundred thousand files.
 const LARGEST_LIST: u64 = 32 << 20;
@@ -45,7 +48,8 @@ pub enum SetKind {
 }
 
 impl SetKind {
-    /// Lists the files of the last set in the format of `sha256sum`; the next set removes those that it does not replace.
+    /// Lists the files of the last set in the format of `sha256sum`; the next set removes those
+    /// that it does not replace.
     pub fn manifest(self) -> &'static str {
         match self {
             Self::Report => ".fishplate-report.sha256",
@@ -125,7 +129,8 @@ impl Set {
         Ok(())
     }
 
-    /// Adds a file by its path in the folder, with `/`. On return its bytes are written, but not in their place.
+    /// Adds a file by its path in the folder, with `/`. On return its bytes are written, but not in
+    /// their place.
     ///
     /// # Errors
     /// The system's error; `InvalidInput` for a path outside the folder.
@@ -140,7 +145,8 @@ impl Set {
     /// # Errors
     /// As [`Set::add`].
     pub fn open(&mut self, inside: &str) -> io::Result<Open> {
-        if !plain(inside) || inside.starts_with(OWN) || self.paths.iter().any(|path| path == inside) {
+        if !plain(inside) || inside.starts_with(OWN) || self.paths.iter().any(|path| path == inside)
+        {
             return Err(ErrorKind::InvalidInput.into());
         }
         self.begin()?;
@@ -192,19 +198,28 @@ impl Set {
         self.written(file)
     }
 
-    /// Moves every file to its place, and removes files of the previous set that this one does not have.
+    /// Moves every file to its place, and removes files of the previous set that this one does not
+    /// have.
     ///
     /// # Errors
-    /// The system's error. The folder then contains the complete previous set. If this could not be restored, the error says so, and the next
-    /// set written there completes this one.
+    /// The system's error. The folder then contains the complete previous set. If this could not be
+    /// restored, the error says so, and the next set written there completes this one.
     pub fn commit(mut self) -> io::Result<()> {
         self.begin()?;
         for path in &self.paths {
             if is_folder(&self.folder.join(path))? {
-                return Err(io::Error::new(ErrorKind::IsADirectory, format!("`{path}` is a folder")));
+                return Err(io::Error::new(
+                    ErrorKind::IsADirectory,
+                    format!("`{path}` is a folder"),
+                ));
             }
         }
-        let manifest: String = self.hashes.iter().zip(&self.paths).map(|(hash, path)| format!("{hash}  {path}\n")).collect();
+        let manifest: String = self
+            .hashes
+            .iter()
+            .zip(&self.paths)
+            .map(|(hash, path)| format!("{hash}  {path}\n"))
+            .collect();
         let new: HashSet<&str> = self.paths.iter().map(String::as_str).collect();
         let mut removes = before(&self.folder, self.kind.manifest())?;
         removes.retain(|path| !new.contains(path.as_str()));
@@ -218,17 +233,21 @@ impl Set {
         rename(&staged, &unfinished)?;
         // From here on an interrupted run is completed by the next one.
         let mut done = Done::default();
-        let placed = sync_folder(&self.folder).and_then(|()| place(&self.folder, &journal, &mut done));
+        let placed =
+            sync_folder(&self.folder).and_then(|()| place(&self.folder, &journal, &mut done));
         if let Err(error) = placed {
             return Err(match done.undo(&self.folder) {
                 Ok(()) => error,
                 Err(_) => io::Error::new(
                     error.kind(),
-                    format!("{error}; the folder is incomplete, and the next run that writes there completes it"),
+                    format!(
+                        "{error}; the folder is incomplete, and the next run that writes there completes it"
+                    ),
                 ),
             });
         }
-        // The new set is complete. The rest of the old one is in a folder that the next run removes if this one cannot.
+        // The new set is complete. The rest of the old one is in a folder that the next run removes
+        // if this one cannot.
         if rename(&unfinished, &staged).is_ok() {
             let _ = clear(&staged);
         }
@@ -238,19 +257,28 @@ impl Set {
         Ok(())
     }
 
-    /// Signatures of files of the set before that change or go: they are those of nothing that is still there. The manifest does not
-    /// list them where they were made later.
-    fn outdated_signatures(&self, removes: &[String], new: &HashSet<&str>) -> io::Result<Vec<String>> {
+    /// Signatures of files of the set before that change or go: they are those of nothing that is
+    /// still there. The manifest does not list them where they were made later.
+    fn outdated_signatures(
+        &self,
+        removes: &[String],
+        new: &HashSet<&str>,
+    ) -> io::Result<Vec<String>> {
         let changed = |path: &str, hash: Option<&String>| {
             let before = read(&self.folder.join(path), LARGEST_SIGNED);
-            hash.is_none() || !before.is_ok_and(|bytes| hash.is_some_and(|hash| *hash == hashed(&bytes)))
+            hash.is_none()
+                || !before.is_ok_and(|bytes| hash.is_some_and(|hash| *hash == hashed(&bytes)))
         };
         let written = self.paths.iter().zip(&self.hashes).map(|(path, hash)| (path, Some(hash)));
         let mut outdated = Vec::new();
         for (path, hash) in written.chain(removes.iter().map(|path| (path, None))) {
             let signature = format!("{path}{SIGNATURE}");
             let listed = new.contains(signature.as_str()) || removes.contains(&signature);
-            if !listed && !behind_link(&self.folder, &signature)? && is_file(&self.folder.join(&signature))? && changed(path, hash) {
+            if !listed
+                && !behind_link(&self.folder, &signature)?
+                && is_file(&self.folder.join(&signature))?
+                && changed(path, hash)
+            {
                 outdated.push(signature);
             }
         }
@@ -304,9 +332,16 @@ fn before(folder: &Path, manifest: &str) -> io::Result<Vec<String>> {
     }
     let bytes = read(&folder.join(manifest), LARGEST_LIST)?;
     let mut found = Vec::new();
-    for path in String::from_utf8_lossy(&bytes).lines().filter_map(|line| Some(line.split_once("  ")?.1)) {
-        // The manifest may have been edited: its paths must be inside this folder and not behind a link.
-        if plain(path) && !path.starts_with(OWN) && !behind_link(folder, path)? && is_file(&folder.join(path))? {
+    for path in
+        String::from_utf8_lossy(&bytes).lines().filter_map(|line| Some(line.split_once("  ")?.1))
+    {
+        // The manifest may have been edited: its paths must be inside this folder and not behind a
+        // link.
+        if plain(path)
+            && !path.starts_with(OWN)
+            && !behind_link(folder, path)?
+            && is_file(&folder.join(path))?
+        {
             found.push(path.to_string());
         }
     }
@@ -355,7 +390,9 @@ impl Done {
 fn place(folder: &Path, journal: &Journal, done: &mut Done) -> io::Result<()> {
     let unfinished = folder.join(UNFINISHED);
     for (number, path) in journal.removes.iter().chain(&journal.installs).enumerate() {
-        if matches!(kind(&folder.join(path))?, Some(Kind::File(_) | Kind::Other)) || is_link(&folder.join(path))? {
+        if matches!(kind(&folder.join(path))?, Some(Kind::File(_) | Kind::Other))
+            || is_link(&folder.join(path))?
+        {
             done.rename(folder.join(path), unfinished.join(format!("old-{number}")))?;
         }
     }
@@ -376,7 +413,9 @@ fn place(folder: &Path, journal: &Journal, done: &mut Done) -> io::Result<()> {
 fn finish(folder: &Path) -> io::Result<()> {
     let unfinished = folder.join(UNFINISHED);
     let unreadable = |error: io::Error| {
-        let says = format!("the folder contains an incomplete set of files in `{UNFINISHED}`, and {error}; inspect and remove it");
+        let says = format!(
+            "the folder contains an incomplete set of files in `{UNFINISHED}`, and {error}; inspect and remove it"
+        );
         io::Error::new(ErrorKind::InvalidData, says)
     };
     let bytes = read(&unfinished.join(JOURNAL), LARGEST_LIST).map_err(unreadable)?;
@@ -416,7 +455,9 @@ fn clear(folder: &Path) -> io::Result<()> {
 /// Removes the folders of removed files if they are empty.
 fn remove_empty(folder: &Path, removed: &[String]) {
     for path in removed {
-        for above in Path::new(path).ancestors().skip(1).take_while(|above| !above.as_os_str().is_empty()) {
+        for above in
+            Path::new(path).ancestors().skip(1).take_while(|above| !above.as_os_str().is_empty())
+        {
             if remove_folder(&folder.join(above)).is_err() {
                 break;
             }

@@ -5,17 +5,21 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::{Kind, Op, Writer, create, is_link, kind, names, pass, real, remove_file, rename, sync_folder};
+use super::{
+    Kind, Op, Writer, create, is_link, kind, names, pass, real, remove_file, rename, sync_folder,
+};
 
 /// Prefix of temporary files.
 const BEGINS: &str = ".fishplate-";
 /// Suffix of temporary files.
 const ENDS: &str = ".tmp";
-/// Number of temporary names tried; a name is taken only if a run with the same process number left one.
+/// Number of temporary names tried; a name is taken only if a run with the same process number left
+/// one.
 const MOST_NAMES: usize = 100;
 
-/// Writes a file under a temporary name in the same folder, which must exist, and renames it. On return it is on the disk. A symbolic link
-/// stays: its target is written. A device or a pipe stays too: the bytes go into it.
+/// Writes a file under a temporary name in the same folder, which must exist, and renames it. On
+/// return it is on the disk. A symbolic link stays: its target is written. A device or a pipe stays
+/// too: the bytes go into it.
 ///
 /// # Errors
 /// The system's error; the file is then unchanged.
@@ -24,7 +28,8 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
         pass(Op::Create, path)?;
         return fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
     }
-    let target = if is_link(path)? { Some(real(path)?.ok_or(io::ErrorKind::NotFound)?) } else { None };
+    let target =
+        if is_link(path)? { Some(real(path)?.ok_or(io::ErrorKind::NotFound)?) } else { None };
     let path = target.as_deref().unwrap_or(path);
     let folder = folder_of(path);
     sweep(folder);
@@ -40,7 +45,8 @@ pub fn keep(path: &Path, bytes: &[u8]) -> io::Result<()> {
     put(path, folder_of(path), bytes, false)
 }
 
-/// Writes a file that must not exist; only the owner can read a secret one. On return it is on the disk.
+/// Writes a file that must not exist; only the owner can read a secret one. On return it is on the
+/// disk.
 ///
 /// # Errors
 /// The system's error; there is then no file.
@@ -85,7 +91,11 @@ fn put(path: &Path, folder: &Path, bytes: &[u8], sync: bool) -> io::Result<()> {
 fn begin(folder: &Path) -> io::Result<(Writer, PathBuf)> {
     static NEXT: AtomicUsize = AtomicUsize::new(0);
     for _ in 0..MOST_NAMES {
-        let name = format!("{BEGINS}{}-{}{ENDS}", std::process::id(), NEXT.fetch_add(1, Ordering::Relaxed));
+        let name = format!(
+            "{BEGINS}{}-{}{ENDS}",
+            std::process::id(),
+            NEXT.fetch_add(1, Ordering::Relaxed)
+        );
         let path = folder.join(name);
         match create(&path) {
             Ok(file) if held(&file) => return Ok((file, path)),
@@ -122,7 +132,11 @@ fn linked(_: &Writer) -> bool {
 /// Removes temporary files of interrupted runs. Failure has no consequence.
 fn sweep(folder: &Path) {
     for name in names(folder).unwrap_or_default() {
-        let Some(name) = name.to_str().filter(|name| name.starts_with(BEGINS) && name.ends_with(ENDS)) else { continue };
+        let Some(name) =
+            name.to_str().filter(|name| name.starts_with(BEGINS) && name.ends_with(ENDS))
+        else {
+            continue;
+        };
         let path = folder.join(name);
         // The writer of a file has it locked.
         if super::is_file(&path).unwrap_or(false)

@@ -19,7 +19,8 @@ pub struct Catalogue {
     /// Units of the channels in expressions.
     pub units: Vec<(String, Unit)>,
     pub effects: Vec<Effect>,
-    /// The part for the diagnosis: features, tolerances, discrepancies. Interpreted by the diagnosis.
+    /// The part for the diagnosis: features, tolerances, discrepancies. Interpreted by the
+    /// diagnosis.
     pub diagnosis: Option<Node>,
 }
 
@@ -40,7 +41,8 @@ pub enum Acts {
 }
 
 impl Acts {
-    pub const ALL: [Self; 4] = [Self::Vehicle, Self::Track, Self::Environment, Self::MeasuringChain];
+    pub const ALL: [Self; 4] =
+        [Self::Vehicle, Self::Track, Self::Environment, Self::MeasuringChain];
 
     #[must_use]
     pub fn in_words(self) -> &'static str {
@@ -135,7 +137,10 @@ impl Catalogue {
         if let Some(group) = self.group(name) {
             return Some(group.channels.clone());
         }
-        self.groups.iter().any(|group| group.channels.iter().any(|channel| channel == name)).then(|| vec![name.to_string()])
+        self.groups
+            .iter()
+            .any(|group| group.channels.iter().any(|channel| channel == name))
+            .then(|| vec![name.to_string()])
     }
 }
 

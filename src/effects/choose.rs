@@ -1,5 +1,5 @@
-//! Effects as chosen on a command line: `friction=0.5`, `payload.payload.mass=3.5 t`, `sensor_gain=0.8 on Y_3R`,
-//! `friction=0.2 in zones 3, 4`.
+//! Effects as chosen on a command line: `friction=0.5`, `payload.payload.mass=3.5 t`,
+//! `sensor_gain=0.8 on Y_3R`, `friction=0.2 in zones 3, 4`.
 
 use super::catalogue::{Action, Catalogue, Effect, Parameter};
 use super::operators::Operator;
@@ -19,7 +19,8 @@ pub struct Applied {
     pub confined: Option<Confined>,
 }
 
-/// The sections to which an effect is confined: those with one of the values in a column of the section table.
+/// The sections to which an effect is confined: those with one of the values in a column of the
+/// section table.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Confined {
     /// `zone`, `direction` or `section`.
@@ -57,8 +58,8 @@ const COLUMNS: [(&str, &str); 6] = [
 /// Reads effects as written; several parameters of one effect may be given one after the other.
 ///
 /// # Errors
-/// All invalid texts: `unknown-effect`, `unknown-parameter` and `unknown-channel` with the nearest name, `range` with the range,
-/// `unknown-unit`, `unit-mismatch`, `wrong-kind`.
+/// All invalid texts: `unknown-effect`, `unknown-parameter` and `unknown-channel` with the nearest
+/// name, `range` with the range, `unknown-unit`, `unit-mismatch`, `wrong-kind`.
 pub fn choose(catalogue: &Catalogue, texts: &[String]) -> Result<Vec<Applied>, Vec<Problem>> {
     let mut chosen: Vec<Applied> = Vec::new();
     let mut problems = Vec::new();
@@ -66,18 +67,28 @@ pub fn choose(catalogue: &Catalogue, texts: &[String]) -> Result<Vec<Applied>, V
         let source = Source::new("--effect", text.clone());
         match one(catalogue, text, &source) {
             Err(problem) => problems.push(*problem),
-            Ok(applied) => match chosen
-                .iter_mut()
-                .find(|known| known.effect == applied.effect && known.channels == applied.channels && known.confined == applied.confined)
-            {
+            Ok(applied) => match chosen.iter_mut().find(|known| {
+                known.effect == applied.effect
+                    && known.channels == applied.channels
+                    && known.confined == applied.confined
+            }) {
                 // Of several parameters of an effect, each has its own text.
-                Some(known) => match known.values.iter().find(|(name, _)| applied.value(name).is_some()) {
-                    Some((name, _)) => {
-                        let says = format!("`{}` of the effect `{}` is given twice", name, applied.effect);
-                        problems.push(Problem::error("duplicate-effect", says).at(&source.whole()).help("give one value"));
+                Some(known) => {
+                    match known.values.iter().find(|(name, _)| applied.value(name).is_some()) {
+                        Some((name, _)) => {
+                            let says = format!(
+                                "`{}` of the effect `{}` is given twice",
+                                name, applied.effect
+                            );
+                            problems.push(
+                                Problem::error("duplicate-effect", says)
+                                    .at(&source.whole())
+                                    .help("give one value"),
+                            );
+                        }
+                        None => known.values.extend(applied.values),
                     }
-                    None => known.values.extend(applied.values),
-                },
+                }
                 None => chosen.push(applied),
             },
         }
@@ -85,7 +96,11 @@ pub fn choose(catalogue: &Catalogue, texts: &[String]) -> Result<Vec<Applied>, V
     if problems.is_empty() { Ok(chosen) } else { Err(problems) }
 }
 
-fn one(catalogue: &Catalogue, text: &str, source: &std::sync::Arc<Source>) -> Result<Applied, Box<Problem>> {
+fn one(
+    catalogue: &Catalogue,
+    text: &str,
+    source: &std::sync::Arc<Source>,
+) -> Result<Applied, Box<Problem>> {
     let place = |part: &str| -> Span {
         let start = part.as_ptr() as usize - text.as_ptr() as usize;
         source.span(start..start + part.len())
@@ -107,7 +122,8 @@ fn one(catalogue: &Catalogue, text: &str, source: &std::sync::Arc<Source>) -> Re
         None => (named, None),
     };
     let effect = catalogue.effect(name).ok_or_else(|| {
-        let problem = Problem::error("unknown-effect", format!("there is no effect `{name}`")).at(&place(name));
+        let problem = Problem::error("unknown-effect", format!("there is no effect `{name}`"))
+            .at(&place(name));
         Box::new(problem.suggest(name, catalogue.effects.iter().map(|effect| effect.name.as_str())))
     })?;
     let (parameter, channel) = parameter_named(effect, parameter, &place)?;
@@ -117,45 +133,79 @@ fn one(catalogue: &Catalogue, text: &str, source: &std::sync::Arc<Source>) -> Re
     };
     if value < parameter.low || value > parameter.high {
         let (low, high, unit) = (parameter.low, parameter.high, parameter.unit.suffix());
-        let says = format!("{value}{unit} is outside the range of `{}`: {low} to {high}{unit}", parameter.name);
+        let says = format!(
+            "{value}{unit} is outside the range of `{}`: {low} to {high}{unit}",
+            parameter.name
+        );
         return Err(Box::new(Problem::error("range", says).at(&place(rest))));
     }
     let mut channels: Vec<String> = channel.into_iter().collect();
     if let Action::Signals(operator, allowed) = &effect.action {
         for name in on.map_or(Vec::new(), |on| on.split(',').map(str::trim).collect()) {
-            let found = catalogue.channels(name).filter(|found| found.iter().all(|channel| allowed.contains(channel)));
+            let found = catalogue
+                .channels(name)
+                .filter(|found| found.iter().all(|channel| allowed.contains(channel)));
             channels.extend(found.ok_or_else(|| {
-                let problem = Problem::error("unknown-channel", format!("`{}` does not act on `{name}`", effect.name)).at(&place(name));
+                let problem = Problem::error(
+                    "unknown-channel",
+                    format!("`{}` does not act on `{name}`", effect.name),
+                )
+                .at(&place(name));
                 let groups = catalogue.groups.iter().map(|group| group.name.as_str());
                 Box::new(problem.suggest(name, allowed.iter().map(String::as_str).chain(groups)))
             })?);
         }
         channels = in_pairs(*operator, channels, allowed).map_err(|says| {
-            let problem = Problem::error("channel-missing", format!("`{}` {says}", effect.name)).at(&place(rest));
-            Box::new(problem.help(format!("write `{rest} on {}, {}`", allowed[0], allowed.get(1).unwrap_or(&allowed[0]))))
+            let problem = Problem::error("channel-missing", format!("`{}` {says}", effect.name))
+                .at(&place(rest));
+            Box::new(problem.help(format!(
+                "write `{rest} on {}, {}`",
+                allowed[0],
+                allowed.get(1).unwrap_or(&allowed[0])
+            )))
         })?;
         if channels.is_empty() {
             if parameter.name.contains(CHANNEL) {
-                let says = format!("`{}` acts on one channel or a group, which must be given", effect.name);
+                let says = format!(
+                    "`{}` acts on one channel or a group, which must be given",
+                    effect.name
+                );
                 return Err(Box::new(
-                    Problem::error("channel-missing", says).at(&place(rest)).help(format!("write `{rest} on {}`", allowed[0])),
+                    Problem::error("channel-missing", says)
+                        .at(&place(rest))
+                        .help(format!("write `{rest} on {}`", allowed[0])),
                 ));
             }
             channels.clone_from(allowed);
         }
     } else if let Some(on) = on {
-        let says = format!("`{}` acts on the {}, not on channels", effect.name, effect.acts.in_words());
+        let says =
+            format!("`{}` acts on the {}, not on channels", effect.name, effect.acts.in_words());
         return Err(Box::new(Problem::error("unknown-channel", says).at(&place(on))));
     }
-    Ok(Applied { effect: name.to_string(), values: vec![(parameter.name.clone(), value)], channels, confined })
+    Ok(Applied {
+        effect: name.to_string(),
+        values: vec![(parameter.name.clone(), value)],
+        channels,
+        confined,
+    })
 }
 
-/// Channels as pairs, for an operator on pairs: a swap needs two channels; for a crosstalk either channel identifies the pair.
-fn in_pairs(operator: Operator, named: Vec<String>, allowed: &[String]) -> Result<Vec<String>, &'static str> {
+/// Channels as pairs, for an operator on pairs: a swap needs two channels; for a crosstalk either
+/// channel identifies the pair.
+fn in_pairs(
+    operator: Operator,
+    named: Vec<String>,
+    allowed: &[String],
+) -> Result<Vec<String>, &'static str> {
     match operator {
-        Operator::Swap if named.len() != 2 || named[0] == named[1] => Err("exchanges two channels, which must be given"),
+        Operator::Swap if named.len() != 2 || named[0] == named[1] => {
+            Err("exchanges two channels, which must be given")
+        }
         Operator::Crosstalk => {
-            let chosen = allowed.chunks_exact(2).filter(|pair| pair.iter().any(|channel| named.contains(channel)));
+            let chosen = allowed
+                .chunks_exact(2)
+                .filter(|pair| pair.iter().any(|channel| named.contains(channel)));
             Ok(chosen.flatten().cloned().collect())
         }
         _ => Ok(named),
@@ -178,27 +228,47 @@ fn parameter_named<'a>(
                 if let Action::Signals(_, allowed) = &effect.action
                     && !allowed.iter().any(|known| known == channel)
                 {
-                    let problem = Problem::error("unknown-channel", format!("`{}` does not act on `{channel}`", effect.name));
-                    return Err(Box::new(problem.at(&place(channel)).suggest(channel, allowed.iter().map(String::as_str))));
+                    let problem = Problem::error(
+                        "unknown-channel",
+                        format!("`{}` does not act on `{channel}`", effect.name),
+                    );
+                    return Err(Box::new(
+                        problem
+                            .at(&place(channel))
+                            .suggest(channel, allowed.iter().map(String::as_str)),
+                    ));
                 }
                 return Ok((parameter, Some(channel.to_string())));
             }
-        } else if parameter.name == named || parameter.name.strip_suffix(named).is_some_and(|head| head.ends_with('.')) {
+        } else if parameter.name == named
+            || parameter.name.strip_suffix(named).is_some_and(|head| head.ends_with('.'))
+        {
             return Ok((parameter, None));
         }
     }
-    let problem = Problem::error("unknown-parameter", format!("`{}` has no parameter `{named}`", effect.name)).at(&place(named));
+    let problem = Problem::error(
+        "unknown-parameter",
+        format!("`{}` has no parameter `{named}`", effect.name),
+    )
+    .at(&place(named));
     Err(Box::new(problem.suggest(named, effect.parameter_names())))
 }
 
-fn number(parameter: &Parameter, written: &str, place: &dyn Fn(&str) -> Span) -> Result<f64, Box<Problem>> {
+fn number(
+    parameter: &Parameter,
+    written: &str,
+    place: &dyn Fn(&str) -> Span,
+) -> Result<f64, Box<Problem>> {
     if let Some((_, value)) = WORDS.iter().find(|(word, _)| *word == written) {
         return Ok(*value);
     }
-    let end = written.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c))).unwrap_or(written.len());
+    let end = written
+        .find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c)))
+        .unwrap_or(written.len());
     let (digits, unit) = written.split_at(end);
     let wrong = |says: String| Box::new(Problem::error("wrong-kind", says).at(&place(written)));
-    let value: f64 = digits.trim().parse().map_err(|_| wrong(format!("`{written}` is not a number")))?;
+    let value: f64 =
+        digits.trim().parse().map_err(|_| wrong(format!("`{written}` is not a number")))?;
     if !value.is_finite() {
         return Err(wrong(format!("`{written}` is too large")));
     }
@@ -207,7 +277,9 @@ fn number(parameter: &Parameter, written: &str, place: &dyn Fn(&str) -> Span) ->
         return Ok(value);
     }
     let unit = Unit::parse(unit).map_err(|unknown| {
-        let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word)).at(&place(unit));
+        let problem =
+            Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word))
+                .at(&place(unit));
         Box::new(unknown.near.map_or(problem.clone(), |near| problem.meant(near)))
     })?;
     if unit.dimension != parameter.unit.dimension {
@@ -220,10 +292,23 @@ fn number(parameter: &Parameter, written: &str, place: &dyn Fn(&str) -> Span) ->
 fn confinement(text: &str, place: &dyn Fn(&str) -> Span) -> Result<Confined, Box<Problem>> {
     let text = text.trim();
     let (word, values) = text.split_once(' ').unwrap_or((text, ""));
-    let column = COLUMNS.iter().find(|(known, _)| *known == word).map(|(_, column)| *column).ok_or_else(|| {
-        let problem = Problem::error("unknown-word", format!("an effect cannot be confined to `{text}`")).at(&place(text));
-        Box::new(problem.help("write `in zones 3, 4`, `in direction left` or `in sections S01, S02`"))
-    })?;
-    let values = values.split(',').map(|value| value.trim().to_string()).filter(|value| !value.is_empty()).collect();
+    let column = COLUMNS
+        .iter()
+        .find(|(known, _)| *known == word)
+        .map(|(_, column)| *column)
+        .ok_or_else(|| {
+            let problem =
+                Problem::error("unknown-word", format!("an effect cannot be confined to `{text}`"))
+                    .at(&place(text));
+            Box::new(
+                problem
+                    .help("write `in zones 3, 4`, `in direction left` or `in sections S01, S02`"),
+            )
+        })?;
+    let values = values
+        .split(',')
+        .map(|value| value.trim().to_string())
+        .filter(|value| !value.is_empty())
+        .collect();
     Ok(Confined { column: column.to_string(), values })
 }

@@ -1,4 +1,5 @@
-//! Effects as expressions of the protocol language: a channel is computed sample by sample from channels of the same record.
+//! Effects as expressions of the protocol language: a channel is computed sample by sample from
+//! channels of the same record.
 
 use super::signals::Signals;
 use crate::catalog::{FUNCTIONS, Function, Signature};
@@ -58,34 +59,54 @@ pub(super) struct Known<'a> {
 impl Formula {
     /// Reads and checks `text`, the expression for `channel`.
     ///
-    /// Problems: those of the grammar; `unknown-name` with the nearest name, `unit-mismatch`, `not-here`, `power`.
-    pub(super) fn read(channel: (&str, &Unit), text: &Text, known: Known<'_>, problems: &mut Problems) -> Option<Self> {
+    /// Problems: those of the grammar; `unknown-name` with the nearest name, `unit-mismatch`,
+    /// `not-here`, `power`.
+    pub(super) fn read(
+        channel: (&str, &Unit),
+        text: &Text,
+        known: Known<'_>,
+        problems: &mut Problems,
+    ) -> Option<Self> {
         let phrase = expression(text, problems)?;
         let mut checker = Checker { text, known, problems };
         let (tree, dimension) = checker.tree(&phrase)?;
         let (name, unit) = channel;
         if dimension != unit.dimension {
-            let says = format!("`{name}` is {}, but its expression is {}", unit.dimension.in_words(), dimension.in_words());
+            let says = format!(
+                "`{name}` is {}, but its expression is {}",
+                unit.dimension.in_words(),
+                dimension.in_words()
+            );
             problems.push(Problem::error("unit-mismatch", says).at(&text.span));
             return None;
         }
         Some(Self { channel: name.to_string(), unit: unit.clone(), tree })
     }
 
-    /// The new values of the channel in its unit; `None` if the record lacks a channel of the expression. `parameters` are in their
-    /// units, in the order of the effect.
+    /// The new values of the channel in its unit; `None` if the record lacks a channel of the
+    /// expression. `parameters` are in their units, in the order of the effect.
     ///
     /// # Errors
     /// A value is not finite; the message gives its position.
-    pub(super) fn values(&self, signals: &Signals, parameters: &[f64]) -> Option<Result<Vec<f64>, String>> {
+    pub(super) fn values(
+        &self,
+        signals: &Signals,
+        parameters: &[f64],
+    ) -> Option<Result<Vec<f64>, String>> {
         signals.channel(&self.channel)?;
         let values = self.tree.values(signals, parameters)?;
         let values: Vec<f64> = match values {
-            Values::All(values) => values.into_iter().map(|value| self.unit.from_si(value)).collect(),
+            Values::All(values) => {
+                values.into_iter().map(|value| self.unit.from_si(value)).collect()
+            }
             Values::One(value) => vec![self.unit.from_si(value); signals.axis.len()],
         };
         Some(match values.iter().position(|value| !value.is_finite()) {
-            Some(at) => Err(format!("`{}` is not finite at {:.3}", self.channel, signals.axis.get(at).copied().unwrap_or(0.0))),
+            Some(at) => Err(format!(
+                "`{}` is not finite at {:.3}",
+                self.channel,
+                signals.axis.get(at).copied().unwrap_or(0.0)
+            )),
             None => Ok(values),
         })
     }
@@ -102,11 +123,16 @@ impl Tree {
         Some(match self {
             Self::Number(value) => Values::One(*value),
             Self::Parameter(at, unit) => Values::One(unit.to_si(*parameters.get(*at)?)),
-            Self::Channel(name, unit) => Values::All(signals.channel(name)?.values.iter().map(|value| unit.to_si(*value)).collect()),
+            Self::Channel(name, unit) => Values::All(
+                signals.channel(name)?.values.iter().map(|value| unit.to_si(*value)).collect(),
+            ),
             Self::Negative(inner) => each(&[inner.values(signals, parameters)?], |x| -x[0]),
-            Self::Power(inner, exponent) => each(&[inner.values(signals, parameters)?], |x| x[0].powi(i32::from(*exponent))),
+            Self::Power(inner, exponent) => {
+                each(&[inner.values(signals, parameters)?], |x| x[0].powi(i32::from(*exponent)))
+            }
             Self::Binary(operator, sides) => {
-                let sides = [sides[0].values(signals, parameters)?, sides[1].values(signals, parameters)?];
+                let sides =
+                    [sides[0].values(signals, parameters)?, sides[1].values(signals, parameters)?];
                 each(&sides, |x| match operator {
                     Operator::Add => x[0] + x[1],
                     Operator::Subtract => x[0] - x[1],
@@ -115,8 +141,10 @@ impl Tree {
                 })
             }
             Self::Call(function, arguments) => {
-                let arguments: Vec<Values> =
-                    arguments.iter().map(|argument| argument.values(signals, parameters)).collect::<Option<_>>()?;
+                let arguments: Vec<Values> = arguments
+                    .iter()
+                    .map(|argument| argument.values(signals, parameters))
+                    .collect::<Option<_>>()?;
                 each(&arguments, function.run)
             }
         })
@@ -124,7 +152,12 @@ impl Tree {
 }
 
 fn each(arguments: &[Values], run: impl Fn(&[f64]) -> f64) -> Values {
-    let samples = arguments.iter().filter_map(|values| if let Values::All(values) = values { Some(values.len()) } else { None }).min();
+    let samples = arguments
+        .iter()
+        .filter_map(
+            |values| if let Values::All(values) = values { Some(values.len()) } else { None },
+        )
+        .min();
     let mut row = vec![0.0; arguments.len()];
     let mut at = |n: usize| {
         for (cell, values) in row.iter_mut().zip(arguments) {
@@ -157,15 +190,22 @@ impl Checker<'_> {
     fn tree(&mut self, phrase: &Phrase) -> Option<(Tree, Dimension)> {
         let span = self.text.place(phrase.range.clone());
         match &phrase.node {
-            Node::Number { value, unit } => Some((Tree::Number(*value), unit.as_ref().map_or(Dimension::ONE, |unit| unit.dimension))),
+            Node::Number { value, unit } => Some((
+                Tree::Number(*value),
+                unit.as_ref().map_or(Dimension::ONE, |unit| unit.dimension),
+            )),
             Node::Path(name) => self.named(name, &span),
-            Node::Negative(inner) => self.tree(inner).map(|(tree, dimension)| (Tree::Negative(Box::new(tree)), dimension)),
+            Node::Negative(inner) => self
+                .tree(inner)
+                .map(|(tree, dimension)| (Tree::Negative(Box::new(tree)), dimension)),
             Node::Magnitude(inner) => self.call("magnitude", std::slice::from_ref(inner), &span),
             Node::Power(inner, exponent) => {
                 let (tree, dimension) = self.tree(inner)?;
                 match dimension.power(*exponent) {
                     Some(dimension) => Some((Tree::Power(Box::new(tree), *exponent), dimension)),
-                    None => self.refuse("power", "this power is beyond any unit".to_string(), &span),
+                    None => {
+                        self.refuse("power", "this power is beyond any unit".to_string(), &span)
+                    }
                 }
             }
             Node::Binary(operator, left, right) => {
@@ -176,14 +216,31 @@ impl Checker<'_> {
                     Operator::Divide => a / b,
                     Operator::Add | Operator::Subtract if a == b => a,
                     Operator::Add | Operator::Subtract => {
-                        return self.refuse("unit-mismatch", format!("{} and {} cannot be added", a.in_words(), b.in_words()), &span);
+                        return self.refuse(
+                            "unit-mismatch",
+                            format!("{} and {} cannot be added", a.in_words(), b.in_words()),
+                            &span,
+                        );
                     }
-                    _ => return self.refuse("not-here", "a condition is not a signal".to_string(), &span),
+                    _ => {
+                        return self.refuse(
+                            "not-here",
+                            "a condition is not a signal".to_string(),
+                            &span,
+                        );
+                    }
                 };
                 Some((Tree::Binary(*operator, Box::new([left, right])), dimension))
             }
-            Node::Call(name, arguments) => self.call(&name.node, &arguments.iter().collect::<Vec<_>>(), &span),
-            _ => self.refuse("not-here", "an effect may contain only numbers, channels, parameters and functions of samples".into(), &span),
+            Node::Call(name, arguments) => {
+                self.call(&name.node, &arguments.iter().collect::<Vec<_>>(), &span)
+            }
+            _ => self.refuse(
+                "not-here",
+                "an effect may contain only numbers, channels, parameters and functions of samples"
+                    .into(),
+                &span,
+            ),
         }
     }
 
@@ -195,23 +252,39 @@ impl Checker<'_> {
         if let Some((_, unit)) = self.known.channels.iter().find(|(known, _)| known == name) {
             return Some((Tree::Channel(name.to_string(), unit.clone()), unit.dimension));
         }
-        let names = self.known.parameters.iter().chain(self.known.channels).map(|(name, _)| name.as_str());
-        let problem = Problem::error("unknown-name", format!("`{name}` is neither a parameter of this effect nor a channel with a unit"));
+        let names =
+            self.known.parameters.iter().chain(self.known.channels).map(|(name, _)| name.as_str());
+        let problem = Problem::error(
+            "unknown-name",
+            format!("`{name}` is neither a parameter of this effect nor a channel with a unit"),
+        );
         self.problems.push(problem.at(span).suggest(name, names));
         None
     }
 
-    fn call(&mut self, name: &str, arguments: &[impl std::borrow::Borrow<Phrase>], span: &Span) -> Option<(Tree, Dimension)> {
+    fn call(
+        &mut self,
+        name: &str,
+        arguments: &[impl std::borrow::Borrow<Phrase>],
+        span: &Span,
+    ) -> Option<(Tree, Dimension)> {
         let Some(function) = FUNCTIONS.iter().find(|function| function.name == name) else {
-            let problem = Problem::error("unknown-name", format!("there is no function `{name}`")).at(span);
-            self.problems.push(problem.suggest(name, FUNCTIONS.iter().map(|function| function.name)));
+            let problem =
+                Problem::error("unknown-name", format!("there is no function `{name}`")).at(span);
+            self.problems
+                .push(problem.suggest(name, FUNCTIONS.iter().map(|function| function.name)));
             return None;
         };
         let needed = if function.signature == Signature::PairSame { 2 } else { 1 };
         if arguments.len() != needed {
-            return self.refuse("wrong-kind", format!("`{name}` takes {needed}, but {} are given", arguments.len()), span);
+            return self.refuse(
+                "wrong-kind",
+                format!("`{name}` takes {needed}, but {} are given", arguments.len()),
+                span,
+            );
         }
-        let found: Vec<(Tree, Dimension)> = arguments.iter().map(|argument| self.tree(argument.borrow())).collect::<Option<_>>()?;
+        let found: Vec<(Tree, Dimension)> =
+            arguments.iter().map(|argument| self.tree(argument.borrow())).collect::<Option<_>>()?;
         let first = found[0].1;
         let dimension = match function.signature {
             Signature::Same => Some(first),
@@ -221,8 +294,15 @@ impl Checker<'_> {
             Signature::PairSame => (first == found[1].1).then_some(first),
         };
         match dimension {
-            Some(dimension) => Some((Tree::Call(function, found.into_iter().map(|(tree, _)| tree).collect()), dimension)),
-            None => self.refuse("unit-mismatch", format!("`{name}` does not take {}", found.last()?.1.in_words()), span),
+            Some(dimension) => Some((
+                Tree::Call(function, found.into_iter().map(|(tree, _)| tree).collect()),
+                dimension,
+            )),
+            None => self.refuse(
+                "unit-mismatch",
+                format!("`{name}` does not take {}", found.last()?.1.in_words()),
+                span,
+            ),
         }
     }
 }

@@ -1,4 +1,5 @@
-//! Reads the parts of a catalogue in the protocol language: `signals` of an effect, and the units of channels.
+//! Reads the parts of a catalogue in the protocol language: `signals` of an effect, and the units
+//! of channels.
 
 use super::catalogue::{Action, Parameter};
 use super::expression::{Formula, Known};
@@ -12,11 +13,25 @@ impl Reader<'_> {
     /// `units`: groups or channels with their units.
     pub fn units(&mut self, node: &Node, units: &mut Vec<(String, Unit)>) {
         if !matches!(node.value, Value::Map(_)) {
-            self.fault("wrong-kind", format!("`units` must be a map of channels and units, not {}", node.kind_in_words()), Some(node));
+            self.fault(
+                "wrong-kind",
+                format!(
+                    "`units` must be a map of channels and units, not {}",
+                    node.kind_in_words()
+                ),
+                Some(node),
+            );
         }
         for (key, written) in node.entries() {
-            let Some(unit) = self.unit(written.scalar_text().unwrap_or_default(), written) else { continue };
-            let name = Node { value: Value::Text(key.text.clone()), span: key.span.clone(), raw: key.text.clone(), exact: key.exact };
+            let Some(unit) = self.unit(written.scalar_text().unwrap_or_default(), written) else {
+                continue;
+            };
+            let name = Node {
+                value: Value::Text(key.text.clone()),
+                span: key.span.clone(),
+                raw: key.text.clone(),
+                exact: key.exact,
+            };
             for channel in self.channels(&name) {
                 units.retain(|(known, _)| *known != channel);
                 units.push((channel, unit.clone()));
@@ -25,38 +40,66 @@ impl Reader<'_> {
     }
 
     /// `signals`: channels with their expressions.
-    pub fn formulas(&mut self, effect: &Node, signals: &Node, parameters: &[Parameter]) -> Option<Action> {
+    pub fn formulas(
+        &mut self,
+        effect: &Node,
+        signals: &Node,
+        parameters: &[Parameter],
+    ) -> Option<Action> {
         for key in ["operator", "channels", "each", "together"] {
             if let Some((key, _)) = effect.entry(key) {
-                let says = format!("`{}` cannot be combined with `signals`, which defines the channels itself", key.text);
+                let says = format!(
+                    "`{}` cannot be combined with `signals`, which defines the channels itself",
+                    key.text
+                );
                 self.problems.push(Problem::error("contradiction", says).at(&key.span));
             }
         }
         if signals.entries().is_empty() {
-            let says = format!("`signals` must be a map of channels and expressions, not {}", signals.kind_in_words());
+            let says = format!(
+                "`signals` must be a map of channels and expressions, not {}",
+                signals.kind_in_words()
+            );
             self.fault("wrong-kind", says, Some(signals));
             return None;
         }
-        for parameter in parameters.iter().filter(|parameter| parameter.neutral.is_none() || parameter.name.contains(CHANNEL)) {
-            let says = format!("`{}` needs a number as `neutral`, at which the expressions change nothing", parameter.name);
+        for parameter in parameters
+            .iter()
+            .filter(|parameter| parameter.neutral.is_none() || parameter.name.contains(CHANNEL))
+        {
+            let says = format!(
+                "`{}` needs a number as `neutral`, at which the expressions change nothing",
+                parameter.name
+            );
             self.fault("key-missing", says, effect.lookup("parameters"));
         }
         let last = |name: &str| name.rsplit('.').next().unwrap_or_default().to_string();
-        let names: Vec<(String, Unit)> = parameters.iter().map(|parameter| (last(&parameter.name), parameter.unit.clone())).collect();
+        let names: Vec<(String, Unit)> = parameters
+            .iter()
+            .map(|parameter| (last(&parameter.name), parameter.unit.clone()))
+            .collect();
         let channels = self.units.clone();
         let mut formulas = Vec::new();
         for (key, written) in signals.entries() {
             let Some((_, unit)) = channels.iter().find(|(channel, _)| *channel == key.text) else {
-                let problem = Problem::error("unit-missing", format!("the channel `{}` has no unit in this catalogue", key.text));
+                let problem = Problem::error(
+                    "unit-missing",
+                    format!("the channel `{}` has no unit in this catalogue", key.text),
+                );
                 let known = channels.iter().map(|(channel, _)| channel.as_str());
                 self.problems.push(problem.at(&key.span).suggest(&key.text, known));
                 continue;
             };
             let Some(text) = written.scalar_text() else {
-                self.fault("wrong-kind", format!("an expression must be text, not {}", written.kind_in_words()), Some(written));
+                self.fault(
+                    "wrong-kind",
+                    format!("an expression must be text, not {}", written.kind_in_words()),
+                    Some(written),
+                );
                 continue;
             };
-            let text = Text { text: text.to_string(), span: written.span.clone(), exact: written.exact };
+            let text =
+                Text { text: text.to_string(), span: written.span.clone(), exact: written.exact };
             let known = Known { channels: &channels, parameters: &names };
             formulas.extend(Formula::read((&key.text, unit), &text, known, self.problems));
         }

@@ -60,7 +60,8 @@ impl Operator {
 const LOW_PASS_ORDER: usize = 2;
 
 impl Signals {
-    /// Replaces channels by formulas of the original channels; formulas with a channel that the record does not have are skipped.
+    /// Replaces channels by formulas of the original channels; formulas with a channel that the
+    /// record does not have are skipped.
     ///
     /// # Errors
     /// A value is not finite; a message.
@@ -79,14 +80,21 @@ impl Signals {
         Ok(())
     }
 
-    /// Applies an operator with its value to channels; channels that the record does not have are skipped.
+    /// Applies an operator with its value to channels; channels that the record does not have are
+    /// skipped.
     ///
-    /// For [`Operator::Crosstalk`] and [`Operator::Swap`] the channels are pairs: the changed channel and its partner.
-    /// `seed` makes the noise reproducible; it depends on the section.
+    /// For [`Operator::Crosstalk`] and [`Operator::Swap`] the channels are pairs: the changed
+    /// channel and its partner. `seed` makes the noise reproducible; it depends on the section.
     ///
     /// # Errors
     /// The low-pass is not possible at this sampling rate; a message.
-    pub fn apply(&mut self, operator: Operator, value: f64, channels: &[String], seed: u64) -> Result<(), String> {
+    pub fn apply(
+        &mut self,
+        operator: Operator,
+        value: f64,
+        channels: &[String],
+        seed: u64,
+    ) -> Result<(), String> {
         match operator {
             Operator::Shift => self.axis.iter_mut().for_each(|x| *x += value),
             Operator::Swap => {
@@ -100,18 +108,32 @@ impl Signals {
             }
             Operator::Crosstalk => {
                 for pair in channels.chunks_exact(2) {
-                    if let (Some(to), Some(from)) = (self.position(&pair[0]), self.position(&pair[1])) {
+                    if let (Some(to), Some(from)) =
+                        (self.position(&pair[0]), self.position(&pair[1]))
+                    {
                         let partner = self.channels[from].values.clone();
-                        self.channels[to].values.iter_mut().zip(partner).for_each(|(x, y)| *x += value * y);
+                        self.channels[to]
+                            .values
+                            .iter_mut()
+                            .zip(partner)
+                            .for_each(|(x, y)| *x += value * y);
                     }
                 }
             }
             Operator::LowPass => {
-                let filter = Filter::design(Band::LowPass(value), LOW_PASS_ORDER, self.rate, Phase::Causal, Cutoff::PerPass);
+                let filter = Filter::design(
+                    Band::LowPass(value),
+                    LOW_PASS_ORDER,
+                    self.rate,
+                    Phase::Causal,
+                    Cutoff::PerPass,
+                );
                 let filter = filter.map_err(|error| error.to_string())?;
                 for name in channels {
                     if let Some(at) = self.position(name) {
-                        self.channels[at].values = filter.apply(&self.channels[at].values).map_err(|error| error.to_string())?;
+                        self.channels[at].values = filter
+                            .apply(&self.channels[at].values)
+                            .map_err(|error| error.to_string())?;
                     }
                 }
             }
@@ -132,7 +154,9 @@ fn each(operator: Operator, value: f64, values: &mut [f64], rate: f64, seed: u64
     match operator {
         Operator::Gain | Operator::Polarity => values.iter_mut().for_each(|x| *x *= value),
         Operator::Offset => values.iter_mut().for_each(|x| *x += value),
-        Operator::Drift => values.iter_mut().enumerate().for_each(|(n, x)| *x += value * n as f64 / rate),
+        Operator::Drift => {
+            values.iter_mut().enumerate().for_each(|(n, x)| *x += value * n as f64 / rate)
+        }
         Operator::Clip => values.iter_mut().for_each(|x| *x = x.clamp(-value, value)),
         Operator::Noise => {
             let mut noise = Gauss::new(seed);
@@ -176,7 +200,8 @@ mod tests {
     use crate::effects::signals::Channel;
 
     fn two() -> Signals {
-        let channel = |name: &str, values: &[f64]| Channel { name: name.into(), values: values.to_vec() };
+        let channel =
+            |name: &str, values: &[f64]| Channel { name: name.into(), values: values.to_vec() };
         Signals {
             axis: vec![0.0, 1.0, 2.0],
             over_time: false,
@@ -196,11 +221,17 @@ mod tests {
     fn operators_by_hand() {
         let untouched = vec![4.0, -5.0, 6.0];
         assert_eq!(after(Operator::Gain, 2.0, &["a"]), [vec![2.0, 4.0, 6.0], untouched.clone()]);
-        assert_eq!(after(Operator::Polarity, -1.0, &["a"]), [vec![-1.0, -2.0, -3.0], untouched.clone()]);
+        assert_eq!(
+            after(Operator::Polarity, -1.0, &["a"]),
+            [vec![-1.0, -2.0, -3.0], untouched.clone()]
+        );
         assert_eq!(after(Operator::Offset, 0.5, &["a"]), [vec![1.5, 2.5, 3.5], untouched.clone()]);
         assert_eq!(after(Operator::Drift, 4.0, &["a"]), [vec![1.0, 4.0, 7.0], untouched.clone()]);
         assert_eq!(after(Operator::Clip, 4.5, &["b"]), [vec![1.0, 2.0, 3.0], vec![4.0, -4.5, 4.5]]);
-        assert_eq!(after(Operator::Swap, 1.0, &["a", "b"]), [untouched.clone(), vec![1.0, 2.0, 3.0]]);
+        assert_eq!(
+            after(Operator::Swap, 1.0, &["a", "b"]),
+            [untouched.clone(), vec![1.0, 2.0, 3.0]]
+        );
         assert_eq!(after(Operator::Crosstalk, 0.1, &["a", "b"]), [vec![1.4, 1.5, 3.6], untouched]);
     }
 
@@ -211,6 +242,9 @@ mod tests {
         let values: Vec<f64> = (0..100_000).map(|_| gauss.next()).collect();
         let mean = values.iter().sum::<f64>() / 1e5;
         let variance = values.iter().map(|x| x * x).sum::<f64>() / 1e5;
-        assert!(mean.abs() < 4.0 / 1e5_f64.sqrt() && (variance - 1.0).abs() < 4.0 * (2.0_f64 / 1e5).sqrt());
+        assert!(
+            mean.abs() < 4.0 / 1e5_f64.sqrt()
+                && (variance - 1.0).abs() < 4.0 * (2.0_f64 / 1e5).sqrt()
+        );
     }
 }

@@ -26,21 +26,28 @@ const EFFECT: [&str; 14] = [
     "settled by",
     "tolerance",
 ];
-const PARAMETER: [&str; 9] = ["unit", "neutral", "default", "range", "trials", "means", "model", "simulators", "vanishes"];
+const PARAMETER: [&str; 9] =
+    ["unit", "neutral", "default", "range", "trials", "means", "model", "simulators", "vanishes"];
 /// Placeholder for a channel in the name of a parameter.
 pub const CHANNEL: &str = "<channel>";
 
 /// Finds the text of an extended catalogue.
 pub type Find<'a> = &'a dyn Fn(&str, &Source) -> Result<Arc<Source>, Box<Problem>>;
 
-/// Reads a catalogue. An extended catalogue is read first; effects of the same name replace its effects.
+/// Reads a catalogue. An extended catalogue is read first; effects of the same name replace its
+/// effects.
 ///
 /// `known` lists the parameters of the built-in model.
 ///
-/// Problems: `yaml`, `unknown-key`, `key-missing`, `wrong-kind`, `unknown-unit`, `unit-mismatch`, `range`, `unknown-operator`,
-/// `unknown-channel`, `unknown-parameter`, `extends-loop`; those of expressions: `unit-missing`, `unknown-name`, `not-here`,
-/// `contradiction`.
-pub fn read(source: &Arc<Source>, find: Find<'_>, known: &ModelParameters<'_>, problems: &mut Problems) -> Option<Catalogue> {
+/// Problems: `yaml`, `unknown-key`, `key-missing`, `wrong-kind`, `unknown-unit`, `unit-mismatch`,
+/// `range`, `unknown-operator`, `unknown-channel`, `unknown-parameter`, `extends-loop`; those of
+/// expressions: `unit-missing`, `unknown-name`, `not-here`, `contradiction`.
+pub fn read(
+    source: &Arc<Source>,
+    find: Find<'_>,
+    known: &ModelParameters<'_>,
+    problems: &mut Problems,
+) -> Option<Catalogue> {
     read_below(source, find, known, problems, 0)
 }
 
@@ -61,7 +68,11 @@ fn read_below(
     let mut base = None;
     if let Some(named) = reader.text(&tree, "extends") {
         if depth > 8 {
-            reader.fault("extends-loop", "catalogues extend each other in a circle", tree.get("extends"));
+            reader.fault(
+                "extends-loop",
+                "catalogues extend each other in a circle",
+                tree.get("extends"),
+            );
         } else {
             match find(&named, source) {
                 Ok(text) => base = read_below(&text, find, known, reader.problems, depth + 1),
@@ -105,7 +116,9 @@ fn read_below(
         if removed && catalogue.effect(&key.text).is_none() {
             let known = catalogue.effects.iter().map(|effect| effect.name.as_str());
             let says = format!("there is no effect `{}` to remove", key.text);
-            reader.problems.push(Problem::error("unknown-effect", says).at(&key.span).suggest(&key.text, known));
+            reader.problems.push(
+                Problem::error("unknown-effect", says).at(&key.span).suggest(&key.text, known),
+            );
         }
         catalogue.effects.retain(|effect| effect.name != key.text);
         if removed {
@@ -136,11 +149,17 @@ impl Reader<'_> {
 
     fn keys(&mut self, node: &Node, known: &[&str], what: &str) {
         if !matches!(node.value, Value::Map(_)) {
-            return self.fault("wrong-kind", format!("{what} must be a map of keys and values, not {}", node.kind_in_words()), Some(node));
+            return self.fault(
+                "wrong-kind",
+                format!("{what} must be a map of keys and values, not {}", node.kind_in_words()),
+                Some(node),
+            );
         }
         for (key, _) in node.entries() {
             if !known.contains(&key.text.as_str()) {
-                let problem = Problem::error("unknown-key", format!("{what} has no key `{}`", key.text)).at(&key.span);
+                let problem =
+                    Problem::error("unknown-key", format!("{what} has no key `{}`", key.text))
+                        .at(&key.span);
                 self.problems.push(problem.suggest(&key.text, known.iter().copied()));
             }
         }
@@ -151,13 +170,20 @@ impl Reader<'_> {
         if let Some(text) = found.scalar_text() {
             return Some(text.trim().to_string());
         }
-        self.fault("wrong-kind", format!("`{key}` must be text, not {}", found.kind_in_words()), Some(found));
+        self.fault(
+            "wrong-kind",
+            format!("`{key}` must be text, not {}", found.kind_in_words()),
+            Some(found),
+        );
         None
     }
 
     fn need_text(&mut self, node: &Node, key: &str) -> Option<String> {
         if node.get(key).is_none() {
-            self.problems.push(Problem::error("key-missing", format!("`{key}` is missing")).at(&node.span.part(0..0)));
+            self.problems.push(
+                Problem::error("key-missing", format!("`{key}` is missing"))
+                    .at(&node.span.part(0..0)),
+            );
         }
         self.text(node, key)
     }
@@ -178,7 +204,8 @@ impl Reader<'_> {
         if let Some(text) = node.scalar_text() {
             return vec![text.to_string()];
         }
-        let texts: Vec<String> = node.items().iter().filter_map(|item| Some(item.scalar_text()?.to_string())).collect();
+        let texts: Vec<String> =
+            node.items().iter().filter_map(|item| Some(item.scalar_text()?.to_string())).collect();
         if !matches!(node.value, Value::List(_)) || texts.len() != node.items().len() {
             self.fault("wrong-kind", "expected a list of names", Some(node));
         }
@@ -188,7 +215,11 @@ impl Reader<'_> {
     fn number(&mut self, node: &Node, key: &str) -> Option<f64> {
         let found = node.get(key)?;
         if found.number().is_none() {
-            self.fault("wrong-kind", format!("`{key}` must be a number, not {}", found.kind_in_words()), Some(found));
+            self.fault(
+                "wrong-kind",
+                format!("`{key}` must be a number, not {}", found.kind_in_words()),
+                Some(found),
+            );
         }
         found.number()
     }
@@ -211,10 +242,16 @@ impl Reader<'_> {
             } else if self.groups.iter().any(|group| group.channels.contains(&name)) {
                 channels.push(name);
             } else {
-                let names: Vec<String> =
-                    self.groups.iter().flat_map(|group| [vec![group.name.clone()], group.channels.clone()].concat()).collect();
-                let problem =
-                    Problem::error("unknown-channel", format!("`{name}` is neither a group nor a channel of a group")).at(&node.span);
+                let names: Vec<String> = self
+                    .groups
+                    .iter()
+                    .flat_map(|group| [vec![group.name.clone()], group.channels.clone()].concat())
+                    .collect();
+                let problem = Problem::error(
+                    "unknown-channel",
+                    format!("`{name}` is neither a group nor a channel of a group"),
+                )
+                .at(&node.span);
                 self.problems.push(problem.suggest(&name, names.iter().map(String::as_str)));
             }
         }
@@ -225,8 +262,10 @@ impl Reader<'_> {
         self.keys(node, &EFFECT, "an effect");
         let acts = self.need_text(node, "acts on")?;
         let Some(acts) = Acts::ALL.into_iter().find(|known| known.in_words() == acts) else {
-            let problem = Problem::error("unknown-word", format!("an effect does not act on `{acts}`"));
-            let problem = node.get("acts on").map_or(problem.clone(), |node| problem.at(&node.span));
+            let problem =
+                Problem::error("unknown-word", format!("an effect does not act on `{acts}`"));
+            let problem =
+                node.get("acts on").map_or(problem.clone(), |node| problem.at(&node.span));
             self.problems.push(problem.suggest(&acts, Acts::ALL.map(Acts::in_words)));
             return None;
         };
@@ -243,7 +282,10 @@ impl Reader<'_> {
             if node.get("parameters").is_some_and(|node| !node.entries().is_empty()) {
                 return None;
             }
-            self.problems.push(Problem::error("key-missing", format!("the effect `{name}` has no parameters")).at(&key.span));
+            self.problems.push(
+                Problem::error("key-missing", format!("the effect `{name}` has no parameters"))
+                    .at(&key.span),
+            );
             return None;
         }
         let action = self.action(node, &parameters)?;
@@ -270,8 +312,10 @@ impl Reader<'_> {
         }
         let Some(name) = self.text(node, "operator") else { return Some(Action::Simulator) };
         let Some(operator) = Operator::ALL.into_iter().find(|known| known.name() == name) else {
-            let problem = Problem::error("unknown-operator", format!("there is no operator `{name}`"));
-            let problem = node.get("operator").map_or(problem.clone(), |node| problem.at(&node.span));
+            let problem =
+                Problem::error("unknown-operator", format!("there is no operator `{name}`"));
+            let problem =
+                node.get("operator").map_or(problem.clone(), |node| problem.at(&node.span));
             self.problems.push(problem.suggest(&name, Operator::ALL.map(Operator::name)));
             return None;
         };
@@ -282,9 +326,16 @@ impl Reader<'_> {
         Some(Action::Signals(operator, channels))
     }
 
-    /// Candidates of the diagnosis. `fit` lists the parameters that are varied together; otherwise each parameter with trials is varied by
-    /// itself. `each` and `together` list the channels on which operators act.
-    fn fits(&mut self, node: &Node, parameters: &[Parameter], trials: &[Vec<f64>], action: &Action) -> Vec<Fit> {
+    /// Candidates of the diagnosis. `fit` lists the parameters that are varied together; otherwise
+    /// each parameter with trials is varied by itself. `each` and `together` list the channels on
+    /// which operators act.
+    fn fits(
+        &mut self,
+        node: &Node,
+        parameters: &[Parameter],
+        trials: &[Vec<f64>],
+        action: &Action,
+    ) -> Vec<Fit> {
         let mut lists = Vec::new();
         if let Some(each) = node.get("each") {
             lists.extend(self.channels(each).into_iter().map(|channel| vec![channel]));
@@ -293,19 +344,32 @@ impl Reader<'_> {
             lists.push(self.channels(item));
         }
         if lists.is_empty() {
-            lists.push(if let Action::Signals(_, channels) = action { channels.clone() } else { Vec::new() });
+            lists.push(if let Action::Signals(_, channels) = action {
+                channels.clone()
+            } else {
+                Vec::new()
+            });
         }
         let axis = |at: usize| (at, trials[at].clone());
         let sets: Vec<Vec<usize>> = match node.get("fit") {
-            None => (0..parameters.len()).filter(|at| !trials[*at].is_empty()).map(|at| vec![at]).collect(),
+            None => (0..parameters.len())
+                .filter(|at| !trials[*at].is_empty())
+                .map(|at| vec![at])
+                .collect(),
             Some(fit) => {
                 let mut sets = Vec::new();
                 for item in fit.items() {
                     let names = self.list(item);
-                    let found: Vec<usize> =
-                        names.iter().filter_map(|name| parameters.iter().position(|known| known.name == *name)).collect();
+                    let found: Vec<usize> = names
+                        .iter()
+                        .filter_map(|name| parameters.iter().position(|known| known.name == *name))
+                        .collect();
                     if found.len() < names.len() || found.iter().any(|at| trials[*at].is_empty()) {
-                        self.fault("unknown-parameter", "`fit` must list parameters of this effect that have `trials`", Some(item));
+                        self.fault(
+                            "unknown-parameter",
+                            "`fit` must list parameters of this effect that have `trials`",
+                            Some(item),
+                        );
                     } else {
                         sets.push(found);
                     }
@@ -313,7 +377,9 @@ impl Reader<'_> {
                 sets
             }
         };
-        sets.into_iter().map(|set| Fit { axes: set.into_iter().map(axis).collect(), channels: lists.clone() }).collect()
+        sets.into_iter()
+            .map(|set| Fit { axes: set.into_iter().map(axis).collect(), channels: lists.clone() })
+            .collect()
     }
 
     fn parameter(&mut self, name: &str, node: &Node) -> Option<(Parameter, Vec<f64>)> {
@@ -330,13 +396,21 @@ impl Reader<'_> {
             return None;
         };
         if low > high {
-            self.fault("range", format!("the range of `{name}` is empty: {low} to {high}"), node.get("range"));
+            self.fault(
+                "range",
+                format!("the range of `{name}` is empty: {low} to {high}"),
+                node.get("range"),
+            );
             return None;
         }
         let mut trials = self.numbers(node, "trials").unwrap_or_default();
         trials.sort_by(f64::total_cmp);
         for trial in trials.iter().filter(|trial| **trial < low || **trial > high) {
-            self.fault("range", format!("the trial {trial} is outside the range {low} to {high} of `{name}`"), node.get("trials"));
+            self.fault(
+                "range",
+                format!("the trial {trial} is outside the range {low} to {high} of `{name}`"),
+                node.get("trials"),
+            );
         }
         let neutral = match node.get("neutral") {
             None => None,
@@ -352,20 +426,41 @@ impl Reader<'_> {
         let mut simulators = Vec::new();
         for (simulator, target) in node.get("simulators").map_or(&[][..], Node::entries) {
             let (text, factor) = match &target.value {
-                Value::Map(_) => (self.need_text(target, "parameter")?, self.number(target, "factor").unwrap_or(1.0)),
+                Value::Map(_) => (
+                    self.need_text(target, "parameter")?,
+                    self.number(target, "factor").unwrap_or(1.0),
+                ),
                 _ => (target.scalar_text().unwrap_or_default().to_string(), 1.0),
             };
             simulators.push((simulator.text.clone(), text, factor));
         }
         let meaning = self.text(node, "means").unwrap_or_default();
         let vanishes_high = self.text(node, "vanishes").as_deref() == Some("high");
-        Some((Parameter { name: name.to_string(), unit, neutral, default, low, high, meaning, vanishes_high, model, simulators }, trials))
+        Some((
+            Parameter {
+                name: name.to_string(),
+                unit,
+                neutral,
+                default,
+                low,
+                high,
+                meaning,
+                vanishes_high,
+                model,
+                simulators,
+            },
+            trials,
+        ))
     }
 
     pub fn unit(&mut self, text: &str, node: &Node) -> Option<Unit> {
         Unit::parse(text)
             .map_err(|unknown| {
-                let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word)).at(&node.span);
+                let problem = Problem::error(
+                    "unknown-unit",
+                    format!("`{}` is not a known unit", unknown.word),
+                )
+                .at(&node.span);
                 self.problems.push(match unknown.near {
                     Some(near) => problem.meant(near),
                     None => problem,
@@ -376,13 +471,20 @@ impl Reader<'_> {
 
     fn model(&mut self, parameter: &str, unit: &Unit, node: &Node) -> Option<(String, f64)> {
         let Some((_, wanted)) = self.known.iter().find(|(known, _)| *known == parameter) else {
-            let problem = Problem::error("unknown-parameter", format!("the model has no parameter `{parameter}`")).at(&node.span);
-            self.problems.push(problem.suggest(parameter, self.known.iter().map(|(known, _)| *known)));
+            let problem = Problem::error(
+                "unknown-parameter",
+                format!("the model has no parameter `{parameter}`"),
+            )
+            .at(&node.span);
+            self.problems
+                .push(problem.suggest(parameter, self.known.iter().map(|(known, _)| *known)));
             return None;
         };
         let wanted = Unit::parse(wanted).ok()?;
         if wanted.dimension != unit.dimension {
-            let says = format!("`{parameter}` of the model is in {wanted}, which is another quantity than {unit}");
+            let says = format!(
+                "`{parameter}` of the model is in {wanted}, which is another quantity than {unit}"
+            );
             self.problems.push(Problem::error("unit-mismatch", says).at(&node.span));
             return None;
         }

@@ -22,7 +22,16 @@ pub enum Format {
 }
 
 impl Format {
-    pub const ALL: [Self; 8] = [Self::Csv, Self::Ascii, Self::Mdf4, Self::Mat, Self::Xlsx, Self::Parquet, Self::Arrow, Self::Tdms];
+    pub const ALL: [Self; 8] = [
+        Self::Csv,
+        Self::Ascii,
+        Self::Mdf4,
+        Self::Mat,
+        Self::Xlsx,
+        Self::Parquet,
+        Self::Arrow,
+        Self::Tdms,
+    ];
 
     /// The word in a mapping.
     pub fn word(self) -> &'static str {
@@ -82,12 +91,16 @@ const MDF: &str = "convert it to MDF 4, for example with asammdf: `asammdf.MDF(f
 const DIADEM: &str = "export it in DIAdem as TDMS (.tdms) or as CSV";
 const FEATHER: &str = "write it as Feather version 2 or as Parquet, for example with pyarrow";
 const MAT: &str = "save it in MATLAB with `save(file, '-v7')` or `'-v7.3'`";
-const NETCDF: &str = "export it as CSV or Parquet, for example with xarray: `to_dataframe().to_parquet(file)`";
+const NETCDF: &str =
+    "export it as CSV or Parquet, for example with xarray: `to_dataframe().to_parquet(file)`";
 const UNPACK: &str = "unpack it, and import the files in it";
 
 /// First bytes of formats that are not read.
 const SIGNATURES: &[(&[u8], NotRead)] = &[
-    (b"\xd0\xcf\x11\xe0", ("an Excel workbook of the old format (xls) or another file of Microsoft Office", EXCEL)),
+    (
+        b"\xd0\xcf\x11\xe0",
+        ("an Excel workbook of the old format (xls) or another file of Microsoft Office", EXCEL),
+    ),
     (b"CDF\x01", ("a NetCDF file", NETCDF)),
     (b"CDF\x02", ("a NetCDF file", NETCDF)),
     (b"CDF\x05", ("a NetCDF file", NETCDF)),
@@ -119,8 +132,20 @@ const ENDINGS: &[(&str, NotRead)] = &[
     ("tdm", ("a DIAdem file", DIADEM)),
     ("tdx", ("a DIAdem file", DIADEM)),
     ("r64", ("a DIAdem file", DIADEM)),
-    ("sbr", ("a binary result of Simpack", "export the channels in the post-processor as ASCII or MATLAB")),
-    ("spr", ("a binary result of Simpack", "export the channels in the post-processor as ASCII or MATLAB")),
+    (
+        "sbr",
+        (
+            "a binary result of Simpack",
+            "export the channels in the post-processor as ASCII or MATLAB",
+        ),
+    ),
+    (
+        "spr",
+        (
+            "a binary result of Simpack",
+            "export the channels in the post-processor as ASCII or MATLAB",
+        ),
+    ),
     ("pxp", ("an Igor file", "export it as CSV")),
     ("erg", ("a result of CarMaker", "export it as CSV or MDF 4")),
     ("sav", ("an SPSS file", "export it as CSV")),
@@ -128,33 +153,54 @@ const ENDINGS: &[(&str, NotRead)] = &[
 ];
 
 /// The format of a file.
-pub(super) fn of(bytes: &[u8], path: &Path, shown: &str, options: &Options) -> Result<Format, Problem> {
+pub(super) fn of(
+    bytes: &[u8],
+    path: &Path,
+    shown: &str,
+    options: &Options,
+) -> Result<Format, Problem> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("").to_lowercase();
     let (content, unread) = match content(bytes, &ending) {
         Ok(content) => (content, None),
         Err(unread) => (None, Some(unread)),
     };
     let mislabelled = |said: String, is: &str, help: &str| {
-        Err(Problem::error("format-mislabelled", format!("{said}, but its content is {is}")).help(help))
+        Err(Problem::error("format-mislabelled", format!("{said}, but its content is {is}"))
+            .help(help))
     };
     if let Some((what, help)) = unread {
-        return Err(Problem::error("format-not-read", format!("`{shown}` is {what}, which is not read")).help(help));
+        return Err(Problem::error(
+            "format-not-read",
+            format!("`{shown}` is {what}, which is not read"),
+        )
+        .help(help));
     }
     let looks_text = !binary(bytes);
     match (options.form, content) {
-        (Some(form), Some(content)) if form == content || form.is_text() && content.is_text() => Ok(form),
+        (Some(form), Some(content)) if form == content || form.is_text() && content.is_text() => {
+            Ok(form)
+        }
         (Some(form), Some(content)) => {
-            let help = format!("write `{}` for its form, or check whether this is the right file", content.word());
+            let help = format!(
+                "write `{}` for its form, or check whether this is the right file",
+                content.word()
+            );
             mislabelled(format!("`{shown}` is said to be {}", form.title()), content.title(), &help)
         }
         (Some(form), None) if form.is_text() && looks_text => Ok(form),
         (Some(form), None) => {
             let is = if looks_text { "text" } else { "not of a known format" };
-            mislabelled(format!("`{shown}` is said to be {}", form.title()), is, "check whether the file is complete, and its form")
+            mislabelled(
+                format!("`{shown}` is said to be {}", form.title()),
+                is,
+                "check whether the file is complete, and its form",
+            )
         }
         (None, Some(content)) => Ok(content),
         (None, None) => {
-            if let Some(format) = Format::ALL.into_iter().find(|format| format.endings().contains(&ending.as_str())) {
+            if let Some(format) =
+                Format::ALL.into_iter().find(|format| format.endings().contains(&ending.as_str()))
+            {
                 let is = if looks_text { "text" } else { "not of this format" };
                 return mislabelled(
                     format!("`{shown}` ends like {}", format.title()),
@@ -162,15 +208,24 @@ pub(super) fn of(bytes: &[u8], path: &Path, shown: &str, options: &Options) -> R
                     "check whether the file is complete; if it is a text, say `form: csv`",
                 );
             }
-            if let Some((_, (what, help))) = ENDINGS.iter().find(|(known, _)| *known == ending && !looks_text) {
-                return Err(Problem::error("format-not-read", format!("`{shown}` is {what}, which is not read")).help(*help));
+            if let Some((_, (what, help))) =
+                ENDINGS.iter().find(|(known, _)| *known == ending && !looks_text)
+            {
+                return Err(Problem::error(
+                    "format-not-read",
+                    format!("`{shown}` is {what}, which is not read"),
+                )
+                .help(*help));
             }
             if looks_text {
                 return Ok(Format::Csv);
             }
             let words: Vec<&str> = Format::ALL.iter().map(|format| format.word()).collect();
-            Err(Problem::error("format-unknown", format!("`{shown}` is neither a text nor of a known binary format"))
-                .help(format!("formats that are read: {}; export it in one of them", words.join(", "))))
+            Err(Problem::error(
+                "format-unknown",
+                format!("`{shown}` is neither a text nor of a known binary format"),
+            )
+            .help(format!("formats that are read: {}; export it in one of them", words.join(", "))))
         }
     }
 }
@@ -208,7 +263,9 @@ fn content(bytes: &[u8], ending: &str) -> Result<Option<Format>, NotRead> {
             _ => Ok(Some(Format::Mat)),
         };
     }
-    if starts(b"MATLAB 5.0") || matches!(bytes.get(124..128), Some([0, 1, b'I', b'M'] | [1, 0, b'M', b'I'])) {
+    if starts(b"MATLAB 5.0")
+        || matches!(bytes.get(124..128), Some([0, 1, b'I', b'M'] | [1, 0, b'M', b'I']))
+    {
         return Ok(Some(Format::Mat));
     }
     // MAT v4 begins with a number of type, below 5000, and three small numbers.
@@ -223,7 +280,9 @@ fn content(bytes: &[u8], ending: &str) -> Result<Option<Format>, NotRead> {
 
 /// The HDF5 signature, at the start or after a user block.
 fn hdf5(bytes: &[u8]) -> bool {
-    [0, 512, 1024, 2048].into_iter().any(|at| bytes.get(at..).is_some_and(|rest| rest.starts_with(b"\x89HDF\r\n\x1a\n")))
+    [0, 512, 1024, 2048]
+        .into_iter()
+        .any(|at| bytes.get(at..).is_some_and(|rest| rest.starts_with(b"\x89HDF\r\n\x1a\n")))
 }
 
 /// A zip archive, by the names in it, which are not compressed.
@@ -239,7 +298,10 @@ fn zip(bytes: &[u8]) -> Result<Option<Format>, NotRead> {
         return Err(("an OpenDocument spreadsheet", EXCEL));
     }
     if has(b".npy") {
-        return Err(("a NumPy archive", "write it as Parquet or CSV with the names of the channels"));
+        return Err((
+            "a NumPy archive",
+            "write it as Parquet or CSV with the names of the channels",
+        ));
     }
     Err(("a zip archive", UNPACK))
 }
@@ -251,7 +313,8 @@ fn contains(bytes: &[u8], what: &[u8]) -> bool {
 /// Bytes looked at to tell text from other content.
 const LOOKED_AT: usize = 4096;
 
-/// Whether bytes are not a text: control characters, but for UTF-16 and UTF-32, where every other byte or more is zero.
+/// Whether bytes are not a text: control characters, but for UTF-16 and UTF-32, where every other
+/// byte or more is zero.
 pub(super) fn binary(bytes: &[u8]) -> bool {
     let start = &bytes[..bytes.len().min(LOOKED_AT)];
     if super::text::wide(start).is_some() {
@@ -263,8 +326,11 @@ pub(super) fn binary(bytes: &[u8]) -> bool {
 /// A format whose reader this program was built without.
 #[cfg(not(feature = "foreign"))]
 pub(super) fn not_built(format: Format, shown: &str) -> Problem {
-    Problem::error("format-not-read", format!("`{shown}` is {}; this program was built without its reader", format.title()))
-        .help("build it with the feature `foreign`, or export the data as CSV or Parquet")
+    Problem::error(
+        "format-not-read",
+        format!("`{shown}` is {}; this program was built without its reader", format.title()),
+    )
+    .help("build it with the feature `foreign`, or export the data as CSV or Parquet")
 }
 
 #[cfg(test)]
@@ -272,7 +338,8 @@ mod tests {
     use super::*;
 
     fn code(bytes: &[u8], name: &str, form: Option<Format>) -> Result<Format, &'static str> {
-        of(bytes, Path::new(name), name, &Options { form, ..Options::default() }).map_err(|problem| problem.code)
+        of(bytes, Path::new(name), name, &Options { form, ..Options::default() })
+            .map_err(|problem| problem.code)
     }
 
     #[test]
@@ -284,8 +351,14 @@ mod tests {
         assert_eq!(code(b"\xd0\xcf\x11\xe0\0\0", "x.xlsx", None), Err("format-not-read"));
         assert_eq!(code(b"\x89HDF\r\n\x1a\n", "x.nc", None), Err("format-not-read"));
         assert_eq!(code(b"\x89HDF\r\n\x1a\n", "x.mat", None), Ok(Format::Mat));
-        assert_eq!(code(b"\0\0\0\0\x02\0\0\0\x03\0\0\0\0\0\0\0", "x.mat", None), Err("format-not-read"));
-        assert_eq!(code(b"PK\x03\x04..mimetypeapplication/vnd.oasis.opendocument.spreadsheet", "x", None), Err("format-not-read"));
+        assert_eq!(
+            code(b"\0\0\0\0\x02\0\0\0\x03\0\0\0\0\0\0\0", "x.mat", None),
+            Err("format-not-read")
+        );
+        assert_eq!(
+            code(b"PK\x03\x04..mimetypeapplication/vnd.oasis.opendocument.spreadsheet", "x", None),
+            Err("format-not-read")
+        );
     }
 
     #[test]
@@ -293,7 +366,10 @@ mod tests {
         assert_eq!(code(b"a;b\n1;2\n", "x.mat", None), Err("format-mislabelled"));
         assert_eq!(code(b"a;b\n1;2\n", "x.mat", Some(Format::Csv)), Ok(Format::Csv));
         assert_eq!(code(b"a;b\n1;2\n", "x.csv", Some(Format::Mat)), Err("format-mislabelled"));
-        assert_eq!(code(b"TDSm\x0e\0\0\0", "x.tdms", Some(Format::Parquet)), Err("format-mislabelled"));
+        assert_eq!(
+            code(b"TDSm\x0e\0\0\0", "x.tdms", Some(Format::Parquet)),
+            Err("format-mislabelled")
+        );
         assert_eq!(code(b"\x01\x02\x03\x04", "x.csv", None), Err("format-unknown"));
     }
 

@@ -18,15 +18,27 @@ pub(super) const MOST_CHANNELS: usize = 100_000;
 
 /// All bytes of a plain file.
 pub(super) fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, Vec<Problem>> {
-    let unreadable =
-        |why: &dyn std::fmt::Display| vec![Problem::error("file-unreadable", format!("`{shown}` {} {why}", crate::data::text::UNREADABLE))];
+    let unreadable = |why: &dyn std::fmt::Display| {
+        vec![Problem::error(
+            "file-unreadable",
+            format!("`{shown}` {} {why}", crate::data::text::UNREADABLE),
+        )]
+    };
     let too_large = |size: u64| {
         let says = format!("`{shown}` has {} MB; the maximum is {} MB", size >> 20, LARGEST >> 20);
-        vec![Problem::error("file-too-large", says).help("export it in parts, or leave out channels that are not needed")]
+        vec![
+            Problem::error("file-too-large", says)
+                .help("export it in parts, or leave out channels that are not needed"),
+        ]
     };
     // Other kinds are refused before they are opened, since reading a pipe could block for ever.
     let size = match disk::kind(path).map_err(|error| unreadable(&error))? {
-        None => return Err(vec![Problem::error("file-missing", format!("there is no file `{shown}`"))]),
+        None => {
+            return Err(vec![Problem::error(
+                "file-missing",
+                format!("there is no file `{shown}`"),
+            )]);
+        }
         Some(Kind::Folder) => return Err(unreadable(&"it is a folder")),
         Some(Kind::Other) => return Err(unreadable(&"it is not a plain file")),
         Some(Kind::File(size)) if size > LARGEST => return Err(too_large(size)),
@@ -44,8 +56,9 @@ pub(super) fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, Vec<Problem>> {
     }
 }
 
-/// Bytes that any file may hold when it is unpacked, and the multiple of its size that it may hold beyond. Records compress by
-/// less than 20; deflate packs zeros by 1000. A file beyond that is a mistake or an attack, and its memory stays bounded.
+/// Bytes that any file may hold when it is unpacked, and the multiple of its size that it may hold
+/// beyond. Records compress by less than 20; deflate packs zeros by 1000. A file beyond that is a
+/// mistake or an attack, and its memory stays bounded.
 const ALWAYS_UNPACKED: usize = 64 << 20;
 const MOST_EXPANSION: usize = 100;
 
@@ -56,8 +69,12 @@ pub(super) fn most_unpacked(size: usize) -> usize {
 
 /// A file that unpacks to more than [`most_unpacked`].
 pub(super) fn unpacks_to_more(shown: &str, place: &str, size: usize) -> Problem {
-    let says = format!("{place} of `{shown}` unpacks to more than {} MB, the maximum for a file of its size", most_unpacked(size) >> 20);
-    Problem::error("too-many-values", says).help("export it again with fewer channels, or without compression")
+    let says = format!(
+        "{place} of `{shown}` unpacks to more than {} MB, the maximum for a file of its size",
+        most_unpacked(size) >> 20
+    );
+    Problem::error("too-many-values", says)
+        .help("export it again with fewer channels, or without compression")
 }
 
 /// Counts the values of a file, which can be many more than its bytes suggest.
@@ -94,14 +111,20 @@ impl<'a> Budget<'a> {
     pub fn add(&mut self, values: usize, place: &str) -> Result<(), Problem> {
         self.values = self.values.saturating_add(values);
         if self.values > self.most {
-            return Err(self.exceeded(place, &format!("{} million values, the maximum for a file of its size", self.most >> 20)));
+            return Err(self.exceeded(
+                place,
+                &format!("{} million values, the maximum for a file of its size", self.most >> 20),
+            ));
         }
         Ok(())
     }
 
     fn exceeded(&self, place: &str, most: &str) -> Problem {
-        Problem::error("too-many-values", format!("{place} of `{}` declares more than {most}", self.shown))
-            .help("check whether the file is damaged; else export it in parts, with fewer channels")
+        Problem::error(
+            "too-many-values",
+            format!("{place} of `{}` declares more than {most}", self.shown),
+        )
+        .help("check whether the file is damaged; else export it in parts, with fewer channels")
     }
 }
 
@@ -113,7 +136,10 @@ mod tests {
     fn declared_sizes_are_counted_without_overflow() {
         let mut budget = Budget::new(1000, "f");
         assert!(budget.take(24, 1794, "table").is_ok());
-        assert_eq!(budget.take(2, usize::MAX, "table").map_err(|problem| problem.code), Err("too-many-values"));
+        assert_eq!(
+            budget.take(2, usize::MAX, "table").map_err(|problem| problem.code),
+            Err("too-many-values")
+        );
         assert!(budget.take(1, 1, "table").is_err());
         assert!(Budget::new(1000, "f").take(MOST_CHANNELS + 1, 0, "table").is_err());
         // A text of empty cells: eight bytes of numbers for each byte of the file.

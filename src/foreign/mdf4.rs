@@ -8,7 +8,8 @@ use super::load::{Budget, most_unpacked, unpacks_to_more};
 use super::{Channel, Format, Input, Place, Read, Table, Want};
 use crate::problem::Problem;
 
-/// Bytes of a block before its links, and of its data before the number of samples of a group (ASAM MDF 4.1, block CG).
+/// Bytes of a block before its links, and of its data before the number of samples of a group (ASAM
+/// MDF 4.1, block CG).
 const LINKS_AT: usize = 24;
 const SAMPLES_AT: usize = 8;
 
@@ -17,10 +18,17 @@ pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let most = most_unpacked(bytes.len());
     let bad = |place: &str, why: &dyn std::fmt::Display| damaged(Format::Mdf4, shown, place, why);
     // One more than is accepted: what reaches the limit would be cut without a word.
-    let options = OpenOptions { max_decompressed: most as u64 + 1, parallel_parsing: false, ..OpenOptions::default() };
-    let file = Mf4File::from_bytes_with_options(bytes.to_vec(), options).map_err(|error| bad("the headers", &error))?;
+    let options = OpenOptions {
+        max_decompressed: most as u64 + 1,
+        parallel_parsing: false,
+        ..OpenOptions::default()
+    };
+    let file = Mf4File::from_bytes_with_options(bytes.to_vec(), options)
+        .map_err(|error| bad("the headers", &error))?;
     if let Some(flags) = file.unfinalized() {
-        let why = format!("it was not finalised ({flags:?}); open and save it in the program that recorded it");
+        let why = format!(
+            "it was not finalised ({flags:?}); open and save it in the program that recorded it"
+        );
         return Err(bad("the header", &why).into());
     }
     let mut budget = Budget::new(bytes.len(), shown);
@@ -33,7 +41,9 @@ pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let mut number = 0;
     for data in file.data_groups() {
         if data.block_index().total_size() > most as u64 {
-            return Err(unpacks_to_more(shown, &format!("group {}", number + 1), bytes.len()).into());
+            return Err(
+                unpacks_to_more(shown, &format!("group {}", number + 1), bytes.len()).into()
+            );
         }
         for group in &data.channel_groups {
             number += 1;
@@ -44,7 +54,8 @@ pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
             let rows = usize::try_from(group.sample_count).unwrap_or(usize::MAX);
             budget.take(group.channels.len(), rows, &place)?;
             complete(bytes, group).map_err(|why| bad(&place, &why))?;
-            let mut table = Table { name: name(group, number, groups), rows, first_row: 1, ..Table::default() };
+            let mut table =
+                Table { name: name(group, number, groups), rows, first_row: 1, ..Table::default() };
             if !group.comment.trim().is_empty() {
                 table.facts.push(("comment".into(), plain(&group.comment)));
             }
@@ -55,7 +66,8 @@ pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
                 }
                 let values = match input.want {
                     Want::Outline if !source.is_master() => Vec::new(),
-                    _ => values(&file, source, rows).map_err(|why| bad(&format!("{place}, channel `{}`", source.name), &why))?,
+                    _ => values(&file, source, rows)
+                        .map_err(|why| bad(&format!("{place}, channel `{}`", source.name), &why))?,
                 };
                 table.channels.push(Channel {
                     name: source.name.clone(),
@@ -71,7 +83,9 @@ pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
         }
     }
     if read.tables.is_empty() {
-        return Err(Problem::error("no-numbers", format!("`{shown}` has no channels of numbers")).into());
+        return Err(
+            Problem::error("no-numbers", format!("`{shown}` has no channels of numbers")).into()
+        );
     }
     Ok(read)
 }
@@ -92,9 +106,11 @@ fn place(group: &ChannelGroup, number: usize) -> String {
     }
 }
 
-/// The reader corrects the number of samples to what is there; a difference is a file that was cut off.
+/// The reader corrects the number of samples to what is there; a difference is a file that was cut
+/// off.
 fn complete(bytes: &[u8], group: &ChannelGroup) -> Result<(), String> {
-    let number = |at: usize| bytes.get(at..)?.first_chunk::<8>().map(|bytes| u64::from_le_bytes(*bytes));
+    let number =
+        |at: usize| bytes.get(at..)?.first_chunk::<8>().map(|bytes| u64::from_le_bytes(*bytes));
     let start = usize::try_from(group.block_offset()).unwrap_or(usize::MAX);
     let declared = number(start.saturating_add(16))
         .and_then(|links| usize::try_from(links).ok())
@@ -103,7 +119,9 @@ fn complete(bytes: &[u8], group: &ChannelGroup) -> Result<(), String> {
         .and_then(number);
     match declared {
         Some(declared) if declared == group.sample_count => Ok(()),
-        Some(declared) => Err(format!("{declared} samples are declared, {} are there", group.sample_count)),
+        Some(declared) => {
+            Err(format!("{declared} samples are declared, {} are there", group.sample_count))
+        }
         None => Err("its block ends beyond the file".into()),
     }
 }

@@ -1,7 +1,7 @@
 //! Reads records of other systems: text tables, MDF4, MAT, Parquet, Arrow, Excel, TDMS.
 //!
-//! A reader returns what is in the file: names, units and numbers as they are written. It knows nothing of channels of a protocol,
-//! of campaigns and of mappings.
+//! A reader returns what is in the file: names, units and numbers as they are written. It knows
+//! nothing of channels of a protocol, of campaigns and of mappings.
 //!
 //! | file | content |
 //! |---|---|
@@ -52,7 +52,8 @@ pub struct File {
     pub bytes: u64,
 }
 
-/// Channels with a common time base: the whole text table, an MDF channel group, a sheet, a struct, a TDMS group.
+/// Channels with a common time base: the whole text table, an MDF channel group, a sheet, a struct,
+/// a TDMS group.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
     /// Empty if the format has one table without a name.
@@ -75,8 +76,8 @@ pub struct Channel {
     /// As written in the file.
     pub unit: Option<String>,
     pub comment: Option<String>,
-    /// In the unit of the file; NaN where the cell is empty or the sample is marked invalid. A binary file can hold infinite
-    /// values.
+    /// In the unit of the file; NaN where the cell is empty or the sample is marked invalid. A
+    /// binary file can hold infinite values.
     pub values: Vec<f64>,
     pub place: Place,
 }
@@ -121,14 +122,17 @@ enum Want {
 /// Reads a file.
 ///
 /// # Errors
-/// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`; `format-unknown`, `format-not-read`, `format-mislabelled`,
-/// `format-damaged`, `too-many-values`; of a text also `encoding`, `dialect`, `no-numbers`, `line-too-long`, `ragged-row`,
-/// `not-a-number`, `not-finite`, `not-a-date`, `decimal-comma`, `thousands`, `date-order`, `header-line`, `more-problems`.
+/// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`; `format-unknown`,
+/// `format-not-read`, `format-mislabelled`, `format-damaged`, `too-many-values`; of a text also
+/// `encoding`, `dialect`, `no-numbers`, `line-too-long`, `ragged-row`, `not-a-number`,
+/// `not-finite`, `not-a-date`, `decimal-comma`, `thousands`, `date-order`, `header-line`,
+/// `more-problems`.
 pub fn read(path: &Path, shown: &str, options: &Options) -> Result<File, Vec<Problem>> {
     read_as(path, shown, options, Want::Values)
 }
 
-/// Reads tables, channels, units and facts without values, where the format allows it; other formats are read whole.
+/// Reads tables, channels, units and facts without values, where the format allows it; other
+/// formats are read whole.
 ///
 /// # Errors
 /// As [`read`].
@@ -156,10 +160,18 @@ fn read_as(path: &Path, shown: &str, options: &Options, want: Want) -> Result<Fi
         _ => return Err(vec![format::not_built(format, shown)]),
     };
     for table in &mut read.tables {
-        table.rows = table.rows.max(table.channels.iter().map(|channel| channel.values.len()).max().unwrap_or(0));
+        table.rows = table
+            .rows
+            .max(table.channels.iter().map(|channel| channel.values.len()).max().unwrap_or(0));
         table.rate = table.rate.or_else(|| even_rate(&table.channels));
     }
-    Ok(File { format, tables: read.tables, facts: read.facts, sha256: sha256(&bytes), bytes: bytes.len() as u64 })
+    Ok(File {
+        format,
+        tables: read.tables,
+        facts: read.facts,
+        sha256: sha256(&bytes),
+        bytes: bytes.len() as u64,
+    })
 }
 
 /// What a reader is given.
@@ -178,17 +190,22 @@ struct Read {
     facts: Vec<(String, String)>,
 }
 
-/// Largest deviation of a time from an even grid, as a part of the step. Times rounded to milliseconds at 200 Hz deviate by a tenth.
+/// Largest deviation of a time from an even grid, as a part of the step. Times rounded to
+/// milliseconds at 200 Hz deviate by a tenth.
 const EVEN: f64 = 0.2;
 
 /// The rate of the first channel that is in a unit of time and increases in even steps, in Hz.
 fn even_rate(channels: &[Channel]) -> Option<f64> {
     channels.iter().find_map(|channel| {
-        let unit = Unit::parse(channel.unit.as_deref()?).ok().filter(|unit| unit.dimension == Dimension::TIME)?;
+        let unit = Unit::parse(channel.unit.as_deref()?)
+            .ok()
+            .filter(|unit| unit.dimension == Dimension::TIME)?;
         let (first, last) = (*channel.values.first()?, *channel.values.last()?);
         let steps = channel.values.len() - 1;
         let step = (last - first) / steps as f64;
-        let even = |(index, time): (usize, &f64)| (time - (first + step * index as f64)).abs() <= EVEN * step;
+        let even = |(index, time): (usize, &f64)| {
+            (time - (first + step * index as f64)).abs() <= EVEN * step
+        };
         let is_time = steps > 0 && step > 0.0 && channel.values.iter().enumerate().all(even);
         is_time.then(|| 1.0 / unit.to_si(step))
     })
@@ -200,7 +217,9 @@ mod tests {
 
     #[test]
     fn the_rate_is_that_of_even_times() {
-        let channel = |unit: &str, values: &[f64]| vec![Channel { unit: Some(unit.into()), values: values.to_vec(), ..Channel::default() }];
+        let channel = |unit: &str, values: &[f64]| {
+            vec![Channel { unit: Some(unit.into()), values: values.to_vec(), ..Channel::default() }]
+        };
         let rate = even_rate(&channel("s", &[1.0, 1.005, 1.01, 1.015])).expect("even");
         assert!((rate - 200.0).abs() < 1e-9);
         // Rounded to milliseconds at 400 Hz.

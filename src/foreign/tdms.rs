@@ -1,7 +1,8 @@
 //! TDMS of National Instruments, version 2 ("TDMS File Format Internal Structure").
 //!
-//! A file is a list of segments: a lead-in, the objects of the segment with their properties, and raw data in one or more chunks.
-//! A reader of another project was tried (`tdms-rs` 2.0): it allocates what the file declares, and reads one chunk of each segment.
+//! A file is a list of segments: a lead-in, the objects of the segment with their properties, and
+//! raw data in one or more chunks. A reader of another project was tried (`tdms-rs` 2.0): it
+//! allocates what the file declares, and reads one chunk of each segment.
 
 use indexmap::IndexMap;
 
@@ -72,7 +73,9 @@ pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     }
     let read = tables(reader.objects);
     if read.tables.iter().all(|table| table.channels.is_empty()) {
-        return Err(Problem::error("no-numbers", format!("`{shown}` has no channels of numbers")).into());
+        return Err(
+            Problem::error("no-numbers", format!("`{shown}` has no channels of numbers")).into()
+        );
     }
     Ok(read)
 }
@@ -96,9 +99,16 @@ impl From<&str> for Failure {
 
 impl Reader {
     /// Reads the segment at a byte; returns the byte after it.
-    fn segment(&mut self, bytes: &[u8], at: usize, budget: &mut Budget<'_>, place: &str) -> Result<usize, Failure> {
+    fn segment(
+        &mut self,
+        bytes: &[u8],
+        at: usize,
+        budget: &mut Budget<'_>,
+        place: &str,
+    ) -> Result<usize, Failure> {
         let rest = &bytes[at..];
-        let mut lead = Bytes::new(rest.get(..LEAD_IN).ok_or("the file ends within its lead-in")?, false);
+        let mut lead =
+            Bytes::new(rest.get(..LEAD_IN).ok_or("the file ends within its lead-in")?, false);
         if lead.take(4)? != b"TDSm" {
             return Err("it does not begin with `TDSm`".into());
         }
@@ -110,7 +120,12 @@ impl Reader {
         let end = if next == u64::MAX { rest.len() } else { position(next)? };
         let raw = position(raw)?;
         if end > rest.len() {
-            return Err(format!("{} bytes are declared, {} are left", end - LEAD_IN, rest.len() - LEAD_IN).into());
+            return Err(format!(
+                "{} bytes are declared, {} are left",
+                end - LEAD_IN,
+                rest.len() - LEAD_IN
+            )
+            .into());
         }
         if raw > end {
             return Err("its raw data begin after its end".into());
@@ -125,7 +140,8 @@ impl Reader {
         if contents & RAW_DATA != 0 && raw < end {
             if contents & DAQMX != 0 {
                 for index in &self.active {
-                    self.objects[*index].left_out = Some("raw data of DAQmx; save the file again in LabVIEW or DIAdem".into());
+                    self.objects[*index].left_out =
+                        Some("raw data of DAQmx; save the file again in LabVIEW or DIAdem".into());
                 }
             } else {
                 self.raw_data(&rest[raw..end], contents, budget, place)?;
@@ -159,9 +175,16 @@ impl Reader {
                     let _dimension = bytes.u32()?;
                     let count = size(bytes.u64()?)?;
                     let bytes_of = match bytes::size_of(kind) {
-                        Some(width) => count.checked_mul(width).ok_or_else(|| format!("`{path}` declares {count} values"))?,
+                        Some(width) => count
+                            .checked_mul(width)
+                            .ok_or_else(|| format!("`{path}` declares {count} values"))?,
                         None if kind == bytes::TEXT => size(bytes.u64()?)?,
-                        None => return Err(format!("`{path}` has values of the unknown type {kind:#x}").into()),
+                        None => {
+                            return Err(format!(
+                                "`{path}` has values of the unknown type {kind:#x}"
+                            )
+                            .into());
+                        }
                     };
                     object.index = Some(Index { kind, count, size: bytes_of });
                     true
@@ -181,14 +204,28 @@ impl Reader {
         Ok(())
     }
 
-    fn raw_data(&mut self, data: &[u8], contents: u32, budget: &mut Budget<'_>, place: &str) -> Result<(), Failure> {
+    fn raw_data(
+        &mut self,
+        data: &[u8],
+        contents: u32,
+        budget: &mut Budget<'_>,
+        place: &str,
+    ) -> Result<(), Failure> {
         let big = contents & BIG_ENDIAN != 0;
-        let parts: Vec<(usize, Index)> =
-            self.active.iter().filter_map(|at| Some((*at, self.objects[*at].index?))).filter(|(_, index)| index.size > 0).collect();
-        let chunk =
-            parts.iter().try_fold(0usize, |sum, (_, index)| sum.checked_add(index.size)).ok_or("its chunks are beyond any memory")?;
+        let parts: Vec<(usize, Index)> = self
+            .active
+            .iter()
+            .filter_map(|at| Some((*at, self.objects[*at].index?)))
+            .filter(|(_, index)| index.size > 0)
+            .collect();
+        let chunk = parts
+            .iter()
+            .try_fold(0usize, |sum, (_, index)| sum.checked_add(index.size))
+            .ok_or("its chunks are beyond any memory")?;
         if chunk == 0 {
-            return Err(format!("it has {} bytes of raw data and no channel for them", data.len()).into());
+            return Err(
+                format!("it has {} bytes of raw data and no channel for them", data.len()).into()
+            );
         }
         for part in data.chunks(chunk) {
             if contents & INTERLEAVED != 0 {
@@ -196,7 +233,11 @@ impl Reader {
                 continue;
             }
             if part.len() < chunk {
-                return Err(format!("a chunk of raw data has {chunk} bytes; the last one has {}", part.len()).into());
+                return Err(format!(
+                    "a chunk of raw data has {chunk} bytes; the last one has {}",
+                    part.len()
+                )
+                .into());
             }
             let mut from = 0;
             for (at, index) in &parts {
@@ -216,22 +257,34 @@ impl Reader {
         budget: &mut Budget<'_>,
         place: &str,
     ) -> Result<(), Failure> {
-        let widths: Option<Vec<usize>> = parts.iter().map(|(_, index)| bytes::size_of(index.kind)).collect();
+        let widths: Option<Vec<usize>> =
+            parts.iter().map(|(_, index)| bytes::size_of(index.kind)).collect();
         let widths = widths.ok_or("it has interleaved texts")?;
         let row: usize = widths.iter().sum();
-        if !part.len().is_multiple_of(row) || parts.iter().any(|(_, index)| index.count != parts[0].1.count) {
+        if !part.len().is_multiple_of(row)
+            || parts.iter().any(|(_, index)| index.count != parts[0].1.count)
+        {
             return Err(format!("its rows have {row} bytes, its data {}", part.len()).into());
         }
         let mut from = 0;
         for ((at, index), width) in parts.iter().zip(widths) {
-            let column: Vec<u8> = part.chunks_exact(row).flat_map(|row| &row[from..from + width]).copied().collect();
+            let column: Vec<u8> =
+                part.chunks_exact(row).flat_map(|row| &row[from..from + width]).copied().collect();
             from += width;
             self.add(*at, *index, &column, big, budget, place)?;
         }
         Ok(())
     }
 
-    fn add(&mut self, at: usize, index: Index, data: &[u8], big: bool, budget: &mut Budget<'_>, place: &str) -> Result<(), Failure> {
+    fn add(
+        &mut self,
+        at: usize,
+        index: Index,
+        data: &[u8],
+        big: bool,
+        budget: &mut Budget<'_>,
+        place: &str,
+    ) -> Result<(), Failure> {
         let object = &mut self.objects[at];
         let Some(numbers) = bytes::numbers(index.kind, data, big) else {
             object.left_out = Some(bytes::what(index.kind).into());
@@ -244,7 +297,10 @@ impl Reader {
 }
 
 fn size(number: u64) -> Result<usize, String> {
-    usize::try_from(number).ok().filter(|number| *number < usize::MAX / 2).ok_or_else(|| format!("a size of {number} bytes"))
+    usize::try_from(number)
+        .ok()
+        .filter(|number| *number < usize::MAX / 2)
+        .ok_or_else(|| format!("a size of {number} bytes"))
 }
 
 /// A distance from the end of the lead-in as one from its start.
@@ -288,23 +344,28 @@ fn tables(objects: IndexMap<String, Object>) -> Read {
     for (path, mut object) in objects {
         let mut names = names(&path).into_iter();
         let (Some(group), channel) = (names.next(), names.next()) else {
-            read.facts.extend(object.properties.iter().map(|(name, value)| (name.clone(), value.text())));
+            read.facts
+                .extend(object.properties.iter().map(|(name, value)| (name.clone(), value.text())));
             continue;
         };
         let (tables, facts, left_out) = groups.entry(group).or_default();
         let Some(name) = channel else {
-            facts.extend(object.properties.iter().map(|(name, value)| (name.clone(), value.text())));
+            facts
+                .extend(object.properties.iter().map(|(name, value)| (name.clone(), value.text())));
             continue;
         };
         if let Err(why) = scale::apply(&object.properties, &mut object.values) {
             object.left_out = Some(why);
         }
-        if let Some(why) = object.left_out.or_else(|| object.values.is_empty().then(|| "it has no values".into())) {
+        if let Some(why) =
+            object.left_out.or_else(|| object.values.is_empty().then(|| "it has no values".into()))
+        {
             left_out.push((name, why));
             continue;
         }
         let number = |name: &str| object.properties.get(name).and_then(Property::number);
-        let (step, offset) = (number("wf_increment").unwrap_or(0.0), number("wf_start_offset").unwrap_or(0.0));
+        let (step, offset) =
+            (number("wf_increment").unwrap_or(0.0), number("wf_start_offset").unwrap_or(0.0));
         let rows = object.values.len();
         let table = tables.entry((rows, step.to_bits(), offset.to_bits())).or_default();
         if table.channels.is_empty() {
@@ -313,12 +374,19 @@ fn tables(objects: IndexMap<String, Object>) -> Read {
             table.facts.extend(waveform.map(|(name, value)| (name.clone(), value.text())));
         }
         let text = |name: &str| {
-            object.properties.get(name).map(Property::text).map(|text| text.trim().to_string()).filter(|text| !text.is_empty())
+            object
+                .properties
+                .get(name)
+                .map(Property::text)
+                .map(|text| text.trim().to_string())
+                .filter(|text| !text.is_empty())
         };
         let time = object.index.is_some_and(|index| index.kind == bytes::TIME);
         table.channels.push(Channel {
             name,
-            unit: text("unit_string").or_else(|| text("NI_UnitDescription")).or_else(|| time.then(|| "s".into())),
+            unit: text("unit_string")
+                .or_else(|| text("NI_UnitDescription"))
+                .or_else(|| time.then(|| "s".into())),
             comment: text("description"),
             place: Place { column: table.channels.len() + 1, span: None },
             values: if time { from_first(object.values) } else { object.values },
@@ -329,7 +397,13 @@ fn tables(objects: IndexMap<String, Object>) -> Read {
         for (index, (_, table)) in tables.into_iter().enumerate() {
             let name = if several { format!("{group} ({})", index + 1) } else { group.clone() };
             let facts = facts.iter().cloned().chain(table.facts).collect();
-            read.tables.push(Table { name, facts, first_row: 1, left_out: std::mem::take(&mut left_out), ..table });
+            read.tables.push(Table {
+                name,
+                facts,
+                first_row: 1,
+                left_out: std::mem::take(&mut left_out),
+                ..table
+            });
         }
     }
     read

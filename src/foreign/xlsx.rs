@@ -1,4 +1,5 @@
-//! Excel workbooks: each sheet with rows of numbers is a table, with names in one row and units in the next.
+//! Excel workbooks: each sheet with rows of numbers is a table, with names in one row and units in
+//! the next.
 
 use std::io::{Cursor, Read as _};
 
@@ -31,7 +32,8 @@ pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let shown = input.shown;
     let bad = |place: &str, why: &dyn std::fmt::Display| damaged(Format::Xlsx, shown, place, why);
     unpacks(input)?;
-    let mut book: Xlsx<_> = Xlsx::new(Cursor::new(&input.bytes[..])).map_err(|error| bad("the workbook", &error))?;
+    let mut book: Xlsx<_> =
+        Xlsx::new(Cursor::new(&input.bytes[..])).map_err(|error| bad("the workbook", &error))?;
     let mut budget = Budget::new(input.bytes.len(), shown);
     let mut read = Read::default();
     for name in book.sheet_names() {
@@ -51,7 +53,11 @@ pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
         }
     }
     if read.tables.is_empty() {
-        return Err(Problem::error("no-numbers", format!("`{shown}` has no sheet with rows of numbers")).into());
+        return Err(Problem::error(
+            "no-numbers",
+            format!("`{shown}` has no sheet with rows of numbers"),
+        )
+        .into());
     }
     Ok(read)
 }
@@ -60,12 +66,15 @@ pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
 fn unpacks(input: &Input<'_>) -> Result<(), Problem> {
     let shown = input.shown;
     let bad = |place: &str, why: &dyn std::fmt::Display| damaged(Format::Xlsx, shown, place, why);
-    let mut archive = zip::ZipArchive::new(Cursor::new(&input.bytes[..])).map_err(|error| bad("the list of its parts", &error))?;
+    let mut archive = zip::ZipArchive::new(Cursor::new(&input.bytes[..]))
+        .map_err(|error| bad("the list of its parts", &error))?;
     let mut left = most_unpacked(input.bytes.len()) as u64;
     for index in 0..archive.len() {
-        let part = archive.by_index(index).map_err(|error| bad(&format!("part {}", index + 1), &error))?;
+        let part =
+            archive.by_index(index).map_err(|error| bad(&format!("part {}", index + 1), &error))?;
         let name = part.name().map_or_else(|_| format!("{}", index + 1), |name| name.into_owned());
-        let size = std::io::copy(&mut part.take(left + 1), &mut std::io::sink()).map_err(|error| bad(&format!("part `{name}`"), &error))?;
+        let size = std::io::copy(&mut part.take(left + 1), &mut std::io::sink())
+            .map_err(|error| bad(&format!("part `{name}`"), &error))?;
         if size > left {
             return Err(unpacks_to_more(shown, &format!("part `{name}`"), input.bytes.len()));
         }
@@ -81,8 +90,14 @@ enum Failure {
     Damaged(String),
 }
 
-/// The filled cells of a sheet. They are streamed: a sheet may declare a range of 17 thousand million cells.
-fn rows(book: &mut Xlsx<Cursor<&[u8]>>, name: &str, budget: &mut Budget<'_>, place: &str) -> Result<Vec<Row>, Failure> {
+/// The filled cells of a sheet. They are streamed: a sheet may declare a range of 17 thousand
+/// million cells.
+fn rows(
+    book: &mut Xlsx<Cursor<&[u8]>>,
+    name: &str,
+    budget: &mut Budget<'_>,
+    place: &str,
+) -> Result<Vec<Row>, Failure> {
     let mut reader = match book.worksheet_cells_reader(name) {
         Ok(reader) => reader,
         Err(XlsxError::NotAWorksheet(_)) => return Err(Failure::NotASheet),
@@ -91,14 +106,21 @@ fn rows(book: &mut Xlsx<Cursor<&[u8]>>, name: &str, budget: &mut Budget<'_>, pla
     let mut rows: Vec<Row> = Vec::new();
     loop {
         let last = rows.last().map_or(0, |(row, _)| row + 1);
-        let Some(cell) = reader.next_cell().map_err(|error| Failure::Damaged(format!("after row {last}: {error}")))? else { break };
+        let Some(cell) = reader
+            .next_cell()
+            .map_err(|error| Failure::Damaged(format!("after row {last}: {error}")))?
+        else {
+            break;
+        };
         let (row, column) = cell.get_position();
         let content = match cell.get_value() {
             DataRef::Int(number) => Cell::Number(*number as f64),
             DataRef::Float(number) => Cell::Number(*number),
             DataRef::Bool(yes) => Cell::Number(f64::from(u8::from(*yes))),
             DataRef::DateTime(time) => Cell::Days(time.as_f64()),
-            DataRef::String(text) | DataRef::DateTimeIso(text) | DataRef::DurationIso(text) => Cell::Text(text.clone()),
+            DataRef::String(text) | DataRef::DateTimeIso(text) | DataRef::DurationIso(text) => {
+                Cell::Text(text.clone())
+            }
             DataRef::SharedString(text) => Cell::Text((*text).to_string()),
             // #N/A and #DIV/0!: there is no value.
             DataRef::Error(_) | DataRef::Empty => continue,
@@ -107,13 +129,19 @@ fn rows(book: &mut Xlsx<Cursor<&[u8]>>, name: &str, budget: &mut Budget<'_>, pla
             continue;
         }
         if column >= COLUMNS {
-            return Err(Failure::Damaged(format!("row {}: a cell in column {}", row + 1, column + 1)));
+            return Err(Failure::Damaged(format!(
+                "row {}: a cell in column {}",
+                row + 1,
+                column + 1
+            )));
         }
         // A cell with its text takes as much as several numbers.
         budget.add(CELL, place).map_err(Failure::Problem)?;
         match rows.last_mut() {
             Some((last, cells)) if *last == row => cells.push((column, content)),
-            Some((last, _)) if *last > row => return Err(Failure::Damaged(format!("row {} follows row {}", row + 1, *last + 1))),
+            Some((last, _)) if *last > row => {
+                return Err(Failure::Damaged(format!("row {} follows row {}", row + 1, *last + 1)));
+            }
             _ => rows.push((row, vec![(column, content)])),
         }
     }
@@ -124,7 +152,12 @@ fn rows(book: &mut Xlsx<Cursor<&[u8]>>, name: &str, budget: &mut Budget<'_>, pla
 const CELL: usize = size_of::<(u32, Cell)>() / 8;
 
 /// The table of a sheet, or the facts of a sheet without one.
-fn table(input: &Input<'_>, name: &str, rows: Vec<Row>, budget: &mut Budget<'_>) -> Result<Result<Table, Vec<(String, String)>>, Problem> {
+fn table(
+    input: &Input<'_>,
+    name: &str,
+    rows: Vec<Row>,
+    budget: &mut Budget<'_>,
+) -> Result<Result<Table, Vec<(String, String)>>, Problem> {
     let options = input.options;
     let is_number = |cell: &Cell| !matches!(cell, Cell::Text(_));
     let numeric = |row: &Row| {
@@ -134,8 +167,12 @@ fn table(input: &Input<'_>, name: &str, rows: Vec<Row>, budget: &mut Budget<'_>)
     // Rows of numbers come one after the other; a number beside a text in a preamble is not one.
     let after = options.names_line.max(options.units_line).max(options.header_lines).unwrap_or(0);
     let widest = rows.iter().filter(|row| numeric(row)).map(|row| row.1.len()).max().unwrap_or(0);
-    let start = rows.iter().position(|row| row.0 as usize >= after && numeric(row) && 2 * row.1.len() >= widest);
-    let Some(start) = start.filter(|start| widest > 1 || rows.len() > start + 1 && rows[*start + 1..].iter().all(numeric)) else {
+    let start = rows
+        .iter()
+        .position(|row| row.0 as usize >= after && numeric(row) && 2 * row.1.len() >= widest);
+    let Some(start) = start.filter(|start| {
+        widest > 1 || rows.len() > start + 1 && rows[*start + 1..].iter().all(numeric)
+    }) else {
         return Ok(Err(pairs(name, &rows)));
     };
     let (before, data) = rows.split_at(start);
@@ -147,25 +184,40 @@ fn table(input: &Input<'_>, name: &str, rows: Vec<Row>, budget: &mut Budget<'_>)
             Problem::error("header-line", says).help(format!("the numbers begin in row {}", data[0].0 + 1))
         })
     };
-    let texts = |row: &Row| -> Vec<(u32, String)> { row.1.iter().map(|(column, cell)| (*column, words(cell))).collect() };
+    let texts = |row: &Row| -> Vec<(u32, String)> {
+        row.1.iter().map(|(column, cell)| (*column, words(cell))).collect()
+    };
     let full: Vec<&Row> = before.iter().filter(|row| 2 * row.1.len() >= widest).collect();
     let units = match options.units_line {
         Some(0) => None,
         Some(number) => Some(named(number, "units")?),
-        None => full.iter().skip(1).rev().find(|row| most_are_units(texts(row).iter().map(|(_, text)| text.as_str()))).copied(),
+        None => full
+            .iter()
+            .skip(1)
+            .rev()
+            .find(|row| most_are_units(texts(row).iter().map(|(_, text)| text.as_str())))
+            .copied(),
     };
     let names = match options.names_line {
         Some(number) => Some(named(number, "names")?),
         None => full.iter().rev().find(|row| units.is_none_or(|units| row.0 < units.0)).copied(),
     };
     let heading = |row: Option<&Row>, column: u32| {
-        row.and_then(|row| row.1.iter().find(|(other, _)| *other == column)).map(|(_, cell)| words(cell)).filter(|text| !text.is_empty())
+        row.and_then(|row| row.1.iter().find(|(other, _)| *other == column))
+            .map(|(_, cell)| words(cell))
+            .filter(|text| !text.is_empty())
     };
-    let mut columns: Vec<u32> = data.iter().flat_map(|row| row.1.iter().map(|(column, _)| *column)).collect();
+    let mut columns: Vec<u32> =
+        data.iter().flat_map(|row| row.1.iter().map(|(column, _)| *column)).collect();
     columns.sort_unstable();
     columns.dedup();
     budget.take(columns.len(), data.len(), &format!("sheet `{name}`"))?;
-    let mut table = Table { name: name.to_string(), first_row: data[0].0 as usize + 1, rows: data.len(), ..Table::default() };
+    let mut table = Table {
+        name: name.to_string(),
+        first_row: data[0].0 as usize + 1,
+        rows: data.len(),
+        ..Table::default()
+    };
     table.facts = pairs(name, before);
     let mut cells: Vec<Vec<Option<&Cell>>> = vec![vec![None; data.len()]; columns.len()];
     for (at, (_, row)) in data.iter().enumerate() {
@@ -176,8 +228,10 @@ fn table(input: &Input<'_>, name: &str, rows: Vec<Row>, budget: &mut Budget<'_>)
         }
     }
     for (column, cells) in columns.into_iter().zip(cells) {
-        let (called, unit) =
-            heading(names, column).map_or_else(|| (format!("column {}", letters(column)), None), |text| name_and_unit(&text));
+        let (called, unit) = heading(names, column).map_or_else(
+            || (format!("column {}", letters(column)), None),
+            |text| name_and_unit(&text),
+        );
         let unit = heading(units, column).and_then(|text| unbracketed(&text)).or(unit);
         match values(input, &cells) {
             Ok((values, time)) => table.channels.push(Channel {
@@ -195,7 +249,8 @@ fn table(input: &Input<'_>, name: &str, rows: Vec<Row>, budget: &mut Budget<'_>)
                     input.shown,
                     letters(column)
                 );
-                return Err(Problem::error("not-a-number", says).help("correct the cell, or leave it empty"));
+                return Err(Problem::error("not-a-number", says)
+                    .help("correct the cell, or leave it empty"));
             }
         }
     }
@@ -225,11 +280,17 @@ fn values(input: &Input<'_>, cells: &[Option<&Cell>]) -> Result<(Vec<f64>, bool)
         }
         _ => {}
     }
-    if let Some((at, wrong)) = cells.iter().enumerate().find_map(|(at, cell)| text(cell).map(|text| (at, text))) {
+    if let Some((at, wrong)) =
+        cells.iter().enumerate().find_map(|(at, cell)| text(cell).map(|text| (at, text)))
+    {
         return Err(Mixed::At(at, wrong.chars().take(40).collect()));
     }
     let days = cells.iter().flatten().all(|cell| matches!(cell, Cell::Days(_)));
-    let first = cells.iter().flatten().find_map(|cell| if let Cell::Days(days) = cell { Some(*days) } else { None }).unwrap_or(0.0);
+    let first = cells
+        .iter()
+        .flatten()
+        .find_map(|cell| if let Cell::Days(days) = cell { Some(*days) } else { None })
+        .unwrap_or(0.0);
     let number = |cell: &Option<&Cell>| match cell {
         Some(Cell::Days(day)) if days => (day - first) * SECONDS_A_DAY,
         Some(Cell::Number(number) | Cell::Days(number)) => *number,
@@ -241,7 +302,9 @@ fn values(input: &Input<'_>, cells: &[Option<&Cell>]) -> Result<(Vec<f64>, bool)
 /// Rows of two cells, the first a text: `Fahrzeug | Wagen 5`.
 fn pairs(sheet: &str, rows: &[Row]) -> Vec<(String, String)> {
     let pair = |row: &Row| match row.1.as_slice() {
-        [(_, Cell::Text(name)), (_, value)] => Some((format!("{sheet}: {}", name.trim()), words(value))),
+        [(_, Cell::Text(name)), (_, value)] => {
+            Some((format!("{sheet}: {}", name.trim()), words(value)))
+        }
         _ => None,
     };
     rows.iter().filter_map(pair).take(MOST_FACTS).collect()

@@ -5,27 +5,43 @@ use indexmap::IndexMap;
 use std::sync::Arc;
 
 use super::{
-    FindNodes, Graph, InputNode, Joint, LimitNodes, Node, NodeId, Operation, PlausibilityNodes, PositionNodes, QuantityNodes, SignalNodes,
-    ValueNodes,
+    FindNodes, Graph, InputNode, Joint, LimitNodes, Node, NodeId, Operation, PlausibilityNodes,
+    PositionNodes, QuantityNodes, SignalNodes, ValueNodes,
 };
 use crate::check::evaluate::{shape, words};
 use crate::check::plan::{
-    AxisOperation, Decision, Evaluation, Expr, Input, Key, Kind, Limit, OfSignals, Operator, Plan, Plausibility, Position, Quantity,
-    Report, Scope, Signal, SignalKind, Step, StepSpec, Taken, Test, Valued,
+    AxisOperation, Decision, Evaluation, Expr, Input, Key, Kind, Limit, OfSignals, Operator, Plan,
+    Plausibility, Position, Quantity, Report, Scope, Signal, SignalKind, Step, StepSpec, Taken,
+    Test, Valued,
 };
 use crate::source::Span;
 use crate::units::Dimension;
 
 pub fn from_plan(plan: &Plan) -> Graph {
     let mut builder = Builder { axis: plan.axis.unit.dimension, ..Builder::default() };
-    let checks = plan.checks.iter().map(|check| check.inputs.iter().map(|input| builder.input(input, None)).collect()).collect();
+    let checks = plan
+        .checks
+        .iter()
+        .map(|check| check.inputs.iter().map(|input| builder.input(input, None)).collect())
+        .collect();
     let find = builder.find(plan);
     let plausibility = plan.plausibility.iter().map(|rule| builder.plausibility(rule)).collect();
-    let quantities: Vec<QuantityNodes> =
-        plan.quantities.iter().enumerate().map(|(index, quantity)| builder.quantity(plan, index, quantity)).collect();
+    let quantities: Vec<QuantityNodes> = plan
+        .quantities
+        .iter()
+        .enumerate()
+        .map(|(index, quantity)| builder.quantity(plan, index, quantity))
+        .collect();
     let mut verdicts = vec![None; plan.verdicts.len()];
     (0..plan.verdicts.len()).for_each(|at| builder.verdict(plan, &quantities, at, &mut verdicts));
-    Graph { nodes: builder.nodes, quantities, checks, find, plausibility, verdicts: verdicts.into_iter().flatten().collect() }
+    Graph {
+        nodes: builder.nodes,
+        quantities,
+        checks,
+        find,
+        plausibility,
+        verdicts: verdicts.into_iter().flatten().collect(),
+    }
 }
 
 struct Builder {
@@ -38,7 +54,12 @@ struct Builder {
 
 impl Default for Builder {
     fn default() -> Self {
-        Self { axis: Dimension::LENGTH, nodes: Vec::new(), known: IndexMap::new(), classes: IndexMap::new() }
+        Self {
+            axis: Dimension::LENGTH,
+            nodes: Vec::new(),
+            known: IndexMap::new(),
+            classes: IndexMap::new(),
+        }
     }
 }
 
@@ -52,13 +73,27 @@ struct Own<'a> {
 
 impl Builder {
     /// The node with this operation and these inputs; a new one only if there is none yet.
-    fn add(&mut self, operation: Operation, inputs: Vec<NodeId>, dimension: Dimension, from: &Span, label: String, kind: String) -> NodeId {
+    fn add(
+        &mut self,
+        operation: Operation,
+        inputs: Vec<NodeId>,
+        dimension: Dimension,
+        from: &Span,
+        label: String,
+        kind: String,
+    ) -> NodeId {
         let what = match &operation {
             Operation::Read { column } => format!("read {column} {kind}"),
             Operation::Constant(expr) => format!("constant {}", shape(expr)),
-            Operation::Select(conditions) => format!("select {}", conditions.iter().map(shape).collect::<Vec<_>>().join(";")),
+            Operation::Select(conditions) => {
+                format!("select {}", conditions.iter().map(shape).collect::<Vec<_>>().join(";"))
+            }
             // Each of these belongs to a single rule.
-            Operation::Value(_) | Operation::Compare(_) | Operation::Estimate(_) | Operation::Report(_) | Operation::Limit(_) => {
+            Operation::Value(_)
+            | Operation::Compare(_)
+            | Operation::Estimate(_)
+            | Operation::Report(_)
+            | Operation::Limit(_) => {
                 format!("{kind} {label} {}", from.start)
             }
             _ => kind.clone(),
@@ -68,15 +103,30 @@ impl Builder {
             return node;
         }
         let mut of: Vec<usize> = inputs.iter().map(|&input| self.nodes[input].class).collect();
-        if matches!(operation, Operation::Estimate(_) | Operation::Report(_) | Operation::Limit(_) | Operation::Verdict(_)) {
+        if matches!(
+            operation,
+            Operation::Estimate(_)
+                | Operation::Report(_)
+                | Operation::Limit(_)
+                | Operation::Verdict(_)
+        ) {
             of.sort_unstable();
             of.dedup();
         }
         let class_key = format!("{kind} {of:?}");
         let next = self.classes.len();
         let class = *self.classes.entry(class_key).or_insert(next);
-        let track = inputs.iter().any(|&input| self.nodes[input].track) || kind.starts_with("track ");
-        self.nodes.push(Node { operation, inputs, dimension, track, from: from.clone(), label, class });
+        let track =
+            inputs.iter().any(|&input| self.nodes[input].track) || kind.starts_with("track ");
+        self.nodes.push(Node {
+            operation,
+            inputs,
+            dimension,
+            track,
+            from: from.clone(),
+            label,
+            class,
+        });
         self.known.insert(key, self.nodes.len() - 1);
         self.nodes.len() - 1
     }
@@ -99,22 +149,51 @@ impl Builder {
             SignalKind::Binary(operator, left, right) => {
                 let inputs = vec![self.signal(left), self.signal(right)];
                 let label = self.arithmetic_label(*operator, inputs[0], inputs[1]);
-                self.add(Operation::Arithmetic(*operator), inputs, dimension, from, label, format!("{operator:?}"))
+                self.add(
+                    Operation::Arithmetic(*operator),
+                    inputs,
+                    dimension,
+                    from,
+                    label,
+                    format!("{operator:?}"),
+                )
             }
             SignalKind::Negative(inner) => {
                 let inner = self.signal(inner);
                 let label = format!("-{}", self.grouped(inner));
-                self.add(Operation::Negative, vec![inner], dimension, from, label, "negative".into())
+                self.add(
+                    Operation::Negative,
+                    vec![inner],
+                    dimension,
+                    from,
+                    label,
+                    "negative".into(),
+                )
             }
             SignalKind::Power(inner, exponent) => {
                 let inner = self.signal(inner);
                 let label = format!("{}^{exponent}", self.grouped(inner));
-                self.add(Operation::Power(*exponent), vec![inner], dimension, from, label, format!("power {exponent}"))
+                self.add(
+                    Operation::Power(*exponent),
+                    vec![inner],
+                    dimension,
+                    from,
+                    label,
+                    format!("power {exponent}"),
+                )
             }
             SignalKind::Call(function, arguments) => {
-                let inputs: Vec<NodeId> = arguments.iter().map(|argument| self.signal(argument)).collect();
+                let inputs: Vec<NodeId> =
+                    arguments.iter().map(|argument| self.signal(argument)).collect();
                 let label = format!("{}({})", function.name, self.joined(&inputs, ", "));
-                self.add(Operation::Apply(function), inputs, dimension, from, label, format!("apply {}", function.name))
+                self.add(
+                    Operation::Apply(function),
+                    inputs,
+                    dimension,
+                    from,
+                    label,
+                    format!("apply {}", function.name),
+                )
             }
             SignalKind::Filtered(inner, steps) => {
                 let inner = self.signal(inner);
@@ -125,18 +204,37 @@ impl Builder {
                 let (_, cut) = self.processed(inner, &[], from);
                 let label = format!("{} of {}", reducer.in_words(), self.origin(cut));
                 let kind = format!("reduce {}", reducer.in_words());
-                let number = self.add(Operation::Reduce(*reducer), vec![cut], dimension, from, reducer.in_words(), kind);
+                let number = self.add(
+                    Operation::Reduce(*reducer),
+                    vec![cut],
+                    dimension,
+                    from,
+                    reducer.in_words(),
+                    kind,
+                );
                 self.add(Operation::Level, vec![number], dimension, from, label, "level".into())
             }
             // Not reached: the checker allows sides only in values taken from both sides.
-            SignalKind::Side(_) => self.add(Operation::Cut, Vec::new(), dimension, from, String::new(), "nothing".into()),
+            SignalKind::Side(_) => self.add(
+                Operation::Cut,
+                Vec::new(),
+                dimension,
+                from,
+                String::new(),
+                "nothing".into(),
+            ),
             SignalKind::Select(arms, otherwise) => {
-                let mut inputs: Vec<NodeId> = arms.iter().map(|(_, signal)| self.signal(signal)).collect();
+                let mut inputs: Vec<NodeId> =
+                    arms.iter().map(|(_, signal)| self.signal(signal)).collect();
                 if let Some(otherwise) = otherwise {
                     inputs.push(self.signal(otherwise));
                 }
-                let conditions: Vec<Expr> = arms.iter().map(|(condition, _)| condition.clone()).collect();
-                let kind = format!("select {}", conditions.iter().map(shape).collect::<Vec<_>>().join(";"));
+                let conditions: Vec<Expr> =
+                    arms.iter().map(|(condition, _)| condition.clone()).collect();
+                let kind = format!(
+                    "select {}",
+                    conditions.iter().map(shape).collect::<Vec<_>>().join(";")
+                );
                 let label = format!("one of {}", self.joined(&inputs, ", "));
                 self.add(Operation::Select(conditions), inputs, dimension, from, label, kind)
             }
@@ -147,18 +245,38 @@ impl Builder {
         let inner = self.signal(inner);
         let of_time = |over_time: bool| if over_time { ", time" } else { "" };
         let (name, more, kind) = match operation {
-            AxisOperation::Shifted(distance) => ("shifted", format!(", {}", words(distance)), shape(distance)),
-            AxisOperation::Derivative { over_time } => ("derivative", of_time(*over_time).to_string(), over_time.to_string()),
-            AxisOperation::Integral { over_time } => ("integral", of_time(*over_time).to_string(), over_time.to_string()),
+            AxisOperation::Shifted(distance) => {
+                ("shifted", format!(", {}", words(distance)), shape(distance))
+            }
+            AxisOperation::Derivative { over_time } => {
+                ("derivative", of_time(*over_time).to_string(), over_time.to_string())
+            }
+            AxisOperation::Integral { over_time } => {
+                ("integral", of_time(*over_time).to_string(), over_time.to_string())
+            }
         };
         let label = format!("{name}({}{more})", self.named(inner));
         let operation = Operation::OverAxis(operation.clone());
-        self.add(operation, vec![inner], signal.dimension, &signal.span, label, format!("{name} {kind}"))
+        self.add(
+            operation,
+            vec![inner],
+            signal.dimension,
+            &signal.span,
+            label,
+            format!("{name} {kind}"),
+        )
     }
 
     fn constant(&mut self, expr: &Expr, dimension: Dimension) -> NodeId {
         let kind = format!("constant {}", shape(expr));
-        self.add(Operation::Constant(expr.clone()), Vec::new(), dimension, &expr.span, words(expr), kind)
+        self.add(
+            Operation::Constant(expr.clone()),
+            Vec::new(),
+            dimension,
+            &expr.span,
+            words(expr),
+            kind,
+        )
     }
 
     fn joined(&self, nodes: &[NodeId], between: &str) -> String {
@@ -176,49 +294,86 @@ impl Builder {
     /// The name, in parentheses where it has several parts.
     fn grouped(&self, node: NodeId) -> String {
         match self.nodes[node].operation {
-            Operation::Arithmetic(_) | Operation::Negative | Operation::Power(_) => format!("({})", self.named(node)),
+            Operation::Arithmetic(_) | Operation::Negative | Operation::Power(_) => {
+                format!("({})", self.named(node))
+            }
             _ => self.named(node),
         }
     }
 
     fn arithmetic_label(&self, operator: Operator, left: NodeId, right: NodeId) -> String {
-        let is_sum = |node: NodeId| matches!(self.nodes[node].operation, Operation::Arithmetic(Operator::Add | Operator::Subtract));
+        let is_sum = |node: NodeId| {
+            matches!(
+                self.nodes[node].operation,
+                Operation::Arithmetic(Operator::Add | Operator::Subtract)
+            )
+        };
         let product = matches!(operator, Operator::Multiply | Operator::Divide);
         let left = if product && is_sum(left) { self.grouped(left) } else { self.named(left) };
-        let is_part = matches!(self.nodes[right].operation, Operation::Arithmetic(_) | Operation::Negative);
-        let right = if is_part && (product || is_sum(right)) { self.grouped(right) } else { self.named(right) };
+        let is_part =
+            matches!(self.nodes[right].operation, Operation::Arithmetic(_) | Operation::Negative);
+        let right = if is_part && (product || is_sum(right)) {
+            self.grouped(right)
+        } else {
+            self.named(right)
+        };
         format!("{left}{}{right}", symbol(operator))
     }
 
     fn step(&mut self, node: NodeId, step: &Step) -> NodeId {
         let dimension = self.nodes[node].dimension * step.factor;
         let kind = format!("step {:?} {}", step.kind, step.factor);
-        self.add(Operation::Step(step.kind.clone()), vec![node], dimension, &step.span, step.words.clone(), kind)
+        self.add(
+            Operation::Step(step.kind.clone()),
+            vec![node],
+            dimension,
+            &step.span,
+            step.words.clone(),
+            kind,
+        )
     }
 
     /// The filtered signal of the record and the processed signal of the section.
     fn processed(&mut self, signal: &Signal, chain: &[Step], from: &Span) -> (NodeId, NodeId) {
         let mut node = self.signal(signal);
-        let inside =
-            chain.iter().position(|step| matches!(step.kind, StepSpec::Window { .. } | StepSpec::RemoveMean)).unwrap_or(chain.len());
+        let inside = chain
+            .iter()
+            .position(|step| matches!(step.kind, StepSpec::Window { .. } | StepSpec::RemoveMean))
+            .unwrap_or(chain.len());
         for step in &chain[..inside] {
             node = self.step(node, step);
         }
         let filtered = node;
-        // A window takes samples up to the ends of the section itself; all other steps work on the samples cut out.
+        // A window takes samples up to the ends of the section itself; all other steps work on the
+        // samples cut out.
         if !matches!(chain.get(inside).map(|step| &step.kind), Some(StepSpec::Window { .. })) {
             let dimension = self.nodes[node].dimension;
-            node = self.add(Operation::Cut, vec![node], dimension, from, "samples of the section".into(), "cut".into());
+            node = self.add(
+                Operation::Cut,
+                vec![node],
+                dimension,
+                from,
+                "samples of the section".into(),
+                "cut".into(),
+            );
         }
         for step in &chain[inside..] {
             let dimension = self.nodes[node].dimension;
             let kind = format!("window {:?}", step.kind);
-            node = self.add(Operation::Window(step.kind.clone()), vec![node], dimension, &step.span, step.words.clone(), kind);
+            node = self.add(
+                Operation::Window(step.kind.clone()),
+                vec![node],
+                dimension,
+                &step.span,
+                step.words.clone(),
+                kind,
+            );
         }
         (filtered, node)
     }
 
-    /// A value taken from a named signal, from the own signal, or from the own signal of both sides.
+    /// A value taken from a named signal, from the own signal, or from the own signal of both
+    /// sides.
     fn input(&mut self, input: &Input, own: Option<Own<'_>>) -> InputNode {
         let own = match (&input.signal, own) {
             (Some(signal), _) if !matches!(input.taken, Taken::OfBoth(_)) => {
@@ -226,27 +381,43 @@ impl Builder {
                 Own { filtered, processed, chain: &input.chain }
             }
             (_, Some(own)) => own,
-            // Not reached: the checker allows an input without signal only where there is an own signal.
+            // Not reached: the checker allows an input without signal only where there is an own
+            // signal.
             (_, None) => {
-                let nothing = self.add(Operation::Cut, Vec::new(), Dimension::ONE, &input.span, String::new(), "nothing".into());
+                let nothing = self.add(
+                    Operation::Cut,
+                    Vec::new(),
+                    Dimension::ONE,
+                    &input.span,
+                    String::new(),
+                    "nothing".into(),
+                );
                 Own { filtered: nothing, processed: nothing, chain: &[] }
             }
         };
         let over = input.over.as_ref().map(|over| self.processed(over, own.chain, &input.span).1);
         let (node, joint) = match (input.taken, &input.signal) {
             (Taken::Compared(metric), _) => {
-                let on_common_points = metric.on_common_points(own.chain.iter().all(|step| step.kind.keeps_samples()));
+                let on_common_points =
+                    metric.on_common_points(own.chain.iter().all(|step| step.kind.keeps_samples()));
                 let node = if on_common_points { own.filtered } else { own.processed };
                 (node, Some(Joint::Metric { metric, on_common_points, over }))
             }
-            (Taken::OfBoth(reducer), Some(signal)) => (own.filtered, Some(Joint::Samples { reducer, signal: Arc::new(signal.clone()) })),
+            (Taken::OfBoth(reducer), Some(signal)) => {
+                (own.filtered, Some(Joint::Samples { reducer, signal: Arc::new(signal.clone()) }))
+            }
             (Taken::Reduced(reducer) | Taken::OfBoth(reducer), _) => {
                 let axis = over.map_or(self.axis, |over| self.nodes[over].dimension);
                 let dimension = reducer.gives(self.nodes[own.processed].dimension, axis);
                 let kind = format!("reduce {}", reducer.in_words());
-                let label = over.map_or(reducer.in_words(), |over| format!("{} over {}", reducer.in_words(), self.origin(over)));
+                let label = over.map_or(reducer.in_words(), |over| {
+                    format!("{} over {}", reducer.in_words(), self.origin(over))
+                });
                 let of = std::iter::once(own.processed).chain(over).collect();
-                (self.add(Operation::Reduce(reducer), of, dimension, &input.span, label, kind), None)
+                (
+                    self.add(Operation::Reduce(reducer), of, dimension, &input.span, label, kind),
+                    None,
+                )
             }
         };
         InputNode { node, side: input.side, joint }
@@ -254,10 +425,16 @@ impl Builder {
 
     fn find(&mut self, plan: &Plan) -> FindNodes {
         let Some(find) = &plan.sections.find else { return FindNodes::default() };
-        let mut inputs = |of: &OfSignals| of.inputs.iter().map(|input| self.input(input, None)).collect::<Vec<InputNode>>();
+        let mut inputs = |of: &OfSignals| {
+            of.inputs.iter().map(|input| self.input(input, None)).collect::<Vec<InputNode>>()
+        };
         FindNodes {
             data: find.data.iter().map(|datum| inputs(&datum.of)).collect(),
-            conditions: find.conditions.iter().map(|condition| inputs(&condition.require)).collect(),
+            conditions: find
+                .conditions
+                .iter()
+                .map(|condition| inputs(&condition.require))
+                .collect(),
             prefer: find.prefer.iter().flat_map(&mut inputs).collect(),
         }
     }
@@ -284,7 +461,9 @@ impl Builder {
         };
         let position = |builder: &mut Self, own: Option<Own<'_>>| {
             let inputs = match &rule.test {
-                Test::Require(requirement) => requirement.inputs.iter().map(|input| builder.input(input, own)).collect(),
+                Test::Require(requirement) => {
+                    requirement.inputs.iter().map(|input| builder.input(input, own)).collect()
+                }
                 Test::Distinct(_) | Test::Exchanged(_) => Vec::new(),
             };
             PositionNodes { own: own.map(|own| own.processed), inputs }
@@ -292,16 +471,24 @@ impl Builder {
         PlausibilityNodes { positions: own.into_iter().map(|own| position(self, own)).collect() }
     }
 
-    /// A verdict, after those that it uses. The checker has excluded verdicts that depend on themselves.
-    fn verdict(&mut self, plan: &Plan, quantities: &[QuantityNodes], at: usize, nodes: &mut Vec<Option<NodeId>>) {
+    /// A verdict, after those that it uses. The checker has excluded verdicts that depend on
+    /// themselves.
+    fn verdict(
+        &mut self,
+        plan: &Plan,
+        quantities: &[QuantityNodes],
+        at: usize,
+        nodes: &mut Vec<Option<NodeId>>,
+    ) {
         if nodes[at].is_some() {
             return;
         }
         let verdict = &plan.verdicts[at];
         let inputs = match &verdict.decision {
-            Decision::Limits { quantities: about, .. } => {
-                about.iter().flat_map(|&at| quantities[at].limits.iter().map(|nodes| nodes.limit)).collect()
-            }
+            Decision::Limits { quantities: about, .. } => about
+                .iter()
+                .flat_map(|&at| quantities[at].limits.iter().map(|nodes| nodes.limit))
+                .collect(),
             Decision::Verdicts(over) => {
                 let inputs = over.verdicts();
                 inputs.iter().for_each(|&input| self.verdict(plan, quantities, input, nodes));
@@ -318,7 +505,9 @@ impl Builder {
     }
 
     fn quantity(&mut self, plan: &Plan, index: usize, quantity: &Quantity) -> QuantityNodes {
-        let signals: Vec<SignalNodes> = (0..quantity.positions.len()).map(|number| self.position(index, quantity, number)).collect();
+        let signals: Vec<SignalNodes> = (0..quantity.positions.len())
+            .map(|number| self.position(index, quantity, number))
+            .collect();
         let rows: Vec<NodeId> = signals.iter().map(|signal| signal.compare).collect();
         let limit = |limit: &Arc<Limit>| {
             let (title, name) = (&limit.estimate.title, &limit.estimate.name);
@@ -327,19 +516,35 @@ impl Builder {
             let estimate = Operation::Estimate(Arc::clone(limit));
             let others = limit.estimate.others().into_iter().chain(limit.bound.others());
             let rows = rows.iter().copied().chain(self.rows_of_others(plan, others)).collect();
-            let estimate = self.add(estimate, rows, quantity.unit.dimension, &limit.span, label, kind);
+            let estimate =
+                self.add(estimate, rows, quantity.unit.dimension, &limit.span, label, kind);
             let label = format!("{}: {name} {}", quantity.id, limit.words);
             let operation = Operation::Limit(Arc::clone(limit));
-            let limit = self.add(operation, vec![estimate], Dimension::ONE, &limit.span, label, format!("limit {index}"));
+            let limit = self.add(
+                operation,
+                vec![estimate],
+                Dimension::ONE,
+                &limit.span,
+                label,
+                format!("limit {index}"),
+            );
             LimitNodes { estimate, limit }
         };
         let limits = quantity.limits.iter().map(limit).collect();
         let report = |report: &Arc<Report>| {
             let others = self.rows_of_others(plan, report.estimate.others().into_iter());
-            let label = format!("{}: {}{}", quantity.id, report.estimate.title, of_rows(&report.scope));
+            let label =
+                format!("{}: {}{}", quantity.id, report.estimate.title, of_rows(&report.scope));
             let rows = rows.iter().copied().chain(others).collect();
             let operation = Operation::Report(Arc::clone(report));
-            self.add(operation, rows, quantity.unit.dimension, &report.span, label, format!("report {index}"))
+            self.add(
+                operation,
+                rows,
+                quantity.unit.dimension,
+                &report.span,
+                label,
+                format!("report {index}"),
+            )
         };
         let reports = quantity.reports.iter().map(report).collect();
         QuantityNodes { signals, limits, reports }
@@ -350,7 +555,10 @@ impl Builder {
         let mut rows = Vec::new();
         for other in others {
             let Some(quantity) = plan.quantities.get(other) else { continue };
-            rows.extend((0..quantity.positions.len()).map(|number| self.position(other, quantity, number).compare));
+            rows.extend(
+                (0..quantity.positions.len())
+                    .map(|number| self.position(other, quantity, number).compare),
+            );
         }
         rows
     }
@@ -362,16 +570,22 @@ impl Builder {
         let mut inputs = Vec::new();
         let (values, over, before) = match quantity.evaluation.as_ref() {
             Evaluation::Values { values, .. } => {
-                let values: Vec<ValueNodes> = values.iter().map(|value| self.value((index, number), quantity, value, own)).collect();
+                let values: Vec<ValueNodes> = values
+                    .iter()
+                    .map(|value| self.value((index, number), quantity, value, own))
+                    .collect();
                 let before = values.iter().map(|value| value.node).collect();
                 (values, None, before)
             }
             Evaluation::Metric { over, .. } => {
-                let over = over.get(number).map(|signal| self.processed(signal, &quantity.chain, &quantity.span).1);
+                let over = over
+                    .get(number)
+                    .map(|signal| self.processed(signal, &quantity.chain, &quantity.span).1);
                 (Vec::new(), over, [processed].into_iter().chain(over).collect())
             }
             Evaluation::Combined { of, .. } => {
-                inputs = of.inputs[number].iter().map(|input| self.input(input, Some(own))).collect();
+                inputs =
+                    of.inputs[number].iter().map(|input| self.input(input, Some(own))).collect();
                 let mut before: Vec<NodeId> = inputs.iter().flat_map(InputNode::nodes).collect();
                 before.dedup();
                 (Vec::new(), None, before)
@@ -379,12 +593,26 @@ impl Builder {
         };
         let label = format!("{} {name}: {}", quantity.id, quantity.words.comparison);
         let operation = Operation::Compare(Arc::clone(&quantity.evaluation));
-        let compare = self.add(operation, before, quantity.unit.dimension, &quantity.span, label, format!("compare {index}"));
+        let compare = self.add(
+            operation,
+            before,
+            quantity.unit.dimension,
+            &quantity.span,
+            label,
+            format!("compare {index}"),
+        );
         SignalNodes { processed, filtered, values, over, inputs, compare }
     }
 
-    fn value(&mut self, (index, number): (usize, usize), quantity: &Quantity, value: &Valued, own: Own<'_>) -> ValueNodes {
-        let inputs: Vec<InputNode> = value.inputs[number].iter().map(|input| self.input(input, Some(own))).collect();
+    fn value(
+        &mut self,
+        (index, number): (usize, usize),
+        quantity: &Quantity,
+        value: &Valued,
+        own: Own<'_>,
+    ) -> ValueNodes {
+        let inputs: Vec<InputNode> =
+            value.inputs[number].iter().map(|input| self.input(input, Some(own))).collect();
         // A value that is one reduced signal needs no node of its own.
         if let (Kind::Input(0), [input]) = (&value.expr.kind, inputs.as_slice()) {
             return ValueNodes { node: input.node, inputs };
@@ -402,7 +630,11 @@ impl Builder {
 fn of_rows(scope: &Scope) -> String {
     let mut words = String::new();
     if !scope.zones.is_empty() {
-        words.push_str(&format!(", zone{} {}", if scope.zones.len() == 1 { "" } else { "s" }, scope.zones.join(", ")));
+        words.push_str(&format!(
+            ", zone{} {}",
+            if scope.zones.len() == 1 { "" } else { "s" },
+            scope.zones.join(", ")
+        ));
     }
     for key in &scope.each {
         words.push_str(", each ");

@@ -1,5 +1,5 @@
-//! The graph as an SVG picture. Each stage is a column; nodes of the same kind at different positions are one box; crossings are
-//! few.
+//! The graph as an SVG picture. Each stage is a column; nodes of the same kind at different
+//! positions are one box; crossings are few.
 
 use std::fmt::Write;
 
@@ -19,7 +19,8 @@ const SWEEPS: usize = 12;
 
 /// A box of the picture.
 struct Card {
-    /// Column. Values of reduced signals are placed right of their inputs, although both belong to one stage.
+    /// Column. Values of reduced signals are placed right of their inputs, although both belong to
+    /// one stage.
     column: (Stage, bool),
     lines: Vec<String>,
     count: usize,
@@ -33,18 +34,26 @@ pub fn svg(graph: &Graph) -> String {
     let mut stages: Vec<(Stage, bool)> = cards.iter().map(|card| card.column).collect();
     stages.sort_unstable();
     stages.dedup();
-    let columns: Vec<Vec<usize>> =
-        stages.iter().map(|stage| (0..cards.len()).filter(|&index| cards[index].column == *stage).collect()).collect();
+    let columns: Vec<Vec<usize>> = stages
+        .iter()
+        .map(|stage| (0..cards.len()).filter(|&index| cards[index].column == *stage).collect())
+        .collect();
     let height = place(&mut cards, columns);
     let width = COLUMN * stages.len() as f64;
     draw(&cards, &stages, width, height)
 }
 
-/// The nodes that verdicts and section checks need. Plausibility rules are left out: they use every channel and would make the
-/// picture unreadable.
+/// The nodes that verdicts and section checks need. Plausibility rules are left out: they use every
+/// channel and would make the picture unreadable.
 fn drawn(graph: &Graph) -> Vec<bool> {
     let mut drawn = vec![false; graph.nodes.len()];
-    let mut open: Vec<NodeId> = graph.checks.iter().flatten().map(|input| input.node).chain(graph.verdicts.iter().copied()).collect();
+    let mut open: Vec<NodeId> = graph
+        .checks
+        .iter()
+        .flatten()
+        .map(|input| input.node)
+        .chain(graph.verdicts.iter().copied())
+        .collect();
     while let Some(id) = open.pop() {
         if !std::mem::replace(&mut drawn[id], true) {
             open.extend(&graph.nodes[id].inputs);
@@ -55,7 +64,8 @@ fn drawn(graph: &Graph) -> Vec<bool> {
 
 /// Nodes of one class become one box, and so do all statistics or limits of one quantity.
 fn cards(graph: &Graph) -> Vec<Card> {
-    let mut card_of_class: Vec<Option<usize>> = vec![None; graph.nodes.iter().map(|node| node.class + 1).max().unwrap_or(0)];
+    let mut card_of_class: Vec<Option<usize>> =
+        vec![None; graph.nodes.iter().map(|node| node.class + 1).max().unwrap_or(0)];
     let mut members: Vec<Vec<NodeId>> = Vec::new();
     let drawn = drawn(graph);
     for (id, node) in graph.nodes.iter().enumerate().filter(|(id, _)| drawn[*id]) {
@@ -67,7 +77,8 @@ fn cards(graph: &Graph) -> Vec<Card> {
             }
         }
     }
-    let card_of: Vec<usize> = graph.nodes.iter().map(|node| card_of_class[node.class].unwrap_or(0)).collect();
+    let card_of: Vec<usize> =
+        graph.nodes.iter().map(|node| card_of_class[node.class].unwrap_or(0)).collect();
     members
         .iter()
         .enumerate()
@@ -80,7 +91,10 @@ fn cards(graph: &Graph) -> Vec<Card> {
                 .collect();
             inputs.sort_unstable();
             inputs.dedup();
-            let count = if matches!(first.operation, Operation::Estimate(_) | Operation::Report(_) | Operation::Limit(_)) {
+            let count = if matches!(
+                first.operation,
+                Operation::Estimate(_) | Operation::Report(_) | Operation::Limit(_)
+            ) {
                 1
             } else {
                 members.len()
@@ -98,7 +112,10 @@ fn label(graph: &Graph, members: &[NodeId]) -> String {
         Operation::Read { .. } | Operation::Arithmetic(_) => shortened(&labels.join(", ")),
         Operation::Estimate(_) | Operation::Report(_) | Operation::Limit(_) => {
             let (quantity, _) = labels[0].split_once(": ").unwrap_or(("", labels[0]));
-            let mut rest: Vec<&str> = labels.iter().map(|label| label.split_once(": ").map_or(*label, |(_, rest)| rest)).collect();
+            let mut rest: Vec<&str> = labels
+                .iter()
+                .map(|label| label.split_once(": ").map_or(*label, |(_, rest)| rest))
+                .collect();
             // A limit `for each zone` is one line.
             rest.dedup();
             format!("{quantity}: {}", rest.join("; "))
@@ -107,21 +124,29 @@ fn label(graph: &Graph, members: &[NodeId]) -> String {
             let (head, how) = labels[0].split_once(": ").unwrap_or((labels[0], ""));
             format!("{}: {how}", head.split(' ').next().unwrap_or(head))
         }
-        Operation::Value(_) => labels[0].rsplit_once(" of ").map_or(labels[0], |(what, _)| what).to_string(),
+        Operation::Value(_) => {
+            labels[0].rsplit_once(" of ").map_or(labels[0], |(what, _)| what).to_string()
+        }
         _ => labels[0].to_string(),
     }
 }
 
 fn shortened(text: &str) -> String {
     let most = CHARACTERS * MOST_LINES - 2;
-    if text.chars().count() <= most { text.to_string() } else { text.chars().take(most).collect::<String>() + " …" }
+    if text.chars().count() <= most {
+        text.to_string()
+    } else {
+        text.chars().take(most).collect::<String>() + " …"
+    }
 }
 
 fn wrapped(text: &str) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split(' ') {
         let last = lines.len() - 1;
-        if !lines[last].is_empty() && lines[last].chars().count() + 1 + word.chars().count() > CHARACTERS {
+        if !lines[last].is_empty()
+            && lines[last].chars().count() + 1 + word.chars().count() > CHARACTERS
+        {
             lines.push(word.chars().take(CHARACTERS).collect());
         } else {
             if !lines[last].is_empty() {
@@ -141,10 +166,13 @@ fn card_height(card: &Card) -> f64 {
     card.lines.len() as f64 * LINE + 8.0 + if card.count > 1 { COUNT_LINE } else { 0.0 }
 }
 
-/// Orders each column by the mean height of neighbours, in sweeps to the right and to the left; returns the height of the picture.
+/// Orders each column by the mean height of neighbours, in sweeps to the right and to the left;
+/// returns the height of the picture.
 fn place(cards: &mut [Card], mut columns: Vec<Vec<usize>>) -> f64 {
-    let tallest =
-        columns.iter().map(|column| column.iter().map(|&index| card_height(&cards[index]) + GAP).sum::<f64>()).fold(0.0, f64::max);
+    let tallest = columns
+        .iter()
+        .map(|column| column.iter().map(|&index| card_height(&cards[index]) + GAP).sum::<f64>())
+        .fold(0.0, f64::max);
     let mut outputs: Vec<Vec<usize>> = vec![Vec::new(); cards.len()];
     for (index, card) in cards.iter().enumerate() {
         for &input in &card.inputs {
@@ -154,13 +182,19 @@ fn place(cards: &mut [Card], mut columns: Vec<Vec<usize>>) -> f64 {
     stack(cards, &columns, tallest);
     for sweep in 0..SWEEPS {
         let forward = sweep % 2 == 0;
-        let order: Vec<usize> = if forward { (0..columns.len()).collect() } else { (0..columns.len()).rev().collect() };
+        let order: Vec<usize> =
+            if forward { (0..columns.len()).collect() } else { (0..columns.len()).rev().collect() };
         for column in order {
             let wish = |index: usize| {
                 let near: &[usize] = if forward { &cards[index].inputs } else { &outputs[index] };
-                if near.is_empty() { cards[index].y } else { near.iter().map(|&other| cards[other].y).sum::<f64>() / near.len() as f64 }
+                if near.is_empty() {
+                    cards[index].y
+                } else {
+                    near.iter().map(|&other| cards[other].y).sum::<f64>() / near.len() as f64
+                }
             };
-            let mut wished: Vec<(f64, usize)> = columns[column].iter().map(|&index| (wish(index), index)).collect();
+            let mut wished: Vec<(f64, usize)> =
+                columns[column].iter().map(|&index| (wish(index), index)).collect();
             wished.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             columns[column] = wished.iter().map(|(_, index)| *index).collect();
             stack(cards, &columns, tallest);
@@ -187,8 +221,10 @@ fn draw(cards: &[Card], stages: &[(Stage, bool)], width: f64, height: f64) -> St
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" height=\"{height:.0}\" \
          font-family=\"IBM Plex Sans\" font-size=\"11\">\n<rect width=\"{width:.0}\" height=\"{height:.0}\" fill=\"#ffffff\"/>\n"
     );
-    let x_of =
-        |stage: (Stage, bool)| stages.iter().position(|known| *known == stage).unwrap_or(0) as f64 * COLUMN + (COLUMN - BOX_WIDTH) / 2.0;
+    let x_of = |stage: (Stage, bool)| {
+        stages.iter().position(|known| *known == stage).unwrap_or(0) as f64 * COLUMN
+            + (COLUMN - BOX_WIDTH) / 2.0
+    };
     for stage in stages {
         let x = x_of(*stage) + BOX_WIDTH / 2.0;
         let _ = writeln!(
@@ -236,7 +272,12 @@ fn draw(cards: &[Card], stages: &[(Stage, bool)], width: f64, height: f64) -> St
         );
         for (number, line) in card.lines.iter().enumerate() {
             let y = card.y + 13.0 + number as f64 * LINE;
-            let _ = writeln!(out, "<text x=\"{:.1}\" y=\"{y:.1}\" fill=\"#1b1f24\">{}</text>", x + 5.0, escaped(line));
+            let _ = writeln!(
+                out,
+                "<text x=\"{:.1}\" y=\"{y:.1}\" fill=\"#1b1f24\">{}</text>",
+                x + 5.0,
+                escaped(line)
+            );
         }
         if card.count > 1 {
             let _ = writeln!(

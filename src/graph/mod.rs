@@ -1,9 +1,10 @@
-//! The processing graph: typed operations from channels to verdicts. Common parts are stored once. Each node knows the line of its
-//! rule.
+//! The processing graph: typed operations from channels to verdicts. Common parts are stored once.
+//! Each node knows the line of its rule.
 //!
-//! Nodes up to [`Operation::Value`] are executed once for each record. [`Operation::Compare`] makes the rows of the table of
-//! values, from one record or from several. The following nodes use groups of rows. Inputs always have a smaller index than the
-//! node. The order of the nodes is therefore an order of execution, and cycles are impossible.
+//! Nodes up to [`Operation::Value`] are executed once for each record. [`Operation::Compare`] makes
+//! the rows of the table of values, from one record or from several. The following nodes use groups
+//! of rows. Inputs always have a smaller index than the node. The order of the nodes is therefore
+//! an order of execution, and cycles are impossible.
 
 mod build;
 mod draw;
@@ -17,7 +18,9 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use crate::catalog::{Function, Metric, Reducer};
-use crate::check::plan::{AxisOperation, Decision, Evaluation, Expr, InputSide, Limit, Operator, Report, Signal, StepSpec};
+use crate::check::plan::{
+    AxisOperation, Decision, Evaluation, Expr, InputSide, Limit, Operator, Report, Signal, StepSpec,
+};
 use crate::source::Span;
 use crate::units::Dimension;
 
@@ -37,8 +40,8 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// The columns that nodes are computed from, whichever of their cases apply, and whether each is of the track record. One that several
-    /// nodes read is there several times.
+    /// The columns that nodes are computed from, whichever of their cases apply, and whether each
+    /// is of the track record. One that several nodes read is there several times.
     pub fn columns_of(&self, nodes: impl IntoIterator<Item = NodeId>) -> Vec<(String, bool)> {
         let (mut seen, mut open) = (BTreeSet::new(), nodes.into_iter().collect::<Vec<_>>());
         while let Some(id) = open.pop() {
@@ -75,7 +78,8 @@ pub struct Node {
     pub from: Span,
     /// In words: `low-pass 20 Hz, order 4, zero-phase, as-applied`.
     pub label: String,
-    /// Nodes with the same operation at different positions have the same class. They are drawn as one box.
+    /// Nodes with the same operation at different positions have the same class. They are drawn as
+    /// one box.
     pub class: usize,
 }
 

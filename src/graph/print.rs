@@ -11,7 +11,10 @@ pub fn text(graph: &Graph) -> String {
         let inputs = if node.inputs.is_empty() {
             String::new()
         } else {
-            format!(" <- {}", node.inputs.iter().map(|id| format!("n{id}")).collect::<Vec<_>>().join(" "))
+            format!(
+                " <- {}",
+                node.inputs.iter().map(|id| format!("n{id}")).collect::<Vec<_>>().join(" ")
+            )
         };
         // Writing to a String cannot fail.
         let _ = writeln!(
@@ -28,9 +31,15 @@ pub fn text(graph: &Graph) -> String {
 
 /// Graphviz DOT, with one cluster for each stage.
 pub fn dot(graph: &Graph) -> String {
-    let mut out = String::from("digraph protocol {\n  rankdir=LR;\n  node [shape=box, fontname=\"sans-serif\"];\n");
+    let mut out = String::from(
+        "digraph protocol {\n  rankdir=LR;\n  node [shape=box, fontname=\"sans-serif\"];\n",
+    );
     for (id, node) in graph.nodes.iter().enumerate() {
-        let label = format!("{}\\n{}", node.operation.stage().in_words(), node.label.replace('\\', "\\\\").replace('"', "\\\""));
+        let label = format!(
+            "{}\\n{}",
+            node.operation.stage().in_words(),
+            node.label.replace('\\', "\\\\").replace('"', "\\\"")
+        );
         let _ = writeln!(out, "  n{id} [label=\"{label}\"];");
     }
     for (id, node) in graph.nodes.iter().enumerate() {

@@ -1,4 +1,5 @@
-//! The campaign of a mapping before its records are read: what `certify` would refuse is told here, and nothing is written.
+//! The campaign of a mapping before its records are read: what `certify` would refuse is told here,
+//! and nothing is written.
 
 use super::mapping::Mapping;
 use super::write::{campaign_tree, small_files};
@@ -24,29 +25,54 @@ impl NotWritten {
         let before = problems.errors();
         tracks(mapping, problems);
         let files = small_files(mapping).map_err(|problem| problems.push(problem)).ok()?;
-        let names: Vec<(String, String)> = files.iter().map(|file| (file.inside.clone(), mapping.place(&file.written.value).1)).collect();
+        let names: Vec<(String, String)> = files
+            .iter()
+            .map(|file| (file.inside.clone(), mapping.place(&file.written.value).1))
+            .collect();
         let texts = files.into_iter().map(|file| (file.inside, file.bytes)).collect();
         let memory = Memory { texts, ..Memory::default() };
         let mut found = Problems::default();
-        let campaign = Campaign::not_written(campaign_tree(mapping, Format::Csv), memory, mapping.sections.names.clone(), &mut found);
+        let campaign = Campaign::not_written(
+            campaign_tree(mapping, Format::Csv),
+            memory,
+            mapping.sections.names.clone(),
+            &mut found,
+        );
         found.0.into_iter().for_each(|problem| problems.push(placed(problem, &names)));
         let campaign = campaign?;
         if let (Some(runs), Some(table)) = (&mapping.runs, &campaign.sections)
             && table.column(RUN_COLUMN).is_none()
         {
-            let says = format!("the table of sections has no column `{RUN_COLUMN}`: from which run a section is cut");
+            let says = format!(
+                "the table of sections has no column `{RUN_COLUMN}`: from which run a section is cut"
+            );
             let at = runs.table.as_ref().map_or(&mapping.sections.span, |written| &written.span);
             let problem = Problem::error("column-missing", says).at(at);
-            let known: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
+            let known: Vec<&str> =
+                table.columns.iter().map(|column| column.name.as_str()).collect();
             let near = problem.suggest(RUN_COLUMN, known);
-            let runs = mapping.sections.names.iter().map(|name| name.value.as_str()).collect::<Vec<_>>().join(", ");
-            problems.push(if near.near.is_some() { near } else { near.help(format!("add it, with a run in each row: {runs}")) });
+            let runs = mapping
+                .sections
+                .names
+                .iter()
+                .map(|name| name.value.as_str())
+                .collect::<Vec<_>>()
+                .join(", ");
+            problems.push(if near.near.is_some() {
+                near
+            } else {
+                near.help(format!("add it, with a run in each row: {runs}"))
+            });
         }
         (problems.errors() == before).then_some(Self { campaign, names })
     }
 
     /// Checks the campaign, and shows files where the mapping has them.
-    pub fn checked<T>(&self, problems: &mut Problems, check: impl FnOnce(&Campaign, &mut Problems) -> T) -> T {
+    pub fn checked<T>(
+        &self,
+        problems: &mut Problems,
+        check: impl FnOnce(&Campaign, &mut Problems) -> T,
+    ) -> T {
         let mut found = Problems::default();
         let result = check(&self.campaign, &mut found);
         found.0.into_iter().for_each(|problem| problems.push(placed(problem, &self.names)));
@@ -58,10 +84,15 @@ impl NotWritten {
 fn tracks(mapping: &Mapping, problems: &mut Problems) {
     let Some(pattern) = &mapping.track else { return };
     let word = mapping.sections.word;
-    let missing = |name: &&Cell| !disk::may_be_file(&mapping.place(&mapping.sections.fill(&pattern.value, &name.value)).0);
+    let missing = |name: &&Cell| {
+        !disk::may_be_file(&mapping.place(&mapping.sections.fill(&pattern.value, &name.value)).0)
+    };
     if let Some(name) = mapping.sections.names.iter().find(missing) {
         let (_, shown) = mapping.place(&mapping.sections.fill(&pattern.value, &name.value));
-        let problem = Problem::error("file-missing", format!("there is no track file `{shown}` of {word} `{}`", name.value));
+        let problem = Problem::error(
+            "file-missing",
+            format!("there is no track file `{shown}` of {word} `{}`", name.value),
+        );
         problems.push(problem.at(&pattern.span).help(format!(
             "`track` is a folder with a file for each {word}, or a path with `{{{word}}}` in place of its name: `track: track/{{{word}}}.csv`"
         )));
@@ -77,6 +108,7 @@ fn placed(mut problem: Problem, names: &[(String, String)]) -> Problem {
 
 fn rename(span: &mut Span, names: &[(String, String)]) {
     if let Some((_, shown)) = names.iter().find(|(inside, _)| *inside == span.source.name) {
-        span.source = Source::excerpt(shown.as_str(), span.source.text.as_str(), span.source.first_line);
+        span.source =
+            Source::excerpt(shown.as_str(), span.source.text.as_str(), span.source.first_line);
     }
 }

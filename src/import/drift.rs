@@ -1,5 +1,5 @@
-//! Drift of the distance and of the clock of a run's measurement against its simulation: estimated in windows along the whole run, and
-//! corrected.
+//! Drift of the distance and of the clock of a run's measurement against its simulation: estimated
+//! in windows along the whole run, and corrected.
 
 use std::borrow::Cow;
 
@@ -15,38 +15,60 @@ use crate::units::Dimension;
 const MOST_LISTED: usize = 12;
 /// Parts of a million.
 const PARTS: f64 = 1e6;
-/// Windows that must agree for the drift of the clock to be corrected: with fewer, its standard error is itself not certain.
+/// Windows that must agree for the drift of the clock to be corrected: with fewer, its standard
+/// error is itself not certain.
 const FEWEST_TIMES: usize = 8;
-/// Largest standard error of a drift of the clock that is corrected, 10 ppm: clocks of recorders are off by some tens of ppm.
+/// Largest standard error of a drift of the clock that is corrected, 10 ppm: clocks of recorders
+/// are off by some tens of ppm.
 const UNCERTAIN_CLOCK: f64 = 10e-6;
-/// Largest drift of the clock that is corrected, 500 ppm. A quartz is never off by more; the simulation then had another speed.
+/// Largest drift of the clock that is corrected, 500 ppm. A quartz is never off by more; the
+/// simulation then had another speed.
 const MOST_CLOCK: f64 = 500e-6;
 
 /// Estimates the drift, corrects it where this is asked for, and tells it with its numbers.
 ///
 /// # Errors
-/// `no-drift`: no window in which the records agree, or no certain drift of the clock; `axis-not-increasing`: the corrected distance would go back.
+/// `no-drift`: no window in which the records agree, or no certain drift of the clock;
+/// `axis-not-increasing`: the corrected distance would go back.
 pub fn drift(asked: &Drift, measured: &mut Made, simulated: &Made) -> Result<(), Problem> {
     let name = measured.section.clone();
-    let fault = |code: &'static str, says: String| Problem::error(code, format!("run `{name}`: {says}")).at(&asked.span);
+    let fault = |code: &'static str, says: String| {
+        Problem::error(code, format!("run `{name}`: {says}")).at(&asked.span)
+    };
     let axis = |made: &Made| made.columns.iter().position(|column| column.name == "distance");
     let (Some(own), Some(other)) = (axis(measured), axis(simulated)) else {
-        let side = if axis(measured).is_none() { RecordKind::Measurement } else { RecordKind::Simulation };
-        return Err(fault("no-drift", format!("its {} has no distance", side.key())).help("state it: `distance`"));
+        let side =
+            if axis(measured).is_none() { RecordKind::Measurement } else { RecordKind::Simulation };
+        return Err(fault("no-drift", format!("its {} has no distance", side.key()))
+            .help("state it: `distance`"));
     };
     let names = common(measured, simulated);
     if names.is_empty() {
         let help = "the channels of both sides are compared that have the same name";
-        return Err(fault("no-drift", "measurement and simulation have no channel in common".into()).help(help));
+        return Err(fault(
+            "no-drift",
+            "measurement and simulation have no channel in common".into(),
+        )
+        .help(help));
     }
     let windows = Windows::of(asked.window, asked.within);
-    let (points, looked) = tracked(windows, &Record::of(measured, own, &names)?, &Record::of(simulated, other, &names)?)?;
+    let (points, looked) = tracked(
+        windows,
+        &Record::of(measured, own, &names)?,
+        &Record::of(simulated, other, &names)?,
+    )?;
     let Some(curve) = Curve::new(&points) else {
         let says = match points.len() {
-            0 => format!("in none of {looked} windows of {} m do measurement and simulation agree", short(asked.window)),
+            0 => format!(
+                "in none of {looked} windows of {} m do measurement and simulation agree",
+                short(asked.window)
+            ),
             _ => "the shifts along the run would let the distance go back".to_string(),
         };
-        let help = format!("check signs and channels; a shift of more than {} m needs a larger `within`", short(asked.within));
+        let help = format!(
+            "check signs and channels; a shift of more than {} m needs a larger `within`",
+            short(asked.within)
+        );
         return Err(fault("no-drift", says).help(help));
     };
     measured.steps.push(told(&points, looked, asked, names.len()));
@@ -60,7 +82,9 @@ pub fn drift(asked: &Drift, measured: &mut Made, simulated: &Made) -> Result<(),
     // Beyond the last point the curve goes on as before, which a distance can be too steep for.
     if let Some(row) = (1..values.len()).find(|&row| values[row] <= values[row - 1]) {
         let says = format!("the corrected distance does not increase at {} m", short(values[row]));
-        return Err(fault("axis-not-increasing", says).help("leave the drift as it is: `drift: tell`"));
+        return Err(
+            fault("axis-not-increasing", says).help("leave the drift as it is: `drift: tell`")
+        );
     }
     let (first, last) = (values[0], values[values.len() - 1]);
     measured.columns[own].values = Values::Held(values);
@@ -75,9 +99,14 @@ pub fn drift(asked: &Drift, measured: &mut Made, simulated: &Made) -> Result<(),
 
 /// Channels of both sides, with the same name and dimension, that are no axis.
 fn common(measured: &Made, simulated: &Made) -> Vec<String> {
-    let axis = |column: &Column| [Dimension::TIME, Dimension::LENGTH].contains(&column.unit.dimension);
-    let same = |column: &Column, other: &Column| column.name == other.name && column.unit.dimension == other.unit.dimension;
-    let both = measured.columns.iter().filter(|column| !axis(column) && simulated.columns.iter().any(|other| same(column, other)));
+    let axis =
+        |column: &Column| [Dimension::TIME, Dimension::LENGTH].contains(&column.unit.dimension);
+    let same = |column: &Column, other: &Column| {
+        column.name == other.name && column.unit.dimension == other.unit.dimension
+    };
+    let both = measured.columns.iter().filter(|column| {
+        !axis(column) && simulated.columns.iter().any(|other| same(column, other))
+    });
     both.map(|column| column.name.clone()).collect()
 }
 
@@ -89,20 +118,33 @@ struct Record<'a> {
 
 impl<'a> Record<'a> {
     fn of(made: &'a Made, axis: usize, names: &[String]) -> Result<Self, Problem> {
-        let column = |name: &String| made.columns.iter().find(|column| column.name == *name).map(|column| &column.values);
-        Ok(Self { axis: made.columns[axis].values.all()?, channels: names.iter().filter_map(column).collect() })
+        let column = |name: &String| {
+            made.columns.iter().find(|column| column.name == *name).map(|column| &column.values)
+        };
+        Ok(Self {
+            axis: made.columns[axis].values.all()?,
+            channels: names.iter().filter_map(column).collect(),
+        })
     }
 
     /// What lies in a range of the axis.
     fn part(&self, range: (f64, f64)) -> Result<(Vec<f64>, Vec<Vec<f64>>), Problem> {
         let rows = within(&self.axis, range);
-        let channels = self.channels.iter().map(|values| Ok(values.part(rows.clone())?.into_owned())).collect::<Result<_, _>>()?;
+        let channels = self
+            .channels
+            .iter()
+            .map(|values| Ok(values.part(rows.clone())?.into_owned()))
+            .collect::<Result<_, _>>()?;
         Ok((self.axis[rows].to_vec(), channels))
     }
 }
 
 /// The shifts along the run, and the number of windows that were looked at.
-fn tracked(windows: Windows, measured: &Record<'_>, simulated: &Record<'_>) -> Result<(Vec<Point>, usize), Problem> {
+fn tracked(
+    windows: Windows,
+    measured: &Record<'_>,
+    simulated: &Record<'_>,
+) -> Result<(Vec<Point>, usize), Problem> {
     let mut tracker = Tracker::new(windows);
     let ends = |axis: &[f64]| axis.first().copied().zip(axis.last().copied()).unwrap_or((0.0, 0.0));
     let ((m0, m1), (s0, s1)) = (ends(&measured.axis), ends(&simulated.axis));
@@ -125,12 +167,17 @@ fn told(points: &[Point], looked: usize, asked: &Drift, channels: usize) -> Stri
     let shift = |point: &Point| point.estimate.shift;
     let least = points.iter().map(shift).fold(f64::INFINITY, f64::min);
     let most = points.iter().map(shift).fold(f64::NEG_INFINITY, f64::max);
-    let widest = points.iter().map(|point| (point.estimate.high - point.estimate.low) / 2.0).fold(0.0, f64::max);
+    let widest = points
+        .iter()
+        .map(|point| (point.estimate.high - point.estimate.low) / 2.0)
+        .fold(0.0, f64::max);
     // A few points along the run show its course; the outer ones are always among them.
     let count = points.len().min(MOST_LISTED);
     let index = |k: usize| if count < 2 { 0 } else { k * (points.len() - 1) / (count - 1) };
-    let listed: Vec<String> =
-        (0..count).map(|k| &points[index(k)]).map(|point| format!("{:+.2} m at {:.0} m", shift(point), point.at)).collect();
+    let listed: Vec<String> = (0..count)
+        .map(|k| &points[index(k)])
+        .map(|point| format!("{:+.2} m at {:.0} m", shift(point), point.at))
+        .collect();
     format!(
         "drift of the distance by correlation of {channels} channels with the simulation, in {} of {looked} windows of {} m: \
          {least:+.2} m to {most:+.2} m would align it (95 % intervals up to ±{widest:.2} m); {}",
@@ -148,10 +195,18 @@ struct Clock {
     error: f64,
 }
 
-/// Compares the times at the same places. It says something about the clock if the simulation was run with the recorded speed.
-fn clock(measured: &Made, simulated: &Made, points: &[Point], (own, other): (usize, usize)) -> Result<Option<Clock>, Problem> {
+/// Compares the times at the same places. It says something about the clock if the simulation was
+/// run with the recorded speed.
+fn clock(
+    measured: &Made,
+    simulated: &Made,
+    points: &[Point],
+    (own, other): (usize, usize),
+) -> Result<Option<Clock>, Problem> {
     let times = |made: &Made, axis: usize, places: Vec<f64>| -> Result<Vec<f64>, Problem> {
-        let Some(column) = made.columns.iter().find(|column| column.name == "time") else { return Ok(Vec::new()) };
+        let Some(column) = made.columns.iter().find(|column| column.name == "time") else {
+            return Ok(Vec::new());
+        };
         let (times, axis) = (column.values.all()?, made.columns[axis].values.all()?);
         let at = |place: f64| {
             let after = axis.partition_point(|x| *x < place).clamp(1, axis.len() - 1);
@@ -161,11 +216,16 @@ fn clock(measured: &Made, simulated: &Made, points: &[Point], (own, other): (usi
         Ok(places.into_iter().map(at).collect())
     };
     let x = times(simulated, other, points.iter().map(|point| point.at).collect())?;
-    let y = times(measured, own, points.iter().map(|point| point.at - point.estimate.shift).collect())?;
+    let y =
+        times(measured, own, points.iter().map(|point| point.at - point.estimate.shift).collect())?;
     Ok(regression(&x, &y).and_then(|line| {
-        let left: Vec<f64> = x.iter().zip(&y).map(|(x, y)| y - line.intercept - line.slope * x).collect();
+        let left: Vec<f64> =
+            x.iter().zip(&y).map(|(x, y)| y - line.intercept - line.slope * x).collect();
         let spread = standard_deviation(&x, Divisor::Sample)? * (x.len() as f64 - 1.0).sqrt();
-        Some(Clock { drift: line.slope - 1.0, error: standard_deviation(&left, Divisor::Sample)? / spread })
+        Some(Clock {
+            drift: line.slope - 1.0,
+            error: standard_deviation(&left, Divisor::Sample)? / spread,
+        })
     }))
 }
 
@@ -173,11 +233,20 @@ fn clock(measured: &Made, simulated: &Made, points: &[Point], (own, other): (usi
 ///
 /// # Errors
 /// `no-drift`: a drift that is to be corrected is not certain.
-fn told_clock(asked: &Drift, measured: &mut Made, found: Option<Clock>, count: usize) -> Result<(), Problem> {
-    let certain = found.as_ref().filter(|clock| count >= FEWEST_TIMES && clock.error <= UNCERTAIN_CLOCK && clock.drift.abs() <= MOST_CLOCK);
+fn told_clock(
+    asked: &Drift,
+    measured: &mut Made,
+    found: Option<Clock>,
+    count: usize,
+) -> Result<(), Problem> {
+    let certain = found.as_ref().filter(|clock| {
+        count >= FEWEST_TIMES && clock.error <= UNCERTAIN_CLOCK && clock.drift.abs() <= MOST_CLOCK
+    });
     if asked.correct_clock && certain.is_none() {
         let why = match &found {
-            Some(_) if count < FEWEST_TIMES => format!("{count} windows agree; at least {FEWEST_TIMES} are needed"),
+            Some(_) if count < FEWEST_TIMES => {
+                format!("{count} windows agree; at least {FEWEST_TIMES} are needed")
+            }
             Some(clock) => format!(
                 "the times differ by {:+.0} ppm with a standard error of {:.0} ppm; at most {:.0} ppm with {:.0} ppm can be the clock",
                 clock.drift * PARTS,
@@ -187,14 +256,18 @@ fn told_clock(asked: &Drift, measured: &mut Made, found: Option<Clock>, count: u
             ),
             None => format!("{count} windows agree; at least {FEWEST_TIMES} are needed"),
         };
-        let says = format!("run `{}`: the drift of the clock cannot be estimated: {why}", measured.section);
+        let says = format!(
+            "run `{}`: the drift of the clock cannot be estimated: {why}",
+            measured.section
+        );
         let help = "the simulation must be run with the recorded speed; a drift that is known is stated: `time: {drift: 50 ppm}`";
         return Err(Problem::error("no-drift", says).at(&asked.span).help(help));
     }
     let Some(clock) = found else { return Ok(()) };
     let done = if asked.correct_clock {
         for column in measured.columns.iter_mut().filter(|column| column.name == "time") {
-            let times = column.values.all()?.iter().map(|time| time / (1.0 + clock.drift)).collect();
+            let times =
+                column.values.all()?.iter().map(|time| time / (1.0 + clock.drift)).collect();
             column.values = Values::Held(times);
         }
         format!("time divided by 1 + {:.8}", clock.drift)

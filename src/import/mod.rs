@@ -46,7 +46,8 @@ struct Job<'a> {
     sections: Vec<&'a str>,
 }
 
-/// Reads all records and adds the campaign to the outputs; nothing is in place before these are committed.
+/// Reads all records and adds the campaign to the outputs; nothing is in place before these are
+/// committed.
 ///
 /// `progress` is called after each record.
 ///
@@ -83,7 +84,8 @@ pub fn import(
     let mut sources: Vec<SourceFile> = Vec::new();
     let mut accounts: BTreeMap<(RecordKind, usize), ImportedRecord> = BTreeMap::new();
     for some in jobs.chunks(AT_A_TIME) {
-        let done: Vec<Done> = some.par_iter().map(|job| work(job, mapping, needs, format, progress)).collect();
+        let done: Vec<Done> =
+            some.par_iter().map(|job| work(job, mapping, needs, format, progress)).collect();
         for job in done {
             let Done { source, texts, problems } = job;
             problems.into_iter().for_each(|problem| faults.push(problem));
@@ -94,7 +96,12 @@ pub fn import(
                     let inside = mapping::record_path(made.kind, &made.section, format.ending());
                     outputs.add(&inside, &text).map_err(|problem| Problems(vec![problem]))?;
                 }
-                let number = mapping.sections.names.iter().position(|name| name.value == made.section).unwrap_or(0);
+                let number = mapping
+                    .sections
+                    .names
+                    .iter()
+                    .position(|name| name.value == made.section)
+                    .unwrap_or(0);
                 accounts.insert((made.kind, number), account(&made, &source));
                 made.warnings.into_iter().for_each(|problem| warnings.push(problem));
             }
@@ -106,7 +113,8 @@ pub fn import(
     if faults.any_error() {
         return Err(few(faults));
     }
-    add_campaign(outputs, mapping, format, &sources, accounts.into_values().collect()).map_err(|problem| Problems(vec![problem]))?;
+    add_campaign(outputs, mapping, format, &sources, accounts.into_values().collect())
+        .map_err(|problem| Problems(vec![problem]))?;
     Ok(few(warnings))
 }
 
@@ -116,19 +124,35 @@ struct Done {
     problems: Vec<Problem>,
 }
 
-fn work(job: &Job<'_>, mapping: &Mapping, needs: Option<&Needs>, format: Format, progress: &(dyn Fn(&str) + Sync)) -> Done {
+fn work(
+    job: &Job<'_>,
+    mapping: &Mapping,
+    needs: Option<&Needs>,
+    format: Format,
+    progress: &(dyn Fn(&str) + Sync),
+) -> Done {
     let (path, shown) = mapping.place(&job.path);
     let file = match foreign::read(&path, &shown, &job.side.format) {
         Ok(file) => file,
         Err(problems) => {
             let problems =
-                problems.into_iter().map(|problem| if problem.at.is_some() { problem } else { problem.at(&job.side.files.span) }).collect();
+                problems
+                    .into_iter()
+                    .map(|problem| {
+                        if problem.at.is_some() {
+                            problem
+                        } else {
+                            problem.at(&job.side.files.span)
+                        }
+                    })
+                    .collect();
             return Done { source: None, texts: Vec::new(), problems };
         }
     };
     let mut done = Done { source: None, texts: Vec::new(), problems: Vec::new() };
     for section in &job.sections {
-        let of = Of { mapping, side: job.side, needs, section, file: &file, store: None, shown: &shown };
+        let of =
+            Of { mapping, side: job.side, needs, section, file: &file, store: None, shown: &shown };
         match record(&of) {
             Ok(made) => match record_bytes(&made.columns, format) {
                 Ok(text) => done.texts.push((Made { columns: Vec::new(), ..made }, text)),
@@ -138,7 +162,11 @@ fn work(job: &Job<'_>, mapping: &Mapping, needs: Option<&Needs>, format: Format,
         }
         progress(section);
     }
-    done.source = Some(SourceFile { path: job.path.clone(), sha256: file.sha256.clone(), read_as: read_as(&file) });
+    done.source = Some(SourceFile {
+        path: job.path.clone(),
+        sha256: file.sha256.clone(),
+        read_as: read_as(&file),
+    });
     done
 }
 
@@ -157,7 +185,9 @@ fn few(problems: Problems) -> Problems {
     let mut more = 0;
     for problem in problems.0 {
         let same = |known: &Problem| {
-            let place = |problem: &Problem| problem.at.as_ref().map(|at| (at.source.name.clone(), at.start, at.end));
+            let place = |problem: &Problem| {
+                problem.at.as_ref().map(|at| (at.source.name.clone(), at.start, at.end))
+            };
             known.code == problem.code && known.at.is_some() && place(known) == place(&problem)
         };
         if told.0.len() >= MOST_TOLD || told.0.iter().any(same) {
@@ -169,7 +199,11 @@ fn few(problems: Problems) -> Problems {
     if more > 0 {
         let says = format!("{more} more of other sections, most of the same kind");
         let error = told.any_error();
-        told.push(if error { Problem::error("more-problems", says) } else { Problem::warning("more-problems", says) });
+        told.push(if error {
+            Problem::error("more-problems", says)
+        } else {
+            Problem::warning("more-problems", says)
+        });
     }
     told
 }

@@ -1,4 +1,5 @@
-//! Import of whole runs: both records of a run are made together, since a drift between them concerns both.
+//! Import of whole runs: both records of a run are made together, since a drift between them
+//! concerns both.
 
 use std::sync::Arc;
 
@@ -24,10 +25,12 @@ pub struct Imported {
     pub warnings: Problems,
 }
 
-/// Makes the records of all runs. One file is in memory at a time; what is made of it waits in a file without a name.
+/// Makes the records of all runs. One file is in memory at a time; what is made of it waits in a
+/// file without a name.
 ///
 /// # Errors
-/// `write-failed`. Faults of the records are in [`Imported::faults`]; after one, nothing more is written.
+/// `write-failed`. Faults of the records are in [`Imported::faults`]; after one, nothing more is
+/// written.
 pub fn import(
     mapping: &Mapping,
     needs: Option<&Needs>,
@@ -39,7 +42,10 @@ pub fn import(
     for name in &mapping.sections.names {
         let store = Store::new(outputs.scratch_file()?);
         let mut made: Vec<(Made, SourceFile)> = Vec::new();
-        for side in [RecordKind::Measurement, RecordKind::Simulation].into_iter().filter_map(|kind| mapping.side(kind)) {
+        for side in [RecordKind::Measurement, RecordKind::Simulation]
+            .into_iter()
+            .filter_map(|kind| mapping.side(kind))
+        {
             match of_side(mapping, side, needs, &name.value, &store) {
                 Ok(one) => made.push(one),
                 Err(problems) => problems.into_iter().for_each(|problem| all.faults.push(problem)),
@@ -54,7 +60,10 @@ pub fn import(
             let done = match rest {
                 [(simulated, _)] => drift::drift(asked, measured, simulated),
                 _ => {
-                    let problem = Problem::error("no-drift", "a drift is one against the simulation, which is not imported");
+                    let problem = Problem::error(
+                        "no-drift",
+                        "a drift is one against the simulation, which is not imported",
+                    );
                     Err(problem.at(&asked.span).help("import both sides, or remove `drift`"))
                 }
             };
@@ -65,7 +74,9 @@ pub fn import(
         }
         for (made, source) in made {
             let inside = mapping::record_path(made.kind, &made.section, format.ending());
-            outputs.add_in_parts(&inside, |sink| write_record(&made.columns, format, Some(&store), sink))?;
+            outputs.add_in_parts(&inside, |sink| {
+                write_record(&made.columns, format, Some(&store), sink)
+            })?;
             all.accounts.push(account(&made, &source));
             made.warnings.into_iter().for_each(|problem| all.warnings.push(problem));
             if !all.sources.contains(&source) {
@@ -86,8 +97,19 @@ fn of_side(
 ) -> Result<(Made, SourceFile), Vec<Problem>> {
     let written = mapping.sections.fill(&side.files.value, run);
     let (path, shown) = mapping.place(&written);
-    let at = |problem: Problem| if problem.at.is_some() { problem } else { problem.at(&side.files.span) };
-    let file = foreign::read(&path, &shown, &side.format).map_err(|problems| problems.into_iter().map(at).collect::<Vec<_>>())?;
-    let made = record(&Of { mapping, side, needs, section: run, file: &file, store: Some(store), shown: &shown })?;
+    let at = |problem: Problem| {
+        if problem.at.is_some() { problem } else { problem.at(&side.files.span) }
+    };
+    let file = foreign::read(&path, &shown, &side.format)
+        .map_err(|problems| problems.into_iter().map(at).collect::<Vec<_>>())?;
+    let made = record(&Of {
+        mapping,
+        side,
+        needs,
+        section: run,
+        file: &file,
+        store: Some(store),
+        shown: &shown,
+    })?;
     Ok((made, SourceFile { path: written, sha256: file.sha256.clone(), read_as: read_as(&file) }))
 }

@@ -1,4 +1,5 @@
-//! Writes the campaign: records, tables, vehicle, track, the mapping and an account of what was done.
+//! Writes the campaign: records, tables, vehicle, track, the mapping and an account of what was
+//! done.
 
 use std::io;
 use std::ops::Range;
@@ -14,18 +15,21 @@ use crate::data::origin::{Imported, ImportedRecord, ORIGIN_FILE, ORIGIN_KEY, Ori
 use crate::data::record::Format;
 use crate::data::text::read_any;
 use crate::data::write::Values::{self as FileValues, Numbers};
-use crate::data::write::{Entry, FileColumn, Layout, Outputs, campaign_yaml, csv_header, csv_rows, parquet_in_groups};
+use crate::data::write::{
+    Entry, FileColumn, Layout, Outputs, campaign_yaml, csv_header, csv_rows, parquet_in_groups,
+};
 use crate::problem::Problem;
 use crate::source::{Span, Spanned};
 use crate::yaml::{Key, Node, Value};
 
 /// Significant digits of a channel: those of a 32-bit number, and more than any sensor resolves.
 const DIGITS: usize = 9;
-/// Significant digits of time and distance, which may begin far from zero: a micrometre at 100 km, a microsecond in a day.
+/// Significant digits of time and distance, which may begin far from zero: a micrometre at 100 km,
+/// a microsecond in a day.
 const AXIS_DIGITS: usize = 12;
 
-/// Writes the record in a format; both hold the same numbers. With a store, a few rows of all columns are in memory at a time, and of each
-/// worker all rows of one column.
+/// Writes the record in a format; both hold the same numbers. With a store, a few rows of all
+/// columns are in memory at a time, and of each worker all rows of one column.
 ///
 /// # Errors
 /// `write-failed`.
@@ -36,28 +40,42 @@ pub fn write_record(
     sink: &mut (dyn io::Write + Send),
 ) -> Result<(), Problem> {
     let of_file = |column: &Column| -> Result<(Layout, Values), Problem> {
-        let digits = if ["time", "distance"].contains(&column.name.as_str()) { AXIS_DIGITS } else { DIGITS };
-        let values = column.values.all()?.iter().map(|value| rounded(column.unit.from_si(*value), digits)).collect();
+        let digits =
+            if ["time", "distance"].contains(&column.name.as_str()) { AXIS_DIGITS } else { DIGITS };
+        let values = column
+            .values
+            .all()?
+            .iter()
+            .map(|value| rounded(column.unit.from_si(*value), digits))
+            .collect();
         let heading = format!("{} [{}]", column.name, column.unit);
         let column = FileColumn { heading, values: Numbers(values), digits: None };
         let layout = Layout::of(&column);
         let Numbers(values) = column.values else { return Ok((layout, Values::Held(Vec::new()))) };
         Ok((layout, Values::keep(values, store)?))
     };
-    let columns: Vec<(Layout, Values)> = columns.par_iter().map(of_file).collect::<Result<_, _>>()?;
+    let columns: Vec<(Layout, Values)> =
+        columns.par_iter().map(of_file).collect::<Result<_, _>>()?;
     let rows = columns.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
     let (layouts, columns): (Vec<Layout>, Vec<Values>) = columns.into_iter().unzip();
     let part = |range: Range<usize>| -> Result<Vec<FileValues>, Problem> {
         columns.iter().map(|values| Ok(Numbers(values.part(range.clone())?.into_owned()))).collect()
     };
-    let failed = |error: io::Error| Problem::error("write-failed", format!("a record cannot be written: {error}"));
+    let failed = |error: io::Error| {
+        Problem::error("write-failed", format!("a record cannot be written: {error}"))
+    };
     match format {
         Format::Csv => {
             let headings: Vec<&str> = layouts.iter().map(Layout::heading).collect();
             sink.write_all(csv_header(&headings).as_bytes()).map_err(failed)?;
             for start in (0..rows).step_by(BLOCK) {
-                let file = |(heading, values): (&&str, FileValues)| FileColumn { heading: (*heading).to_string(), values, digits: None };
-                let some: Vec<FileColumn> = headings.iter().zip(part(start..start + BLOCK)?).map(file).collect();
+                let file = |(heading, values): (&&str, FileValues)| FileColumn {
+                    heading: (*heading).to_string(),
+                    values,
+                    digits: None,
+                };
+                let some: Vec<FileColumn> =
+                    headings.iter().zip(part(start..start + BLOCK)?).map(file).collect();
                 sink.write_all(csv_rows(&some).as_bytes()).map_err(failed)?;
             }
             Ok(())
@@ -116,15 +134,24 @@ pub struct Copied {
 /// # Errors
 /// A file cannot be read.
 pub fn small_files(mapping: &Mapping) -> Result<Vec<Copied>, Problem> {
-    let own = mapping.protocol.as_ref().filter(|protocol| crate::library::shipped(&protocol.value).is_none());
+    let own = mapping
+        .protocol
+        .as_ref()
+        .filter(|protocol| crate::library::shipped(&protocol.value).is_none());
     let vehicle = mapping.vehicle.as_ref().map(|(written, _)| written);
     let all = own.into_iter().chain(vehicle).chain(table(mapping)).chain(&mapping.copies);
     all.map(|written| copied(mapping, written, &written.value, file(&written.value))).collect()
 }
 
-fn copied(mapping: &Mapping, named: &Spanned<String>, written: &str, inside: String) -> Result<Copied, Problem> {
+fn copied(
+    mapping: &Mapping,
+    named: &Spanned<String>,
+    written: &str,
+    inside: String,
+) -> Result<Copied, Problem> {
     let (path, shown) = mapping.place(written);
-    let bytes = read_any(&path, &shown).map_err(|problem| if problem.at.is_some() { problem } else { problem.at(&named.span) })?;
+    let bytes = read_any(&path, &shown)
+        .map_err(|problem| if problem.at.is_some() { problem } else { problem.at(&named.span) })?;
     Ok(Copied { written: Spanned::new(written.to_string(), named.span.clone()), inside, bytes })
 }
 
@@ -155,7 +182,10 @@ pub fn campaign_tree(mapping: &Mapping, format: Format) -> Node {
     add("name", text_node(mapping.name.value.as_str(), &mapping.name.span));
     if let Some(named) = &mapping.protocol {
         let shipped = crate::library::shipped(&named.value).is_some();
-        add("protocol", text_node(if shipped { named.value.clone() } else { file(&named.value) }, &named.span));
+        add(
+            "protocol",
+            text_node(if shipped { named.value.clone() } else { file(&named.value) }, &named.span),
+        );
     }
     if let Some((written, _)) = &mapping.vehicle {
         add("vehicle", text_node(file(&written.value), &written.span));
@@ -166,11 +196,19 @@ pub fn campaign_tree(mapping: &Mapping, format: Format) -> Node {
     if let Some(runs) = &mapping.runs {
         add(RUNS, of_runs(mapping, runs, format));
     } else {
-        mapping.sides.iter().for_each(|side| add(side.kind.key(), text_node(side.kind.key(), &side.span)));
+        mapping
+            .sides
+            .iter()
+            .for_each(|side| add(side.kind.key(), text_node(side.kind.key(), &side.span)));
         mapping.track.iter().for_each(|track| add("track", text_node("track", &track.span)));
     }
     entries.extend(mapping.campaign.iter().cloned());
-    Node { value: Value::Map(entries), raw: String::new(), span: mapping.source.whole(), exact: false }
+    Node {
+        value: Value::Map(entries),
+        raw: String::new(),
+        span: mapping.source.whole(),
+        exact: false,
+    }
 }
 
 /// Adds all files but the records.
@@ -186,7 +224,10 @@ pub fn add_campaign(
 ) -> Result<(), Problem> {
     let mut of_copies: Vec<OriginFile> = Vec::new();
     let mut copy = |outputs: &mut Outputs, file: &Copied| -> Result<(), Problem> {
-        of_copies.push(OriginFile { path: file.written.value.clone(), sha256: crate::data::hash::sha256(&file.bytes) });
+        of_copies.push(OriginFile {
+            path: file.written.value.clone(),
+            sha256: crate::data::hash::sha256(&file.bytes),
+        });
         outputs.add(&file.inside, &file.bytes)
     };
     for file in small_files(mapping)? {
@@ -199,16 +240,23 @@ pub fn add_campaign(
         }
     }
     let tree = campaign_tree(mapping, format);
-    let mut lines: Vec<(&str, Entry<'_>)> = tree.entries().iter().map(|(key, node)| (key.text.as_str(), Entry::Node(node))).collect();
+    let mut lines: Vec<(&str, Entry<'_>)> =
+        tree.entries().iter().map(|(key, node)| (key.text.as_str(), Entry::Node(node))).collect();
     lines.push((ORIGIN_KEY, Entry::Text(ORIGIN_FILE)));
     outputs.add("campaign.yaml", campaign_yaml(&lines).as_bytes())?;
-    let sources = sources.iter().map(|source| OriginFile { path: source.path.clone(), sha256: source.sha256.clone() });
+    let sources = sources
+        .iter()
+        .map(|source| OriginFile { path: source.path.clone(), sha256: source.sha256.clone() });
     let origin = Origin {
         program: concat!("fishplate ", env!("CARGO_PKG_VERSION")).to_string(),
         command: "import".into(),
         campaign: mapping.name.value.clone(),
         sources: sources.chain(of_copies).collect(),
-        imported: Some(Imported { mapping: mapping.source.text.clone(), channels: channels(mapping), records }),
+        imported: Some(Imported {
+            mapping: mapping.source.text.clone(),
+            channels: channels(mapping),
+            records,
+        }),
         ..Origin::default()
     };
     outputs.add(ORIGIN_FILE, origin.text().as_bytes())
@@ -221,14 +269,22 @@ fn track_path(pattern: &Spanned<String>, name: &str) -> String {
 
 /// The block `runs`: the files of each run, and what the mapping says of it.
 fn of_runs(mapping: &Mapping, runs: &Runs, format: Format) -> Node {
-    let of_one = |(name, facts): (&Spanned<String>, &Vec<(Key, Node)>)| {
-        let at = &name.span;
-        let record = |side: &Side| (key(side.kind.key(), at), text_node(record_path(side.kind, &name.value, format.ending()), at));
-        let mut entries: Vec<(Key, Node)> = mapping.sides.iter().map(record).collect();
-        entries.extend(mapping.track.iter().map(|pattern| (key("track", at), text_node(track_path(pattern, &name.value), at))));
-        entries.extend(facts.iter().cloned());
-        (key(&name.value, at), Node { value: Value::Map(entries), ..text_node("", at) })
-    };
+    let of_one =
+        |(name, facts): (&Spanned<String>, &Vec<(Key, Node)>)| {
+            let at = &name.span;
+            let record = |side: &Side| {
+                (
+                    key(side.kind.key(), at),
+                    text_node(record_path(side.kind, &name.value, format.ending()), at),
+                )
+            };
+            let mut entries: Vec<(Key, Node)> = mapping.sides.iter().map(record).collect();
+            entries.extend(mapping.track.iter().map(|pattern| {
+                (key("track", at), text_node(track_path(pattern, &name.value), at))
+            }));
+            entries.extend(facts.iter().cloned());
+            (key(&name.value, at), Node { value: Value::Map(entries), ..text_node("", at) })
+        };
     let entries = mapping.sections.names.iter().zip(&runs.facts).map(of_one).collect();
     Node { value: Value::Map(entries), ..text_node("", &mapping.sections.span) }
 }
@@ -238,12 +294,16 @@ fn channels(mapping: &Mapping) -> Vec<(String, Vec<String>)> {
     let of_side = |side: &Side| {
         let mut lines: Vec<String> = match &side.channels {
             Channels::AsNamed => vec!["every channel as named in the file".into()],
-            Channels::Maps(maps) => maps.iter().map(|map| format!("{} = {}", map.name.value, map.in_words())).collect(),
+            Channels::Maps(maps) => {
+                maps.iter().map(|map| format!("{} = {}", map.name.value, map.in_words())).collect()
+            }
         };
         if let Some(Distance::Channel(map)) = &side.distance {
             lines.insert(0, format!("distance = {}", map.in_words()));
         }
-        let names = |list: &[Spanned<String>]| list.iter().map(|name| name.value.as_str()).collect::<Vec<_>>().join(" or ");
+        let names = |list: &[Spanned<String>]| {
+            list.iter().map(|name| name.value.as_str()).collect::<Vec<_>>().join(" or ")
+        };
         if !side.time.from.is_empty() {
             lines.insert(0, format!("time = {}", names(&side.time.from)));
         }
@@ -264,23 +324,41 @@ mod tests {
     fn numbers_keep_nine_digits_and_no_more() {
         let unit = |text: &str| Unit::parse(text).expect("known");
         let columns = [
-            Column { name: "time".into(), unit: unit("s"), values: Values::Held(vec![86_399.000_5, 86_399.005_5]) },
-            Column { name: "Y".into(), unit: unit("kN"), values: Values::Held(vec![f64::from(1130.1_f32), -0.0]) },
-            Column { name: "a".into(), unit: unit("m/s^2"), values: Values::Held(vec![0.1 * 9.806_65 * 3.0, 1e-7]) },
+            Column {
+                name: "time".into(),
+                unit: unit("s"),
+                values: Values::Held(vec![86_399.000_5, 86_399.005_5]),
+            },
+            Column {
+                name: "Y".into(),
+                unit: unit("kN"),
+                values: Values::Held(vec![f64::from(1130.1_f32), -0.0]),
+            },
+            Column {
+                name: "a".into(),
+                unit: unit("m/s^2"),
+                values: Values::Held(vec![0.1 * 9.806_65 * 3.0, 1e-7]),
+            },
         ];
-        let text = String::from_utf8(record_bytes(&columns, Format::Csv).expect("written")).expect("a text");
-        assert_eq!(text, "time [s],Y [kN],a [m/s^2]\n86399.0005,1.13009998,2.941995\n86399.0055,0,1e-7\n");
+        let text = String::from_utf8(record_bytes(&columns, Format::Csv).expect("written"))
+            .expect("a text");
+        assert_eq!(
+            text,
+            "time [s],Y [kN],a [m/s^2]\n86399.0005,1.13009998,2.941995\n86399.0055,0,1e-7\n"
+        );
         assert!(record_bytes(&columns, Format::Parquet).expect("written").starts_with(b"PAR1"));
     }
 
-    /// Written in blocks from a file, a record is the same bytes as from memory, and as its columns written at once.
+    /// Written in blocks from a file, a record is the same bytes as from memory, and as its columns
+    /// written at once.
     #[test]
     fn blocks_do_not_change_the_bytes() {
         let unit = |text: &str| Unit::parse(text).expect("known");
         for rows in [1, 100, BLOCK - 1, BLOCK, BLOCK + 1, 2 * BLOCK, 2 * BLOCK + 5] {
             let times: Vec<f64> = (0..rows).map(|row| row as f64 * 0.005).collect();
             let force: Vec<f64> = times.iter().map(|time| 4000.0 * (time * 7.3).sin()).collect();
-            let flag: Vec<f64> = (0..rows).map(|row| if row % BLOCK < 70 { 1.0 } else { 0.0 }).collect();
+            let flag: Vec<f64> =
+                (0..rows).map(|row| if row % BLOCK < 70 { 1.0 } else { 0.0 }).collect();
             let columns = [("time", "s", times), ("Y", "kN", force), ("flag", "1", flag)];
             let store = Store::new(ScratchFile::new(&std::env::temp_dir()).expect("a file"));
             let kept = |store: Option<&Arc<Store>>| -> Vec<Column> {
@@ -294,15 +372,22 @@ mod tests {
             for format in [Format::Csv, Format::Parquet] {
                 let held = record_bytes(&kept(None), format).expect("written");
                 let mut stored = Vec::new();
-                write_record(&kept(Some(&store)), format, Some(&store), &mut stored).expect("written");
+                write_record(&kept(Some(&store)), format, Some(&store), &mut stored)
+                    .expect("written");
                 assert!(stored == held, "{rows} rows, {format:?}");
                 let file = |(name, text, values): &(&str, &str, Vec<f64>)| {
                     let digits = if *name == "time" { AXIS_DIGITS } else { DIGITS };
-                    let values = Numbers(values.iter().map(|value| rounded(unit(text).from_si(*value), digits)).collect());
+                    let values = Numbers(
+                        values
+                            .iter()
+                            .map(|value| rounded(unit(text).from_si(*value), digits))
+                            .collect(),
+                    );
                     FileColumn { heading: format!("{name} [{}]", unit(text)), values, digits: None }
                 };
                 let all: Vec<FileColumn> = columns.iter().map(file).collect();
-                let at_once = if format == Format::Csv { csv(&all) } else { parquet(&all).expect("written") };
+                let at_once =
+                    if format == Format::Csv { csv(&all) } else { parquet(&all).expect("written") };
                 assert!(held == at_once, "{rows} rows, {format:?}, at once");
             }
         }

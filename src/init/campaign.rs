@@ -1,4 +1,5 @@
-//! The empty campaign: a description, tables and records with the headers that a protocol needs, and a vehicle file to fill in.
+//! The empty campaign: a description, tables and records with the headers that a protocol needs,
+//! and a vehicle file to fill in.
 
 use std::fmt::Write;
 
@@ -43,16 +44,25 @@ pub fn files(name: &str, needs: &Needs) -> Result<Vec<File>, Box<Problem>> {
     if parts.vehicle {
         files.push(("vehicle.yaml".into(), vehicle(&needs.vehicle)));
     }
-    for (path, table, first) in [("sections.csv", &needs.sections, FIRST), ("application.csv", &needs.application, FIRST_POINT)] {
+    for (path, table, first) in [
+        ("sections.csv", &needs.sections, FIRST),
+        ("application.csv", &needs.application, FIRST_POINT),
+    ] {
         if !table.is_empty() {
-            let header: Vec<String> = table.iter().map(|need| heading(&need.key, need.unit.as_deref())).collect();
-            let row = (0..header.len()).map(|column| if column == 0 { first.to_string() } else { String::new() }).collect();
+            let header: Vec<String> =
+                table.iter().map(|need| heading(&need.key, need.unit.as_deref())).collect();
+            let row = (0..header.len())
+                .map(|column| if column == 0 { first.to_string() } else { String::new() })
+                .collect();
             files.push((path.into(), table_csv(&[header, row])));
         }
     }
-    for (record, folder) in [("measured", "measurement"), ("simulated", "simulation"), ("track", "track")] {
+    for (record, folder) in
+        [("measured", "measurement"), ("simulated", "simulation"), ("track", "track")]
+    {
         let columns = needs.channels.iter().filter(|need| need.record == record);
-        let header: Vec<String> = columns.map(|need| heading(&need.column, Some(&need.unit))).collect();
+        let header: Vec<String> =
+            columns.map(|need| heading(&need.column, Some(&need.unit))).collect();
         if !header.is_empty() {
             files.push((format!("{folder}/{FIRST}.csv"), table_csv(&[header])));
         }
@@ -65,7 +75,8 @@ fn heading(name: &str, unit: Option<&str>) -> String {
     unit.map_or_else(|| name.to_string(), |unit| format!("{name} [{unit}]"))
 }
 
-/// The vehicle file: a key for each value, in comments what it is. Values that may be missing are comments altogether.
+/// The vehicle file: a key for each value, in comments what it is. Values that may be missing are
+/// comments altogether.
 fn vehicle(needs: &[DatumNeed]) -> String {
     let mut text = String::from(
         "# Data of the vehicle that the protocol reads. A number may have its unit: `54.5 kN`. A key in a comment may be\n\
@@ -73,7 +84,8 @@ fn vehicle(needs: &[DatumNeed]) -> String {
     );
     let mut open: Vec<&str> = Vec::new();
     // Keys with points are nested; those of one map stand together.
-    let mut sorted: Vec<(&DatumNeed, Vec<&str>)> = needs.iter().map(|need| (need, need.key.split('.').collect())).collect();
+    let mut sorted: Vec<(&DatumNeed, Vec<&str>)> =
+        needs.iter().map(|need| (need, need.key.split('.').collect())).collect();
     let first = |map: &str| needs.iter().position(|need| need.key.split('.').next() == Some(map));
     sorted.sort_by_key(|(_, parts)| parts.first().and_then(|map| first(map)));
     for (need, parts) in &sorted {
@@ -104,7 +116,8 @@ fn told(need: &DatumNeed) -> String {
     parts.extend(need.unit.as_ref().filter(|unit| *unit != "-").map(|unit| format!("in {unit}")));
     parts.extend((!need.words.is_empty()).then(|| need.words.join(" | ")));
     parts.extend(need.range.clone());
-    let users: Vec<&str> = need.users.quantities.iter().chain(&need.users.rules).map(String::as_str).collect();
+    let users: Vec<&str> =
+        need.users.quantities.iter().chain(&need.users.rules).map(String::as_str).collect();
     parts.extend((!users.is_empty()).then(|| format!("for {}", users.join(", "))));
     parts.join("; ").replace(['\n', '\r'], " ")
 }

@@ -1,4 +1,5 @@
-//! Channels in a list or header, and groups of channels that are numbered alike: `Y_1R`, `Y_1L`, `Y_2R`.
+//! Channels in a list or header, and groups of channels that are numbered alike: `Y_1R`, `Y_1L`,
+//! `Y_2R`.
 
 use std::collections::BTreeSet;
 
@@ -46,13 +47,23 @@ pub struct Listed {
 pub fn channels(headings: &[Heading], problems: &mut Problems) -> Vec<Channel> {
     let one = |heading: &Heading| {
         if heading.name.is_empty() {
-            problems
-                .push(Problem::error("name-missing", "a channel has no name").at(&heading.span).help("write name and unit: `Y_1R [kN]`"));
+            problems.push(
+                Problem::error("name-missing", "a channel has no name")
+                    .at(&heading.span)
+                    .help("write name and unit: `Y_1R [kN]`"),
+            );
             return None;
         }
         if heading.name.contains(NOT_IN_NAMES) || heading.name.chars().any(crate::problem::acts) {
-            let says = format!("the channel `{}` has a quotation mark, a backslash or a brace in its name", heading.name);
-            problems.push(Problem::error("channel-name", says).at(&heading.span).help("rename the column in the records"));
+            let says = format!(
+                "the channel `{}` has a quotation mark, a backslash or a brace in its name",
+                heading.name
+            );
+            problems.push(
+                Problem::error("channel-name", says)
+                    .at(&heading.span)
+                    .help("rename the column in the records"),
+            );
             return None;
         }
         let unit = heading.unit(None).map_err(|problem| problems.push(problem)).ok()?;
@@ -61,24 +72,39 @@ pub fn channels(headings: &[Heading], problems: &mut Problems) -> Vec<Channel> {
     headings.iter().filter_map(one).collect()
 }
 
-/// Axis and time are the channels `distance` and `time`. A list that has neither gets both, unless it is the header of a record.
+/// Axis and time are the channels `distance` and `time`. A list that has neither gets both, unless
+/// it is the header of a record.
 pub fn listed(channels: Vec<Channel>, of_record: bool) -> Result<Listed, Box<Problem>> {
     let named = |name: &str, dimension: Dimension| {
-        channels.iter().find(|channel| channel.name == name && channel.unit.dimension == dimension).cloned()
+        channels
+            .iter()
+            .find(|channel| channel.name == name && channel.unit.dimension == dimension)
+            .cloned()
     };
     let (mut time, mut axis) = (named(TIME, Dimension::TIME), named(DISTANCE, Dimension::LENGTH));
-    let new = |name: &str, unit: &str| Unit::parse(unit).ok().map(|unit| Channel { name: name.into(), unit });
+    let new = |name: &str, unit: &str| {
+        Unit::parse(unit).ok().map(|unit| Channel { name: name.into(), unit })
+    };
     if !of_record {
         axis = axis.or_else(|| if time.is_none() { new(DISTANCE, "m") } else { None });
         time = time.or_else(|| new(TIME, "s"));
     }
     let Some(axis) = axis.or_else(|| time.clone()) else {
-        let problem = Problem::error("no-axis", format!("the record has neither a column `{DISTANCE}`, a length, nor a column `{TIME}`"));
-        return Err(Box::new(problem.help("sections are cut along one of them: rename the column, with its unit")));
+        let problem = Problem::error(
+            "no-axis",
+            format!(
+                "the record has neither a column `{DISTANCE}`, a length, nor a column `{TIME}`"
+            ),
+        );
+        return Err(Box::new(
+            problem.help("sections are cut along one of them: rename the column, with its unit"),
+        ));
     };
     let rest: Vec<Channel> = channels
         .into_iter()
-        .filter(|channel| channel.name != axis.name && Some(&channel.name) != time.as_ref().map(|time| &time.name))
+        .filter(|channel| {
+            channel.name != axis.name && Some(&channel.name) != time.as_ref().map(|time| &time.name)
+        })
         .collect();
     Ok(Listed { axis, time, groups: groups(&rest) })
 }
@@ -91,14 +117,20 @@ pub fn groups(channels: &[Channel]) -> Vec<Group> {
         if taken.contains(channel.name.as_str()) {
             continue;
         }
-        let single = Group { stem: channel.name.clone(), separator: "", unit: channel.unit.clone(), positions: Vec::new() };
+        let single = Group {
+            stem: channel.name.clone(),
+            separator: "",
+            unit: channel.unit.clone(),
+            positions: Vec::new(),
+        };
         let Some((stem, separator, _)) = position(&channel.name) else {
             found.push(single);
             continue;
         };
         let alike = |other: &&Channel| {
             other.unit.dimension == channel.unit.dimension
-                && position(&other.name).is_some_and(|(its, between, _)| (its, between) == (stem, separator))
+                && position(&other.name)
+                    .is_some_and(|(its, between, _)| (its, between) == (stem, separator))
         };
         let members: Vec<&Channel> = channels.iter().filter(alike).collect();
         if members.len() < 2 {
@@ -106,7 +138,11 @@ pub fn groups(channels: &[Channel]) -> Vec<Group> {
             continue;
         }
         taken.extend(members.iter().map(|member| member.name.as_str()));
-        let positions = members.iter().filter_map(|member| position(&member.name)).map(|(.., at)| at.to_string()).collect();
+        let positions = members
+            .iter()
+            .filter_map(|member| position(&member.name))
+            .map(|(.., at)| at.to_string())
+            .collect();
         found.push(Group { stem: stem.into(), separator, unit: channel.unit.clone(), positions });
     }
     found
@@ -114,17 +150,22 @@ pub fn groups(channels: &[Channel]) -> Vec<Group> {
 
 /// Stem, separator and position of a numbered name: `Y_1R`, `ay_II`, `v2`.
 fn position(name: &str) -> Option<(&str, &'static str, &str)> {
-    if let Some((stem, at)) = name.rsplit_once('_').filter(|(stem, at)| !stem.is_empty() && is_position(at)) {
+    if let Some((stem, at)) =
+        name.rsplit_once('_').filter(|(stem, at)| !stem.is_empty() && is_position(at))
+    {
         return Some((stem, "_", at));
     }
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
-    (!stem.is_empty() && stem.len() < name.len() && !stem.ends_with('_')).then(|| (stem, "", &name[stem.len()..]))
+    (!stem.is_empty() && stem.len() < name.len() && !stem.ends_with('_'))
+        .then(|| (stem, "", &name[stem.len()..]))
 }
 
 /// A number, a number with a letter for the side, or a Roman number.
 fn is_position(text: &str) -> bool {
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
-    let numbered = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit()) && text.len() <= digits.len() + 1;
+    let numbered = !digits.is_empty()
+        && digits.bytes().all(|byte| byte.is_ascii_digit())
+        && text.len() <= digits.len() + 1;
     numbered || (!text.is_empty() && text.chars().all(|c| matches!(c, 'I' | 'V' | 'X')))
 }
 
@@ -148,9 +189,18 @@ mod tests {
             channel("v3", "km/h"),
             channel("roll", "rad"),
         ];
-        let found: Vec<_> = groups(&all).into_iter().map(|group| (group.stem, group.separator, group.positions.join(" "))).collect();
-        let expected = [("Y", "_", "1R 1L"), ("ay", "_", "I II"), ("v", "", "2 3"), ("Y_2R", "", ""), ("roll", "", "")]
-            .map(|(a, b, c)| (a.into(), b, c.into()));
+        let found: Vec<_> = groups(&all)
+            .into_iter()
+            .map(|group| (group.stem, group.separator, group.positions.join(" ")))
+            .collect();
+        let expected = [
+            ("Y", "_", "1R 1L"),
+            ("ay", "_", "I II"),
+            ("v", "", "2 3"),
+            ("Y_2R", "", ""),
+            ("roll", "", ""),
+        ]
+        .map(|(a, b, c)| (a.into(), b, c.into()));
         assert_eq!(found, expected);
     }
 
@@ -166,12 +216,21 @@ mod tests {
 
     #[test]
     fn axis_and_time() {
-        let names = |found: &Listed| (found.axis.name.clone(), found.time.as_ref().map(|time| time.name.clone()));
-        let some = |names: &[(&str, &str)]| names.iter().map(|(name, unit)| channel(name, unit)).collect::<Vec<_>>();
-        let of = |list: &[(&str, &str)], record| listed(some(list), record).map(|found| names(&found)).ok();
+        let names = |found: &Listed| {
+            (found.axis.name.clone(), found.time.as_ref().map(|time| time.name.clone()))
+        };
+        let some = |names: &[(&str, &str)]| {
+            names.iter().map(|(name, unit)| channel(name, unit)).collect::<Vec<_>>()
+        };
+        let of = |list: &[(&str, &str)], record| {
+            listed(some(list), record).map(|found| names(&found)).ok()
+        };
         assert_eq!(of(&[("Y", "kN")], false), Some(("distance".into(), Some("time".into()))));
         assert_eq!(of(&[("Y", "kN")], true), None);
-        assert_eq!(of(&[("time", "s"), ("Y", "kN")], false), Some(("time".into(), Some("time".into()))));
+        assert_eq!(
+            of(&[("time", "s"), ("Y", "kN")], false),
+            Some(("time".into(), Some("time".into())))
+        );
         assert_eq!(of(&[("distance", "km"), ("Y", "kN")], true), Some(("distance".into(), None)));
     }
 }

@@ -1,4 +1,5 @@
-//! The first draft of a protocol and an empty campaign: from a list of channels, and from what a protocol needs.
+//! The first draft of a protocol and an empty campaign: from a list of channels, and from what a
+//! protocol needs.
 
 pub mod campaign;
 pub mod channels;
@@ -15,11 +16,14 @@ pub type File = (String, String);
 
 /// Fills a template with texts, as they are.
 pub(crate) fn filled(template: &str, data: &impl Serialize) -> Result<String, Box<Problem>> {
-    let failed = |error: String| Box::new(Problem::error("internal", format!("a template cannot be filled: {error}")));
+    let failed = |error: String| {
+        Box::new(Problem::error("internal", format!("a template cannot be filled: {error}")))
+    };
     let data = serde_json::to_value(data).map_err(|error| failed(error.to_string()))?;
     let mut engine = Environment::new();
     engine.set_undefined_behavior(UndefinedBehavior::Strict);
-    let text = engine.render_str(template, value(&data)).map(|text| text.trim_end().to_owned() + "\n");
+    let text =
+        engine.render_str(template, value(&data)).map(|text| text.trim_end().to_owned() + "\n");
     text.map_err(|error| failed(error.to_string()))
 }
 
@@ -30,6 +34,8 @@ fn value(data: &Json) -> Value {
         Json::Number(number) => Value::from(number.as_f64()),
         Json::String(text) => Value::from(text.as_str()),
         Json::Array(items) => Value::from(items.iter().map(value).collect::<Vec<_>>()),
-        Json::Object(map) => Value::from_pairs(map.iter().map(|(key, item)| (key.clone(), value(item)))),
+        Json::Object(map) => {
+            Value::from_pairs(map.iter().map(|(key, item)| (key.clone(), value(item))))
+        }
     }
 }

@@ -69,20 +69,28 @@ struct Place {
     members: String,
 }
 
-/// The protocol of a folder in canonical form. With a parent, `listed` holds the channels that the parent does not have.
+/// The protocol of a folder in canonical form. With a parent, `listed` holds the channels that the
+/// parent does not have.
 ///
 /// # Errors
 /// `internal`: the template cannot be filled.
-pub fn text(folder: &str, listed: Option<&Listed>, parent: Option<&Parent<'_>>) -> Result<String, Box<Problem>> {
+pub fn text(
+    folder: &str,
+    listed: Option<&Listed>,
+    parent: Option<&Parent<'_>>,
+) -> Result<String, Box<Problem>> {
     let mut names = Names(parent.map(|parent| parent.names.clone()).unwrap_or_default());
     let groups = listed.map(|listed| listed.groups.as_slice()).unwrap_or_default();
     let has_filter = !groups.is_empty() && listed.is_some_and(|listed| listed.time.is_some());
-    let (mut places, mut blocks): (Vec<(Vec<String>, Place)>, Vec<Block>) = (Vec::new(), Vec::new());
+    let (mut places, mut blocks): (Vec<(Vec<String>, Place)>, Vec<Block>) =
+        (Vec::new(), Vec::new());
     for group in groups {
-        let place = (!group.positions.is_empty()).then(|| place(&group.positions, &mut places, &mut names));
+        let place =
+            (!group.positions.is_empty()).then(|| place(&group.positions, &mut places, &mut names));
         blocks.push(block(group, place, &mut names));
     }
-    let column = |channel: &Channel| Column { name: channel.name.clone(), unit: channel.unit.text.clone() };
+    let column =
+        |channel: &Channel| Column { name: channel.name.clone(), unit: channel.unit.text.clone() };
     let draft = Draft {
         name: format!("{}-protocol", block_name(folder)),
         title: format!("Protocol of {}", plain_text(folder)),
@@ -101,7 +109,11 @@ pub fn text(folder: &str, listed: Option<&Listed>, parent: Option<&Parent<'_>>) 
 }
 
 /// The place with these positions; channels with the same positions share one.
-fn place(positions: &[String], places: &mut Vec<(Vec<String>, Place)>, names: &mut Names) -> String {
+fn place(
+    positions: &[String],
+    places: &mut Vec<(Vec<String>, Place)>,
+    names: &mut Names,
+) -> String {
     if let Some((_, known)) = places.iter().find(|(known, _)| known == positions) {
         return known.name.clone();
     }
@@ -145,7 +157,8 @@ impl Names {
                 && Unit::parse(name).is_err()
         };
         let numbered = (2..).map(|number| format!("{name}_{number}"));
-        let found = std::iter::once(name.to_string()).chain(numbered).find(usable).unwrap_or_default();
+        let found =
+            std::iter::once(name.to_string()).chain(numbered).find(usable).unwrap_or_default();
         self.0.insert(found.clone());
         found
     }
@@ -153,7 +166,8 @@ impl Names {
 
 /// A name of letters, digits and `_` that begins with a letter.
 pub(crate) fn identifier(text: &str) -> String {
-    let plain: String = text.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    let plain: String =
+        text.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     let plain = plain.trim_matches('_');
     match plain.chars().next() {
         Some(first) if first.is_ascii_alphabetic() => plain.to_string(),

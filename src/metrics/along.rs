@@ -2,8 +2,8 @@
 
 use super::resample::{ResampleError, interpolate};
 
-/// Slope at each sample, from the parabola through it and both neighbours; at the ends, the slope to the one neighbour. `None` for
-/// fewer than two samples or lists of different length.
+/// Slope at each sample, from the parabola through it and both neighbours; at the ends, the slope
+/// to the one neighbour. `None` for fewer than two samples or lists of different length.
 pub fn derivative(axis: &[f64], signal: &[f64]) -> Option<Vec<f64>> {
     let count = signal.len();
     if count < 2 || axis.len() != count {
@@ -36,7 +36,8 @@ pub fn integral(axis: &[f64], signal: &[f64]) -> Option<Vec<f64>> {
         return None;
     }
     let mut sum = 0.0;
-    let parts = (1..signal.len()).map(|at| (axis[at] - axis[at - 1]) * (signal[at] + signal[at - 1]) / 2.0);
+    let parts =
+        (1..signal.len()).map(|at| (axis[at] - axis[at - 1]) * (signal[at] + signal[at - 1]) / 2.0);
     Some(
         std::iter::once(0.0)
             .chain(parts)
@@ -48,13 +49,15 @@ pub fn integral(axis: &[f64], signal: &[f64]) -> Option<Vec<f64>> {
     )
 }
 
-/// The signal moved forward by a distance, at the same points. Beyond the record, its end value is used; callers must check that
-/// the record is long enough.
+/// The signal moved forward by a distance, at the same points. Beyond the record, its end value is
+/// used; callers must check that the record is long enough.
 ///
 /// # Errors
 /// As [`interpolate`].
 pub fn moved(axis: &[f64], signal: &[f64], distance: f64) -> Result<Vec<f64>, ResampleError> {
-    let (Some(&first), Some(&last)) = (axis.first(), axis.last()) else { return Err(ResampleError::Empty) };
+    let (Some(&first), Some(&last)) = (axis.first(), axis.last()) else {
+        return Err(ResampleError::Empty);
+    };
     let points: Vec<f64> = axis.iter().map(|x| (x - distance).clamp(first, last)).collect();
     interpolate(axis, signal, &points)
 }
@@ -67,8 +70,8 @@ mod tests {
         (0..400).map(|k| 3.0 + 0.05 * f64::from(k) + 0.01 * f64::from(k % 3)).collect()
     }
 
-    /// For a parabola, the slope is exact at every inner sample, also with unequal steps; at the ends it is the slope half a step
-    /// inside.
+    /// For a parabola, the slope is exact at every inner sample, also with unequal steps; at the
+    /// ends it is the slope half a step inside.
     #[test]
     fn the_slope_of_a_parabola_is_exact_inside() {
         let axis = axis();
@@ -81,15 +84,18 @@ mod tests {
         assert!(derivative(&[1.0], &[1.0]).is_none());
     }
 
-    /// The trapezoidal rule is exact for a line; for a sine, its error is of second order in the step.
+    /// The trapezoidal rule is exact for a line; for a sine, its error is of second order in the
+    /// step.
     #[test]
     fn the_integral_of_a_line_is_exact() {
         let axis = axis();
-        let found = integral(&axis, &axis.iter().map(|x| 2.0 * x + 1.0).collect::<Vec<_>>()).expect("samples");
+        let found = integral(&axis, &axis.iter().map(|x| 2.0 * x + 1.0).collect::<Vec<_>>())
+            .expect("samples");
         for (x, value) in axis.iter().zip(&found) {
             assert!((value - (x * x + x - 12.0)).abs() < 1e-9);
         }
-        let found = integral(&axis, &axis.iter().map(|x| x.sin()).collect::<Vec<_>>()).expect("samples");
+        let found =
+            integral(&axis, &axis.iter().map(|x| x.sin()).collect::<Vec<_>>()).expect("samples");
         for (x, value) in axis.iter().zip(&found) {
             assert!((value - (axis[0].cos() - x.cos())).abs() < 1e-3);
         }

@@ -1,8 +1,10 @@
-//! Confidence bounds of statistics of values that are independent between sites, but not within a site.
+//! Confidence bounds of statistics of values that are independent between sites, but not within a
+//! site.
 //!
-//! A site is one test location: a section with its repeats and all its signals. Values are grouped by site. There are four methods:
-//! drawing sites ([`bootstrap`]), leaving out one site at a time ([`jackknife`]), and closed forms for the mean ([`Mean`]) and the
-//! standard deviation ([`StandardDeviation`]). Their coverage is given in `docs/definitions.md`.
+//! A site is one test location: a section with its repeats and all its signals. Values are grouped
+//! by site. There are four methods: drawing sites ([`bootstrap`]), leaving out one site at a time
+//! ([`jackknife`]), and closed forms for the mean ([`Mean`]) and the standard deviation
+//! ([`StandardDeviation`]). Their coverage is given in `docs/definitions.md`.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -30,7 +32,8 @@ const MOST_KEPT: usize = 16;
 
 /// Confidence bounds of a statistic.
 pub trait Bounds {
-    /// The bound that the true value is below with this probability (0 to 1), in the unit of the statistic.
+    /// The bound that the true value is below with this probability (0 to 1), in the unit of the
+    /// statistic.
     ///
     /// # Errors
     /// A probability not between 0 and 1; a bound beyond the range of numbers.
@@ -67,7 +70,8 @@ pub fn by_site<T: Copy>(values: &[T], site: &[usize]) -> Result<Vec<Vec<T>>, Clu
     Ok(groups)
 }
 
-/// Draws of sites with replacement, as many as there are sites. All statistics of a campaign use the same draws.
+/// Draws of sites with replacement, as many as there are sites. All statistics of a campaign use
+/// the same draws.
 #[derive(Clone, Debug)]
 pub struct Draws {
     sites: usize,
@@ -86,11 +90,13 @@ impl Draws {
             return Err(ClusterError::NoDraw);
         }
         let mut generator = SplitMix64(seed);
-        let drawn = (0..sites * replicates).map(|_| (generator.next() * sites as f64) as usize).collect();
+        let drawn =
+            (0..sites * replicates).map(|_| (generator.next() * sites as f64) as usize).collect();
         Ok(Self { sites, drawn })
     }
 
-    /// [`REPLICATES`] draws of `sites` sites from [`SEED`], made once for all statistics of as many sites.
+    /// [`REPLICATES`] draws of `sites` sites from [`SEED`], made once for all statistics of as many
+    /// sites.
     ///
     /// # Errors
     /// Fewer than two sites.
@@ -115,7 +121,8 @@ impl Draws {
     }
 }
 
-/// Generator of Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
+/// Generator of Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA
+/// 2014.
 struct SplitMix64(u64);
 
 impl SplitMix64 {
@@ -143,16 +150,21 @@ impl Replicates {
 impl Bounds for Replicates {
     fn bound(&self, probability: f64) -> Result<f64, ClusterError> {
         inside(probability)?;
-        percentile(&self.0, 100.0 * probability, Method::Linear).map_err(|_| ClusterError::OutOfRange)
+        percentile(&self.0, 100.0 * probability, Method::Linear)
+            .map_err(|_| ClusterError::OutOfRange)
     }
 }
 
-/// A statistic of the values of the drawn sites, for each draw (Efron and Tibshirani, "An Introduction to the Bootstrap", 1993,
-/// chapters 8 and 13).
+/// A statistic of the values of the drawn sites, for each draw (Efron and Tibshirani, "An
+/// Introduction to the Bootstrap", 1993, chapters 8 and 13).
 ///
 /// # Errors
 /// A number of sites other than that of the draws; a draw for which the statistic is not defined.
-pub fn bootstrap<T: Copy>(sites: &[Vec<T>], draws: &Draws, statistic: impl Fn(&[T]) -> Option<f64>) -> Result<Replicates, ClusterError> {
+pub fn bootstrap<T: Copy>(
+    sites: &[Vec<T>],
+    draws: &Draws,
+    statistic: impl Fn(&[T]) -> Option<f64>,
+) -> Result<Replicates, ClusterError> {
     if sites.len() != draws.sites {
         return Err(ClusterError::OtherSites { sites: sites.len(), draws: draws.sites });
     }
@@ -184,13 +196,17 @@ impl Bounds for Estimate {
     }
 }
 
-/// The statistic of all values. Its standard error follows from leaving out one site at a time: the square root of (G - 1)/G times
-/// the sum of squares about their mean, for G sites (Efron and Tibshirani 1993, chapter 11). The lower bound of a standard
-/// deviation can be negative.
+/// The statistic of all values. Its standard error follows from leaving out one site at a time: the
+/// square root of (G - 1)/G times the sum of squares about their mean, for G sites (Efron and
+/// Tibshirani 1993, chapter 11). The lower bound of a standard deviation can be negative.
 ///
 /// # Errors
-/// Fewer than two sites; a statistic that is not defined for all values or without one of the sites.
-pub fn jackknife<T: Copy>(sites: &[Vec<T>], statistic: impl Fn(&[T]) -> Option<f64>) -> Result<Estimate, ClusterError> {
+/// Fewer than two sites; a statistic that is not defined for all values or without one of the
+/// sites.
+pub fn jackknife<T: Copy>(
+    sites: &[Vec<T>],
+    statistic: impl Fn(&[T]) -> Option<f64>,
+) -> Result<Estimate, ClusterError> {
     enough(sites.len())?;
     let of = |left_out: Option<usize>| {
         let kept = sites.iter().enumerate().filter(|(site, _)| Some(*site) != left_out);
@@ -200,21 +216,23 @@ pub fn jackknife<T: Copy>(sites: &[Vec<T>], statistic: impl Fn(&[T]) -> Option<f
     };
     let value = of(None)?;
     let without = (0..sites.len()).map(|site| of(Some(site))).collect::<Result<Vec<f64>, _>>()?;
-    let variance = statistics::variance(&without, Divisor::Population).ok_or(ClusterError::OutOfRange)?;
+    let variance =
+        statistics::variance(&without, Divisor::Population).ok_or(ClusterError::OutOfRange)?;
     let degrees = sites.len() as f64 - 1.0;
     Ok(Estimate { value, standard_error: in_range((degrees * variance).sqrt())?, degrees })
 }
 
-/// The mean of all values, with bounds in closed form: variance G/(G - 1) sum(S_j^2)/n^2 for G sites and n values, where S_j is the
-/// sum of the deviations of site j from the mean (Liang and Zeger, Biometrika 73, 1986). With one value per site, this is the usual
-/// interval.
+/// The mean of all values, with bounds in closed form: variance G/(G - 1) sum(S_j^2)/n^2 for G
+/// sites and n values, where S_j is the sum of the deviations of site j from the mean (Liang and
+/// Zeger, Biometrika 73, 1986). With one value per site, this is the usual interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mean {
     pub estimate: Estimate,
-    /// Number of independent values with the same variance of the mean: variance of the values divided by that of the mean, at most
-    /// the number of values.
+    /// Number of independent values with the same variance of the mean: variance of the values
+    /// divided by that of the mean, at most the number of values.
     pub effective_values: f64,
-    /// Variance of the mean divided by its variance for independent values (Kish, "Survey Sampling", 1965).
+    /// Variance of the mean divided by its variance for independent values (Kish, "Survey
+    /// Sampling", 1965).
     pub design_effect: f64,
 }
 
@@ -227,7 +245,8 @@ impl Mean {
         let out_of_range = || ClusterError::OutOfRange;
         let mean = statistics::mean(&values).ok_or_else(out_of_range)?;
         let of_values = statistics::variance(&values, Divisor::Sample).ok_or_else(out_of_range)?;
-        let sums: Vec<f64> = sites.iter().map(|values| sum_of(values, |value| value - mean)).collect();
+        let sums: Vec<f64> =
+            sites.iter().map(|values| sum_of(values, |value| value - mean)).collect();
         let (groups, count) = (sites.len() as f64, values.len() as f64);
         // For equal values, only rounding errors remain.
         let squares = if of_values > 0.0 { sum_of(&sums, |sum| sum * sum) } else { 0.0 };
@@ -241,20 +260,30 @@ impl Mean {
     }
 }
 
-/// The mean of values with weights by the same form: variance G/(G - 1) sum(S_j^2)/sum(w)^2, S_j being the sum of a site's weighted
-/// deviations from it. Each value stands before its weight; a site without weight does not count.
+/// The mean of values with weights by the same form: variance G/(G - 1) sum(S_j^2)/sum(w)^2, S_j
+/// being the sum of a site's weighted deviations from it. Each value stands before its weight; a
+/// site without weight does not count.
 ///
 /// # Errors
 /// As [`Mean::of`], of the sites that count.
 pub fn weighted_mean(sites: &[Vec<(f64, f64)>]) -> Result<Estimate, ClusterError> {
-    let sites: Vec<&Vec<(f64, f64)>> = sites.iter().filter(|site| site.iter().any(|(_, weight)| *weight > 0.0)).collect();
+    let sites: Vec<&Vec<(f64, f64)>> =
+        sites.iter().filter(|site| site.iter().any(|(_, weight)| *weight > 0.0)).collect();
     enough(sites.len())?;
-    let (values, weights): (Vec<f64>, Vec<f64>) = sites.iter().flat_map(|site| site.iter().copied()).filter(|(_, w)| *w > 0.0).unzip();
+    let (values, weights): (Vec<f64>, Vec<f64>) =
+        sites.iter().flat_map(|site| site.iter().copied()).filter(|(_, w)| *w > 0.0).unzip();
     let value = weighted::mean(&values, &weights).ok_or(ClusterError::OutOfRange)?;
-    let sums: Vec<f64> = sites.iter().map(|site| site.iter().map(|(own, weight)| weight * (own - value)).sum()).collect();
+    let sums: Vec<f64> = sites
+        .iter()
+        .map(|site| site.iter().map(|(own, weight)| weight * (own - value)).sum())
+        .collect();
     let groups = sites.len() as f64;
     // Of equal values nothing but rounding is left.
-    let squares = if values.iter().all(|own| *own == values[0]) { 0.0 } else { sum_of(&sums, |sum| sum * sum) };
+    let squares = if values.iter().all(|own| *own == values[0]) {
+        0.0
+    } else {
+        sum_of(&sums, |sum| sum * sum)
+    };
     let standard_error = in_range((groups / (groups - 1.0) * squares).sqrt() / sum(&weights))?;
     Ok(Estimate { value, standard_error, degrees: groups - 1.0 })
 }
@@ -265,15 +294,16 @@ impl Bounds for Mean {
     }
 }
 
-/// The standard deviation (n - 1) of all values, with bounds in closed form. Its square has approximately a chi-square distribution
-/// with nu = 2 sigma^4/var(sigma^2) degrees of freedom, where sigma^2 = sum(V_j)/n, var(sigma^2) = G/(G - 1) sum((V_j - n_j
-/// sigma^2)^2)/n^2, and V_j is the sum of squares of the deviations of site j from the mean (method of moments after Satterthwaite,
-/// Biometrics Bulletin 2, 1946).
+/// The standard deviation (n - 1) of all values, with bounds in closed form. Its square has
+/// approximately a chi-square distribution with nu = 2 sigma^4/var(sigma^2) degrees of freedom,
+/// where sigma^2 = sum(V_j)/n, var(sigma^2) = G/(G - 1) sum((V_j - n_j sigma^2)^2)/n^2, and V_j is
+/// the sum of squares of the deviations of site j from the mean (method of moments after
+/// Satterthwaite, Biometrics Bulletin 2, 1946).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StandardDeviation {
     pub value: f64,
-    /// `None` if all sites have equal sums of squares. Their scatter then gives no information, and the bounds are the value
-    /// itself.
+    /// `None` if all sites have equal sums of squares. Their scatter then gives no information, and
+    /// the bounds are the value itself.
     pub degrees: Option<f64>,
 }
 
@@ -285,22 +315,32 @@ impl StandardDeviation {
         let values = sites.concat();
         let out_of_range = || ClusterError::OutOfRange;
         let mean = statistics::mean(&values).ok_or_else(out_of_range)?;
-        let value = statistics::standard_deviation(&values, Divisor::Sample).ok_or_else(out_of_range)?;
+        let value =
+            statistics::standard_deviation(&values, Divisor::Sample).ok_or_else(out_of_range)?;
         if value == 0.0 {
             return Ok(Self { value, degrees: None });
         }
-        let squares: Vec<f64> = sites.iter().map(|values| sum_of(values, |value| (value - mean) * (value - mean))).collect();
+        let squares: Vec<f64> = sites
+            .iter()
+            .map(|values| sum_of(values, |value| (value - mean) * (value - mean)))
+            .collect();
         let (groups, count) = (sites.len() as f64, values.len() as f64);
         let of_one = in_range(sum(&squares) / count)?;
-        let beyond: Vec<f64> = squares.iter().zip(sites).map(|(sum, values)| sum - values.len() as f64 * of_one).collect();
-        let variance = in_range(groups / (groups - 1.0) * sum_of(&beyond, |part| part * part) / (count * count))?;
+        let beyond: Vec<f64> = squares
+            .iter()
+            .zip(sites)
+            .map(|(sum, values)| sum - values.len() as f64 * of_one)
+            .collect();
+        let variance = in_range(
+            groups / (groups - 1.0) * sum_of(&beyond, |part| part * part) / (count * count),
+        )?;
         let degrees = 2.0 * of_one * of_one / variance;
         Ok(Self { value, degrees: (degrees < MOST_DEGREES).then_some(degrees) })
     }
 }
 
-/// Degrees of freedom above which the scatter of the sums of squares is rounding; the interval is then narrower than 1e-6 of the
-/// value and is replaced by the value.
+/// Degrees of freedom above which the scatter of the sums of squares is rounding; the interval is
+/// then narrower than 1e-6 of the value and is replaced by the value.
 const MOST_DEGREES: f64 = 1e13;
 
 impl Bounds for StandardDeviation {
@@ -317,7 +357,11 @@ fn enough(sites: usize) -> Result<(), ClusterError> {
 }
 
 fn inside(probability: f64) -> Result<(), ClusterError> {
-    if probability > 0.0 && probability < 1.0 { Ok(()) } else { Err(ClusterError::Probability { probability }) }
+    if probability > 0.0 && probability < 1.0 {
+        Ok(())
+    } else {
+        Err(ClusterError::Probability { probability })
+    }
 }
 
 fn in_range(value: f64) -> Result<f64, ClusterError> {
@@ -347,15 +391,27 @@ pub enum ClusterError {
 impl fmt::Display for ClusterError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::Length { values, sites } => write!(f, "there are {values} values but {sites} site numbers"),
+            Self::Length { values, sites } => {
+                write!(f, "there are {values} values but {sites} site numbers")
+            }
             Self::TooFew { sites: 0 } => f.write_str("there is no site; at least 2 are needed"),
             Self::TooFew { .. } => f.write_str("there is 1 site; at least 2 are needed"),
             Self::NoDraw => f.write_str("the number of draws is zero; at least one draw is needed"),
-            Self::OtherSites { sites, draws } => write!(f, "the values are of {sites} sites, the draws of {draws}"),
-            Self::Undefined { of: Part::All } => f.write_str("the statistic is not defined for these values"),
-            Self::Undefined { of: Part::Draw(number) } => write!(f, "the statistic is not defined for draw {number} of the sites"),
-            Self::Undefined { of: Part::Without(site) } => write!(f, "the statistic is not defined without site {site}"),
-            Self::Probability { probability } => write!(f, "a probability must be between 0 and 1, this is {probability}"),
+            Self::OtherSites { sites, draws } => {
+                write!(f, "the values are of {sites} sites, the draws of {draws}")
+            }
+            Self::Undefined { of: Part::All } => {
+                f.write_str("the statistic is not defined for these values")
+            }
+            Self::Undefined { of: Part::Draw(number) } => {
+                write!(f, "the statistic is not defined for draw {number} of the sites")
+            }
+            Self::Undefined { of: Part::Without(site) } => {
+                write!(f, "the statistic is not defined without site {site}")
+            }
+            Self::Probability { probability } => {
+                write!(f, "a probability must be between 0 and 1, this is {probability}")
+            }
             Self::OutOfRange => f.write_str("a value is not finite, or a sum overflows"),
         }
     }
@@ -363,20 +419,26 @@ impl fmt::Display for ClusterError {
 
 impl std::error::Error for ClusterError {}
 
-/// Interval of the mean of values that are independent between sites, but not within a site; see [`Mean`].
+/// Interval of the mean of values that are independent between sites, but not within a site; see
+/// [`Mean`].
 ///
-/// `site` is the site of each value. `None` for fewer than two sites, lists of different length, a value that is not finite, or a
-/// confidence not between 0 and 1.
+/// `site` is the site of each value. `None` for fewer than two sites, lists of different length, a
+/// value that is not finite, or a confidence not between 0 and 1.
 pub fn mean_interval(values: &[f64], site: &[usize], confidence: f64) -> Option<Interval> {
     Mean::of(&by_site(values, site).ok()?).ok()?.interval(confidence).ok()
 }
 
-/// Interval of the standard deviation, with equal tails: chi-square with G - 1 degrees of freedom for G sites. The values of one
-/// site count as one value, as their dependence is not known. With one value per site, this is the usual interval.
-/// [`StandardDeviation::of`] is narrower, but its coverage is below the stated confidence.
+/// Interval of the standard deviation, with equal tails: chi-square with G - 1 degrees of freedom
+/// for G sites. The values of one site count as one value, as their dependence is not known. With
+/// one value per site, this is the usual interval. [`StandardDeviation::of`] is narrower, but its
+/// coverage is below the stated confidence.
 ///
 /// `site` and `None` as in [`mean_interval`].
-pub fn standard_deviation_interval(values: &[f64], site: &[usize], confidence: f64) -> Option<Interval> {
+pub fn standard_deviation_interval(
+    values: &[f64],
+    site: &[usize],
+    confidence: f64,
+) -> Option<Interval> {
     let value = statistics::standard_deviation(values, Divisor::Sample)?;
     let degrees = by_site(values, site).ok()?.len() as f64 - 1.0;
     StandardDeviation { value, degrees: Some(degrees) }.interval(confidence).ok()

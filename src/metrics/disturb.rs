@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-/// Standard deviation of samples with the divisor n; `None` where it is zero or there are no samples.
+/// Standard deviation of samples with the divisor n; `None` where it is zero or there are no
+/// samples.
 #[must_use]
 pub fn deviation(values: &[f64]) -> Option<f64> {
     let n = values.len() as f64;
@@ -21,9 +22,11 @@ pub fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
-/// Noise of rms 1 over the samples of a range: white, independent of all other streams, the same for the same stream.
+/// Noise of rms 1 over the samples of a range: white, independent of all other streams, the same
+/// for the same stream.
 ///
-/// Each sample is a function of its number and the stream alone (SplitMix64), a sum of twelve uniform numbers less six.
+/// Each sample is a function of its number and the stream alone (SplitMix64), a sum of twelve
+/// uniform numbers less six.
 #[must_use]
 pub fn noise(stream: u64, samples: usize, rows: Range<usize>) -> Vec<f64> {
     let start = mixed(stream);
@@ -39,8 +42,10 @@ pub fn noise(stream: u64, samples: usize, rows: Range<usize>) -> Vec<f64> {
 const TERMS: u64 = 12;
 
 fn one(start: u64, sample: u64) -> f64 {
-    let words = (0..TERMS / 4).map(|word| mixed(start.wrapping_add((sample * TERMS / 4 + word).wrapping_mul(GOLDEN))));
-    let sum: u64 = words.map(|word| (0..4).map(|part| (word >> (16 * part)) & 0xFFFF).sum::<u64>()).sum();
+    let words = (0..TERMS / 4)
+        .map(|word| mixed(start.wrapping_add((sample * TERMS / 4 + word).wrapping_mul(GOLDEN))));
+    let sum: u64 =
+        words.map(|word| (0..4).map(|part| (word >> (16 * part)) & 0xFFFF).sum::<u64>()).sum();
     // Each is a whole number below 2^16; its mean is half of the largest.
     (sum as f64 - TERMS as f64 * 32_767.5) / 65_536.0
 }
@@ -60,10 +65,13 @@ pub fn mixed(mut bits: u64) -> u64 {
 #[must_use]
 pub fn stream<'a>(names: impl IntoIterator<Item = &'a str>) -> u64 {
     let bytes = names.into_iter().flat_map(|name| name.bytes().chain([0]));
-    bytes.fold(0xCBF2_9CE4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3))
+    bytes.fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3)
+    })
 }
 
-/// A signal later by a number of samples, which need not be whole: between samples it is a straight line, before the first it stays.
+/// A signal later by a number of samples, which need not be whole: between samples it is a straight
+/// line, before the first it stays.
 #[must_use]
 pub fn delayed(values: &[f64], samples: f64) -> Vec<f64> {
     let whole = samples.floor();
@@ -73,8 +81,9 @@ pub fn delayed(values: &[f64], samples: f64) -> Vec<f64> {
     (0..values.len()).map(|row| at(row, back) * (1.0 - part) + at(row, back + 1) * part).collect()
 }
 
-/// The smallest delay, in samples, that changes signals by a size: the root mean square over samples and signals of the change divided by the
-/// standard deviation of each signal. Each signal is given with this deviation.
+/// The smallest delay, in samples, that changes signals by a size: the root mean square over
+/// samples and signals of the change divided by the standard deviation of each signal. Each signal
+/// is given with this deviation.
 ///
 /// `None` where no delay up to half of the range does.
 #[must_use]
@@ -84,13 +93,18 @@ pub fn delay_of_size(signals: &[(&[f64], f64)], rows: Range<usize>, size: f64) -
         return None;
     }
     let wanted = size * size;
-    let square = |delay: usize| mean(signals, rows.clone(), |values, row| values[row] - values[row.saturating_sub(delay)]);
+    let square = |delay: usize| {
+        mean(signals, rows.clone(), |values, row| values[row] - values[row.saturating_sub(delay)])
+    };
     let mut before = 0.0;
     for delay in 1..=most {
         let after = square(delay);
         if after >= wanted {
-            // Between two whole delays the change is a straight line from one to the other, and its square a parabola.
-            let step = |values: &[f64], row: usize| values[row.saturating_sub(delay - 1)] - values[row.saturating_sub(delay)];
+            // Between two whole delays the change is a straight line from one to the other, and its
+            // square a parabola.
+            let step = |values: &[f64], row: usize| {
+                values[row.saturating_sub(delay - 1)] - values[row.saturating_sub(delay)]
+            };
             let curve = mean(signals, rows, step);
             let slope = after - before - curve;
             return Some((delay - 1) as f64 + root(curve, slope, before - wanted));
@@ -113,7 +127,8 @@ fn mean(signals: &[(&[f64], f64)], rows: Range<usize>, of: impl Fn(&[f64], usize
 fn root(a: f64, b: f64, c: f64) -> f64 {
     let discriminant = (b * b - 4.0 * a * c).max(0.0).sqrt();
     // The form without cancellation.
-    let root = if b >= 0.0 { -2.0 * c / (b + discriminant) } else { (discriminant - b) / (2.0 * a) };
+    let root =
+        if b >= 0.0 { -2.0 * c / (b + discriminant) } else { (discriminant - b) / (2.0 * a) };
     if root.is_finite() { root.clamp(0.0, 1.0) } else { 0.0 }
 }
 
@@ -139,18 +154,22 @@ mod tests {
 
     #[test]
     fn a_delay_has_the_size_that_was_asked_for() {
-        let sine = |frequency: f64| (0..4000).map(|row| (frequency * f64::from(row)).sin()).collect::<Vec<f64>>();
+        let sine = |frequency: f64| {
+            (0..4000).map(|row| (frequency * f64::from(row)).sin()).collect::<Vec<f64>>()
+        };
         let (a, b) = (sine(0.01), sine(0.037));
         let rows = 500..3500;
-        let signals: Vec<(&[f64], f64)> =
-            [&a, &b].map(|values| (values.as_slice(), deviation(&values[rows.clone()]).expect("scatter"))).to_vec();
+        let signals: Vec<(&[f64], f64)> = [&a, &b]
+            .map(|values| (values.as_slice(), deviation(&values[rows.clone()]).expect("scatter")))
+            .to_vec();
         for size in [0.001, 0.02, 0.3, 1.0] {
             let delay = delay_of_size(&signals, rows.clone(), size).expect("a delay");
             let square: f64 = signals
                 .iter()
                 .map(|(values, deviation)| {
                     let moved = delayed(values, delay);
-                    let change: Vec<f64> = rows.clone().map(|row| moved[row] - values[row]).collect();
+                    let change: Vec<f64> =
+                        rows.clone().map(|row| moved[row] - values[row]).collect();
                     (root_mean_square(&change) / deviation).powi(2)
                 })
                 .sum();

@@ -1,4 +1,5 @@
-//! Drift of one axis against another along a long record: shifts in windows, and the curve through them.
+//! Drift of one axis against another along a long record: shifts in windows, and the curve through
+//! them.
 
 use super::statistics::median;
 use super::synchronise::{Estimate, Pair, Search, estimate};
@@ -17,7 +18,8 @@ pub struct Windows {
 }
 
 impl Windows {
-    /// Windows of a length: one after the other, and compared in steps shorter than the waves of the track.
+    /// Windows of a length: one after the other, and compared in steps shorter than the waves of
+    /// the track.
     pub fn of(length: f64, farthest: f64) -> Self {
         Self { length, every: length, farthest, step: STEP }
     }
@@ -42,12 +44,15 @@ pub struct Point {
     pub estimate: Estimate,
 }
 
-/// Least correlation of a window whose shift is used: with less, more than three quarters of the signals are not explained.
+/// Least correlation of a window whose shift is used: with less, more than three quarters of the
+/// signals are not explained.
 const LEAST_CORRELATION: f64 = 0.5;
-/// A shift is used if its 95 % interval is not wider than this to either side, as a share of the largest shift: 1 m of 20 m.
+/// A shift is used if its 95 % interval is not wider than this to either side, as a share of the
+/// largest shift: 1 m of 20 m.
 const UNCERTAIN: f64 = 0.05;
-/// A shift is left out if it differs from the median of the five around it by more than this share of the largest shift. It comes from
-/// another wave of the track: the drift itself changes by a few metres in a kilometre.
+/// A shift is left out if it differs from the median of the five around it by more than this share
+/// of the largest shift. It comes from another wave of the track: the drift itself changes by a few
+/// metres in a kilometre.
 const STRANGE: f64 = 0.15;
 
 /// Looks for the shift window by window; each search begins at the shift of the window before.
@@ -79,8 +84,8 @@ impl Tracker {
         (start - self.expected() - beside, start + self.windows.length - self.expected() + beside)
     }
 
-    /// Looks at the window that begins at a place of the simulated axis. Both records reach beyond it as [`Tracker::reach`] says, or
-    /// end before.
+    /// Looks at the window that begins at a place of the simulated axis. Both records reach beyond
+    /// it as [`Tracker::reach`] says, or end before.
     pub fn look(&mut self, start: f64, simulated: Signals<'_>, measured: Signals<'_>) {
         let Windows { length, farthest, step, .. } = self.windows;
         self.looked += 1;
@@ -91,13 +96,23 @@ impl Tracker {
             .iter()
             .zip(measured.values)
             .enumerate()
-            .map(|(group, (s, m))| Pair { simulated: (simulated.axis, s), measured: (&moved, m), group })
+            .map(|(group, (s, m))| Pair {
+                simulated: (simulated.axis, s),
+                measured: (&moved, m),
+                group,
+            })
             .collect();
         let search = Search { start, end: start + length, farthest, step };
         let Some(found) = estimate(&pairs, &search) else { return };
-        let certain = found.correlation >= LEAST_CORRELATION && (found.high - found.low) / 2.0 <= UNCERTAIN * farthest;
+        let certain = found.correlation >= LEAST_CORRELATION
+            && (found.high - found.low) / 2.0 <= UNCERTAIN * farthest;
         if certain {
-            let estimate = Estimate { shift: found.shift + near, low: found.low + near, high: found.high + near, ..found };
+            let estimate = Estimate {
+                shift: found.shift + near,
+                low: found.low + near,
+                high: found.high + near,
+                ..found
+            };
             self.points.push(Point { at: start + length / 2.0, estimate });
         }
     }
@@ -107,21 +122,29 @@ impl Tracker {
         let strange = |at: usize| {
             let around = &self.points[at.saturating_sub(2)..self.points.len().min(at + 3)];
             let shifts: Vec<f64> = around.iter().map(|point| point.estimate.shift).collect();
-            median(&shifts).is_some_and(|middle| (self.points[at].estimate.shift - middle).abs() > STRANGE * self.windows.farthest)
+            median(&shifts).is_some_and(|middle| {
+                (self.points[at].estimate.shift - middle).abs() > STRANGE * self.windows.farthest
+            })
         };
         (0..self.points.len()).filter(|&at| !strange(at)).map(|at| self.points[at]).collect()
     }
 }
 
-/// The shift along the measured axis: linear between points, and beyond the outer ones as between the two next to them.
+/// The shift along the measured axis: linear between points, and beyond the outer ones as between
+/// the two next to them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve(Vec<(f64, f64)>);
 
 impl Curve {
     /// `None` for no point, or where the measured axis would go back.
     pub fn new(points: &[Point]) -> Option<Self> {
-        let knots: Vec<(f64, f64)> = points.iter().map(|point| (point.at - point.estimate.shift, point.estimate.shift)).collect();
-        let increases = |pair: &[(f64, f64)]| pair[1].0 > pair[0].0 && pair[1].0 + pair[1].1 > pair[0].0 + pair[0].1;
+        let knots: Vec<(f64, f64)> = points
+            .iter()
+            .map(|point| (point.at - point.estimate.shift, point.estimate.shift))
+            .collect();
+        let increases = |pair: &[(f64, f64)]| {
+            pair[1].0 > pair[0].0 && pair[1].0 + pair[1].1 > pair[0].0 + pair[0].1
+        };
         (!knots.is_empty() && knots.windows(2).all(increases)).then_some(Self(knots))
     }
 
@@ -147,9 +170,12 @@ pub fn within(axis: &[f64], (from, to): (f64, f64)) -> std::ops::Range<usize> {
 mod tests {
     use super::*;
 
-    /// Waves without a common period, and a sensor that counts too much by up to 9 m in 4 km, not linearly.
+    /// Waves without a common period, and a sensor that counts too much by up to 9 m in 4 km, not
+    /// linearly.
     fn wave(x: f64, which: f64) -> f64 {
-        (0.31 * x + which).sin() + 0.6 * (0.117 * x + 2.0 * which).sin() + 0.3 * (0.73 * x + which).cos()
+        (0.31 * x + which).sin()
+            + 0.6 * (0.117 * x + 2.0 * which).sin()
+            + 0.3 * (0.73 * x + which).cos()
     }
 
     fn counted(x: f64) -> f64 {
@@ -159,13 +185,17 @@ mod tests {
     fn tracked(noise: impl Fn(usize, f64) -> f64) -> (Tracker, Vec<f64>) {
         let simulated: Vec<f64> = (0..20_000).map(|k| f64::from(k) * 0.2).collect();
         let measured: Vec<f64> = simulated.iter().map(|x| counted(*x)).collect();
-        let s: Vec<Vec<f64>> = [0.0, 1.0, 2.0].map(|which| simulated.iter().map(|x| wave(*x, which)).collect()).into();
-        let of = |which: f64| simulated.iter().enumerate().map(|(k, x)| wave(*x, which) + noise(k, *x)).collect();
+        let s: Vec<Vec<f64>> =
+            [0.0, 1.0, 2.0].map(|which| simulated.iter().map(|x| wave(*x, which)).collect()).into();
+        let of = |which: f64| {
+            simulated.iter().enumerate().map(|(k, x)| wave(*x, which) + noise(k, *x)).collect()
+        };
         let m: Vec<Vec<f64>> = [0.0, 1.0, 2.0].map(of).into();
         let mut tracker = Tracker::new(Windows { every: 200.0, ..Windows::of(100.0, 10.0) });
         for k in 0..19 {
             let start = 30.0 + 200.0 * f64::from(k);
-            let (signals_s, signals_m) = (Signals { axis: &simulated, values: &s }, Signals { axis: &measured, values: &m });
+            let (signals_s, signals_m) =
+                (Signals { axis: &simulated, values: &s }, Signals { axis: &measured, values: &m });
             tracker.look(start, signals_s, signals_m);
         }
         (tracker, measured)
@@ -188,20 +218,40 @@ mod tests {
     /// Where the records do not agree, no shift is given and that between the neighbours is used.
     #[test]
     fn what_is_not_certain_is_left_out() {
-        let (tracker, _) = tracked(|k, x| if (1000.0..1500.0).contains(&x) { 9.0 * ((k * 7919 % 101) as f64 / 50.0 - 1.0) } else { 0.0 });
+        let (tracker, _) = tracked(|k, x| {
+            if (1000.0..1500.0).contains(&x) {
+                9.0 * ((k * 7919 % 101) as f64 / 50.0 - 1.0)
+            } else {
+                0.0
+            }
+        });
         let looked = tracker.looked();
         let points = tracker.finish();
-        assert!(points.len() < looked && points.iter().all(|point| !(1100.0..1400.0).contains(&point.at)), "{points:?}");
+        assert!(
+            points.len() < looked
+                && points.iter().all(|point| !(1100.0..1400.0).contains(&point.at)),
+            "{points:?}"
+        );
         let curve = Curve::new(&points).expect("increasing");
         assert!((curve.at(counted(1250.0)) + counted(1250.0) - 1250.0).abs() < 0.5);
     }
 
     #[test]
     fn a_strange_point_is_left_out_and_a_curve_never_goes_back() {
-        let point = |at: f64, shift: f64| Point { at, estimate: Estimate { shift, low: shift, high: shift, correlation: 1.0 } };
+        let point = |at: f64, shift: f64| Point {
+            at,
+            estimate: Estimate { shift, low: shift, high: shift, correlation: 1.0 },
+        };
         let mut tracker = Tracker::new(Windows::of(100.0, 20.0));
-        tracker.points = [0.0, 0.1, 8.0, 0.3, 0.4].iter().zip(0..).map(|(shift, at)| point(100.0 * f64::from(at), *shift)).collect();
-        assert_eq!(tracker.finish().iter().map(|point| point.at).collect::<Vec<_>>(), [0.0, 100.0, 300.0, 400.0]);
+        tracker.points = [0.0, 0.1, 8.0, 0.3, 0.4]
+            .iter()
+            .zip(0..)
+            .map(|(shift, at)| point(100.0 * f64::from(at), *shift))
+            .collect();
+        assert_eq!(
+            tracker.finish().iter().map(|point| point.at).collect::<Vec<_>>(),
+            [0.0, 100.0, 300.0, 400.0]
+        );
         assert_eq!(Curve::new(&[]), None);
         assert_eq!(Curve::new(&[point(0.0, 0.0), point(10.0, 12.0)]), None);
         let curve = Curve::new(&[point(0.0, 0.0), point(100.0, -1.0)]).expect("increasing");

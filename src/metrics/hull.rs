@@ -1,23 +1,28 @@
-//! The convex hull of points in any number of dimensions: whether another point lies in it, and the nearest point of it.
+//! The convex hull of points in any number of dimensions: whether another point lies in it, and the
+//! nearest point of it.
 //!
-//! The hull is never built. The nearest point is the combination of the points, with weights that are not negative and have the sum 1,
-//! whose distance is smallest: a quadratic program, solved exactly in a finite number of steps. Source: P. Wolfe, "Finding the nearest
-//! point in a polytope", Mathematical Programming 11 (1976).
+//! The hull is never built. The nearest point is the combination of the points, with weights that
+//! are not negative and have the sum 1, whose distance is smallest: a quadratic program, solved
+//! exactly in a finite number of steps. Source: P. Wolfe, "Finding the nearest point in a
+//! polytope", Mathematical Programming 11 (1976).
 
 use nalgebra::{DMatrix, DVector};
 
-/// A point this far from the hull or nearer lies in it, where every coordinate has the range 1: what 16 digits leave of a difference of
-/// numbers of that size, with room for the digits that a table gives.
+/// A point this far from the hull or nearer lies in it, where every coordinate has the range 1:
+/// what 16 digits leave of a difference of numbers of that size, with room for the digits that a
+/// table gives.
 pub const INSIDE: f64 = 1e-9;
-/// Points lie in a plane of fewer dimensions when the smallest singular value of their coordinates, each about its mean, is below this
-/// part of the largest: the rest is rounding. The same as of collinear regressors.
+/// Points lie in a plane of fewer dimensions when the smallest singular value of their coordinates,
+/// each about its mean, is below this part of the largest: the rest is rounding. The same as of
+/// collinear regressors.
 const FLAT: f64 = 1e-10;
-/// The search ends when no point lies further towards the wanted one than this part of the squared size of the points: rounding of a sum
-/// of squares.
+/// The search ends when no point lies further towards the wanted one than this part of the squared
+/// size of the points: rounding of a sum of squares.
 const ROUNDING: f64 = 1e-14;
 /// Weights below this are zero: rounding of the equations for them.
 const NO_WEIGHT: f64 = 1e-12;
-/// Most steps of the search for each point and dimension. It is finite without a bound; rounding alone could make it go round.
+/// Most steps of the search for each point and dimension. It is finite without a bound; rounding
+/// alone could make it go round.
 const STEPS: usize = 20;
 
 /// The nearest point of a hull.
@@ -36,25 +41,36 @@ impl Nearest {
     }
 }
 
-/// The point of the hull of some points that is nearest to `wanted`; `None` without points, or if a number is not finite.
+/// The point of the hull of some points that is nearest to `wanted`; `None` without points, or if a
+/// number is not finite.
 #[must_use]
 pub fn nearest(points: &[Vec<f64>], wanted: &[f64]) -> Option<Nearest> {
-    let finite = points.iter().all(|point| point.len() == wanted.len() && point.iter().all(|value| value.is_finite()));
+    let finite = points
+        .iter()
+        .all(|point| point.len() == wanted.len() && point.iter().all(|value| value.is_finite()));
     if !finite || wanted.iter().any(|value| !value.is_finite()) {
         return None;
     }
     let from: Vec<DVector<f64>> = points
         .iter()
-        .map(|point| DVector::from_iterator(wanted.len(), point.iter().zip(wanted).map(|(point, wanted)| point - wanted)))
+        .map(|point| {
+            DVector::from_iterator(
+                wanted.len(),
+                point.iter().zip(wanted).map(|(point, wanted)| point - wanted),
+            )
+        })
         .collect();
     let size = from.iter().map(DVector::norm_squared).fold(0.0, f64::max);
-    let first = (0..from.len()).min_by(|a, b| from[*a].norm_squared().total_cmp(&from[*b].norm_squared()))?;
+    let first = (0..from.len())
+        .min_by(|a, b| from[*a].norm_squared().total_cmp(&from[*b].norm_squared()))?;
     let mut used = vec![first];
     let mut weights = vec![1.0];
     let mut found = from[first].clone();
     for _ in 0..STEPS * (points.len() + wanted.len()) {
-        let next = (0..from.len()).min_by(|a, b| found.dot(&from[*a]).total_cmp(&found.dot(&from[*b])))?;
-        if found.dot(&from[next]) >= found.norm_squared() - ROUNDING * size || used.contains(&next) {
+        let next =
+            (0..from.len()).min_by(|a, b| found.dot(&from[*a]).total_cmp(&found.dot(&from[*b])))?;
+        if found.dot(&from[next]) >= found.norm_squared() - ROUNDING * size || used.contains(&next)
+        {
             break;
         }
         used.push(next);
@@ -67,8 +83,8 @@ pub fn nearest(points: &[Vec<f64>], wanted: &[f64]) -> Option<Nearest> {
     distance.is_finite().then_some(Nearest { point, distance })
 }
 
-/// Moves the weights to the nearest point of the plane through the points used; a point whose weight would become negative on the way is
-/// used no longer.
+/// Moves the weights to the nearest point of the plane through the points used; a point whose
+/// weight would become negative on the way is used no longer.
 fn settle(from: &[DVector<f64>], used: &mut Vec<usize>, weights: &mut Vec<f64>) {
     while used.len() > 1 {
         let Some(wanted) = of_plane(from, used) else { return };
@@ -77,11 +93,23 @@ fn settle(from: &[DVector<f64>], used: &mut Vec<usize>, weights: &mut Vec<f64>) 
             return;
         }
         // As far towards it as all weights stay non-negative; the first that reaches 0 leaves.
-        let reach = |(weight, wanted): (&f64, &f64)| if weight - wanted > 0.0 { weight / (weight - wanted) } else { f64::INFINITY };
-        let share = weights.iter().zip(&wanted).filter(|(_, wanted)| **wanted <= NO_WEIGHT).map(reach).fold(1.0, f64::min);
-        let moved: Vec<f64> = weights.iter().zip(&wanted).map(|(weight, wanted)| weight + share * (wanted - weight)).collect();
+        let reach = |(weight, wanted): (&f64, &f64)| {
+            if weight - wanted > 0.0 { weight / (weight - wanted) } else { f64::INFINITY }
+        };
+        let share = weights
+            .iter()
+            .zip(&wanted)
+            .filter(|(_, wanted)| **wanted <= NO_WEIGHT)
+            .map(reach)
+            .fold(1.0, f64::min);
+        let moved: Vec<f64> = weights
+            .iter()
+            .zip(&wanted)
+            .map(|(weight, wanted)| weight + share * (wanted - weight))
+            .collect();
         let least = (0..moved.len()).min_by(|a, b| moved[*a].total_cmp(&moved[*b]));
-        let kept: Vec<usize> = (0..moved.len()).filter(|at| moved[*at] > NO_WEIGHT && Some(*at) != least).collect();
+        let kept: Vec<usize> =
+            (0..moved.len()).filter(|at| moved[*at] > NO_WEIGHT && Some(*at) != least).collect();
         let sum: f64 = kept.iter().map(|at| moved[*at]).sum();
         if kept.is_empty() || sum <= 0.0 {
             return;
@@ -94,10 +122,13 @@ fn settle(from: &[DVector<f64>], used: &mut Vec<usize>, weights: &mut Vec<f64>) 
     }
 }
 
-/// The weights, of any sign and with the sum 1, of the point nearest to the origin in the plane through some points.
+/// The weights, of any sign and with the sum 1, of the point nearest to the origin in the plane
+/// through some points.
 fn of_plane(from: &[DVector<f64>], used: &[usize]) -> Option<Vec<f64>> {
     let (first, rest) = used.split_first()?;
-    let edges = DMatrix::from_columns(&rest.iter().map(|at| &from[*at] - &from[*first]).collect::<Vec<_>>());
+    let edges = DMatrix::from_columns(
+        &rest.iter().map(|at| &from[*at] - &from[*first]).collect::<Vec<_>>(),
+    );
     let along = edges.svd(true, true).solve(&-&from[*first], FLAT).ok()?;
     let mut weights = vec![1.0 - along.sum()];
     weights.extend(along.iter());
@@ -114,7 +145,9 @@ fn combined(from: &[DVector<f64>], used: &[usize], weights: &[f64]) -> DVector<f
 #[must_use]
 pub fn dimensions(points: &[Vec<f64>]) -> usize {
     let Some(width) = points.first().map(Vec::len).filter(|width| *width > 0) else { return 0 };
-    let mean: Vec<f64> = (0..width).map(|at| points.iter().map(|point| point[at]).sum::<f64>() / points.len() as f64).collect();
+    let mean: Vec<f64> = (0..width)
+        .map(|at| points.iter().map(|point| point[at]).sum::<f64>() / points.len() as f64)
+        .collect();
     let about = DMatrix::from_fn(points.len(), width, |row, at| points[row][at] - mean[at]);
     let singular = about.singular_values();
     let largest = singular.iter().copied().fold(0.0, f64::max);
@@ -129,7 +162,8 @@ pub fn corners(points: &[Vec<f64>]) -> Vec<bool> {
         if points[..at].iter().any(|before| same(before, &points[at])) {
             return false;
         }
-        let others: Vec<Vec<f64>> = points.iter().filter(|other| !same(other, &points[at])).cloned().collect();
+        let others: Vec<Vec<f64>> =
+            points.iter().filter(|other| !same(other, &points[at])).cloned().collect();
         nearest(&others, &points[at]).is_none_or(|found| !found.is_inside())
     };
     (0..points.len()).map(corner).collect()
@@ -142,7 +176,14 @@ mod tests {
     use super::*;
 
     fn square() -> Vec<Vec<f64>> {
-        vec![vec![0.0, 0.0], vec![1.0, 0.0], vec![1.0, 1.0], vec![0.0, 1.0], vec![0.5, 0.5], vec![0.5, 0.0]]
+        vec![
+            vec![0.0, 0.0],
+            vec![1.0, 0.0],
+            vec![1.0, 1.0],
+            vec![0.0, 1.0],
+            vec![0.5, 0.5],
+            vec![0.5, 0.0],
+        ]
     }
 
     #[track_caller]
@@ -158,7 +199,12 @@ mod tests {
         assert_nearest(&square(), &[0.25, 1.5], &[0.25, 1.0], 0.5);
         assert_nearest(&square(), &[4.0, 5.0], &[1.0, 1.0], 5.0);
         assert_nearest(&[vec![2.0]], &[5.0], &[2.0], 3.0);
-        assert_nearest(&[vec![0.0, 0.0, 0.0], vec![3.0, 3.0, 3.0]], &[2.0, 1.0, 0.0], &[1.0, 1.0, 1.0], 2f64.sqrt());
+        assert_nearest(
+            &[vec![0.0, 0.0, 0.0], vec![3.0, 3.0, 3.0]],
+            &[2.0, 1.0, 0.0],
+            &[1.0, 1.0, 1.0],
+            2f64.sqrt(),
+        );
         assert_eq!(nearest(&[], &[1.0]), None);
         assert_eq!(nearest(&[vec![f64::NAN]], &[1.0]), None);
     }
@@ -169,11 +215,15 @@ mod tests {
         assert_eq!(dimensions(&square()), 2);
         assert_eq!(dimensions(&[vec![0.0, 1.0], vec![0.5, 1.5], vec![1.0, 2.0]]), 1);
         assert_eq!(dimensions(&[vec![0.1, 0.1], vec![0.1, 0.1]]), 0);
-        assert_eq!(corners(&[vec![0.0], vec![0.0], vec![1.0], vec![0.5]]), [true, false, true, false]);
+        assert_eq!(
+            corners(&[vec![0.0], vec![0.0], vec![1.0], vec![0.5]]),
+            [true, false, true, false]
+        );
     }
 
     proptest! {
-        /// No point of the hull is nearer: seen from the nearest point, all points lie on the far side.
+        /// No point of the hull is nearer: seen from the nearest point, all points lie on the far
+        /// side.
         #[test]
         fn nothing_is_nearer(points in prop::collection::vec(prop::collection::vec(0.0..1.0f64, 3), 1..30), wanted in prop::collection::vec(-1.0..2.0f64, 3)) {
             let found = nearest(&points, &wanted).expect("a point");

@@ -1,9 +1,11 @@
 //! Comparison of two hysteresis loops, output over an input that rises and falls.
 //!
-//! Each record is split at the turning points of its input into rising and falling branches. Branches of the same direction are
-//! compared at the inputs of the measurement. A record can contain several cycles: at each input, the outputs of the long branches
-//! of one direction are averaged. Short branches, such as a first loading or an incomplete last cycle, are used only where there is
-//! no long branch. The part of a record after its last turning point is not used if its range is below the threshold.
+//! Each record is split at the turning points of its input into rising and falling branches.
+//! Branches of the same direction are compared at the inputs of the measurement. A record can
+//! contain several cycles: at each input, the outputs of the long branches of one direction are
+//! averaged. Short branches, such as a first loading or an incomplete last cycle, are used only
+//! where there is no long branch. The part of a record after its last turning point is not used if
+//! its range is below the threshold.
 
 use super::pair::Undefined;
 
@@ -22,7 +24,8 @@ pub struct Loop<'a> {
 pub struct Matching {
     /// Largest magnitude of the difference.
     pub maximum: f64,
-    /// Mean magnitude of the difference over the input, for both directions together. Samples at a constant input have no weight.
+    /// Mean magnitude of the difference over the input, for both directions together. Samples at a
+    /// constant input have no weight.
     pub mean: f64,
     /// Largest minus smallest measured output at the inputs compared.
     pub range: f64,
@@ -42,12 +45,13 @@ impl Matching {
 
 /// Compares two loops.
 ///
-/// `threshold` is the share of the input's range by which it must reverse for a turning point. It must be larger than the noise and
-/// smaller than the amplitude; 0.05 suits most records.
+/// `threshold` is the share of the input's range by which it must reverse for a turning point. It
+/// must be larger than the noise and smaller than the amplitude; 0.05 suits most records.
 ///
 /// # Errors
-/// A record without samples, with unequal lengths, with a value that is not finite, or with an input that does not rise and fall; a
-/// threshold not between 0 and 1; loops without common inputs in a direction.
+/// A record without samples, with unequal lengths, with a value that is not finite, or with an
+/// input that does not rise and fall; a threshold not between 0 and 1; loops without common inputs
+/// in a direction.
 pub fn matching(simulated: Loop, measured: Loop, threshold: f64) -> Result<Matching, Undefined> {
     let simulated = Sides::of(simulated, threshold, "simulated")?;
     let measured = Sides::of(measured, threshold, "measured")?;
@@ -67,7 +71,10 @@ pub fn matching(simulated: Loop, measured: Loop, threshold: f64) -> Result<Match
         }
         let part = trapezia(&errors);
         if part.length <= 0.0 {
-            return Err(Undefined::because(format!("the loops have no common input while it is {}", direction.word())));
+            return Err(Undefined::because(format!(
+                "the loops have no common input while it is {}",
+                direction.word()
+            )));
         }
         integral += part.integral;
         length += part.length;
@@ -75,10 +82,12 @@ pub fn matching(simulated: Loop, measured: Loop, threshold: f64) -> Result<Match
     Ok(Matching { maximum, mean: integral / length, range: highest - lowest })
 }
 
-/// Area of a loop: the integral over the input of rising minus falling output, in the product of their units.
+/// Area of a loop: the integral over the input of rising minus falling output, in the product of
+/// their units.
 ///
-/// It is positive where the output is larger while the input rises: the energy dissipated by a force over a displacement. For
-/// several cycles it is the mean. Only inputs that both directions reach are used.
+/// It is positive where the output is larger while the input rises: the energy dissipated by a
+/// force over a displacement. For several cycles it is the mean. Only inputs that both directions
+/// reach are used.
 ///
 /// # Errors
 /// As [`matching`], for one record.
@@ -88,8 +97,19 @@ pub fn area(of: Loop, threshold: f64) -> Result<f64, Undefined> {
     inputs.extend(sides.falling.inputs());
     inputs.sort_unstable_by(f64::total_cmp);
     inputs.dedup();
-    let heights: Vec<(f64, Option<f64>)> =
-        inputs.into_iter().map(|x| (x, sides.rising.at(x).zip(sides.falling.at(x)).map(|(rising, falling)| rising - falling))).collect();
+    let heights: Vec<(f64, Option<f64>)> = inputs
+        .into_iter()
+        .map(|x| {
+            (
+                x,
+                sides
+                    .rising
+                    .at(x)
+                    .zip(sides.falling.at(x))
+                    .map(|(rising, falling)| rising - falling),
+            )
+        })
+        .collect();
     Ok(trapezia(&heights).integral)
 }
 
@@ -156,18 +176,28 @@ impl Sides {
     fn of(of: Loop, threshold: f64, which: &str) -> Result<Self, Undefined> {
         let undefined = |what: &str| Undefined::because(format!("the {which} loop {what}"));
         if !(threshold > 0.0 && threshold < 1.0) {
-            return Err(Undefined::because(format!("the turning threshold must be between 0 and 1 of the range, this is {threshold}")));
+            return Err(Undefined::because(format!(
+                "the turning threshold must be between 0 and 1 of the range, this is {threshold}"
+            )));
         }
         if of.x.len() != of.y.len() {
-            return Err(undefined(&format!("has {} inputs and {} outputs", of.x.len(), of.y.len())));
+            return Err(undefined(&format!(
+                "has {} inputs and {} outputs",
+                of.x.len(),
+                of.y.len()
+            )));
         }
         if of.x.iter().chain(of.y).any(|value| !value.is_finite()) {
             return Err(undefined("has a value that is not finite"));
         }
-        let (low, high) = of.x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
+        let (low, high) = of
+            .x
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
         let branches = branches(of.x, threshold * (high - low));
         let side = |direction: Direction| {
-            Side::of(of, &branches, direction).ok_or_else(|| undefined(&format!("has no {} branch", direction.word())))
+            Side::of(of, &branches, direction)
+                .ok_or_else(|| undefined(&format!("has no {} branch", direction.word())))
         };
         Ok(Self { rising: side(Direction::Rising)?, falling: side(Direction::Falling)? })
     }
@@ -191,19 +221,24 @@ impl Side {
     fn of(of: Loop, branches: &[Branch], direction: Direction) -> Option<Self> {
         let ours = branches.iter().filter(|branch| branch.direction == direction);
         let longest = ours.clone().map(Branch::span).max_by(f64::total_cmp)?;
-        let (long, short): (Vec<&Branch>, Vec<&Branch>) = ours.partition(|branch| branch.span() >= LONG * longest);
-        let curves = |branches: Vec<&Branch>| branches.into_iter().map(|branch| Curve::of(of, branch)).collect();
+        let (long, short): (Vec<&Branch>, Vec<&Branch>) =
+            ours.partition(|branch| branch.span() >= LONG * longest);
+        let curves = |branches: Vec<&Branch>| {
+            branches.into_iter().map(|branch| Curve::of(of, branch)).collect()
+        };
         Some(Self { long: curves(long), short: curves(short) })
     }
 
-    /// Mean output of the long branches at an input, or of the short branches where there is no long one.
+    /// Mean output of the long branches at an input, or of the short branches where there is no
+    /// long one.
     fn at(&self, x: f64) -> Option<f64> {
         average(&self.long, x).or_else(|| average(&self.short, x))
     }
 
     /// All inputs in order, without duplicates.
     fn inputs(&self) -> Vec<f64> {
-        let mut inputs: Vec<f64> = self.long.iter().chain(&self.short).flat_map(|curve| curve.x.iter().copied()).collect();
+        let mut inputs: Vec<f64> =
+            self.long.iter().chain(&self.short).flat_map(|curve| curve.x.iter().copied()).collect();
         inputs.sort_unstable_by(f64::total_cmp);
         inputs.dedup();
         inputs
@@ -212,8 +247,8 @@ impl Side {
 
 /// Splits an input into branches, at points where it reverses by more than `turn_back`.
 ///
-/// A rising branch ends at the first sample of the highest input, and the falling branch begins at the last one. Changes of the
-/// output at constant input belong to neither.
+/// A rising branch ends at the first sample of the highest input, and the falling branch begins at
+/// the last one. Changes of the output at constant input belong to neither.
 fn branches(x: &[f64], turn_back: f64) -> Vec<Branch> {
     let mut found = Vec::new();
     let Some(&start) = x.first() else { return found };
@@ -233,25 +268,57 @@ fn branches(x: &[f64], turn_back: f64) -> Vec<Branch> {
         let turns_down = rising && highest.value - value > turn_back;
         let turns_up = falling && value - lowest.value > turn_back;
         match direction {
-            None if turns_down => (direction, began, lowest) = (Some(Direction::Falling), highest.last, Extreme::at(index, value)),
-            None if turns_up => (direction, began, highest) = (Some(Direction::Rising), lowest.last, Extreme::at(index, value)),
+            None if turns_down => {
+                (direction, began, lowest) =
+                    (Some(Direction::Falling), highest.last, Extreme::at(index, value))
+            }
+            None if turns_up => {
+                (direction, began, highest) =
+                    (Some(Direction::Rising), lowest.last, Extreme::at(index, value))
+            }
             Some(Direction::Rising) if turns_down => {
-                found.push(Branch { direction: Direction::Rising, first: began, last: highest.first, low: x[began], high: highest.value });
-                (direction, began, lowest) = (Some(Direction::Falling), highest.last, Extreme::at(index, value));
+                found.push(Branch {
+                    direction: Direction::Rising,
+                    first: began,
+                    last: highest.first,
+                    low: x[began],
+                    high: highest.value,
+                });
+                (direction, began, lowest) =
+                    (Some(Direction::Falling), highest.last, Extreme::at(index, value));
             }
             Some(Direction::Falling) if turns_up => {
-                found.push(Branch { direction: Direction::Falling, first: began, last: lowest.first, low: lowest.value, high: x[began] });
-                (direction, began, highest) = (Some(Direction::Rising), lowest.last, Extreme::at(index, value));
+                found.push(Branch {
+                    direction: Direction::Falling,
+                    first: began,
+                    last: lowest.first,
+                    low: lowest.value,
+                    high: x[began],
+                });
+                (direction, began, highest) =
+                    (Some(Direction::Rising), lowest.last, Extreme::at(index, value));
             }
             _ => {}
         }
     }
     match direction {
         Some(direction @ Direction::Rising) => {
-            found.push(Branch { direction, first: began, last: highest.first, low: x[began], high: highest.value });
+            found.push(Branch {
+                direction,
+                first: began,
+                last: highest.first,
+                low: x[began],
+                high: highest.value,
+            });
         }
         Some(direction @ Direction::Falling) => {
-            found.push(Branch { direction, first: began, last: lowest.first, low: lowest.value, high: x[began] });
+            found.push(Branch {
+                direction,
+                first: began,
+                last: lowest.first,
+                low: lowest.value,
+                high: x[began],
+            });
         }
         None => {}
     }
@@ -279,7 +346,8 @@ impl Extreme {
     }
 }
 
-/// The output of one branch as a function of the input, sorted by input; outputs at equal inputs are averaged.
+/// The output of one branch as a function of the input, sorted by input; outputs at equal inputs
+/// are averaged.
 struct Curve {
     x: Vec<f64>,
     y: Vec<f64>,
@@ -287,9 +355,11 @@ struct Curve {
 
 impl Curve {
     fn of(of: Loop, branch: &Branch) -> Self {
-        let mut points: Vec<(f64, f64)> = branch.samples().map(|index| (of.x[index], of.y[index])).collect();
+        let mut points: Vec<(f64, f64)> =
+            branch.samples().map(|index| (of.x[index], of.y[index])).collect();
         points.sort_by(|left, right| left.0.total_cmp(&right.0));
-        let mut curve = Self { x: Vec::with_capacity(points.len()), y: Vec::with_capacity(points.len()) };
+        let mut curve =
+            Self { x: Vec::with_capacity(points.len()), y: Vec::with_capacity(points.len()) };
         for equal in points.chunk_by(|left, right| left.0 == right.0) {
             curve.x.push(equal[0].0);
             curve.y.push(equal.iter().map(|point| point.1).sum::<f64>() / equal.len() as f64);
@@ -312,6 +382,9 @@ impl Curve {
 
 /// Mean output of the curves that contain this input.
 fn average(curves: &[Curve], x: f64) -> Option<f64> {
-    let (total, count) = curves.iter().filter_map(|curve| curve.at(x)).fold((0.0, 0), |(total, count), y| (total + y, count + 1));
+    let (total, count) = curves
+        .iter()
+        .filter_map(|curve| curve.at(x))
+        .fold((0.0, 0), |(total, count), y| (total + y, count + 1));
     (count > 0).then(|| total / f64::from(count))
 }

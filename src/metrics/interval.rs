@@ -1,4 +1,5 @@
-//! Confidence intervals, and that of a share. Those of means and standard deviations are in `cluster`.
+//! Confidence intervals, and that of a share. Those of means and standard deviations are in
+//! `cluster`.
 
 /// Confidence level usual in test reports.
 pub const CONFIDENCE: f64 = 0.95;
@@ -23,5 +24,8 @@ pub fn wilson(good: u64, all: u64) -> (f64, f64) {
     let center = (p + square / (2.0 * n)) / (1.0 + square / n);
     let half = NORMAL / (1.0 + square / n) * (p * (1.0 - p) / n + square / (4.0 * n * n)).sqrt();
     // At the ends, both terms cancel except for rounding.
-    (if good == 0 { 0.0 } else { (center - half).max(0.0) }, if good == all { 1.0 } else { (center + half).min(1.0) })
+    (
+        if good == 0 { 0.0 } else { (center - half).max(0.0) },
+        if good == all { 1.0 } else { (center + half).min(1.0) },
+    )
 }

@@ -1,7 +1,8 @@
 //! Numerical methods: slices in, numbers out, no I/O.
 //!
-//! Values are in SI. Quantities and limits are defined by protocols, not here. Where a number is not defined (no values, a division
-//! by zero, a sample that is not finite), the result is `None` or an error with the reason.
+//! Values are in SI. Quantities and limits are defined by protocols, not here. Where a number is
+//! not defined (no values, a division by zero, a sample that is not finite), the result is `None`
+//! or an error with the reason.
 //!
 //! | module | from | to |
 //! |---|---|---|

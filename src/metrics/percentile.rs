@@ -1,7 +1,8 @@
-//! Percentiles of unsorted values, by the methods of Hyndman and Fan and the further methods of NumPy.
+//! Percentiles of unsorted values, by the methods of Hyndman and Fan and the further methods of
+//! NumPy.
 //!
-//! Source: Hyndman and Fan, "Sample quantiles in statistical packages", The American Statistician 50 (1996) 361-365. Names,
-//! edge cases and the last digit follow `numpy.percentile`.
+//! Source: Hyndman and Fan, "Sample quantiles in statistical packages", The American Statistician
+//! 50 (1996) 361-365. Names, edge cases and the last digit follow `numpy.percentile`.
 
 use std::cmp::Ordering;
 use std::fmt;
@@ -74,11 +75,12 @@ impl Method {
         Self::ALL.into_iter().find(|method| method.name() == name)
     }
 
-    /// Position of the quantile among the order statistics of `count` values: index of the one below, from 0, and weight of the one
-    /// above.
+    /// Position of the quantile among the order statistics of `count` values: index of the one
+    /// below, from 0, and weight of the one above.
     fn position(self, count: usize, quantile: f64) -> (usize, f64) {
         let n = count as f64;
-        let between = |alpha: f64, beta: f64| n * quantile + (alpha + quantile * (1.0 - alpha - beta)) - 1.0;
+        let between =
+            |alpha: f64, beta: f64| n * quantile + (alpha + quantile * (1.0 - alpha - beta)) - 1.0;
         let whole = |place: f64| (place, 0.0);
         let fraction = |place: f64| (place.floor(), place - place.floor());
         let (below, weight) = match self {
@@ -122,18 +124,25 @@ impl Method {
 /// No values; a value that is not finite; a percent outside 0 to 100.
 pub fn percentile(values: &[f64], percent: f64, method: Method) -> Result<f64, PercentileError> {
     check(values, &[percent])?;
-    Ok(near_an_end(values, percent, method).unwrap_or_else(|| select(&mut values.to_vec(), percent, method)))
+    Ok(near_an_end(values, percent, method)
+        .unwrap_or_else(|| select(&mut values.to_vec(), percent, method)))
 }
 
 /// Several percentiles of unsorted values.
 ///
 /// # Errors
 /// As [`percentile`].
-pub fn percentiles(values: &[f64], percents: &[f64], method: Method) -> Result<Vec<f64>, PercentileError> {
+pub fn percentiles(
+    values: &[f64],
+    percents: &[f64],
+    method: Method,
+) -> Result<Vec<f64>, PercentileError> {
     check(values, percents)?;
     // Selection reads each value about three times, sorting about log2(n) times.
     let pays = |wanted: usize| wanted > 0 && wanted * 3 >= values.len().ilog2() as usize;
-    let near = |percent: &f64| if pays(percents.len()) { None } else { near_an_end(values, *percent, method) };
+    let near = |percent: &f64| {
+        if pays(percents.len()) { None } else { near_an_end(values, *percent, method) }
+    };
     let found: Vec<Option<f64>> = percents.iter().map(near).collect();
     let inside = found.iter().filter(|value| value.is_none()).count();
     let sorted = pays(inside);
@@ -147,14 +156,22 @@ pub fn percentiles(values: &[f64], percents: &[f64], method: Method) -> Result<V
         }
         of_sorted(&values, percent, method)
     };
-    Ok(found.into_iter().zip(percents).map(|(value, &percent)| value.unwrap_or_else(|| of_copy(percent))).collect())
+    Ok(found
+        .into_iter()
+        .zip(percents)
+        .map(|(value, &percent)| value.unwrap_or_else(|| of_copy(percent)))
+        .collect())
 }
 
 /// Several percentiles of values that are sorted already.
 ///
 /// # Errors
 /// As [`percentile`].
-pub fn percentiles_of_sorted(sorted: &[f64], percents: &[f64], method: Method) -> Result<Vec<f64>, PercentileError> {
+pub fn percentiles_of_sorted(
+    sorted: &[f64],
+    percents: &[f64],
+    method: Method,
+) -> Result<Vec<f64>, PercentileError> {
     check(sorted, percents)?;
     Ok(percents.iter().map(|&percent| of_sorted(sorted, percent, method)).collect())
 }
@@ -167,8 +184,9 @@ fn of_sorted(sorted: &[f64], percent: f64, method: Method) -> f64 {
 /// Largest number of values kept in the search for a percentile near an end.
 const NEAR: usize = 64;
 
-/// A percentile among the smallest or largest values, such as the 0.15 % and 99.85 % values of a record. It reads each value once,
-/// without a copy. `None` if the percentile is not near an end; selection is then faster.
+/// A percentile among the smallest or largest values, such as the 0.15 % and 99.85 % values of a
+/// record. It reads each value once, without a copy. `None` if the percentile is not near an end;
+/// selection is then faster.
 fn near_an_end(values: &[f64], percent: f64, method: Method) -> Option<f64> {
     let (below, weight) = method.position(values.len(), percent / 100.0);
     let both = usize::from(weight > 0.0);
@@ -188,7 +206,8 @@ fn near_an_end(values: &[f64], percent: f64, method: Method) -> Option<f64> {
 /// Values compared at once with the largest that is kept: most blocks have none below it.
 const BLOCK: usize = 16;
 
-/// The `count` smallest of the values behind `of`, sorted; there must be at least as many, and one at least.
+/// The `count` smallest of the values behind `of`, sorted; there must be at least as many, and one
+/// at least.
 fn smallest(values: &[f64], of: impl Fn(f64) -> f64, count: usize) -> Vec<f64> {
     let (first, others) = values.split_at(count);
     let mut kept: Vec<f64> = Vec::with_capacity(count + 1);
@@ -228,7 +247,11 @@ fn check(values: &[f64], percents: &[f64]) -> Result<(), PercentileError> {
 fn select(values: &mut [f64], percent: f64, method: Method) -> f64 {
     let (below, weight) = method.position(values.len(), percent / 100.0);
     let (_, &mut lower, above) = values.select_nth_unstable_by(below, f64::total_cmp);
-    let upper = if weight > 0.0 { above.iter().copied().min_by(f64::total_cmp).unwrap_or(lower) } else { lower };
+    let upper = if weight > 0.0 {
+        above.iter().copied().min_by(f64::total_cmp).unwrap_or(lower)
+    } else {
+        lower
+    };
     blend(lower, upper, weight)
 }
 
@@ -261,7 +284,9 @@ impl fmt::Display for PercentileError {
         match *self {
             Self::Empty => f.write_str("there are no values"),
             Self::NotFinite { index } => write!(f, "value {} is not finite", index + 1),
-            Self::Percent { percent } => write!(f, "a percentile must be from 0 to 100 %, this is {percent} %"),
+            Self::Percent { percent } => {
+                write!(f, "a percentile must be from 0 to 100 %, this is {percent} %")
+            }
         }
     }
 }

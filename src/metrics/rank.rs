@@ -1,8 +1,10 @@
 //! Rank correlation.
 
-/// Spearman's rank correlation: the correlation of ranks, equal values sharing the mean of their ranks.
+/// Spearman's rank correlation: the correlation of ranks, equal values sharing the mean of their
+/// ranks.
 ///
-/// `None` with fewer than three pairs, of which any two correlate fully, or where all values of one side are equal.
+/// `None` with fewer than three pairs, of which any two correlate fully, or where all values of one
+/// side are equal.
 #[must_use]
 pub fn spearman(pairs: &[(f64, f64)]) -> Option<f64> {
     if pairs.len() < 3 {
@@ -12,7 +14,8 @@ pub fn spearman(pairs: &[(f64, f64)]) -> Option<f64> {
     let (a, b) = (ranks(&a), ranks(&b));
     // The mean of ranks is the same with and without ties.
     let mean = (pairs.len() as f64 + 1.0) / 2.0;
-    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - mean) * (b - mean)).sum::<f64>();
+    let product =
+        |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - mean) * (b - mean)).sum::<f64>();
     let correlation = product(&a, &b) / (product(&a, &a) * product(&b, &b)).sqrt();
     correlation.is_finite().then(|| correlation.clamp(-1.0, 1.0))
 }

@@ -4,8 +4,8 @@ use std::fmt;
 
 use super::rounded;
 
-/// Largest number of points of a grid: 50 km in steps of a centimetre, 40 MB for each signal. A step that is wrong by orders of
-/// magnitude gives an error instead of filling the memory.
+/// Largest number of points of a grid: 50 km in steps of a centimetre, 40 MB for each signal. A
+/// step that is wrong by orders of magnitude gives an error instead of filling the memory.
 const MOST_POINTS: f64 = 5e6;
 
 /// Points `start, start + step, ...` up to and including `end`, with a tolerance of 1e-9 steps.
@@ -24,9 +24,15 @@ pub fn uniform_grid(start: f64, end: f64, step: f64) -> Result<Vec<f64>, Resampl
 ///
 /// # Errors
 /// As [`uniform_grid`] and [`interpolate`].
-pub fn resample(axis: &[f64], signal: &[f64], step: f64) -> Result<(Vec<f64>, Vec<f64>), ResampleError> {
+pub fn resample(
+    axis: &[f64],
+    signal: &[f64],
+    step: f64,
+) -> Result<(Vec<f64>, Vec<f64>), ResampleError> {
     check(axis, signal)?;
-    let (Some(&start), Some(&end)) = (axis.first(), axis.last()) else { return Err(ResampleError::Empty) };
+    let (Some(&start), Some(&end)) = (axis.first(), axis.last()) else {
+        return Err(ResampleError::Empty);
+    };
     let grid = uniform_grid(start, end, step)?;
     let values = interpolate(axis, signal, &grid)?;
     Ok((grid, values))
@@ -35,9 +41,13 @@ pub fn resample(axis: &[f64], signal: &[f64], step: f64) -> Result<(Vec<f64>, Ve
 /// The signal at given points, in any order; fastest when they increase.
 ///
 /// # Errors
-/// An axis that does not increase strictly or differs in length from the signal; a point outside the axis, as nothing is
-/// extrapolated.
-pub fn interpolate(axis: &[f64], signal: &[f64], points: &[f64]) -> Result<Vec<f64>, ResampleError> {
+/// An axis that does not increase strictly or differs in length from the signal; a point outside
+/// the axis, as nothing is extrapolated.
+pub fn interpolate(
+    axis: &[f64],
+    signal: &[f64],
+    points: &[f64],
+) -> Result<Vec<f64>, ResampleError> {
     check(axis, signal)?;
     places(axis, points)?.map(|place| place.map(|place| place.value(signal))).collect()
 }
@@ -84,7 +94,10 @@ impl Place {
 }
 
 /// Places of points on an axis that increases strictly.
-fn places<'a>(axis: &'a [f64], points: &'a [f64]) -> Result<impl Iterator<Item = Result<Place, ResampleError>> + 'a, ResampleError> {
+fn places<'a>(
+    axis: &'a [f64],
+    points: &'a [f64],
+) -> Result<impl Iterator<Item = Result<Place, ResampleError>> + 'a, ResampleError> {
     let (first, last) = match axis {
         [] if points.is_empty() => (0.0, 0.0),
         [] => return Err(ResampleError::Empty),
@@ -112,7 +125,9 @@ pub(super) fn not_increasing(axis: &[f64]) -> Option<usize> {
     if axis.first().is_some_and(|first| !first.is_finite()) {
         return Some(0);
     }
-    axis.array_windows().position(|[before, after]| !(before < after && after.is_finite())).map(|index| index + 1)
+    axis.array_windows()
+        .position(|[before, after]| !(before < after && after.is_finite()))
+        .map(|index| index + 1)
 }
 
 fn check(axis: &[f64], signal: &[f64]) -> Result<(), ResampleError> {
@@ -153,13 +168,29 @@ impl fmt::Display for ResampleError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::Empty => f.write_str("the signal has no samples"),
-            Self::Lengths { axis, signal } => write!(f, "the axis has {axis} samples, the signal {signal}"),
-            Self::Axis { sample } => write!(f, "the axis does not increase at sample {}", sample + 1),
+            Self::Lengths { axis, signal } => {
+                write!(f, "the axis has {axis} samples, the signal {signal}")
+            }
+            Self::Axis { sample } => {
+                write!(f, "the axis does not increase at sample {}", sample + 1)
+            }
             Self::Outside { point, first, last } => {
-                write!(f, "the point {} lies outside the record, {} to {}", rounded(point), rounded(first), rounded(last))
+                write!(
+                    f,
+                    "the point {} lies outside the record, {} to {}",
+                    rounded(point),
+                    rounded(first),
+                    rounded(last)
+                )
             }
             Self::Grid { start, end, step } => {
-                write!(f, "there is no grid from {} to {} in steps of {}", rounded(start), rounded(end), rounded(step))
+                write!(
+                    f,
+                    "there is no grid from {} to {} in steps of {}",
+                    rounded(start),
+                    rounded(end),
+                    rounded(step)
+                )
             }
         }
     }

@@ -1,23 +1,28 @@
-//! Band-limited interpolation: a signal with constant steps at other points, by a windowed sinc. It filters and interpolates in one
-//! step: content above the wanted band does not fold into it.
+//! Band-limited interpolation: a signal with constant steps at other points, by a windowed sinc. It
+//! filters and interpolates in one step: content above the wanted band does not fold into it.
 
 use std::f64::consts::PI;
 
-/// Frequency of the filter at -6 dB as a share of the lower of both sampling rates. With `CROSSINGS` and `BETA` the band below 0.41
-/// of that rate is unchanged (to 1e-4), and what is above 0.49 of it is suppressed to 1e-4.
+/// Frequency of the filter at -6 dB as a share of the lower of both sampling rates. With
+/// `CROSSINGS` and `BETA` the band below 0.41 of that rate is unchanged (to 1e-4), and what is
+/// above 0.49 of it is suppressed to 1e-4.
 pub const CUTOFF: f64 = 0.45;
 /// Zero crossings of the sinc on each side.
 const CROSSINGS: f64 = 32.0;
 /// Parameter of the Kaiser window: side lobes of about -80 dB.
 const BETA: f64 = 8.0;
 
-/// The signal at fractional sample numbers, filtered for a new sampling rate that is `ratio` of the old one. Beyond its ends the
-/// signal is continued by odd reflection.
+/// The signal at fractional sample numbers, filtered for a new sampling rate that is `ratio` of the
+/// old one. Beyond its ends the signal is continued by odd reflection.
 ///
-/// `None` for a signal of fewer than two samples, a ratio that is not positive, or points outside the signal.
+/// `None` for a signal of fewer than two samples, a ratio that is not positive, or points outside
+/// the signal.
 pub fn interpolate(signal: &[f64], points: &[f64], ratio: f64) -> Option<Vec<f64>> {
     let last = signal.len().checked_sub(1).filter(|last| *last > 0)?;
-    if ratio.is_nan() || ratio <= 0.0 || points.iter().any(|point| !(-1e-6..=last as f64 + 1e-6).contains(point)) {
+    if ratio.is_nan()
+        || ratio <= 0.0
+        || points.iter().any(|point| !(-1e-6..=last as f64 + 1e-6).contains(point))
+    {
         return None;
     }
     let cutoff = CUTOFF * ratio.min(1.0);
@@ -87,7 +92,9 @@ mod tests {
     /// The tone at the new rate, away from the ends.
     #[test]
     fn the_band_is_unchanged() {
-        for (from, rate, frequency) in [(600.0, 200.0, 20.0), (600.0, 200.0, 80.0), (333.0, 200.0, 60.0), (200.0, 500.0, 75.0)] {
+        for (from, rate, frequency) in
+            [(600.0, 200.0, 20.0), (600.0, 200.0, 80.0), (333.0, 200.0, 60.0), (200.0, 500.0, 75.0)]
+        {
             let found = to(&tone(frequency, from, 3000), from, rate);
             let wanted = tone(frequency, rate, found.len());
             let middle = found.len() / 4..3 * found.len() / 4;
@@ -101,7 +108,9 @@ mod tests {
     fn what_is_above_does_not_fold() {
         for frequency in [99.0, 120.0, 180.0, 290.0] {
             let found = to(&tone(frequency, 600.0, 3000), 600.0, 200.0);
-            let worst = found[found.len() / 4..3 * found.len() / 4].iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+            let worst = found[found.len() / 4..3 * found.len() / 4]
+                .iter()
+                .fold(0.0_f64, |most, value| most.max(value.abs()));
             assert!(worst < 2e-4, "{frequency} Hz: {worst}");
         }
     }
@@ -111,11 +120,21 @@ mod tests {
     fn a_line_is_kept_to_its_ends() {
         let line: Vec<f64> = (0..200).map(|at| 3.0 + 0.5 * f64::from(at)).collect();
         let points: Vec<f64> = (0..=398).map(|at| 0.5 * f64::from(at)).collect();
-        for (point, value) in points.iter().zip(interpolate(&line, &points, 1.0).expect("points inside")) {
+        for (point, value) in
+            points.iter().zip(interpolate(&line, &points, 1.0).expect("points inside"))
+        {
             assert!((value - (3.0 + 0.5 * point)).abs() < 2e-3, "{point}: {value}");
         }
-        assert!(interpolate(&line, &[200.0], 1.0).is_none() && interpolate(&line, &[1.0], 0.0).is_none());
+        assert!(
+            interpolate(&line, &[200.0], 1.0).is_none()
+                && interpolate(&line, &[1.0], 0.0).is_none()
+        );
         assert!(interpolate(&[1.0], &[0.0], 1.0).is_none());
-        assert!(interpolate(&line[..5], &points[..8], 0.3).expect("a short signal").iter().all(|value| value.is_finite()));
+        assert!(
+            interpolate(&line[..5], &points[..8], 0.3)
+                .expect("a short signal")
+                .iter()
+                .all(|value| value.is_finite())
+        );
     }
 }

@@ -1,6 +1,7 @@
 //! Statistics of values, and regression and correlation of two signals.
 //!
-//! `None` where the number is not defined: too few values, a value that is not finite, a division by zero.
+//! `None` where the number is not defined: too few values, a value that is not finite, a division
+//! by zero.
 
 use super::{
     percentile::{Method, percentiles},
@@ -94,7 +95,8 @@ pub struct Line {
     pub intercept: f64,
 }
 
-/// Regression of y on x. `None` for fewer than two points, signals of different length, or x without scatter.
+/// Regression of y on x. `None` for fewer than two points, signals of different length, or x
+/// without scatter.
 pub fn regression(x: &[f64], y: &[f64]) -> Option<Line> {
     let moments = Moments::of(x, y)?;
     if moments.xx == 0.0 {
@@ -104,8 +106,8 @@ pub fn regression(x: &[f64], y: &[f64]) -> Option<Line> {
     Some(Line { slope, intercept: finite(moments.mean_y - slope * moments.mean_x)? })
 }
 
-/// Pearson's correlation, in [-1, 1]. `None` for fewer than two points, signals of different length, or one of them without
-/// scatter.
+/// Pearson's correlation, in [-1, 1]. `None` for fewer than two points, signals of different
+/// length, or one of them without scatter.
 pub fn correlation(x: &[f64], y: &[f64]) -> Option<f64> {
     let moments = Moments::of(x, y)?;
     if moments.xx == 0.0 || moments.yy == 0.0 {
@@ -132,7 +134,11 @@ impl Moments {
         let (mean_x, mean_y) = (mean(x)?, mean(y)?);
         // A constant signal can differ from its rounded mean, but has no scatter.
         let squares = |values: &[f64], mean: f64| {
-            if is_constant(values) { 0.0 } else { sum_of(values, |value| (value - mean) * (value - mean)) }
+            if is_constant(values) {
+                0.0
+            } else {
+                sum_of(values, |value| (value - mean) * (value - mean))
+            }
         };
         let xy = sum_of_pairs(x, y, |x, y| (x - mean_x) * (y - mean_y));
         Some(Self { mean_x, mean_y, xx: squares(x, mean_x), yy: squares(y, mean_y), xy })
@@ -149,7 +155,11 @@ fn extremes(values: &[f64]) -> Option<(f64, f64)> {
     if !values.iter().all(|value| value.is_finite()) {
         return None;
     }
-    Some(values.iter().fold((first, first), |(least, greatest), &value| (least.min(value), greatest.max(value))))
+    Some(
+        values.iter().fold((first, first), |(least, greatest), &value| {
+            (least.min(value), greatest.max(value))
+        }),
+    )
 }
 
 fn count(values: &[f64]) -> Option<f64> {

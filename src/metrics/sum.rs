@@ -14,15 +14,21 @@ pub(super) fn sum_of(values: &[f64], term: impl Fn(f64) -> f64 + Copy) -> f64 {
 }
 
 /// Pairwise sum of `term` over two signals, up to the end of the shorter one.
-pub(super) fn sum_of_pairs(left: &[f64], right: &[f64], term: impl Fn(f64, f64) -> f64 + Copy) -> f64 {
+pub(super) fn sum_of_pairs(
+    left: &[f64],
+    right: &[f64],
+    term: impl Fn(f64, f64) -> f64 + Copy,
+) -> f64 {
     let length = left.len().min(right.len());
     let (left, right) = (&left[..length], &right[..length]);
     if length > BLOCK {
         // Multiples of the number of lanes keep all blocks but the last full.
         let half = length / 2 / 8 * 8;
-        return sum_of_pairs(&left[..half], &right[..half], term) + sum_of_pairs(&left[half..], &right[half..], term);
+        return sum_of_pairs(&left[..half], &right[..half], term)
+            + sum_of_pairs(&left[half..], &right[half..], term);
     }
-    // Eight independent sums: no addition waits for the previous one, and each is a further halving.
+    // Eight independent sums: no addition waits for the previous one, and each is a further
+    // halving.
     let mut lanes = [0.0; 8];
     let (left_eights, left_rest) = left.as_chunks::<8>();
     let (right_eights, right_rest) = right.as_chunks::<8>();
@@ -32,10 +38,13 @@ pub(super) fn sum_of_pairs(left: &[f64], right: &[f64], term: impl Fn(f64, f64) 
         }
     }
     let rest: f64 = left_rest.iter().zip(right_rest).map(|(&l, &r)| term(l, r)).sum();
-    ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) + ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7])) + rest
+    ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3]))
+        + ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]))
+        + rest
 }
 
-/// Cumulative sums in twice the precision, so that the difference of two of them is as accurate as the sum between them.
+/// Cumulative sums in twice the precision, so that the difference of two of them is as accurate as
+/// the sum between them.
 #[derive(Debug)]
 pub(super) struct RunningSums(Vec<(f64, f64)>);
 
@@ -77,10 +86,12 @@ mod tests {
 
     #[test]
     fn small_terms_survive_a_large_sum() {
-        // A million tenths: direct addition has an error of 1e-6, pairwise addition of a few rounding units.
+        // A million tenths: direct addition has an error of 1e-6, pairwise addition of a few
+        // rounding units.
         let tenths = vec![0.1; 1_000_000];
         assert!((sum(&tenths) - 1e5).abs() < 1e-10);
-        let sums = RunningSums::new([1e16].into_iter().chain([0.1; 10]).collect::<Vec<_>>().into_iter());
+        let sums =
+            RunningSums::new([1e16].into_iter().chain([0.1; 10]).collect::<Vec<_>>().into_iter());
         assert!((sums.between(1, 11) - 1.0).abs() < 1e-15);
     }
 }

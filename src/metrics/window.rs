@@ -9,7 +9,8 @@ use super::{resample::not_increasing, rounded, sum::RunningSums};
 const ON_THE_EDGE: f64 = 1e-6;
 /// A last window that ends up to this share of a step beyond the section is used.
 const LAST_STEP: f64 = 1e-9;
-/// Largest number of windows. A step that is wrong by orders of magnitude gives an error instead of filling the memory.
+/// Largest number of windows. A step that is wrong by orders of magnitude gives an error instead of
+/// filling the memory.
 const MOST_WINDOWS: f64 = 1e8;
 
 /// The value of each window.
@@ -40,7 +41,8 @@ pub struct Sliding {
 }
 
 impl Sliding {
-    /// Start points of the windows: `start, start + step, ...` while the window is inside the section `start..=end`.
+    /// Start points of the windows: `start, start + step, ...` while the window is inside the
+    /// section `start..=end`.
     ///
     /// # Errors
     /// A width or step that is not positive; a section shorter than one window; too many windows.
@@ -67,13 +69,20 @@ impl Sliding {
 
     /// One value per window, in the order of [`Self::starts`].
     ///
-    /// The record must reach both ends of the section, for [`Ends::Samples`] to within one sampling distance, so that a record cut
-    /// to the section is sufficient.
+    /// The record must reach both ends of the section, for [`Ends::Samples`] to within one sampling
+    /// distance, so that a record cut to the section is sufficient.
     ///
     /// # Errors
-    /// As [`Self::starts`]; an axis that does not increase strictly near the section, or differs in length from the signal; a record that does not
-    /// reach the ends of the section; a window without samples; a value that is not finite.
-    pub fn over(&self, axis: &[f64], signal: &[f64], start: f64, end: f64) -> Result<Vec<f64>, SlidingError> {
+    /// As [`Self::starts`]; an axis that does not increase strictly near the section, or differs in
+    /// length from the signal; a record that does not reach the ends of the section; a window
+    /// without samples; a value that is not finite.
+    pub fn over(
+        &self,
+        axis: &[f64],
+        signal: &[f64],
+        start: f64,
+        end: f64,
+    ) -> Result<Vec<f64>, SlidingError> {
         let starts = self.starts(start, end)?;
         if axis.len() != signal.len() {
             return Err(SlidingError::Lengths { axis: axis.len(), signal: signal.len() });
@@ -84,14 +93,21 @@ impl Sliding {
         if let Some(sample) = not_increasing(axis) {
             return Err(SlidingError::Axis { sample: before + sample });
         }
-        let [first, second, ..] = *axis else { return Err(SlidingError::TooFewSamples { samples: axis.len() }) };
+        let [first, second, ..] = *axis else {
+            return Err(SlidingError::TooFewSamples { samples: axis.len() });
+        };
         let (before_last, last) = (axis[axis.len() - 2], axis[axis.len() - 1]);
         let (ahead, behind) = match self.ends {
             Ends::Samples => (second - first, last - before_last),
             Ends::Integral => (0.0, 0.0),
         };
         if first > start + ahead + ON_THE_EDGE || last < end - behind - ON_THE_EDGE {
-            return Err(SlidingError::Record { first: whole[0], last: whole[whole.len() - 1], start, end });
+            return Err(SlidingError::Record {
+                first: whole[0],
+                last: whole[whole.len() - 1],
+                start,
+                end,
+            });
         }
         let fitted = Self { width: self.width_in(start, end), ..*self };
         let averages = match self.ends {
@@ -104,14 +120,19 @@ impl Sliding {
         }
     }
 
-    /// The samples that windows of the section may use, with two more on each side where there are so many; all if these are fewer than two.
+    /// The samples that windows of the section may use, with two more on each side where there are
+    /// so many; all if these are fewer than two.
     fn near(&self, axis: &[f64], start: f64, end: f64) -> Range<usize> {
         let from = axis.partition_point(|&x| x < start - ON_THE_EDGE).saturating_sub(2);
-        let to = axis.partition_point(|&x| x <= end + ON_THE_EDGE + LAST_STEP * self.step).saturating_add(2).min(axis.len());
+        let to = axis
+            .partition_point(|&x| x <= end + ON_THE_EDGE + LAST_STEP * self.step)
+            .saturating_add(2)
+            .min(axis.len());
         if from + 2 <= to { from..to } else { 0..axis.len() }
     }
 
-    /// The width of the windows of a section: its length where it is shorter and is taken all the same, with the sample at its end.
+    /// The width of the windows of a section: its length where it is shorter and is taken all the
+    /// same, with the sample at its end.
     fn width_in(&self, start: f64, end: f64) -> f64 {
         let length = end - start;
         match self.ends {
@@ -121,7 +142,12 @@ impl Sliding {
         }
     }
 
-    fn of_samples(&self, axis: &[f64], signal: &[f64], starts: &[f64]) -> Result<Vec<f64>, SlidingError> {
+    fn of_samples(
+        &self,
+        axis: &[f64],
+        signal: &[f64],
+        starts: &[f64],
+    ) -> Result<Vec<f64>, SlidingError> {
         let sums = RunningSums::new(signal.iter().map(|&value| self.power(value)));
         let mut from_sample = Cursor::default();
         let mut to_sample = Cursor::default();
@@ -252,20 +278,41 @@ impl SlidingError {
     pub fn in_words(&self, unit: &str) -> String {
         let shown = |value: f64| format!("{} {unit}", rounded(value)).trim_end().to_string();
         match *self {
-            Self::Window { width, step } => format!("a window cannot have a width of {} and steps of {}", shown(width), shown(step)),
-            Self::Section { start, end } => format!("a section from {} to {} has no length", shown(start), shown(end)),
-            Self::SectionTooShort { length, width } => {
-                format!("the section is {} long, shorter than one window of {}", shown(length), shown(width))
+            Self::Window { width, step } => format!(
+                "a window cannot have a width of {} and steps of {}",
+                shown(width),
+                shown(step)
+            ),
+            Self::Section { start, end } => {
+                format!("a section from {} to {} has no length", shown(start), shown(end))
             }
-            Self::Lengths { axis, signal } => format!("the axis has {axis} samples, the signal {signal}"),
+            Self::SectionTooShort { length, width } => {
+                format!(
+                    "the section is {} long, shorter than one window of {}",
+                    shown(length),
+                    shown(width)
+                )
+            }
+            Self::Lengths { axis, signal } => {
+                format!("the axis has {axis} samples, the signal {signal}")
+            }
             Self::Axis { sample } => format!("the axis does not increase at sample {}", sample + 1),
-            Self::TooFewSamples { samples } => format!("the record has {samples} samples, fewer than two"),
+            Self::TooFewSamples { samples } => {
+                format!("the record has {samples} samples, fewer than two")
+            }
             Self::Record { first, last, start, end } => {
                 let (record, section) = ((shown(first), shown(last)), (shown(start), shown(end)));
-                format!("the record from {} to {} does not cover the section from {} to {}", record.0, record.1, section.0, section.1)
+                format!(
+                    "the record from {} to {} does not cover the section from {} to {}",
+                    record.0, record.1, section.0, section.1
+                )
             }
-            Self::Empty { from, width } => format!("the window from {} to {} has no sample", shown(from), shown(from + width)),
-            Self::NotFinite { from } => format!("the window from {} has a value that is not finite", shown(from)),
+            Self::Empty { from, width } => {
+                format!("the window from {} to {} has no sample", shown(from), shown(from + width))
+            }
+            Self::NotFinite { from } => {
+                format!("the window from {} has a value that is not finite", shown(from))
+            }
         }
     }
 }

@@ -1,12 +1,13 @@
-//! Forces between wheel and rail: linear creep forces with Kalker's coefficients, saturated after Shen, Hedrick and Elkins,
-//! on a contact ellipse after Hertz.
+//! Forces between wheel and rail: linear creep forces with Kalker's coefficients, saturated after
+//! Shen, Hedrick and Elkins, on a contact ellipse after Hertz.
 //!
-//! Z. Y. Shen, J. K. Hedrick, J. A. Elkins: A comparison of alternative creep force models for rail vehicle dynamic analysis,
-//! Vehicle System Dynamics 12 (1983) 79-83.
+//! Z. Y. Shen, J. K. Hedrick, J. A. Elkins: A comparison of alternative creep force models for rail
+//! vehicle dynamic analysis, Vehicle System Dynamics 12 (1983) 79-83.
 //!
-//! Alternatively, as set in the vehicle file: O. Polach, Creep forces in simulations of traction vehicles running on adhesion limit,
-//! Wear 258 (2005) 992-1000, with reduction factors for the areas of adhesion and of slip; or Chartet's law, as in J.-P. Pascal and
-//! G. Sauvage, Vehicle System Dynamics 22 (1993) 263-282.
+//! Alternatively, as set in the vehicle file: O. Polach, Creep forces in simulations of traction
+//! vehicles running on adhesion limit, Wear 258 (2005) 992-1000, with reduction factors for the
+//! areas of adhesion and of slip; or Chartet's law, as in J.-P. Pascal and G. Sauvage, Vehicle
+//! System Dynamics 22 (1993) 263-282.
 //!
 //! The eight wheels are computed side by side, for vector instructions.
 
@@ -90,7 +91,9 @@ impl Contact {
             stop_displacement: vehicle.stop_displacement,
             stop_stiffness: vehicle.stop_stiffness,
             law: match () {
-                () if vehicle.polach_adhesion > 0.0 => Law::Polach(vehicle.polach_adhesion, vehicle.polach_slip),
+                () if vehicle.polach_adhesion > 0.0 => {
+                    Law::Polach(vehicle.polach_adhesion, vehicle.polach_slip)
+                }
                 () if vehicle.chartet_exponent > 0.0 => Law::Chartet(vehicle.chartet_exponent),
                 () => Law::ShenHedrickElkins,
             },
@@ -112,7 +115,8 @@ impl Contact {
         (-self.f11 * area * xi, -self.f22 * area * eta - self.f23 * load * zeta)
     }
 
-    /// Longitudinal and lateral creep force in N of one wheel at a normal force in N, after Shen, Hedrick and Elkins.
+    /// Longitudinal and lateral creep force in N of one wheel at a normal force in N, after Shen,
+    /// Hedrick and Elkins.
     #[inline(always)]
     #[must_use]
     pub fn creep(&self, normal: f64, xi: f64, eta: f64, zeta: f64) -> (f64, f64) {
@@ -133,13 +137,20 @@ impl Contact {
     pub fn forces(&self, motion: &Motion) -> Forces {
         // Separate loops, so that the default law has no branches.
         match self.law {
-            Law::ShenHedrickElkins => self.forces_by(motion, |n, xi, eta, zeta| self.creep(n, xi, eta, zeta)),
-            Law::Polach(adhesion, slip) => self.forces_saturated(motion, |r| polach(r, (adhesion, slip))),
-            Law::Chartet(exponent) => self.forces_saturated(motion, |r| (1.0 + r.powf(exponent)).powf(-1.0 / exponent)),
+            Law::ShenHedrickElkins => {
+                self.forces_by(motion, |n, xi, eta, zeta| self.creep(n, xi, eta, zeta))
+            }
+            Law::Polach(adhesion, slip) => {
+                self.forces_saturated(motion, |r| polach(r, (adhesion, slip)))
+            }
+            Law::Chartet(exponent) => {
+                self.forces_saturated(motion, |r| (1.0 + r.powf(exponent)).powf(-1.0 / exponent))
+            }
         }
     }
 
-    /// With a law that gives the ratio to the linear force as a function of linear force / friction limit.
+    /// With a law that gives the ratio to the linear force as a function of linear force / friction
+    /// limit.
     #[inline(never)]
     fn forces_saturated(&self, motion: &Motion, share: impl Fn(f64) -> f64) -> Forces {
         self.forces_by(motion, |n, xi, eta, zeta| {
@@ -150,8 +161,13 @@ impl Contact {
     }
 
     #[inline(always)]
-    fn forces_by(&self, motion: &Motion, creep: impl Fn(f64, f64, f64, f64) -> (f64, f64)) -> Forces {
-        let (mut sin, mut cos, mut eta, mut zeta, mut n) = ([0.0; WHEELS], [0.0; WHEELS], [0.0; WHEELS], [0.0; WHEELS], [0.0; WHEELS]);
+    fn forces_by(
+        &self,
+        motion: &Motion,
+        creep: impl Fn(f64, f64, f64, f64) -> (f64, f64),
+    ) -> Forces {
+        let (mut sin, mut cos, mut eta, mut zeta, mut n) =
+            ([0.0; WHEELS], [0.0; WHEELS], [0.0; WHEELS], [0.0; WHEELS], [0.0; WHEELS]);
         let (q, xi) = (&motion.vertical_force, &motion.longitudinal_creepage);
         for i in 0..WHEELS {
             (sin[i], cos[i]) = sin_cos(motion.contact_angle[i]);
@@ -170,7 +186,8 @@ impl Contact {
         let mut forces = Forces::default();
         for i in 0..WHEELS {
             let (fx, t) = creep(n[i], xi[i], eta[i], zeta[i]);
-            let stop = self.stop_stiffness * greater(motion.towards_flange[i] - self.stop_displacement, 0.0);
+            let stop = self.stop_stiffness
+                * greater(motion.towards_flange[i] - self.stop_displacement, 0.0);
             forces.longitudinal[i] = fx;
             forces.lateral[i] = t * cos[i] - n[i] * sin[i] - stop;
         }
@@ -178,8 +195,8 @@ impl Contact {
     }
 }
 
-/// Ratio to the linear force as a function of `r` = linear force / friction limit. The gradient of the stress is eps = pi r / 4, so that
-/// without reduction small creepages give the linear force.
+/// Ratio to the linear force as a function of `r` = linear force / friction limit. The gradient of
+/// the stress is eps = pi r / 4, so that without reduction small creepages give the linear force.
 #[inline(never)]
 fn polach(r: f64, (adhesion, slip): (f64, f64)) -> f64 {
     let eps = std::f64::consts::FRAC_PI_4 * r;
@@ -196,11 +213,12 @@ fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// `x^(-1/3)` of a positive number to full precision, by a division-free fourth-order iteration from an estimate by the exponent. Without
-/// branches, and the same on every machine.
+/// `x^(-1/3)` of a positive number to full precision, by a division-free fourth-order iteration
+/// from an estimate by the exponent. Without branches, and the same on every machine.
 #[inline(always)]
 fn inverse_cube_root(x: f64) -> f64 {
-    // A third of the upper bits is a third of the exponent, with corrected bias; error at most 3.4 %.
+    // A third of the upper bits is a third of the exponent, with corrected bias; error at most 3.4
+    // %.
     let third = ((x.to_bits() >> 32) * 0x5555_5556) >> 32;
     let mut root = f64::from_bits((GUESS - third) << 32);
     // 0.034^4 * 12 = 2e-5, and again: 1e-18.
@@ -220,8 +238,24 @@ fn sin_cos(x: f64) -> (f64, f64) {
     let h = 0.5 * x;
     let z = h * h;
     let series = |terms: [f64; 7]| terms.iter().rev().fold(0.0, |sum, term| term + z * sum);
-    let sin = h * series([1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0, 1.0 / 6_227_020_800.0]);
-    let cos = series([1.0, -0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0, 1.0 / 479_001_600.0]);
+    let sin = h * series([
+        1.0,
+        -1.0 / 6.0,
+        1.0 / 120.0,
+        -1.0 / 5040.0,
+        1.0 / 362_880.0,
+        -1.0 / 39_916_800.0,
+        1.0 / 6_227_020_800.0,
+    ]);
+    let cos = series([
+        1.0,
+        -0.5,
+        1.0 / 24.0,
+        -1.0 / 720.0,
+        1.0 / 40_320.0,
+        -1.0 / 3_628_800.0,
+        1.0 / 479_001_600.0,
+    ]);
     (2.0 * sin * cos, cos * cos - sin * sin)
 }
 
@@ -237,7 +271,8 @@ mod tests {
         }
     }
 
-    /// Without reduction the initial slope is Kalker's; at large creepage the friction limit is reached: 2/pi (1/x + pi/2 - 1/x) -> 1.
+    /// Without reduction the initial slope is Kalker's; at large creepage the friction limit is
+    /// reached: 2/pi (1/x + pi/2 - 1/x) -> 1.
     #[test]
     fn polach_is_linear_at_first_and_saturates() {
         assert!((polach(1e-6, (1.0, 1.0)) - 1.0).abs() < 1e-9);

@@ -1,8 +1,8 @@
 //! The equations of motion: forces of suspension, contact and gravity on seven bodies.
 //!
-//! Symbols as in `docs/model.md`: y lateral (right), z vertical (down), phi roll, chi pitch, psi yaw; c car body, b bogie frame, w
-//! wheelset. Every body is described in its own track frame; E, Phi, Theta are the lateral offset, the roll and the yaw of one frame
-//! relative to another.
+//! Symbols as in `docs/model.md`: y lateral (right), z vertical (down), phi roll, chi pitch, psi
+//! yaw; c car body, b bogie frame, w wheelset. Every body is described in its own track frame; E,
+//! Phi, Theta are the lateral offset, the roll and the yaw of one frame relative to another.
 
 use super::G;
 use super::contact::{Contact, Forces, Motion, WHEELS, Wheels};
@@ -106,7 +106,8 @@ impl<'a> Equations<'a> {
         let v = vehicle;
         let car_mass = v.car_mass + v.payload_mass;
         let has = Has {
-            yaw_damper: v.yaw_damper_stiffness * v.yaw_damper_damping * v.yaw_damper_remaining > 0.0,
+            yaw_damper: v.yaw_damper_stiffness * v.yaw_damper_damping * v.yaw_damper_remaining
+                > 0.0,
             hysteresis: v.secondary_hysteresis > 0.0,
             centre_friction: v.centre_friction_torque > 0.0,
             friction_z: v.primary_friction_z > 0.0,
@@ -129,7 +130,8 @@ impl<'a> Equations<'a> {
     /// Position of wheelset `j` (0 to 3) when the car body's centre is at `s`.
     #[must_use]
     pub fn wheelset_position(&self, s: f64, j: usize) -> f64 {
-        s + [1.0, 1.0, -1.0, -1.0][j] * self.vehicle.half_bogie_spacing + lever(j) * self.vehicle.half_wheelbase
+        s + [1.0, 1.0, -1.0, -1.0][j] * self.vehicle.half_bogie_spacing
+            + lever(j) * self.vehicle.half_wheelbase
     }
 
     /// Range of displacements of the contact table, in m.
@@ -138,7 +140,8 @@ impl<'a> Equations<'a> {
         self.profile.range()
     }
 
-    /// Fastest rate in 1/s, which limits the step of an explicit integrator: the spin of a wheelset against creep.
+    /// Fastest rate in 1/s, which limits the step of an explicit integrator: the spin of a wheelset
+    /// against creep.
     #[must_use]
     pub fn fastest_rate(&self) -> f64 {
         let v = self.vehicle;
@@ -206,7 +209,8 @@ impl<'a> Equations<'a> {
             for (side, k) in [(0, 1.0), (1, -1.0)] {
                 if v.roundness_side == 0.0 || v.roundness_side == k {
                     input.roundness[0][4 * side + j] = v.roundness_amplitude * sin;
-                    input.roundness[1][4 * side + j] = v.roundness_amplitude * wave * self.speed * cos;
+                    input.roundness[1][4 * side + j] =
+                        v.roundness_amplitude * wave * self.speed * cos;
                 }
             }
         }
@@ -260,7 +264,8 @@ impl<'a> Equations<'a> {
         let m = self.car_mass;
         load[CAR] += m * lateral(&input.car) + v.crosswind_force;
         load[CAR + Z] += m * vertical(&input.car) + v.payload_mass * G;
-        load[CAR + PHI] += (v.crosswind_height - v.car_cog_height) * v.crosswind_force + m * (G + vertical(&input.car)) * v.payload_offset;
+        load[CAR + PHI] += (v.crosswind_height - v.car_cog_height) * v.crosswind_force
+            + m * (G + vertical(&input.car)) * v.payload_offset;
         for i in 0..2 {
             let b = BOGIE + 5 * i;
             load[b] += v.bogie_mass * lateral(&input.bogie[i]);
@@ -274,14 +279,23 @@ impl<'a> Equations<'a> {
 
     /// Between car body and bogie frames.
     #[inline(always)]
-    fn secondary(&self, state: &State, input: &Input, load: &mut [f64; State::BODIES], rates: &mut State) {
+    fn secondary(
+        &self,
+        state: &State,
+        input: &Input,
+        load: &mut [f64; State::BODIES],
+        rates: &mut State,
+    ) {
         let v = self.vehicle;
         let (x, u) = (&state.x, &state.v);
         let hcs = v.car_cog_height - v.secondary_height;
         let hbs = v.secondary_height - v.bogie_cog_height;
         let cz = v.secondary_cz * v.secondary_cz_scale;
         let cy = v.secondary_cy * v.secondary_cy_scale;
-        let (yaw_ks, yaw_c) = (v.yaw_damper_stiffness * v.yaw_damper_remaining, v.yaw_damper_damping * v.yaw_damper_remaining);
+        let (yaw_ks, yaw_c) = (
+            v.yaw_damper_stiffness * v.yaw_damper_remaining,
+            v.yaw_damper_damping * v.yaw_damper_remaining,
+        );
         let p = self.car_mass * G / 2.0;
         let mut bending = 0.0;
         for i in 0..2 {
@@ -290,24 +304,30 @@ impl<'a> Equations<'a> {
             let offset = &input.bogie_offset[i];
             let d = (x[CAR] + lever * x[CAR + PSI] - hcs * x[CAR + PHI])
                 - (x[b] + offset.e + v.secondary_height * offset.phi + hbs * x[b + PHI]);
-            let d_rate = (u[CAR] + lever * u[CAR + PSI] - hcs * u[CAR + PHI]) - (u[b] + hbs * u[b + PHI]);
+            let d_rate =
+                (u[CAR] + lever * u[CAR + PSI] - hcs * u[CAR + PHI]) - (u[b] + hbs * u[b + PHI]);
             let stop = v.bumpstop_stiffness * d.signum() * (d.abs() - v.bumpstop_gap).max(0.0);
             let mut fy = -2.0 * v.secondary_ky * d - cy * d_rate - stop;
             if self.has.hysteresis {
                 // A spring and a dashpot in series, beside the spring.
                 let f = state.hysteresis[i];
-                rates.hysteresis[i] = 2.0 * v.secondary_hysteresis * v.secondary_ky * d_rate - f / v.secondary_hysteresis_time;
+                rates.hysteresis[i] = 2.0 * v.secondary_hysteresis * v.secondary_ky * d_rate
+                    - f / v.secondary_hysteresis_time;
                 fy -= f;
             }
-            let dz = (x[CAR + Z] - lever * x[CAR + 3] + v.bending_shape * state.bending[0]) - x[b + Z];
-            let dz_rate = (u[CAR + Z] - lever * u[CAR + 3] + v.bending_shape * state.bending[1]) - u[b + Z];
+            let dz =
+                (x[CAR + Z] - lever * x[CAR + 3] + v.bending_shape * state.bending[0]) - x[b + Z];
+            let dz_rate =
+                (u[CAR + Z] - lever * u[CAR + 3] + v.bending_shape * state.bending[1]) - u[b + Z];
             let fz = -2.0 * v.secondary_kz * dz - 2.0 * cz * dz_rate;
             let dr = x[CAR + PHI] - x[b + PHI] - offset.phi;
             let dr_rate = u[CAR + PHI] - u[b + PHI];
             let roll_lever = 2.0 * v.secondary_half_spacing * v.secondary_half_spacing;
-            let mr = -roll_lever * (v.secondary_kz * dr + cz * dr_rate) - v.anti_roll_stiffness * v.anti_roll_scale * dr;
+            let mr = -roll_lever * (v.secondary_kz * dr + cz * dr_rate)
+                - v.anti_roll_stiffness * v.anti_roll_scale * dr;
             let dpsi = x[CAR + PSI] - x[b + PSI] - offset.theta;
-            let dpsi_rate = u[CAR + PSI] - u[b + PSI] + self.speed * (input.car.kappa - input.bogie[i].kappa);
+            let dpsi_rate =
+                u[CAR + PSI] - u[b + PSI] + self.speed * (input.car.kappa - input.bogie[i].kappa);
             let mut mz = -roll_lever * v.secondary_kx * dpsi;
             if self.has.yaw_damper {
                 let f = state.yaw_damper[i];
@@ -316,7 +336,8 @@ impl<'a> Equations<'a> {
             }
             if self.has.centre_friction {
                 let t = state.centre_friction[i];
-                rates.centre_friction[i] = slip_element(t, dpsi_rate, v.centre_friction_torque, v.centre_friction_angle);
+                rates.centre_friction[i] =
+                    slip_element(t, dpsi_rate, v.centre_friction_torque, v.centre_friction_angle);
                 mz -= t;
             }
             bending += fz;
@@ -333,13 +354,20 @@ impl<'a> Equations<'a> {
         if self.has.bending {
             let (q, q_rate, omega) = (state.bending[0], state.bending[1], self.bending_omega);
             rates.bending[0] = q_rate;
-            rates.bending[1] = v.bending_shape * bending / v.bending_mass - omega * (2.0 * v.bending_damping * q_rate + omega * q);
+            rates.bending[1] = v.bending_shape * bending / v.bending_mass
+                - omega * (2.0 * v.bending_damping * q_rate + omega * q);
         }
     }
 
     /// Between bogie frames and wheelsets; two axle boxes per wheelset.
     #[inline(always)]
-    fn primary(&self, state: &State, input: &Input, load: &mut [f64; State::BODIES], rates: &mut State) {
+    fn primary(
+        &self,
+        state: &State,
+        input: &Input,
+        load: &mut [f64; State::BODIES],
+        rates: &mut State,
+    ) {
         let v = self.vehicle;
         let (x, u) = (&state.x, &state.v);
         let hbw = v.bogie_cog_height - v.wheel_radius;
@@ -349,24 +377,38 @@ impl<'a> Equations<'a> {
             let b = BOGIE + 5 * (j / 2);
             let lever = lever(j) * v.half_wheelbase;
             let offset = &input.wheelset_offset[j];
-            let (y, z, phi, psi) = (WHEELSET.y + j, WHEELSET.z + j, WHEELSET.phi + j, WHEELSET.psi + j);
-            let l = (x[y] + offset.e + v.wheel_radius * offset.phi) - (x[b] + lever * x[b + PSI] - hbw * x[b + PHI]);
+            let (y, z, phi, psi) =
+                (WHEELSET.y + j, WHEELSET.z + j, WHEELSET.phi + j, WHEELSET.psi + j);
+            let l = (x[y] + offset.e + v.wheel_radius * offset.phi)
+                - (x[b] + lever * x[b + PSI] - hbw * x[b + PHI]);
             let l_rate = u[y] - (u[b] + lever * u[b + PSI] - hbw * u[b + PHI]);
             let mut fl = -2.0 * (v.primary_ky * l + v.primary_cy * l_rate);
             if self.has.friction_y {
                 let f = state.friction_y[j];
-                rates.friction_y[j] = slip_element(f, l_rate, v.primary_friction_y, v.primary_friction_displacement);
+                rates.friction_y[j] =
+                    slip_element(f, l_rate, v.primary_friction_y, v.primary_friction_displacement);
                 fl -= 2.0 * f;
             }
-            let tz = -2.0 * b1 * b1 * (kx * (x[psi] + offset.theta - x[b + PSI]) + v.primary_cx * (u[psi] - u[b + PSI]));
+            let tz = -2.0
+                * b1
+                * b1
+                * (kx * (x[psi] + offset.theta - x[b + PSI])
+                    + v.primary_cx * (u[psi] - u[b + PSI]));
             let (mut sum, mut moment) = (0.0, 0.0);
             for (side, k) in [(0, 1.0), (1, -1.0)] {
-                let n = (x[z] + k * b1 * (x[phi] + offset.phi)) - (x[b + Z] - lever * x[b + 3] + k * b1 * x[b + PHI]);
-                let n_rate = (u[z] + k * b1 * u[phi]) - (u[b + Z] - lever * u[b + 3] + k * b1 * u[b + PHI]);
+                let n = (x[z] + k * b1 * (x[phi] + offset.phi))
+                    - (x[b + Z] - lever * x[b + 3] + k * b1 * x[b + PHI]);
+                let n_rate =
+                    (u[z] + k * b1 * u[phi]) - (u[b + Z] - lever * u[b + 3] + k * b1 * u[b + PHI]);
                 let mut f = -v.primary_kz * n - v.primary_cz * n_rate;
                 if self.has.friction_z {
                     let dry = state.friction_z[2 * j + side];
-                    rates.friction_z[2 * j + side] = slip_element(dry, n_rate, v.primary_friction_z, v.primary_friction_displacement);
+                    rates.friction_z[2 * j + side] = slip_element(
+                        dry,
+                        n_rate,
+                        v.primary_friction_z,
+                        v.primary_friction_displacement,
+                    );
                     f -= dry;
                 }
                 sum += f;
@@ -386,7 +428,13 @@ impl<'a> Equations<'a> {
 
     /// Between wheels and rails.
     #[inline(always)]
-    fn wheel_rail(&self, state: &State, input: &Input, load: &mut [f64; State::BODIES], rates: &mut State) -> OnRails {
+    fn wheel_rail(
+        &self,
+        state: &State,
+        input: &Input,
+        load: &mut [f64; State::BODIES],
+        rates: &mut State,
+    ) -> OnRails {
         let v = self.vehicle;
         let (x, u) = (&state.x, &state.v);
         let (b0, r0) = (v.half_contact_spacing, v.wheel_radius);
@@ -414,14 +462,17 @@ impl<'a> Equations<'a> {
             let k = [1.0, -1.0][side];
             for j in 0..4 {
                 let i = 4 * side + j;
-                let (y, z, phi, psi) = (WHEELSET.y + j, WHEELSET.z + j, WHEELSET.phi + j, WHEELSET.psi + j);
+                let (y, z, phi, psi) =
+                    (WHEELSET.y + j, WHEELSET.z + j, WHEELSET.phi + j, WHEELSET.psi + j);
                 let track = &input.irregularity[j];
                 let delta = x[z] + k * b0 * x[phi] - track.height[side] + input.roundness[0][i];
-                let delta_rate = u[z] + k * b0 * u[phi] - self.speed * track.slope[side] + input.roundness[1][i];
-                motion.vertical_force[i] = (self.q0 + v.contact_kc * delta + v.contact_cc * delta_rate).max(0.0);
+                let delta_rate =
+                    u[z] + k * b0 * u[phi] - self.speed * track.slope[side] + input.roundness[1][i];
+                motion.vertical_force[i] =
+                    (self.q0 + v.contact_kc * delta + v.contact_cc * delta_rate).max(0.0);
                 let yaw_rate = u[psi] * per_speed;
-                motion.longitudinal_creepage[i] =
-                    -k * b0 * (input.wheelset[j].kappa + yaw_rate) - (rho[i] + state.spin[j] * r0 * r0 * per_speed) * per_radius;
+                motion.longitudinal_creepage[i] = -k * b0 * (input.wheelset[j].kappa + yaw_rate)
+                    - (rho[i] + state.spin[j] * r0 * r0 * per_speed) * per_radius;
                 motion.lateral_slip[i] = k * ((u[y] - r0 * u[phi]) * per_speed - x[psi]);
                 motion.yaw_spin[i] = k * yaw_rate;
                 motion.towards_flange[i] = k * displacement[i];
@@ -435,9 +486,11 @@ impl<'a> Equations<'a> {
             let shifted = x[WHEELSET.y + j] - input.irregularity[j].alignment;
             load[WHEELSET.y + j] += sideways;
             load[WHEELSET.z + j] -= q[right] + q[left] - 2.0 * self.q0;
-            load[WHEELSET.phi + j] += shifted * (q[right] + q[left]) - b0 * (q[right] - q[left]) - r0 * sideways;
+            load[WHEELSET.phi + j] +=
+                shifted * (q[right] + q[left]) - b0 * (q[right] - q[left]) - r0 * sideways;
             load[WHEELSET.psi + j] -= b0 * (forces.longitudinal[right] - forces.longitudinal[left]);
-            rates.spin[j] = -r0 * (forces.longitudinal[right] + forces.longitudinal[left]) / v.wheelset_inertia_spin;
+            rates.spin[j] = -r0 * (forces.longitudinal[right] + forces.longitudinal[left])
+                / v.wheelset_inertia_spin;
         }
         OnRails { forces, vertical: motion.vertical_force, displacement }
     }
@@ -450,7 +503,13 @@ impl<'a> Equations<'a> {
     }
 
     #[inline(always)]
-    pub(super) fn outputs(&self, state: &State, input: &Input, rates: &State, wheels: &OnRails) -> Outputs {
+    pub(super) fn outputs(
+        &self,
+        state: &State,
+        input: &Input,
+        rates: &State,
+        wheels: &OnRails,
+    ) -> Outputs {
         let v = self.vehicle;
         let (x, a) = (&state.x, &rates.v);
         let vv = self.speed * self.speed;
@@ -473,7 +532,8 @@ impl<'a> Equations<'a> {
             let line = &input.bogie[i];
             outputs.ay[i] = a[CAR] + lever * a[CAR + PSI] - height * a[CAR + PHI] + field;
             outputs.az[i] = a[CAR + Z] - lever * a[CAR + 3] + v.bending_shape * rates.bending[1];
-            outputs.ayb[i] = a[b] + sign * v.half_wheelbase * a[b + PSI] + vv * line.kappa - G * (line.cant + x[b + PHI]);
+            outputs.ayb[i] = a[b] + sign * v.half_wheelbase * a[b + PSI] + vv * line.kappa
+                - G * (line.cant + x[b + PHI]);
         }
         outputs
     }
@@ -485,7 +545,8 @@ fn lever(j: usize) -> f64 {
     [1.0, -1.0, 1.0, -1.0][j]
 }
 
-/// Rate of the force in an elastic slip element: a spring of `bound / elastic` that yields smoothly at `bound`.
+/// Rate of the force in an elastic slip element: a spring of `bound / elastic` that yields smoothly
+/// at `bound`.
 #[inline(always)]
 fn slip_element(force: f64, rate: f64, bound: f64, elastic: f64) -> f64 {
     let loading = if force * rate > 0.0 { (force / bound).powi(SHARPNESS) } else { 0.0 };

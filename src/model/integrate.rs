@@ -1,7 +1,9 @@
-//! Time integration with a fixed step: the classical Runge-Kutta method of fourth order, or the midpoint method.
+//! Time integration with a fixed step: the classical Runge-Kutta method of fourth order, or the
+//! midpoint method.
 //!
-//! Explicit, since at a step of 1 ms only the spin of the wheelsets at low speed is stiff, for which the step is divided.
-//! Source: E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed. (1993), II.1.
+//! Explicit, since at a step of 1 ms only the spin of the wheelsets at low speed is stiff, for
+//! which the step is divided. Source: E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary
+//! Differential Equations I", 2nd ed. (1993), II.1.
 
 use super::equations::{Equations, Hints, Input, Outputs};
 use super::state::State;
@@ -9,11 +11,11 @@ use super::track::Track;
 
 /// Step in s, and sampling interval.
 pub const SAMPLE: f64 = 1e-3;
-/// Largest rate of any state of a vehicle at rest, in SI units, due to rounding. In the seconds before the track it causes less than a
-/// nanometre.
+/// Largest rate of any state of a vehicle at rest, in SI units, due to rounding. In the seconds
+/// before the track it causes less than a nanometre.
 const AT_REST: f64 = 1e-10;
-/// Maximum number of steps per sample. The reference vehicles need about ten at 1 m/s; a run with the maximum takes a hundred times as
-/// long.
+/// Maximum number of steps per sample. The reference vehicles need about ten at 1 m/s; a run with
+/// the maximum takes a hundred times as long.
 pub const MOST_STEPS: f64 = 1000.0;
 /// Longest run in s: about 54 km at 30 m/s. Its channels take 317 MB.
 pub const LONGEST: f64 = 1800.0;
@@ -31,7 +33,8 @@ pub enum Method {
 }
 
 impl Method {
-    /// Largest product of step and fastest rate: 88 % of the stability limit of the method, which is 2.78 or 2.
+    /// Largest product of step and fastest rate: 88 % of the stability limit of the method, which
+    /// is 2.78 or 2.
     fn stable(self) -> f64 {
         match self {
             Self::RungeKutta => 2.45,
@@ -75,9 +78,11 @@ pub struct Failure {
 pub enum FailureKind {
     /// A state is not finite.
     Diverged,
-    /// A wheelset (1 to 4) was beyond the contact table for too long, or too far beyond it; displacement in m.
+    /// A wheelset (1 to 4) was beyond the contact table for too long, or too far beyond it;
+    /// displacement in m.
     Derailed { wheelset: usize, displacement: f64 },
-    /// The vehicle is too stiff for its masses: 1 ms would have to be divided into this number of steps.
+    /// The vehicle is too stiff for its masses: 1 ms would have to be divided into this number of
+    /// steps.
     TooStiff { steps: f64 },
     /// The run would take this time in s.
     TooLong { seconds: f64 },
@@ -89,7 +94,10 @@ impl std::fmt::Display for Failure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (time, distance) = (self.time, self.distance);
         match self.kind {
-            FailureKind::Diverged => write!(f, "the motion grew without bound {time:.3} s after the start, at {distance:.1} m"),
+            FailureKind::Diverged => write!(
+                f,
+                "the motion grew without bound {time:.3} s after the start, at {distance:.1} m"
+            ),
             FailureKind::Derailed { wheelset, displacement } => write!(
                 f,
                 "wheelset {wheelset} left the contact table {time:.3} s after the start, at {distance:.1} m: displaced by {:.1} mm",
@@ -100,16 +108,22 @@ impl std::fmt::Display for Failure {
                 "a millisecond would have to be divided into {steps:.0e} steps, more than {MOST_STEPS:.0}: check masses, inertias and stiffnesses"
             ),
             FailureKind::TooLong { seconds } => {
-                write!(f, "the run would last {seconds:.0} s, longer than {LONGEST:.0} s: check the length of the track and the speed")
+                write!(
+                    f,
+                    "the run would last {seconds:.0} s, longer than {LONGEST:.0} s: check the length of the track and the speed"
+                )
             }
-            FailureKind::TooEarly { by } => write!(f, "the record would begin {by:.1} m before the run does"),
+            FailureKind::TooEarly { by } => {
+                write!(f, "the record would begin {by:.1} m before the run does")
+            }
         }
     }
 }
 
 impl std::error::Error for Failure {}
 
-/// Integrates from `state` at distance `from` for `samples` samples, and calls `sample` with each and its number.
+/// Integrates from `state` at distance `from` for `samples` samples, and calls `sample` with each
+/// and its number.
 ///
 /// # Errors
 /// The run diverges, or a wheelset leaves the contact table.
@@ -126,10 +140,26 @@ pub fn run(
     // The widest vector instructions of the processor. They change the time, but not the result.
     let arch = pulp::Arch::new();
     match method {
-        Method::RungeKutta => {
-            arch.dispatch(Run::<_, 4> { equations, track, state, from, samples, per_sample, stages: RUNGE_KUTTA, sample })
-        }
-        Method::Midpoint => arch.dispatch(Run::<_, 2> { equations, track, state, from, samples, per_sample, stages: MIDPOINT, sample }),
+        Method::RungeKutta => arch.dispatch(Run::<_, 4> {
+            equations,
+            track,
+            state,
+            from,
+            samples,
+            per_sample,
+            stages: RUNGE_KUTTA,
+            sample,
+        }),
+        Method::Midpoint => arch.dispatch(Run::<_, 2> {
+            equations,
+            track,
+            state,
+            from,
+            samples,
+            per_sample,
+            stages: MIDPOINT,
+            sample,
+        }),
     }
 }
 
@@ -144,11 +174,13 @@ struct Run<'a, F, const N: usize> {
     sample: F,
 }
 
-/// Where the rates of a stage are taken: 0 at the beginning, 1 in the middle, 2 at the end of the step. Then the part of the step to the
-/// state of the next stage, and the weight of the rates in the step.
+/// Where the rates of a stage are taken: 0 at the beginning, 1 in the middle, 2 at the end of the
+/// step. Then the part of the step to the state of the next stage, and the weight of the rates in
+/// the step.
 type Stage = (usize, f64, f64);
 
-const RUNGE_KUTTA: [Stage; 4] = [(0, 0.5, 1.0 / 6.0), (1, 0.5, 1.0 / 3.0), (1, 1.0, 1.0 / 3.0), (2, 0.0, 1.0 / 6.0)];
+const RUNGE_KUTTA: [Stage; 4] =
+    [(0, 0.5, 1.0 / 6.0), (1, 0.5, 1.0 / 3.0), (1, 1.0, 1.0 / 3.0), (2, 0.0, 1.0 / 6.0)];
 const MIDPOINT: [Stage; 2] = [(0, 0.5, 0.0), (1, 0.0, 1.0)];
 
 impl<F: FnMut(usize, &State, &Outputs), const N: usize> pulp::NullaryFnOnce for Run<'_, F, N> {
@@ -164,17 +196,29 @@ impl<F: FnMut(usize, &State, &Outputs), const N: usize> pulp::NullaryFnOnce for 
         let mut beyond = 0;
         let mut hints = Hints::default();
         let mut rates = State::default();
-        // At the beginning, in the middle and at the end of the step; the end is the beginning of the next one.
-        let mut inputs = [equations.input(track, self.from, &mut hints), Input::default(), Input::default()];
+        // At the beginning, in the middle and at the end of the step; the end is the beginning of
+        // the next one.
+        let mut inputs =
+            [equations.input(track, self.from, &mut hints), Input::default(), Input::default()];
         let (mut begin, mut end) = (0, 2);
         let still = self.still(&inputs[0]);
         if still > 0 {
-            equations.look(track, self.from + speed * (still as f64 * SAMPLE), &mut hints, &mut inputs[begin]);
+            equations.look(
+                track,
+                self.from + speed * (still as f64 * SAMPLE),
+                &mut hints,
+                &mut inputs[begin],
+            );
         }
         for n in still..self.samples {
             for part in 0..self.per_sample {
                 let t = n as f64 * SAMPLE + part as f64 * step;
-                equations.look(track, self.from + speed * (t + 0.5 * step), &mut hints, &mut inputs[1]);
+                equations.look(
+                    track,
+                    self.from + speed * (t + 0.5 * step),
+                    &mut hints,
+                    &mut inputs[1],
+                );
                 equations.look(track, self.from + speed * (t + step), &mut hints, &mut inputs[end]);
                 let (start, mut probe) = (self.state, self.state);
                 for (stage, (at, next, weight)) in self.stages.into_iter().enumerate() {
@@ -185,12 +229,16 @@ impl<F: FnMut(usize, &State, &Outputs), const N: usize> pulp::NullaryFnOnce for 
                         (self.sample)(n, &start, &outputs);
                         let (displacement, wheelset) = outputs.widest;
                         beyond = if displacement > most { beyond + 1 } else { 0 };
-                        let failure = |kind| Failure { time: t, distance: self.from + speed * t, kind };
+                        let failure =
+                            |kind| Failure { time: t, distance: self.from + speed * t, kind };
                         if !start.is_finite() {
                             return Err(failure(FailureKind::Diverged));
                         }
                         if displacement > 2.0 * most || f64::from(beyond) * SAMPLE > BEYOND {
-                            return Err(failure(FailureKind::Derailed { wheelset: wheelset + 1, displacement }));
+                            return Err(failure(FailureKind::Derailed {
+                                wheelset: wheelset + 1,
+                                displacement,
+                            }));
                         }
                     }
                     self.state.add(weight * step, &rates);
@@ -208,11 +256,15 @@ impl<F: FnMut(usize, &State, &Outputs), const N: usize> Run<'_, F, N> {
     fn still(&mut self, input: &Input) -> usize {
         let mut rates = State::default();
         let outputs = self.equations.rates(&self.state, input, &mut rates);
-        if rates.largest() > AT_REST || self.state.v != [0.0; State::BODIES] || self.equations.vehicle.roundness_amplitude > 0.0 {
+        if rates.largest() > AT_REST
+            || self.state.v != [0.0; State::BODIES]
+            || self.equations.vehicle.roundness_amplitude > 0.0
+        {
             return 0;
         }
         let free = self.track.start() - self.equations.wheelset_position(self.from, 0);
-        let still = ((free / (self.equations.speed * SAMPLE)).floor().max(0.0) as usize).min(self.samples);
+        let still =
+            ((free / (self.equations.speed * SAMPLE)).floor().max(0.0) as usize).min(self.samples);
         for n in 0..still {
             (self.sample)(n, &self.state, &outputs);
         }

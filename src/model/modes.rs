@@ -1,8 +1,9 @@
 //! Small motions about a state: linearisation by central differences, eigenvalues and mode shapes.
 //!
-//! The track is straight, level and even, so that the equations do not depend on time: x' = A x near a state of rest. The eigenvalues of
-//! A give frequency and damping of each mode. The speed at which the first real part becomes positive is the linear critical speed
-//! (A. H. Wickens, Fundamentals of Rail Vehicle Dynamics, 2003, chapter 5).
+//! The track is straight, level and even, so that the equations do not depend on time: x' = A x
+//! near a state of rest. The eigenvalues of A give frequency and damping of each mode. The speed at
+//! which the first real part becomes positive is the linear critical speed (A. H. Wickens,
+//! Fundamentals of Rail Vehicle Dynamics, 2003, chapter 5).
 
 use nalgebra::linalg::{Schur, balancing};
 use nalgebra::{Complex, DMatrix, DVector};
@@ -10,11 +11,13 @@ use nalgebra::{Complex, DMatrix, DVector};
 use super::equations::{Equations, Input};
 use super::state::State;
 
-/// Iterations of the inverse iteration for a mode shape; each reduces all other modes by many orders of magnitude.
+/// Iterations of the inverse iteration for a mode shape; each reduces all other modes by many
+/// orders of magnitude.
 const PASSES: usize = 4;
 /// Maximum number of iterations of the QR method.
 const ITERATIONS: usize = 5_000;
-/// Relative tolerances of the QR method; the next is tried if it does not converge, as with multiple eigenvalues of equal wheelsets.
+/// Relative tolerances of the QR method; the next is tried if it does not converge, as with
+/// multiple eigenvalues of equal wheelsets.
 const PRECISIONS: [f64; 4] = [f64::EPSILON, 1e-15, 1e-14, 1e-13];
 /// Relative shift from the eigenvalue in the inverse iteration.
 const BESIDE: f64 = 1e-7;
@@ -56,8 +59,9 @@ impl Mode {
 }
 
 impl Linear {
-    /// The matrix about `state` by central differences of `step` (m, rad, m/s, rad/s); first-order forces and torques are changed by `step`
-    /// times 1e6. A step well below the point distance of the contact table (e.g. a micrometre) gives the slopes of the table at the state.
+    /// The matrix about `state` by central differences of `step` (m, rad, m/s, rad/s); first-order
+    /// forces and torques are changed by `step` times 1e6. A step well below the point distance of
+    /// the contact table (e.g. a micrometre) gives the slopes of the table at the state.
     #[must_use]
     pub fn about(equations: &Equations<'_>, state: &State, step: f64) -> Self {
         let at = state.to_vec();
@@ -80,17 +84,28 @@ impl Linear {
         Self { matrix, places }
     }
 
-    /// All modes in decreasing order of growth; a conjugate pair is one mode. QR method on the balanced matrix; `None` if it does not
-    /// converge.
+    /// All modes in decreasing order of growth; a conjugate pair is one mode. QR method on the
+    /// balanced matrix; `None` if it does not converge.
     #[must_use]
     pub fn modes(&self) -> Option<Vec<Mode>> {
         let mut balanced = self.matrix.clone();
         // Forces and displacements differ by ten orders of magnitude: rows and columns are scaled.
         balancing::balance_parlett_reinsch(&mut balanced);
-        let schur = PRECISIONS.iter().find_map(|precision| Schur::try_new(balanced.clone(), *precision, ITERATIONS));
+        let schur = PRECISIONS
+            .iter()
+            .find_map(|precision| Schur::try_new(balanced.clone(), *precision, ITERATIONS));
         let eigenvalues = schur?.complex_eigenvalues();
-        let mut modes: Vec<Mode> = eigenvalues.iter().filter(|value| value.im >= 0.0).map(|value| Mode { eigenvalue: *value }).collect();
-        modes.sort_by(|a, b| b.eigenvalue.re.total_cmp(&a.eigenvalue.re).then(a.eigenvalue.im.total_cmp(&b.eigenvalue.im)));
+        let mut modes: Vec<Mode> = eigenvalues
+            .iter()
+            .filter(|value| value.im >= 0.0)
+            .map(|value| Mode { eigenvalue: *value })
+            .collect();
+        modes.sort_by(|a, b| {
+            b.eigenvalue
+                .re
+                .total_cmp(&a.eigenvalue.re)
+                .then(a.eigenvalue.im.total_cmp(&b.eigenvalue.im))
+        });
         Some(modes)
     }
 
@@ -100,8 +115,9 @@ impl Linear {
         self.modes()?.into_iter().next()
     }
 
-    /// The shape of a mode over [`State::to_vec`], normalised to a largest displacement of 1; entries not in use are 0. Inverse iteration
-    /// (Wilkinson); `None` if the system near the eigenvalue has no solution.
+    /// The shape of a mode over [`State::to_vec`], normalised to a largest displacement of 1;
+    /// entries not in use are 0. Inverse iteration (Wilkinson); `None` if the system near the
+    /// eigenvalue has no solution.
     #[must_use]
     pub fn shape(&self, mode: &Mode) -> Option<Vec<Complex<f64>>> {
         let n = self.places.len();
@@ -114,8 +130,10 @@ impl Linear {
             let length = shape.norm();
             shape /= Complex::from(length);
         }
-        let displacements = shape.iter().zip(&self.places).filter(|(_, place)| **place < State::BODIES);
-        let largest = displacements.map(|(value, _)| *value).max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
+        let displacements =
+            shape.iter().zip(&self.places).filter(|(_, place)| **place < State::BODIES);
+        let largest =
+            displacements.map(|(value, _)| *value).max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
         let mut all = vec![Complex::from(0.0); State::ALL];
         for (value, place) in shape.iter().zip(&self.places) {
             all[*place] = value / largest;
@@ -124,11 +142,17 @@ impl Linear {
     }
 }
 
-/// The speed in m/s, to 0.01 m/s, at which small motions about rest begin to grow, between two speeds.
+/// The speed in m/s, to 0.01 m/s, at which small motions about rest begin to grow, between two
+/// speeds.
 ///
-/// `equations` gives the vehicle at a speed; one change of sign between the speeds is assumed. `None` if the motion is not damped at the
-/// lower speed, does not grow at the higher speed, or the eigenvalues are not found.
-pub fn critical_speed<'a>(equations: impl Fn(f64) -> Equations<'a>, mut stable: f64, mut unstable: f64) -> Option<f64> {
+/// `equations` gives the vehicle at a speed; one change of sign between the speeds is assumed.
+/// `None` if the motion is not damped at the lower speed, does not grow at the higher speed, or the
+/// eigenvalues are not found.
+pub fn critical_speed<'a>(
+    equations: impl Fn(f64) -> Equations<'a>,
+    mut stable: f64,
+    mut unstable: f64,
+) -> Option<f64> {
     let grows = |speed: f64| {
         let equations = equations(speed);
         let rest = equations.at_rest();

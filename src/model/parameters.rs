@@ -1,6 +1,8 @@
-//! The parameters of the vehicle model: one table of key, unit, admissible values, neutral value and meaning.
+//! The parameters of the vehicle model: one table of key, unit, admissible values, neutral value
+//! and meaning.
 
-/// Admissible values of a parameter. The plausible range is narrower and is given by catalogues of effects.
+/// Admissible values of a parameter. The plausible range is narrower and is given by catalogues of
+/// effects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Admissible {
     Any,
@@ -57,7 +59,8 @@ pub struct Parameter {
 
 macro_rules! parameters {
     ($($field:ident $key:literal [$unit:literal] $admissible:ident $(= $neutral:literal)?, $meaning:literal;)*) => {
-        /// A vehicle: all parameters of the model, in SI units unless its entry in [`PARAMETERS`] states otherwise.
+        /// A vehicle: all parameters of the model, in SI units unless its entry in [`PARAMETERS`]
+        /// states otherwise.
         #[derive(Clone, Debug, Default, PartialEq)]
         pub struct Vehicle {
             $(#[doc = $meaning] pub $field: f64,)*
@@ -184,7 +187,9 @@ impl Vehicle {
         for parameter in PARAMETERS {
             match value(parameter.key).or(parameter.neutral) {
                 None => faults.push(VehicleFault::Missing(parameter)),
-                Some(value) if !parameter.admissible.holds(value) => faults.push(VehicleFault::Inadmissible(parameter, value)),
+                Some(value) if !parameter.admissible.holds(value) => {
+                    faults.push(VehicleFault::Inadmissible(parameter, value))
+                }
                 Some(value) => *(parameter.field)(&mut vehicle) = value,
             }
         }

@@ -2,7 +2,8 @@
 
 use super::parameters::Vehicle;
 
-/// A table over the lateral displacement, strictly increasing. Lengths in mm, angles in rad; sides right, left.
+/// A table over the lateral displacement, strictly increasing. Lengths in mm, angles in rad; sides
+/// right, left.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProfileTable {
     /// Displacement of the wheelset relative to the track, positive to the right.
@@ -28,8 +29,8 @@ pub struct Profile {
 }
 
 impl Profile {
-    /// The profile with the vehicle's wear and conicity; `None` if it is worn and there is no worn table, or if the two tables have
-    /// different displacements.
+    /// The profile with the vehicle's wear and conicity; `None` if it is worn and there is no worn
+    /// table, or if the two tables have different displacements.
     #[must_use]
     pub fn new(new: &ProfileTable, worn: Option<&ProfileTable>, vehicle: &Vehicle) -> Option<Self> {
         let share = vehicle.worn_share;
@@ -40,7 +41,9 @@ impl Profile {
         let blend = |a: f64, b: f64| (1.0 - share) * a + share * b;
         let side = |j: usize| {
             let at = |i: usize| Geometry {
-                rho: blend(new.radius_deviation[j][i], worn.radius_deviation[j][i]) * 1e-3 * vehicle.conicity_scale,
+                rho: blend(new.radius_deviation[j][i], worn.radius_deviation[j][i])
+                    * 1e-3
+                    * vehicle.conicity_scale,
                 gamma: blend(new.contact_angle[j][i], worn.contact_angle[j][i]),
             };
             (0..new.displacement.len()).map(at).collect::<Vec<_>>()
@@ -48,7 +51,8 @@ impl Profile {
         let displacement: Vec<f64> = new.displacement.iter().map(|mm| mm * 1e-3).collect();
         let points = displacement.len();
         let width = (displacement[points - 1] - displacement[0]) / (points - 1) as f64;
-        let even = displacement.windows(2).all(|pair| (pair[1] - pair[0] - width).abs() < 1e-9 * width);
+        let even =
+            displacement.windows(2).all(|pair| (pair[1] - pair[0] - width).abs() < 1e-9 * width);
         Some(Self { density: even.then_some(1.0 / width), table: [side(0), side(1)], displacement })
     }
 
@@ -71,11 +75,18 @@ impl Profile {
             }
             None => {
                 let i = self.displacement.partition_point(|d| *d <= delta).clamp(1, last + 1) - 1;
-                (i, (delta - self.displacement[i]) / (self.displacement[i + 1] - self.displacement[i]))
+                (
+                    i,
+                    (delta - self.displacement[i])
+                        / (self.displacement[i + 1] - self.displacement[i]),
+                )
             }
         };
         let share = share.clamp(0.0, 1.0);
         let (from, to) = (self.table[side][i], self.table[side][i + 1]);
-        Geometry { rho: from.rho + share * (to.rho - from.rho), gamma: from.gamma + share * (to.gamma - from.gamma) }
+        Geometry {
+            rho: from.rho + share * (to.rho - from.rho),
+            gamma: from.gamma + share * (to.gamma - from.gamma),
+        }
     }
 }

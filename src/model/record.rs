@@ -84,27 +84,42 @@ pub struct Setup<'a> {
 /// Simulates a record.
 ///
 /// # Errors
-/// The run diverges, a wheelset leaves the contact table, or the window lies before the start of the run.
+/// The run diverges, a wheelset leaves the contact table, or the window lies before the start of
+/// the run.
 pub fn simulate(setup: &Setup<'_>, window: Window) -> Result<Record, Failure> {
     simulate_by(setup, window, 1.into())
 }
 
-/// As [`simulate`], with a step of 1 ms / `divided` instead of the default, even if it is not stable.
+/// As [`simulate`], with a step of 1 ms / `divided` instead of the default, even if it is not
+/// stable.
 ///
 /// # Errors
 /// As [`simulate`].
-pub fn simulate_with(setup: &Setup<'_>, window: Window, divided: Option<usize>) -> Result<Record, Failure> {
+pub fn simulate_with(
+    setup: &Setup<'_>,
+    window: Window,
+    divided: Option<usize>,
+) -> Result<Record, Failure> {
     recorded(setup, window, |equations| {
-        divided.map_or_else(|| least_steps(Method::RungeKutta, equations).map(Steps::from), |n| Ok(n.into()))
+        divided.map_or_else(
+            || least_steps(Method::RungeKutta, equations).map(Steps::from),
+            |n| Ok(n.into()),
+        )
     })
 }
 
-/// As [`simulate`], by a method with at least this number of steps per sample, more if it would not be stable.
+/// As [`simulate`], by a method with at least this number of steps per sample, more if it would not
+/// be stable.
 ///
 /// # Errors
 /// As [`simulate`].
 pub fn simulate_by(setup: &Setup<'_>, window: Window, steps: Steps) -> Result<Record, Failure> {
-    recorded(setup, window, |equations| Ok(Steps { per_sample: steps.per_sample.max(least_steps(steps.method, equations)?), ..steps }))
+    recorded(setup, window, |equations| {
+        Ok(Steps {
+            per_sample: steps.per_sample.max(least_steps(steps.method, equations)?),
+            ..steps
+        })
+    })
 }
 
 fn recorded(
@@ -117,7 +132,11 @@ fn recorded(
     let s0 = start(&equations, &track);
     let at = |n: usize| s0 + setup.speed * (n as f64 * SAMPLE);
     if window.from < s0 {
-        return Err(Failure { time: 0.0, distance: s0, kind: FailureKind::TooEarly { by: s0 - window.from } });
+        return Err(Failure {
+            time: 0.0,
+            distance: s0,
+            kind: FailureKind::TooEarly { by: s0 - window.from },
+        });
     }
     let seconds = (window.to - s0) / setup.speed;
     if seconds > LONGEST {
@@ -136,18 +155,30 @@ fn recorded(
             channel[n] = value;
         }
     })?;
-    let filter = Filter::design(Band::LowPass(ANTI_ALIAS), ANTI_ALIAS_ORDER, 1.0 / SAMPLE, Phase::Zero, Cutoff::PerPass);
+    let filter = Filter::design(
+        Band::LowPass(ANTI_ALIAS),
+        ANTI_ALIAS_ORDER,
+        1.0 / SAMPLE,
+        Phase::Zero,
+        Cutoff::PerPass,
+    );
     let filter = filter.expect("the chain's constants make a filter");
     let signals: Vec<&[f64]> = raw.iter().map(Vec::as_slice).collect();
-    let smooth = filter.apply_many(&signals).expect("the run-in alone is long enough for the filter");
-    let kept = |signal: Vec<f64>| signal[first..=last].iter().step_by(DECIMATION).copied().collect();
-    Ok(Record { distance: (first..=last).step_by(DECIMATION).map(at).collect(), channels: smooth.into_iter().map(kept).collect() })
+    let smooth =
+        filter.apply_many(&signals).expect("the run-in alone is long enough for the filter");
+    let kept =
+        |signal: Vec<f64>| signal[first..=last].iter().step_by(DECIMATION).copied().collect();
+    Ok(Record {
+        distance: (first..=last).step_by(DECIMATION).map(at).collect(),
+        channels: smooth.into_iter().map(kept).collect(),
+    })
 }
 
 /// Start of the run: the trailing wheelset reaches the first point of the track after the run-in.
 #[must_use]
 pub fn start(equations: &Equations<'_>, track: &Track) -> f64 {
-    track.start() + equations.vehicle.half_bogie_spacing + equations.vehicle.half_wheelbase - RUN_IN * equations.speed
+    track.start() + equations.vehicle.half_bogie_spacing + equations.vehicle.half_wheelbase
+        - RUN_IN * equations.speed
 }
 
 fn first_at(from: f64, s0: f64, speed: f64) -> usize {

@@ -14,13 +14,15 @@ impl Spline {
     pub fn new(at: &[f64], values: Vec<f64>) -> Self {
         let n = at.len();
         let mut bends = vec![0.0; n];
-        // The tridiagonal system of the second derivatives (Press et al., Numerical Recipes, 3.3), natural ends.
+        // The tridiagonal system of the second derivatives (Press et al., Numerical Recipes, 3.3),
+        // natural ends.
         let mut right = vec![0.0; n];
         for i in 1..n.saturating_sub(1) {
             let share = (at[i] - at[i - 1]) / (at[i + 1] - at[i - 1]);
             let pivot = share * bends[i - 1] + 2.0;
             bends[i] = (share - 1.0) / pivot;
-            let slopes = (values[i + 1] - values[i]) / (at[i + 1] - at[i]) - (values[i] - values[i - 1]) / (at[i] - at[i - 1]);
+            let slopes = (values[i + 1] - values[i]) / (at[i + 1] - at[i])
+                - (values[i] - values[i - 1]) / (at[i] - at[i - 1]);
             right[i] = (6.0 * slopes / (at[i + 1] - at[i - 1]) - share * right[i - 1]) / pivot;
         }
         let mut next = 0.0;
@@ -31,7 +33,8 @@ impl Spline {
         Self { values, bends }
     }
 
-    /// Coefficients of the powers 0 to 3 of the distance from point `i`, in the interval of length `width` after it.
+    /// Coefficients of the powers 0 to 3 of the distance from point `i`, in the interval of length
+    /// `width` after it.
     #[must_use]
     pub fn cubic(&self, i: usize, width: f64) -> [f64; 4] {
         let (low, high) = (self.values[i], self.values[i + 1]);
@@ -53,8 +56,18 @@ mod tests {
         assert!((spline.bends[1] + 3.0).abs() < 1e-14);
         // s(x) = 1.5 x - 0.5 x^3, then mirrored.
         let [c0, c1, c2, c3] = spline.cubic(0, 1.0);
-        assert!(c0.abs() < 1e-14 && (c1 - 1.5).abs() < 1e-14 && c2.abs() < 1e-14 && (c3 + 0.5).abs() < 1e-14);
+        assert!(
+            c0.abs() < 1e-14
+                && (c1 - 1.5).abs() < 1e-14
+                && c2.abs() < 1e-14
+                && (c3 + 0.5).abs() < 1e-14
+        );
         let [c0, c1, c2, c3] = spline.cubic(1, 1.0);
-        assert!((c0 - 1.0).abs() < 1e-14 && c1.abs() < 1e-14 && (c2 + 1.5).abs() < 1e-14 && (c3 - 0.5).abs() < 1e-14);
+        assert!(
+            (c0 - 1.0).abs() < 1e-14
+                && c1.abs() < 1e-14
+                && (c2 + 1.5).abs() < 1e-14
+                && (c3 - 0.5).abs() < 1e-14
+        );
     }
 }

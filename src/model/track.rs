@@ -38,7 +38,8 @@ pub struct Track {
 /// Four cubic polynomials in the distance u within an interval: c0 + u (c1 + u (c2 + u c3)).
 #[derive(Clone, Copy, Debug, Default)]
 struct Piece {
-    /// Curvature, cant angle, heading (integral of the curvature), lateral position (integral of the heading).
+    /// Curvature, cant angle, heading (integral of the curvature), lateral position (integral of
+    /// the heading).
     line: [[f64; 4]; 4],
     /// Alignment, gauge, height of the right rail and of the left.
     uneven: [[f64; 4]; 4],
@@ -71,15 +72,22 @@ impl Track {
     #[must_use]
     pub fn new(table: &TrackTable, vehicle: &Vehicle) -> Self {
         let distance = table.distance.clone();
-        let curvature: Vec<f64> = table.curvature.iter().map(|kappa| kappa * vehicle.curvature_scale).collect();
+        let curvature: Vec<f64> =
+            table.curvature.iter().map(|kappa| kappa * vehicle.curvature_scale).collect();
         let sharpest = curvature.iter().fold(0.0_f64, |most, kappa| most.max(kappa.abs()));
-        let error = |kappa: f64| if sharpest > 0.0 { vehicle.cant_error * kappa / sharpest } else { 0.0 };
-        let angle = |i: usize| (table.cant[i] + error(curvature[i])) * 1e-3 / (2.0 * vehicle.half_contact_spacing);
+        let error =
+            |kappa: f64| if sharpest > 0.0 { vehicle.cant_error * kappa / sharpest } else { 0.0 };
+        let angle = |i: usize| {
+            (table.cant[i] + error(curvature[i])) * 1e-3 / (2.0 * vehicle.half_contact_spacing)
+        };
         let spline = |values: &[f64], function: u64| {
-            let mut uneven: Vec<f64> = values.iter().map(|value| value * 1e-3 * vehicle.irregularity_scale).collect();
+            let mut uneven: Vec<f64> =
+                values.iter().map(|value| value * 1e-3 * vehicle.irregularity_scale).collect();
             if vehicle.residual_irregularity > 0.0 {
                 let unseen = short_waves(&distance, function);
-                uneven.iter_mut().zip(unseen).for_each(|(value, unseen)| *value += vehicle.residual_irregularity * 1e-3 * unseen);
+                uneven.iter_mut().zip(unseen).for_each(|(value, unseen)| {
+                    *value += vehicle.residual_irregularity * 1e-3 * unseen
+                });
             }
             Spline::new(&distance, uneven)
         };
@@ -91,12 +99,18 @@ impl Track {
             let width = distance[i + 1] - distance[i];
             let (from, rise) = (curvature[i], (curvature[i + 1] - curvature[i]) / width);
             let (cant, cant_rise) = (angle(i), (angle(i + 1) - angle(i)) / width);
-            let line =
-                [[from, cant, theta, y], [rise, cant_rise, from, theta], [0.0, 0.0, 0.5 * rise, 0.5 * from], [0.0, 0.0, 0.0, rise / 6.0]];
+            let line = [
+                [from, cant, theta, y],
+                [rise, cant_rise, from, theta],
+                [0.0, 0.0, 0.5 * rise, 0.5 * from],
+                [0.0, 0.0, 0.0, rise / 6.0],
+            ];
             let (level, cross) = (level.cubic(i, width), cross_level.cubic(i, width));
             let (alignment, mut gauge) = (alignment.cubic(i, width), gauge.cubic(i, width));
             gauge[0] += vehicle.gauge_error * 1e-3;
-            let uneven = [0, 1, 2, 3].map(|n| [alignment[n], gauge[n], level[n] + 0.5 * cross[n], level[n] - 0.5 * cross[n]]);
+            let uneven = [0, 1, 2, 3].map(|n| {
+                [alignment[n], gauge[n], level[n] + 0.5 * cross[n], level[n] - 0.5 * cross[n]]
+            });
             pieces.push(Piece { line, uneven });
             y += width * (theta + width * (0.5 * from + width * rise / 6.0));
             theta += width * (from + 0.5 * width * rise);
@@ -140,7 +154,12 @@ impl Track {
         }
         if s >= self.end() {
             let (Line { kappa, cant, theta, y }, u) = (self.end, s - self.end());
-            return Line { kappa, cant, theta: theta + u * kappa, y: y + u * (theta + 0.5 * u * kappa) };
+            return Line {
+                kappa,
+                cant,
+                theta: theta + u * kappa,
+                y: y + u * (theta + 0.5 * u * kappa),
+            };
         }
         let i = self.interval(s, hint);
         let [kappa, cant, theta, y] = values(&self.pieces[i].line, s - self.distance[i]);
@@ -170,9 +189,12 @@ impl Track {
 /// Corner wavelength of the short waves in m; filtered twice with a first-order low-pass.
 const SHORT_WAVES: f64 = 0.6;
 
-/// A random function of the distance with standard deviation 1 and wavelengths of some metres and less; reproducible.
+/// A random function of the distance with standard deviation 1 and wavelengths of some metres and
+/// less; reproducible.
 fn short_waves(distance: &[f64], function: u64) -> Vec<f64> {
-    let mut random = fastrand::Rng::with_seed(function.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ distance.len() as u64);
+    let mut random = fastrand::Rng::with_seed(
+        function.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ distance.len() as u64,
+    );
     let mut state = [0.0; 2];
     let mut last = distance[0];
     let mut waves: Vec<f64> = distance
@@ -186,7 +208,9 @@ fn short_waves(distance: &[f64], function: u64) -> Vec<f64> {
             state[1]
         })
         .collect();
-    let rms = (waves.iter().map(|value| value * value).sum::<f64>() / waves.len() as f64).sqrt().max(1e-12);
+    let rms = (waves.iter().map(|value| value * value).sum::<f64>() / waves.len() as f64)
+        .sqrt()
+        .max(1e-12);
     waves.iter_mut().for_each(|value| *value /= rms);
     waves
 }

@@ -4,8 +4,9 @@ use super::records::{Pair, Roles};
 use super::windows::{Cut, piece, two_digits};
 use crate::diagnose::features::layout::{Spectrum, level};
 
-/// Bounds of the standard deviations: a level as a share of the rms value of its channel, a band as a logarithm, a gain, and a lag in
-/// samples. Below, an allowance would claim more than a record of this length can show; above, it would hide every effect.
+/// Bounds of the standard deviations: a level as a share of the rms value of its channel, a band as
+/// a logarithm, a gain, and a lag in samples. Below, an allowance would claim more than a record of
+/// this length can show; above, it would hide every effect.
 const LEVEL: (f64, f64) = (0.005, 0.1);
 const BAND: (f64, f64) = (0.03, 0.3);
 const GAIN: (f64, f64) = (0.01, 0.15);
@@ -14,7 +15,8 @@ const LAG: (f64, f64) = (0.25, 5.0);
 const FEWEST: usize = 3;
 /// Without that many: the geometric middle of the bounds.
 const NORMAL: f64 = 1.4826;
-/// Relative rms difference of two simulated records below which their runs are repeats of each other.
+/// Relative rms difference of two simulated records below which their runs are repeats of each
+/// other.
 const REPEAT: f64 = 0.01;
 
 /// One standard deviation of each kind of feature of a channel in one section.
@@ -45,20 +47,35 @@ pub fn allowances(pairs: &[Pair], roles: &Roles, cut: &Cut) -> (Vec<Allowance>, 
     let repeats = repeats(pairs, roles, cut);
     let mut counted = 0;
     let all = roles.outputs.iter().map(|name| {
-        let of: Vec<Option<Difference>> = (0..cut.windows.len()).map(|at| difference(pairs, cut, name, at)).collect();
-        let neighbours =
-            |at: &usize| cut.windows.get(at + 1).is_some_and(|next| next.pair == cut.windows[*at].pair).then_some((*at, at + 1));
-        let couples: Vec<(usize, usize)> =
-            if repeats.is_empty() { (0..cut.windows.len()).filter_map(|at| neighbours(&at)).collect() } else { repeats.clone() };
-        let both: Vec<(&Difference, &Difference)> = couples.iter().filter_map(|(a, b)| of[*a].as_ref().zip(of[*b].as_ref())).collect();
+        let of: Vec<Option<Difference>> =
+            (0..cut.windows.len()).map(|at| difference(pairs, cut, name, at)).collect();
+        let neighbours = |at: &usize| {
+            cut.windows
+                .get(at + 1)
+                .is_some_and(|next| next.pair == cut.windows[*at].pair)
+                .then_some((*at, at + 1))
+        };
+        let couples: Vec<(usize, usize)> = if repeats.is_empty() {
+            (0..cut.windows.len()).filter_map(|at| neighbours(&at)).collect()
+        } else {
+            repeats.clone()
+        };
+        let both: Vec<(&Difference, &Difference)> =
+            couples.iter().filter_map(|(a, b)| of[*a].as_ref().zip(of[*b].as_ref())).collect();
         counted = counted.max(both.len());
         let scatter = |of: &dyn Fn(&Difference) -> Vec<f64>| {
-            let off = both.iter().flat_map(|(a, b)| of(a).into_iter().zip(of(b)).map(|(a, b)| (a - b).abs()).collect::<Vec<_>>());
-            median(off.collect()).filter(|_| both.len() >= FEWEST).map(|median| NORMAL * median / std::f64::consts::SQRT_2)
+            let off = both.iter().flat_map(|(a, b)| {
+                of(a).into_iter().zip(of(b)).map(|(a, b)| (a - b).abs()).collect::<Vec<_>>()
+            });
+            median(off.collect())
+                .filter(|_| both.len() >= FEWEST)
+                .map(|median| NORMAL * median / std::f64::consts::SQRT_2)
         };
         let (rms, peak) = size(pairs, name);
         let bounded = |found: Option<f64>, (low, high): (f64, f64), scale: f64| {
-            let value = found.map_or((low * high).sqrt(), |found| (found / scale.max(f64::MIN_POSITIVE)).clamp(low, high));
+            let value = found.map_or((low * high).sqrt(), |found| {
+                (found / scale.max(f64::MIN_POSITIVE)).clamp(low, high)
+            });
             two_digits(value * scale)
         };
         Allowance {
@@ -73,9 +90,13 @@ pub fn allowances(pairs: &[Pair], roles: &Roles, cut: &Cut) -> (Vec<Allowance>, 
     });
     let all = all.collect();
     let from = match (counted >= FEWEST, repeats.is_empty()) {
-        (false, _) => "Too few sections for a scatter: the standard deviations are placeholders.".to_string(),
+        (false, _) => {
+            "Too few sections for a scatter: the standard deviations are placeholders.".to_string()
+        }
         (true, false) => format!("Standard deviations from {counted} repeated sections."),
-        (true, true) => format!("Standard deviations from the scatter of the differences of {counted} neighbouring sections."),
+        (true, true) => format!(
+            "Standard deviations from the scatter of the differences of {counted} neighbouring sections."
+        ),
     };
     (all, from)
 }
@@ -89,7 +110,10 @@ fn difference(pairs: &[Pair], cut: &Cut, name: &str, at: usize) -> Option<Differ
     simulated.values.truncate(count);
     measured.values.truncate(count);
     let (a, b) = (Spectrum::new(&simulated), Spectrum::new(&measured));
-    let band = |edges: &[f64]| 0.5 * (b.power(edges[0], edges[1]).max(1e-300) / a.power(edges[0], edges[1]).max(1e-300)).ln();
+    let band = |edges: &[f64]| {
+        0.5 * (b.power(edges[0], edges[1]).max(1e-300) / a.power(edges[0], edges[1]).max(1e-300))
+            .ln()
+    };
     let alike = (cut.edges[0], cut.edges[cut.edges.len() - 1]);
     let (gain, lag) = b.alike(&a, alike, (cut.furthest / cut.step.max(f64::MIN_POSITIVE)) as usize);
     Some(Difference {
@@ -104,13 +128,21 @@ fn difference(pairs: &[Pair], cut: &Cut, name: &str, at: usize) -> Option<Differ
 fn repeats(pairs: &[Pair], roles: &Roles, cut: &Cut) -> Vec<(usize, usize)> {
     let alike = |a: &Pair, b: &Pair| {
         roles.outputs.iter().all(|name| {
-            let (Some(a), Some(b)) = (a.simulated.channel(name), b.simulated.channel(name)) else { return false };
+            let (Some(a), Some(b)) = (a.simulated.channel(name), b.simulated.channel(name)) else {
+                return false;
+            };
             let off: f64 = a.values.iter().zip(&b.values).map(|(a, b)| (a - b).powi(2)).sum();
             let all: f64 = a.values.iter().map(|a| a * a).sum();
             a.values.len() == b.values.len() && off <= REPEAT * REPEAT * all
         })
     };
-    let of = |pair: usize| cut.windows.iter().enumerate().filter(move |(_, window)| window.pair == pair).map(|(at, _)| at);
+    let of = |pair: usize| {
+        cut.windows
+            .iter()
+            .enumerate()
+            .filter(move |(_, window)| window.pair == pair)
+            .map(|(at, _)| at)
+    };
     let mut found = Vec::new();
     for first in 0..pairs.len() {
         for second in first + 1..pairs.len() {
@@ -124,12 +156,21 @@ fn repeats(pairs: &[Pair], roles: &Roles, cut: &Cut) -> Vec<(usize, usize)> {
 
 /// Root mean square and largest absolute value of a measured channel.
 fn size(pairs: &[Pair], name: &str) -> (f64, f64) {
-    let values = || pairs.iter().filter_map(|pair| pair.measured.channel(name)).flat_map(|channel| channel.values.iter().copied());
+    let values = || {
+        pairs
+            .iter()
+            .filter_map(|pair| pair.measured.channel(name))
+            .flat_map(|channel| channel.values.iter().copied())
+    };
     let squares: f64 = values().map(|value| value * value).sum();
-    ((squares / values().count().max(1) as f64).sqrt(), values().fold(0.0, |peak: f64, value| peak.max(value.abs())))
+    (
+        (squares / values().count().max(1) as f64).sqrt(),
+        values().fold(0.0, |peak: f64, value| peak.max(value.abs())),
+    )
 }
 
-/// White noise of a channel: its power between the content and half the sampling rate, spread over the whole range.
+/// White noise of a channel: its power between the content and half the sampling rate, spread over
+/// the whole range.
 fn noise(pairs: &[Pair], name: &str, cut: &Cut) -> f64 {
     let of = |pair: &Pair| {
         let (from, to) = pair.common(false);

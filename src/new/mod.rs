@@ -1,4 +1,5 @@
-//! The first campaign of a machine, from pairs of simulated and measured records: campaign, protocol, catalogue, and a stub of a simulator.
+//! The first campaign of a machine, from pairs of simulated and measured records: campaign,
+//! protocol, catalogue, and a stub of a simulator.
 
 #![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
@@ -112,12 +113,19 @@ pub fn files(folder: &str, domain: &str, pairs: &[Pair]) -> Result<Made, Problem
     let (allowed, origin) = allowances(pairs, &roles, &cut);
     let scales = scales(pairs, &roles, &cut);
     let motion = motion(pairs, &roles, None);
-    let unit = |name: &str| pairs[0].measured.channel(name).map_or_else(Unit::one, |channel| channel.unit.clone());
-    let sizes: Vec<_> = allowed.iter().copied().zip(roles.outputs.iter().map(|name| unit(name))).collect();
+    let unit = |name: &str| {
+        pairs[0].measured.channel(name).map_or_else(Unit::one, |channel| channel.unit.clone())
+    };
+    let sizes: Vec<_> =
+        allowed.iter().copied().zip(roles.outputs.iter().map(|name| unit(name))).collect();
     let effects = entries(domain, &scales, &roles, &sizes, &cut)?;
     let mut names = Names::default();
-    let channels: Vec<Compared> =
-        roles.outputs.iter().zip(&sizes).map(|(name, (allowed, unit))| compared(name, allowed, unit, &mut names)).collect();
+    let channels: Vec<Compared> = roles
+        .outputs
+        .iter()
+        .zip(&sizes)
+        .map(|(name, (allowed, unit))| compared(name, allowed, unit, &mut names))
+        .collect();
     let (table, covariates) = sections(pairs, &cut, motion.as_ref(), &roles);
     let parameters: Vec<Parameter> = effects
         .iter()
@@ -131,10 +139,14 @@ pub fn files(folder: &str, domain: &str, pairs: &[Pair]) -> Result<Made, Problem
         .collect();
     let column = |name: &str, unit: &str| Column { name: name.into(), unit: unit.into() };
     let time = column(TIME, "s");
-    let (axis, time) = if cut.over_distance { (column(DISTANCE, "m"), Some(time)) } else { (time, None) };
-    let given =
-        [column(axis.name.as_str(), axis.unit.as_str())].into_iter().chain(time.as_ref().map(|time| column(&time.name, &time.unit)));
-    let inputs = given.chain(roles.inputs.iter().map(|name| Column { name: name.clone(), unit: unit(name).text })).collect();
+    let (axis, time) =
+        if cut.over_distance { (column(DISTANCE, "m"), Some(time)) } else { (time, None) };
+    let given = [column(axis.name.as_str(), axis.unit.as_str())]
+        .into_iter()
+        .chain(time.as_ref().map(|time| column(&time.name, &time.unit)));
+    let inputs = given
+        .chain(roles.inputs.iter().map(|name| Column { name: name.clone(), unit: unit(name).text }))
+        .collect();
     let highest = two_digits(cut.content.1).to_string();
     let parts = Parts {
         name: block_name(folder),
@@ -174,10 +186,18 @@ pub fn files(folder: &str, domain: &str, pairs: &[Pair]) -> Result<Made, Problem
 }
 
 fn canonical(text: &str) -> String {
-    syntax::print_text(&syntax::read_text(&Source::new(PROTOCOL_FILE, text), &mut Problems::default()))
+    syntax::print_text(&syntax::read_text(
+        &Source::new(PROTOCOL_FILE, text),
+        &mut Problems::default(),
+    ))
 }
 
-fn compared(name: &str, allowed: &allowances::Allowance, unit: &Unit, names: &mut Names) -> Compared {
+fn compared(
+    name: &str,
+    allowed: &allowances::Allowance,
+    unit: &Unit,
+    names: &mut Names,
+) -> Compared {
     let id = names.free(&identifier(name));
     Compared {
         name: name.into(),
@@ -207,19 +227,26 @@ fn section(at: usize) -> String {
 }
 
 /// The table of sections with mean speed and amplitude, and the names of these columns.
-fn sections(pairs: &[Pair], cut: &Cut, motion: Option<&Motion>, roles: &Roles) -> (String, Vec<String>) {
+fn sections(
+    pairs: &[Pair],
+    cut: &Cut,
+    motion: Option<&Motion>,
+    roles: &Roles,
+) -> (String, Vec<String>) {
     let axis = if cut.over_distance { "m" } else { "s" };
     let mut header: Vec<String> = ["section", "record"].iter().map(ToString::to_string).collect();
     header.extend([format!("start [{axis}]"), format!("end [{axis}]")]);
     let speed = motion.filter(|motion| motion.order < 2).map(|motion| {
-        let unit = if motion.order == 1 { motion.unit.text.clone() } else { format!("{}/s", motion.unit) };
+        let unit =
+            if motion.order == 1 { motion.unit.text.clone() } else { format!("{}/s", motion.unit) };
         (motion, unit)
     });
     let first = motion
         .map(|motion| motion.column.clone())
         .or_else(|| roles.inputs.iter().chain(&roles.outputs).next().cloned())
         .unwrap_or_default();
-    let unit = pairs[0].measured.channel(&first).map_or_else(Unit::one, |channel| channel.unit.clone());
+    let unit =
+        pairs[0].measured.channel(&first).map_or_else(Unit::one, |channel| channel.unit.clone());
     let mut covariates = vec!["amplitude".to_string()];
     if let Some((_, unit)) = &speed {
         header.push(format!("mean speed [{unit}]"));
@@ -230,11 +257,18 @@ fn sections(pairs: &[Pair], cut: &Cut, motion: Option<&Motion>, roles: &Roles) -
     for (at, window) in cut.windows.iter().enumerate() {
         let measured = &pairs[window.pair].measured;
         let of = |name: &str| piece(measured, name, cut.over_distance, window.start, window.end);
-        let mut row = vec![section(at), pairs[window.pair].name.clone(), window.start.to_string(), window.end.to_string()];
+        let mut row = vec![
+            section(at),
+            pairs[window.pair].name.clone(),
+            window.start.to_string(),
+            window.end.to_string(),
+        ];
         if let Some((motion, _)) = &speed {
             let mean = of(&motion.column).map_or(0.0, |piece| match motion.order {
                 1 => mean(piece.values.iter().map(|value| value.abs())),
-                _ => mean(piece.values.windows(2).map(|pair| (pair[1] - pair[0]).abs() * piece.rate)),
+                _ => {
+                    mean(piece.values.windows(2).map(|pair| (pair[1] - pair[0]).abs() * piece.rate))
+                }
             });
             row.push(three_digits(mean));
         }
@@ -263,9 +297,13 @@ fn records(pairs: &[Pair], cut: &Cut, roles: &Roles) -> Vec<File> {
     let mut files = Vec::new();
     for (at, window) in cut.windows.iter().enumerate() {
         let pair = &pairs[window.pair];
-        let of = |series: &Series, names: &[String]| text(series, names, cut.over_distance, (window.from, window.to));
-        files.push((format!("simulation/{}.csv", section(at)), of(&pair.simulated, &roles.outputs)));
-        files.push((format!("measurement/{}.csv", section(at)), of(&pair.measured, &roles.outputs)));
+        let of = |series: &Series, names: &[String]| {
+            text(series, names, cut.over_distance, (window.from, window.to))
+        };
+        files
+            .push((format!("simulation/{}.csv", section(at)), of(&pair.simulated, &roles.outputs)));
+        files
+            .push((format!("measurement/{}.csv", section(at)), of(&pair.measured, &roles.outputs)));
         files.push((format!("inputs/{}.csv", section(at)), of(&pair.measured, &roles.inputs)));
     }
     files
@@ -298,8 +336,14 @@ fn text(series: &Series, names: &[String], over_distance: bool, (from, to): (f64
 fn told(parts: &Parts, cut: &Cut, scales: &[scales::Scales]) -> Vec<String> {
     let names = |columns: Vec<&str>| columns.join(", ");
     let mut told = vec![
-        format!("compared: {}", names(parts.channels.iter().map(|channel| channel.name.as_str()).collect())),
-        format!("inputs of the simulator: {}", names(parts.inputs.iter().map(|column| column.name.as_str()).collect())),
+        format!(
+            "compared: {}",
+            names(parts.channels.iter().map(|channel| channel.name.as_str()).collect())
+        ),
+        format!(
+            "inputs of the simulator: {}",
+            names(parts.inputs.iter().map(|column| column.name.as_str()).collect())
+        ),
         format!("{} sections; bands {} Hz", cut.windows.len(), parts.bands),
         parts.origin.clone(),
     ];

@@ -9,7 +9,8 @@ use crate::units::{Dimension, Unit};
 
 pub const TIME: &str = "time";
 pub const DISTANCE: &str = "distance";
-/// Deviation of a time step from the median step, as a share, from which a record is resampled. `certify` refuses records beyond it.
+/// Deviation of a time step from the median step, as a share, from which a record is resampled.
+/// `certify` refuses records beyond it.
 const JITTER: f64 = 0.01;
 /// Time stamps may be rounded to this, in s.
 const ROUNDING: f64 = 1e-6;
@@ -17,7 +18,8 @@ const ROUNDING: f64 = 1e-6;
 const SAME_STEP: f64 = 1e-3;
 /// Fewest samples of a record.
 const FEWEST: usize = 64;
-/// Relative rms difference below which the simulation repeats a measured column: it is an input, not a result.
+/// Relative rms difference below which the simulation repeats a measured column: it is an input,
+/// not a result.
 const REPEATED: f64 = 1e-3;
 
 /// A column in its own unit.
@@ -76,9 +78,24 @@ impl Series {
 
     /// The same with other times, by linear interpolation.
     fn at(&self, time: Vec<f64>) -> Self {
-        let of = |values: &[f64]| interpolate(&self.time, values, &time).unwrap_or_default().into_iter().map(nine_digits).collect();
-        let channels = self.channels.iter().map(|channel| Channel { values: of(&channel.values), ..channel.clone() }).collect();
-        Self { shown: self.shown.clone(), distance: self.distance.as_ref().map(|values| of(values)), channels, time }
+        let of = |values: &[f64]| {
+            interpolate(&self.time, values, &time)
+                .unwrap_or_default()
+                .into_iter()
+                .map(nine_digits)
+                .collect()
+        };
+        let channels = self
+            .channels
+            .iter()
+            .map(|channel| Channel { values: of(&channel.values), ..channel.clone() })
+            .collect();
+        Self {
+            shown: self.shown.clone(),
+            distance: self.distance.as_ref().map(|values| of(values)),
+            channels,
+            time,
+        }
     }
 
     /// The same with steps of `step` from its first time on.
@@ -98,7 +115,13 @@ impl Pair {
     /// Reads both records; `told` takes what was changed.
     ///
     /// Problems: of reading; `no-time`, `time-not-increasing`, `too-short`.
-    pub fn read(name: String, simulated: &Path, measured: &Path, told: &mut Vec<String>, problems: &mut Problems) -> Option<Self> {
+    pub fn read(
+        name: String,
+        simulated: &Path,
+        measured: &Path,
+        told: &mut Vec<String>,
+        problems: &mut Problems,
+    ) -> Option<Self> {
         let mut one = |path: &Path| {
             let read = series(path, told);
             read.map_err(|found| found.into_iter().for_each(|problem| problems.push(problem))).ok()
@@ -140,10 +163,13 @@ impl Pair {
         let (simulated, measured) = (self.simulated.channel(name)?, self.measured.channel(name)?);
         let (from, to) = self.common(over_distance);
         let axis = self.measured.axis(over_distance);
-        let inside: Vec<usize> = (0..axis.len()).filter(|at| (from..=to).contains(&axis[*at])).collect();
+        let inside: Vec<usize> =
+            (0..axis.len()).filter(|at| (from..=to).contains(&axis[*at])).collect();
         let points: Vec<f64> = inside.iter().map(|at| axis[*at]).collect();
-        let there = interpolate(self.simulated.axis(over_distance), &simulated.values, &points).ok()?;
-        let measured: Vec<f64> = inside.iter().map(|at| measured.unit.to_si(measured.values[*at])).collect();
+        let there =
+            interpolate(self.simulated.axis(over_distance), &simulated.values, &points).ok()?;
+        let measured: Vec<f64> =
+            inside.iter().map(|at| measured.unit.to_si(measured.values[*at])).collect();
         let mean = measured.iter().sum::<f64>() / measured.len().max(1) as f64;
         let (mut off, mut all) = (0.0, 0.0);
         for (simulated_value, value) in there.iter().zip(&measured) {
@@ -154,24 +180,41 @@ impl Pair {
     }
 }
 
-/// Which columns are compared and which are inputs: those of the first pair, which all pairs must have.
+/// Which columns are compared and which are inputs: those of the first pair, which all pairs must
+/// have.
 ///
 /// # Errors
 /// `no-common-channel`, `unit-mismatch`, `unknown-channel`.
 pub fn roles(pairs: &[Pair]) -> Result<Roles, Problem> {
     let first = &pairs[0];
     let over_distance = pairs.iter().all(Pair::over_distance);
-    let names = |series: &Series| series.channels.iter().map(|channel| channel.name.clone()).collect::<Vec<_>>();
-    let common: Vec<String> = names(&first.measured).into_iter().filter(|name| first.simulated.channel(name).is_some()).collect();
+    let names = |series: &Series| {
+        series.channels.iter().map(|channel| channel.name.clone()).collect::<Vec<_>>()
+    };
+    let common: Vec<String> = names(&first.measured)
+        .into_iter()
+        .filter(|name| first.simulated.channel(name).is_some())
+        .collect();
     for name in &common {
         for pair in pairs {
             for series in [&pair.simulated, &pair.measured] {
                 let Some(channel) = series.channel(name) else {
-                    let problem =
-                        Problem::error("unknown-channel", format!("`{}` has no column `{name}`, which the first pair has", series.shown));
-                    return Err(problem.suggest(name, series.channels.iter().map(|channel| channel.name.as_str())));
+                    let problem = Problem::error(
+                        "unknown-channel",
+                        format!(
+                            "`{}` has no column `{name}`, which the first pair has",
+                            series.shown
+                        ),
+                    );
+                    return Err(problem.suggest(
+                        name,
+                        series.channels.iter().map(|channel| channel.name.as_str()),
+                    ));
                 };
-                let unit = &first.measured.channel(name).map_or_else(Unit::one, |channel| channel.unit.clone());
+                let unit = &first
+                    .measured
+                    .channel(name)
+                    .map_or_else(Unit::one, |channel| channel.unit.clone());
                 if channel.unit.dimension != unit.dimension {
                     let says = format!(
                         "the column `{name}` is in {} in `{}`, and in {unit} in `{}`",
@@ -182,38 +225,61 @@ pub fn roles(pairs: &[Pair]) -> Result<Roles, Problem> {
             }
         }
     }
-    let repeated = |name: &String| pairs.iter().all(|pair| pair.differs(name, over_distance).is_some_and(|share| share < REPEATED));
+    let repeated = |name: &String| {
+        pairs
+            .iter()
+            .all(|pair| pair.differs(name, over_distance).is_some_and(|share| share < REPEATED))
+    };
     let mut inputs: Vec<String> = common.iter().filter(|name| repeated(name)).cloned().collect();
     // Records that agree in everything are compared in everything.
     if inputs.len() == common.len() {
         inputs.clear();
     }
-    let outputs: Vec<String> = common.iter().filter(|name| !inputs.contains(name)).cloned().collect();
+    let outputs: Vec<String> =
+        common.iter().filter(|name| !inputs.contains(name)).cloned().collect();
     if outputs.is_empty() {
         let (a, b) = (names(&first.simulated).join(", "), names(&first.measured).join(", "));
-        let problem =
-            Problem::error("no-common-channel", "the simulated and the measured record have no column in common that could be compared");
-        return Err(problem.help(format!("the simulation has {a}; the measurement has {b}: give what is compared the same name")));
+        let problem = Problem::error(
+            "no-common-channel",
+            "the simulated and the measured record have no column in common that could be compared",
+        );
+        return Err(problem.help(format!(
+            "the simulation has {a}; the measurement has {b}: give what is compared the same name"
+        )));
     }
     let everywhere = |name: &String| pairs.iter().all(|pair| pair.measured.channel(name).is_some());
-    inputs.extend(names(&first.measured).into_iter().filter(|name| !common.contains(name) && everywhere(name)));
+    inputs.extend(
+        names(&first.measured)
+            .into_iter()
+            .filter(|name| !common.contains(name) && everywhere(name)),
+    );
     Ok(Roles { outputs, inputs })
 }
 
 fn series(path: &Path, told: &mut Vec<String>) -> Result<Series, Vec<Problem>> {
     let shown = path.display().to_string();
     let headings = read_headings(path, &shown)?;
-    let faults: Vec<Problem> = headings.iter().filter_map(|heading| heading.unit(None).err()).collect();
+    let faults: Vec<Problem> =
+        headings.iter().filter_map(|heading| heading.unit(None).err()).collect();
     if !faults.is_empty() {
         return Err(faults);
     }
-    let wanted: Vec<Wanted> =
-        headings.iter().map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true }).collect();
+    let wanted: Vec<Wanted> = headings
+        .iter()
+        .map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true })
+        .collect();
     let record = read_record(path, &shown, &wanted)?;
-    let axis =
-        |name: &str, dimension: Dimension| record.columns.iter().find(|column| column.name == name && column.unit.dimension == dimension);
+    let axis = |name: &str, dimension: Dimension| {
+        record
+            .columns
+            .iter()
+            .find(|column| column.name == name && column.unit.dimension == dimension)
+    };
     let Some(time) = axis(TIME, Dimension::TIME) else {
-        let problem = Problem::error("no-time", format!("`{shown}` has no column `{TIME}` with a unit of time"));
+        let problem = Problem::error(
+            "no-time",
+            format!("`{shown}` has no column `{TIME}` with a unit of time"),
+        );
         let problem = headings.first().map_or(problem.clone(), |first| problem.at(&first.span));
         return Err(vec![problem.help("call the column with the time so: `time [s]`")]);
     };
@@ -221,26 +287,42 @@ fn series(path: &Path, told: &mut Vec<String>) -> Result<Series, Vec<Problem>> {
         let says = format!("`{shown}` has {} samples; at least {FEWEST} are needed", record.rows);
         return Err(vec![Problem::error("too-short", says)]);
     }
-    let distance = axis(DISTANCE, Dimension::LENGTH).filter(|distance| distance.values.windows(2).all(|pair| pair[1] > pair[0]));
+    let distance = axis(DISTANCE, Dimension::LENGTH)
+        .filter(|distance| distance.values.windows(2).all(|pair| pair[1] > pair[0]));
     if let Some(row) = time.values.windows(2).position(|pair| pair[1] <= pair[0]) {
-        let problem = Problem::error("time-not-increasing", format!("`{shown}`: the time does not increase"));
+        let problem =
+            Problem::error("time-not-increasing", format!("`{shown}`: the time does not increase"));
         let place = record.place(row + 1, Some(time));
-        return Err(vec![place.map_or(problem.clone(), |place| problem.at(&place)).help("delete the row, or export the record again")]);
+        return Err(vec![
+            place
+                .map_or(problem.clone(), |place| problem.at(&place))
+                .help("delete the row, or export the record again"),
+        ]);
     }
     let own = |name: &str| name == TIME || name == DISTANCE;
-    let channels = record.columns.iter().filter(|column| !own(&column.name)).map(|column| Channel {
-        name: column.name.clone(),
-        unit: column.unit.clone(),
-        values: column.values.iter().map(|value| column.unit.from_si(*value)).collect(),
-    });
+    let channels =
+        record.columns.iter().filter(|column| !own(&column.name)).map(|column| Channel {
+            name: column.name.clone(),
+            unit: column.unit.clone(),
+            values: column.values.iter().map(|value| column.unit.from_si(*value)).collect(),
+        });
     let channels = channels.collect();
-    let found = Series { shown, time: time.values.clone(), distance: distance.map(|column| column.values.clone()), channels };
+    let found = Series {
+        shown,
+        time: time.values.clone(),
+        distance: distance.map(|column| column.values.clone()),
+        channels,
+    };
     let mut steps: Vec<f64> = found.time.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = steps.len() / 2;
     let median = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
     if steps.iter().all(|step| (step - median).abs() <= JITTER * median + 2.0 * ROUNDING) {
         return Ok(found);
     }
-    told.push(format!("{}: uneven time steps, resampled to {:.4} Hz by linear interpolation", found.shown, 1.0 / median));
+    told.push(format!(
+        "{}: uneven time steps, resampled to {:.4} Hz by linear interpolation",
+        found.shown,
+        1.0 / median
+    ));
     Ok(found.every(median))
 }

@@ -35,7 +35,8 @@ pub struct Scales {
     pub acceleration: f64,
 }
 
-/// The column with the speed of a motion, or the position from which it follows, for the columns of the section table.
+/// The column with the speed of a motion, or the position from which it follows, for the columns of
+/// the section table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
     pub column: String,
@@ -43,13 +44,20 @@ pub struct Motion {
     pub order: i32,
 }
 
-/// A set of effects for each force that is compared; if the motion is compared, one for the force among the inputs.
+/// A set of effects for each force that is compared; if the motion is compared, one for the force
+/// among the inputs.
 #[must_use]
 pub fn scales(pairs: &[Pair], roles: &Roles, cut: &Cut) -> Vec<Scales> {
     let measured = &pairs[0].measured;
-    let force = |name: &&String| measured.channel(name).is_some_and(|channel| FORCES.contains(&channel.unit.dimension));
+    let force = |name: &&String| {
+        measured.channel(name).is_some_and(|channel| FORCES.contains(&channel.unit.dimension))
+    };
     let compared: Vec<&String> = roles.outputs.iter().filter(force).collect();
-    let forces = if compared.is_empty() { roles.inputs.iter().filter(force).take(1).collect() } else { compared };
+    let forces = if compared.is_empty() {
+        roles.inputs.iter().filter(force).take(1).collect()
+    } else {
+        compared
+    };
     let several = forces.len() > 1;
     let one = |name: &&String| {
         let channel = measured.channel(name)?;
@@ -67,11 +75,13 @@ pub fn scales(pairs: &[Pair], roles: &Roles, cut: &Cut) -> Vec<Scales> {
     forces.iter().filter_map(one).collect()
 }
 
-/// The motion that belongs to a force: the one with the same number at its end, or else the first; a position before a speed.
+/// The motion that belongs to a force: the one with the same number at its end, or else the first;
+/// a position before a speed.
 #[must_use]
 pub fn motion(pairs: &[Pair], roles: &Roles, force: Option<&str>) -> Option<Motion> {
     let measured = &pairs[0].measured;
-    let number = |name: &str| name.chars().rev().take_while(char::is_ascii_digit).collect::<String>();
+    let number =
+        |name: &str| name.chars().rev().take_while(char::is_ascii_digit).collect::<String>();
     let order = |channel: &Channel| -> Option<Order> {
         match channel.unit.dimension {
             Dimension::LENGTH => Some(0),
@@ -84,13 +94,15 @@ pub fn motion(pairs: &[Pair], roles: &Roles, force: Option<&str>) -> Option<Moti
     let all = roles.inputs.iter().chain(&roles.outputs).filter_map(|name| {
         let channel = measured.channel(name)?;
         let order = order(channel)?;
-        let other = force.is_some_and(|force| !number(force).is_empty() && number(force) != number(name));
+        let other =
+            force.is_some_and(|force| !number(force).is_empty() && number(force) != number(name));
         Some((other, order, Motion { column: name.clone(), unit: channel.unit.clone(), order }))
     });
     all.min_by_key(|(other, order, _)| (*other, *order)).map(|(.., motion)| motion)
 }
 
-/// The unit of the position, and rms values of position, speed and acceleration, from the spectra of a motion in all records.
+/// The unit of the position, and rms values of position, speed and acceleration, from the spectra
+/// of a motion in all records.
 fn sizes(pairs: &[Pair], cut: &Cut, motion: &Motion) -> Option<(String, [f64; 3])> {
     let (low, high) = cut.content;
     let edge = |n: usize| low * (high / low).powf(n as f64 / PARTS as f64);
@@ -101,14 +113,19 @@ fn sizes(pairs: &[Pair], cut: &Cut, motion: &Motion) -> Option<(String, [f64; 3]
         let Some(piece) = piece(&pair.measured, &motion.column, false, from, to) else { continue };
         // A long record counts as much more as it is longer. Records may be in different units.
         let weight = piece.values.len() as f64 / piece.rate;
-        let factor = pair.measured.channel(&motion.column).map_or(1.0, |channel| channel.unit.factor / motion.unit.factor);
+        let factor = pair
+            .measured
+            .channel(&motion.column)
+            .map_or(1.0, |channel| channel.unit.factor / motion.unit.factor);
         let spectrum = Spectrum::new(&piece);
         lasts += weight;
         for n in 0..PARTS {
             let (a, b) = (edge(n), edge(n + 1));
             let power = weight * factor * factor * spectrum.power(a, b);
             for (of, square) in squares.iter_mut().enumerate() {
-                *square += power * (2.0 * std::f64::consts::PI * (a * b).sqrt()).powi(2 * (of as Order - motion.order));
+                *square += power
+                    * (2.0 * std::f64::consts::PI * (a * b).sqrt())
+                        .powi(2 * (of as Order - motion.order));
             }
         }
     }
@@ -118,7 +135,8 @@ fn sizes(pairs: &[Pair], cut: &Cut, motion: &Motion) -> Option<(String, [f64; 3]
     let squares = squares.map(|square| square / lasts);
     // A speed in km/h integrates to km/h s: positions of speeds and accelerations are in SI.
     let si = motion.unit.factor;
-    let turns = matches!(motion.unit.dimension, Dimension::ONE | Dimension::FREQUENCY | TURN_ACCELERATION);
+    let turns =
+        matches!(motion.unit.dimension, Dimension::ONE | Dimension::FREQUENCY | TURN_ACCELERATION);
     let (unit, factor) = match motion.order {
         0 => (motion.unit.text.clone(), 1.0),
         _ => (if turns { "rad" } else { "m" }.to_string(), si),
@@ -129,7 +147,9 @@ fn sizes(pairs: &[Pair], cut: &Cut, motion: &Motion) -> Option<(String, [f64; 3]
 /// The rms value of a measured channel over all records, in a unit.
 fn rms(pairs: &[Pair], name: &str, unit: &Unit) -> f64 {
     let channels = || pairs.iter().filter_map(|pair| pair.measured.channel(name));
-    let square = |channel: &Channel| -> f64 { channel.values.iter().map(|value| unit.from_si(channel.unit.to_si(*value)).powi(2)).sum() };
+    let square = |channel: &Channel| -> f64 {
+        channel.values.iter().map(|value| unit.from_si(channel.unit.to_si(*value)).powi(2)).sum()
+    };
     let count: usize = channels().map(|channel| channel.values.len()).sum();
     (channels().map(square).sum::<f64>() / count.max(1) as f64).sqrt()
 }

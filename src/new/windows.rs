@@ -3,26 +3,31 @@
 use super::records::{Pair, Roles, Series};
 use crate::diagnose::features::layout::{Piece, Spectrum};
 
-/// Shares of the power of the measured channels below the lowest and the highest frequency that count.
+/// Shares of the power of the measured channels below the lowest and the highest frequency that
+/// count.
 const LOWEST: f64 = 0.01;
 const HIGHEST: f64 = 0.99;
-/// The highest frequency is below this share of the sampling rate, so that filters and bands stay below half of it.
+/// The highest frequency is below this share of the sampling rate, so that filters and bands stay
+/// below half of it.
 const MOST_OF_RATE: f64 = 0.4;
 /// Periods of the lowest frequency in a section: fewer do not give a band power.
 const PERIODS: f64 = 4.0;
-/// Fewest and most sections of a campaign: with fewer nothing can be kept out of the fit, more take time and tell little.
+/// Fewest and most sections of a campaign: with fewer nothing can be kept out of the fit, more take
+/// time and tell little.
 const FEWEST: usize = 6;
 const MOST: usize = 24;
 /// Fewest samples of a section.
 const SAMPLES: usize = 64;
 /// Spectral lines of a section in its lowest band, at least.
 const LINES: f64 = 2.0;
-/// The lowest band starts at this share of the lowest frequency: a cause may act where the motion has little power.
+/// The lowest band starts at this share of the lowest frequency: a cause may act where the motion
+/// has little power.
 const BELOW: f64 = 0.25;
 /// Ratio of the edges of a band, about, and the most bands.
 const RATIO: f64 = 2.0;
 const BANDS: usize = 5;
-/// Distance of sections from the ends of a record, and the record around a section, as shares of its length.
+/// Distance of sections from the ends of a record, and the record around a section, as shares of
+/// its length.
 const MARGIN: f64 = 0.05;
 const AROUND: f64 = 0.25;
 /// Steps in which a spectrum is added up, from its lowest to its highest frequency.
@@ -67,7 +72,8 @@ pub fn cut(pairs: &[Pair], roles: &Roles) -> Cut {
     let mut windows = Vec::new();
     let mut shortest = f64::INFINITY;
     for (at, pair) in pairs.iter().enumerate() {
-        let count = (wanted * lasts[at] / total).round().min((lasts[at] / samples).floor()).max(1.0);
+        let count =
+            (wanted * lasts[at] / total).round().min((lasts[at] / samples).floor()).max(1.0);
         let (first, last) = pair.common(over_distance);
         let length = (last - first) / (count + 2.0 * MARGIN);
         shortest = shortest.min(lasts[at] / (count + 2.0 * MARGIN));
@@ -75,7 +81,13 @@ pub fn cut(pairs: &[Pair], roles: &Roles) -> Cut {
             let start = first + (n as f64 + MARGIN) * length;
             let (start, end) = (rounded(start), rounded(start + length));
             let around = AROUND * length;
-            windows.push(Window { pair: at, start, end, from: (start - around).max(first), to: (end + around).min(last) });
+            windows.push(Window {
+                pair: at,
+                start,
+                end,
+                from: (start - around).max(first),
+                to: (end + around).min(last),
+            });
         }
     }
     let edges = edges(content, LINES / shortest);
@@ -98,7 +110,13 @@ fn seconds(pair: &Pair, over_distance: bool) -> f64 {
 
 /// The samples of a channel in a range of the axis.
 #[must_use]
-pub fn piece(series: &Series, name: &str, over_distance: bool, from: f64, to: f64) -> Option<Piece> {
+pub fn piece(
+    series: &Series,
+    name: &str,
+    over_distance: bool,
+    from: f64,
+    to: f64,
+) -> Option<Piece> {
     let axis = series.axis(over_distance);
     let (a, b) = (axis.partition_point(|x| *x < from), axis.partition_point(|x| *x <= to));
     let values = series.channel(name)?.values.get(a..b)?.to_vec();
@@ -121,7 +139,8 @@ fn content(pairs: &[Pair], roles: &Roles) -> (f64, f64) {
             let bottom = 1.0 / (piece.values.len() as f64 / piece.rate);
             let spectrum = Spectrum::new(&piece);
             let edge = |n: usize| bottom * (top / bottom).powf(n as f64 / STEPS as f64);
-            let powers: Vec<f64> = (0..STEPS).map(|n| spectrum.power(edge(n), edge(n + 1))).collect();
+            let powers: Vec<f64> =
+                (0..STEPS).map(|n| spectrum.power(edge(n), edge(n + 1))).collect();
             let all: f64 = powers.iter().sum();
             let reaches = |share: f64| {
                 let mut sum = 0.0;
@@ -139,11 +158,14 @@ fn content(pairs: &[Pair], roles: &Roles) -> (f64, f64) {
     (low.min(high / RATIO), high)
 }
 
-/// Edges of bands of about the same ratio, in two digits; the lowest band has at least `least` Hz below it.
+/// Edges of bands of about the same ratio, in two digits; the lowest band has at least `least` Hz
+/// below it.
 fn edges((low, high): (f64, f64), least: f64) -> Vec<f64> {
     let low = (BELOW * low).max(least).min(high / RATIO);
     let count = ((high / low).ln() / RATIO.ln()).round().clamp(1.0, BANDS as f64);
-    let mut edges: Vec<f64> = (0..=count as usize).map(|n| two_digits(low * (high / low).powf(n as f64 / count))).collect();
+    let mut edges: Vec<f64> = (0..=count as usize)
+        .map(|n| two_digits(low * (high / low).powf(n as f64 / count)))
+        .collect();
     edges.dedup();
     edges
 }
@@ -163,7 +185,8 @@ fn rounded(value: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// From 0.5 to 32 Hz there are six octaves, of which five bands are made; a section of 4 s resolves 0.5 Hz.
+    /// From 0.5 to 32 Hz there are six octaves, of which five bands are made; a section of 4 s
+    /// resolves 0.5 Hz.
     #[test]
     fn bands_are_about_octaves_above_what_a_section_resolves() {
         assert_eq!(edges((2.0, 32.0), 0.5), [0.5, 1.1, 2.6, 6.1, 14.0, 32.0]);

@@ -27,7 +27,8 @@ const VALUES: usize = 8_000_000;
 const PROTOCOL: usize = 16 << 20;
 
 /// The numbers of other reports, and the commands that write them.
-const BY: [(&str, &str); 3] = [("comparison.json", "compare"), ("diagnosis.json", "diagnose"), ("study.json", "study")];
+const BY: [(&str, &str); 3] =
+    [("comparison.json", "compare"), ("diagnosis.json", "diagnose"), ("study.json", "study")];
 
 /// File name of the report in an output folder.
 pub const REPORT_PDF: &str = "report.pdf";
@@ -62,19 +63,23 @@ pub fn open(path: &Path) -> Result<Carried, Problem> {
         let pdf = path.join(REPORT_PDF);
         let results = path.join(attached::RESULTS);
         if !disk::may_be_file(&pdf) && !disk::may_be_file(&results) {
-            let says = format!("there is neither `{REPORT_PDF}` nor `{}` in `{shown}`", attached::RESULTS);
+            let says =
+                format!("there is neither `{REPORT_PDF}` nor `{}` in `{shown}`", attached::RESULTS);
             let by = BY.iter().find(|(file, _)| disk::may_be_file(&path.join(file)));
-            let by = by.map_or_else(String::new, |(_, command)| format!("it was written by `{command}`; "));
-            return Err(
-                Problem::error("no-results", says).help(format!("{by}give the output folder of `certify`, a report, or results.json"))
-            );
+            let by = by.map_or_else(String::new, |(_, command)| {
+                format!("it was written by `{command}`; ")
+            });
+            return Err(Problem::error("no-results", says).help(format!(
+                "{by}give the output folder of `certify`, a report, or results.json"
+            )));
         }
         if !disk::may_be_file(&pdf) {
             return beside(&results, &shown, Some(path));
         }
         let mut carried = of_pdf(&pdf, &pdf.display().to_string())?;
         carried.folder = Some(path.to_path_buf());
-        carried.other_results = disk::may_be_file(&results) && file(&results, RESULTS as u64)? != carried.text.as_bytes();
+        carried.other_results = disk::may_be_file(&results)
+            && file(&results, RESULTS as u64)? != carried.text.as_bytes();
         return Ok(carried);
     }
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
@@ -94,8 +99,15 @@ fn beside(path: &Path, shown: &str, folder: Option<&Path>) -> Result<Carried, Pr
     let bytes = file(path, RESULTS as u64)?;
     let (text, value, results) = read(&bytes, shown)?;
     let pdf = path.parent().unwrap_or(Path::new("")).join(REPORT_PDF);
-    let carried = if disk::may_be_file(&pdf) { of_pdf(&pdf, shown).ok().filter(|carried| carried.text == text) } else { None };
-    let protocol = carried.map_or_else(|| results.protocol.files.iter().map(|_| None).collect(), |carried| carried.protocol);
+    let carried = if disk::may_be_file(&pdf) {
+        of_pdf(&pdf, shown).ok().filter(|carried| carried.text == text)
+    } else {
+        None
+    };
+    let protocol = carried.map_or_else(
+        || results.protocol.files.iter().map(|_| None).collect(),
+        |carried| carried.protocol,
+    );
     Ok(Carried {
         shown: shown.into(),
         path: path.to_path_buf(),
@@ -114,7 +126,10 @@ fn of_pdf(path: &Path, shown: &str) -> Result<Carried, Problem> {
     let attachments = Attachments::of(&pdf, shown)?;
     let Some(bytes) = attachments.read(attached::RESULTS, RESULTS)? else {
         let names: Vec<&str> = attachments.names().collect();
-        let problem = Problem::error("no-results", format!("`{shown}` has no attachment `{}`", attached::RESULTS));
+        let problem = Problem::error(
+            "no-results",
+            format!("`{shown}` has no attachment `{}`", attached::RESULTS),
+        );
         return Err(match names.as_slice() {
             [] => problem.help("only a report written by `certify` can be checked; printing or saving it again may remove its attachments"),
             names => {
@@ -143,7 +158,12 @@ fn of_pdf(path: &Path, shown: &str) -> Result<Carried, Problem> {
 }
 
 fn read(bytes: &[u8], shown: &str) -> Result<(String, Value, Results), Problem> {
-    let unreadable = |says: String| Problem::error("results-unreadable", format!("`{shown}` is not a results file of `certify`: {says}"));
+    let unreadable = |says: String| {
+        Problem::error(
+            "results-unreadable",
+            format!("`{shown}` is not a results file of `certify`: {says}"),
+        )
+    };
     let text = decode(bytes, shown)?;
     let many = memchr::memchr2_iter(b',', b'[', bytes).count();
     if many > VALUES {
@@ -155,8 +175,8 @@ fn read(bytes: &[u8], shown: &str) -> Result<(String, Value, Results), Problem> 
 }
 
 impl Carried {
-    /// The files of the protocol as text: those attached to the report; else those with the hash in the results that are shipped with the
-    /// program or given.
+    /// The files of the protocol as text: those attached to the report; else those with the hash in
+    /// the results that are shipped with the program or given.
     ///
     /// # Errors
     /// `protocol-missing`, `encoding`.
@@ -172,7 +192,10 @@ impl Carried {
             sources.push(Source::new(name, text));
         }
         if sources.is_empty() {
-            return Err(Problem::error("protocol-missing", format!("`{}` lists no file of its protocol", self.shown)));
+            return Err(Problem::error(
+                "protocol-missing",
+                format!("`{}` lists no file of its protocol", self.shown),
+            ));
         }
         Ok(sources)
     }
@@ -180,11 +203,16 @@ impl Carried {
     fn known(&self, at: usize, given: Option<&Family>) -> Result<String, Problem> {
         let named = &self.results.protocol.files[at];
         let shipped = library::SHIPPED.iter().map(|shipped| shipped.text);
-        let given = given.into_iter().flat_map(|family| &family.sources).map(|source| source.text.as_str());
+        let given =
+            given.into_iter().flat_map(|family| &family.sources).map(|source| source.text.as_str());
         let found = given.chain(shipped).find(|text| sha256(text.as_bytes()) == named.sha256);
         found.map(str::to_string).ok_or_else(|| {
-            let says = format!("the protocol file `{}` with SHA-256 {} is not available", named.name, named.sha256);
-            Problem::error("protocol-missing", says).help("give report.pdf, which contains it, or name the protocol with `--protocol`")
+            let says = format!(
+                "the protocol file `{}` with SHA-256 {} is not available",
+                named.name, named.sha256
+            );
+            Problem::error("protocol-missing", says)
+                .help("give report.pdf, which contains it, or name the protocol with `--protocol`")
         })
     }
 

@@ -40,7 +40,16 @@ impl Check {
     }
 
     /// Agrees if there are no differences.
-    pub fn of(name: &'static str, agrees: impl Into<String>, differs: impl Into<String>, details: Vec<String>) -> Self {
-        if details.is_empty() { Self::agrees(name, agrees) } else { Self::differs(name, differs, details) }
+    pub fn of(
+        name: &'static str,
+        agrees: impl Into<String>,
+        differs: impl Into<String>,
+        details: Vec<String>,
+    ) -> Self {
+        if details.is_empty() {
+            Self::agrees(name, agrees)
+        } else {
+            Self::differs(name, differs, details)
+        }
     }
 }

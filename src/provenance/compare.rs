@@ -29,8 +29,12 @@ pub struct Compared {
     pub rounded: usize,
 }
 
-/// Keys that identify entries of a list, so that an additional entry does not change those after it.
-const NAMES: &[&str] = &["id", "name", "path", "zone", "campaign", "section", "signal", "scope", "rule", "code", "channel"];
+/// Keys that identify entries of a list, so that an additional entry does not change those after
+/// it.
+const NAMES: &[&str] = &[
+    "id", "name", "path", "zone", "campaign", "section", "signal", "scope", "rule", "code",
+    "channel",
+];
 
 /// Compares two results completely.
 pub fn compare(before: &Value, after: &Value, at: &str) -> Compared {
@@ -89,7 +93,11 @@ impl Compared {
                 self.numbers += 1;
                 match (old.as_f64(), new.as_f64()) {
                     _ if old == new => {}
-                    (Some(old), Some(new)) if (old - new).abs() <= (SHARE * old.abs().max(new.abs())).max(NEAR) => self.rounded += 1,
+                    (Some(old), Some(new))
+                        if (old - new).abs() <= (SHARE * old.abs().max(new.abs())).max(NEAR) =>
+                    {
+                        self.rounded += 1
+                    }
                     _ => self.differs(way, Some(before), Some(after)),
                 }
             }
@@ -99,11 +107,15 @@ impl Compared {
     }
 
     fn lists(&mut self, old: &[Value], new: &[Value], way: &Way) {
-        let names = |list: &[Value]| list.iter().map(name).collect::<Option<Vec<String>>>().filter(|names| unique(names));
+        let names = |list: &[Value]| {
+            list.iter().map(name).collect::<Option<Vec<String>>>().filter(|names| unique(names))
+        };
         let (Some(old_names), Some(new_names)) = (names(old), names(new)) else {
             for (at, value) in old.iter().enumerate() {
                 match new.get(at) {
-                    Some(other) => self.values(value, other, &way.entry(at, name(value).as_deref())),
+                    Some(other) => {
+                        self.values(value, other, &way.entry(at, name(value).as_deref()))
+                    }
                     None => self.differs(&way.entry(at, name(value).as_deref()), Some(value), None),
                 }
             }
@@ -112,15 +124,22 @@ impl Compared {
             }
             return;
         };
-        let places: std::collections::BTreeMap<&str, usize> = new_names.iter().enumerate().map(|(at, name)| (name.as_str(), at)).collect();
+        let places: std::collections::BTreeMap<&str, usize> =
+            new_names.iter().enumerate().map(|(at, name)| (name.as_str(), at)).collect();
         for (at, (value, name)) in old.iter().zip(&old_names).enumerate() {
             match places.get(name.as_str()) {
                 Some(&other) => self.values(value, &new[other], &way.entry(at, Some(name))),
                 None => self.differs(&way.entry(at, Some(name)), Some(value), None),
             }
         }
-        let known: std::collections::BTreeSet<&str> = old_names.iter().map(String::as_str).collect();
-        for (at, (value, name)) in new.iter().zip(&new_names).enumerate().filter(|(_, (_, name))| !known.contains(name.as_str())) {
+        let known: std::collections::BTreeSet<&str> =
+            old_names.iter().map(String::as_str).collect();
+        for (at, (value, name)) in new
+            .iter()
+            .zip(&new_names)
+            .enumerate()
+            .filter(|(_, (_, name))| !known.contains(name.as_str()))
+        {
             self.differs(&way.entry(at, Some(name)), None, Some(value));
         }
         // The same entries in another order.
@@ -161,7 +180,11 @@ fn shown(value: &Value) -> String {
         Value::Array(list) => format!("a list of {}", list.len()),
         other => other.to_string(),
     };
-    if text.chars().count() <= LONGEST { text } else { text.chars().take(LONGEST).chain("…".chars()).collect() }
+    if text.chars().count() <= LONGEST {
+        text
+    } else {
+        text.chars().take(LONGEST).chain("…".chars()).collect()
+    }
 }
 
 #[cfg(test)]
@@ -171,15 +194,25 @@ mod tests {
     use super::*;
 
     fn paths(before: &Value, after: &Value) -> Vec<String> {
-        compare(before, after, "").differences.into_iter().map(|one| format!("{} ({})", one.path, one.of)).collect()
+        compare(before, after, "")
+            .differences
+            .into_iter()
+            .map(|one| format!("{} ({})", one.path, one.of))
+            .collect()
     }
 
     #[test]
     fn entries_are_known_by_name_so_that_one_more_moves_nothing() {
         let before = json!({"values": [{"section": "S1", "signal": "a", "x": 1.0}, {"section": "S2", "signal": "a", "x": 2.0}]});
         let after = json!({"values": [{"section": "S2", "signal": "a", "x": 2.5}, {"section": "S3", "signal": "a", "x": 1.0}]});
-        assert_eq!(paths(&before, &after), ["values[0] (S1, a)", "values[1].x (S2, a)", "values[1] (S3, a)"]);
-        assert_eq!(paths(&json!([{"id": "a"}, {"id": "b"}]), &json!([{"id": "b"}, {"id": "a"}])), ["order ()"]);
+        assert_eq!(
+            paths(&before, &after),
+            ["values[0] (S1, a)", "values[1].x (S2, a)", "values[1] (S3, a)"]
+        );
+        assert_eq!(
+            paths(&json!([{"id": "a"}, {"id": "b"}]), &json!([{"id": "b"}, {"id": "a"}])),
+            ["order ()"]
+        );
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! Provenance of a report, and verification.
 //!
-//! A report contains its results and its protocol. [`carried`] extracts them, [`verify`] checks them alone and against the campaign,
-//! [`trace`] traces one number to its rule and its rows. [`statement`] describes the files of a report in a standard format, and
-//! [`signature`] signs files.
+//! A report contains its results and its protocol. [`carried`] extracts them, [`verify`] checks
+//! them alone and against the campaign, [`trace`] traces one number to its rule and its rows.
+//! [`statement`] describes the files of a report in a standard format, and [`signature`] signs
+//! files.
 
 pub mod carried;
 pub mod check;

@@ -178,12 +178,19 @@ impl Results {
     pub fn recorded(&self, plan: &Plan) -> Result<Recorded, String> {
         let used = || self.campaign.vehicle.iter().filter(|item| item.used);
         let mut of: Vec<Option<String>> = Vec::new();
-        for vehicle in self.sections.iter().map(|section| &section.vehicle).chain(used().map(|item| &item.of)) {
+        for vehicle in
+            self.sections.iter().map(|section| &section.vehicle).chain(used().map(|item| &item.of))
+        {
             if !of.contains(vehicle) {
                 of.push(vehicle.clone());
             }
         }
-        let data = |of: Option<String>| (of.clone(), used().filter(|item| item.of == of).map(|item| item.value.clone()).collect());
+        let data = |of: Option<String>| {
+            (
+                of.clone(),
+                used().filter(|item| item.of == of).map(|item| item.value.clone()).collect(),
+            )
+        };
         let vehicles = of.into_iter().map(data).collect();
         let section = |section: &Section| RecordedSection {
             name: section.section.clone(),
@@ -209,10 +216,17 @@ impl Results {
         let mut values = Vec::new();
         for quantity in &plan.quantities {
             let found = self.quantities.iter().find(|found| found.id == quantity.id);
-            let found = found.ok_or_else(|| format!("the result has no quantity `{}`", quantity.id))?;
+            let found =
+                found.ok_or_else(|| format!("the result has no quantity `{}`", quantity.id))?;
             values.push(found.values.iter().map(value).collect());
         }
         let sections = self.sections.iter().map(section).collect();
-        Ok(Recorded { vehicles, sections, values, findings: self.findings.clone(), application: self.application.clone() })
+        Ok(Recorded {
+            vehicles,
+            sections,
+            values,
+            findings: self.findings.clone(),
+            application: self.application.clone(),
+        })
     }
 }

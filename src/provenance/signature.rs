@@ -1,4 +1,5 @@
-//! Detached signatures in the format of minisign: Ed25519 over BLAKE2b of the file, in a separate file next to it.
+//! Detached signatures in the format of minisign: Ed25519 over BLAKE2b of the file, in a separate
+//! file next to it.
 
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -12,8 +13,8 @@ use crate::data::text::read_bytes;
 use crate::disk;
 use crate::problem::Problem;
 
-/// Environment variable with the password; if it is not set, the password is requested on the terminal. It is not accepted on the command
-/// line, which other users can see.
+/// Environment variable with the password; if it is not set, the password is requested on the
+/// terminal. It is not accepted on the command line, which other users can see.
 pub const PASSWORD: &str = "FISHPLATE_KEY_PASSWORD";
 
 /// Maximum size of a key or signature file in bytes; typical ones have a few hundred.
@@ -52,9 +53,15 @@ pub fn content(path: &Path) -> Result<Vec<u8>, Problem> {
 pub fn new_keys(password: Option<String>, protected: bool) -> Result<(String, String), Problem> {
     let failed = |error: minisign::PError| {
         let problem = Problem::error("key-failed", format!("no key could be generated: {error}"));
-        problem.help(format!("give a password on the terminal or in {PASSWORD}, or use `--no-password`"))
+        problem.help(format!(
+            "give a password on the terminal or in {PASSWORD}, or use `--no-password`"
+        ))
     };
-    let keys = if protected { KeyPair::generate_encrypted_keypair(password) } else { KeyPair::generate_unencrypted_keypair() };
+    let keys = if protected {
+        KeyPair::generate_encrypted_keypair(password)
+    } else {
+        KeyPair::generate_unencrypted_keypair()
+    };
     let keys = keys.map_err(failed)?;
     let secret = keys.sk.to_box(Some("fishplate secret key")).map_err(failed)?.into_string();
     let public = keys.pk.to_box().map_err(failed)?.into_string();
@@ -69,7 +76,10 @@ pub fn secret_key(path: &Path, password: Option<String>) -> Result<SecretKey, Pr
     let shown = path.display();
     let text = text(path)?;
     let unreadable = |error: minisign::PError| {
-        let problem = Problem::error("key-unreadable", format!("`{shown}` cannot be used as a secret key: {error}"));
+        let problem = Problem::error(
+            "key-unreadable",
+            format!("`{shown}` cannot be used as a secret key: {error}"),
+        );
         problem.help(format!(
             "give a secret key of `fishplate keygen`, or of minisign with a password; the password is requested, or read from {PASSWORD}"
         ))
@@ -78,7 +88,9 @@ pub fn secret_key(path: &Path, password: Option<String>) -> Result<SecretKey, Pr
     match boxed.clone().into_unencrypted_secret_key() {
         Ok(key) => Ok(key),
         // The crate has no other way to detect that a password is needed.
-        Err(error) if error.to_string().contains("encrypted") => boxed.into_secret_key(password).map_err(unreadable),
+        Err(error) if error.to_string().contains("encrypted") => {
+            boxed.into_secret_key(password).map_err(unreadable)
+        }
         Err(error) => Err(unreadable(error)),
     }
 }
@@ -90,8 +102,11 @@ pub fn secret_key(path: &Path, password: Option<String>) -> Result<SecretKey, Pr
 pub fn public_key(given: &str) -> Result<PublicKey, Problem> {
     let path = Path::new(given);
     let unreadable = |error: minisign::PError| {
-        let problem = Problem::error("key-unreadable", format!("`{given}` is not a public key: {error}"));
-        problem.help("give the `.pub` file of the secret key, or the key as one word beginning with `RW`")
+        let problem =
+            Problem::error("key-unreadable", format!("`{given}` is not a public key: {error}"));
+        problem.help(
+            "give the `.pub` file of the secret key, or the key as one word beginning with `RW`",
+        )
     };
     if disk::may_be_file(path) {
         let text = text(path)?;
@@ -101,17 +116,23 @@ pub fn public_key(given: &str) -> Result<PublicKey, Problem> {
     PublicKey::from_base64(given).map_err(unreadable)
 }
 
-/// The signature of data, as the text of its file. Its signed comment contains the file name and no time.
+/// The signature of data, as the text of its file. Its signed comment contains the file name and no
+/// time.
 ///
 /// # Errors
 /// `sign-failed`.
 pub fn sign(key: &SecretKey, name: &str, bytes: &[u8]) -> Result<String, Problem> {
-    let plain: String = name.chars().map(|sign| if sign.is_control() { '_' } else { sign }).collect();
+    let plain: String =
+        name.chars().map(|sign| if sign.is_control() { '_' } else { sign }).collect();
     let comment = format!("file:{plain} sha256:{}", sha256(bytes));
-    let failed = |error: minisign::PError| Problem::error("sign-failed", format!("`{plain}` cannot be signed: {error}"));
+    let failed = |error: minisign::PError| {
+        Problem::error("sign-failed", format!("`{plain}` cannot be signed: {error}"))
+    };
     let public = PublicKey::from_secret_key(key).map_err(failed)?;
     let untrusted = concat!("signature by fishplate ", env!("CARGO_PKG_VERSION"));
-    let signed = minisign::sign(Some(&public), key, Cursor::new(bytes), Some(&comment), Some(untrusted)).map_err(failed)?;
+    let signed =
+        minisign::sign(Some(&public), key, Cursor::new(bytes), Some(&comment), Some(untrusted))
+            .map_err(failed)?;
     Ok(signed.into_string())
 }
 
@@ -133,19 +154,32 @@ fn of_another_file(comment: &str, bytes: &[u8]) -> Option<String> {
 ///
 /// # Errors
 /// The given signature cannot be read.
-pub fn check(path: &Path, signature: Option<&Path>, key: Option<&PublicKey>) -> Result<Check, Problem> {
+pub fn check(
+    path: &Path,
+    signature: Option<&Path>,
+    key: Option<&PublicKey>,
+) -> Result<Check, Problem> {
     const NAME: &str = "signature";
     let own = beside(path);
     let at = signature.unwrap_or(&own);
     if signature.is_none() && !disk::may_be_file(at) {
         return Ok(match key {
             None => Check::not_checked(NAME, "the report has no signature file"),
-            Some(_) => Check::differs(NAME, format!("there is no signature `{}`", at.display()), Vec::new()),
+            Some(_) => Check::differs(
+                NAME,
+                format!("there is no signature `{}`", at.display()),
+                Vec::new(),
+            ),
         });
     }
     let text = text(at)?;
-    let unreadable =
-        |why: &dyn std::fmt::Display| Ok(Check::differs(NAME, format!("`{}` is not a signature", at.display()), vec![why.to_string()]));
+    let unreadable = |why: &dyn std::fmt::Display| {
+        Ok(Check::differs(
+            NAME,
+            format!("`{}` is not a signature", at.display()),
+            vec![why.to_string()],
+        ))
+    };
     // Lengths are checked here, since the signing crate would panic.
     let signed = match minisign_verify::Signature::decode(&text) {
         Ok(signed) => signed,
@@ -156,20 +190,33 @@ pub fn check(path: &Path, signature: Option<&Path>, key: Option<&PublicKey>) -> 
         Err(error) => return unreadable(&error),
     };
     let Some(key) = key else {
-        let says = format!("signed with key {by}; give its public key with `--public-key` to check it");
+        let says =
+            format!("signed with key {by}; give its public key with `--public-key` to check it");
         return Ok(Check::not_checked(NAME, says));
     };
     let bytes = content(path)?;
-    let checked = minisign_verify::PublicKey::from_base64(&key.to_base64()).and_then(|key| key.verify(&bytes, &signed, false));
+    let checked = minisign_verify::PublicKey::from_base64(&key.to_base64())
+        .and_then(|key| key.verify(&bytes, &signed, false));
     Ok(match checked {
-        Ok(()) => Check::agrees(NAME, format!("signed with key {by}: {}", signed.trusted_comment())),
+        Ok(()) => {
+            Check::agrees(NAME, format!("signed with key {by}: {}", signed.trusted_comment()))
+        }
         Err(error) => {
-            let keys = format!("signed with key {by}, checked with key {}: {error}", number(key.keynum()));
-            match of_another_file(signed.trusted_comment(), &bytes).filter(|_| by == number(key.keynum())) {
-                Some(says) => {
-                    Check::differs(NAME, "the signature is not one of this file, but of an earlier report or another file", vec![says])
-                }
-                None => Check::differs(NAME, "the signature is not one of this file with this key", vec![keys]),
+            let keys =
+                format!("signed with key {by}, checked with key {}: {error}", number(key.keynum()));
+            match of_another_file(signed.trusted_comment(), &bytes)
+                .filter(|_| by == number(key.keynum()))
+            {
+                Some(says) => Check::differs(
+                    NAME,
+                    "the signature is not one of this file, but of an earlier report or another file",
+                    vec![says],
+                ),
+                None => Check::differs(
+                    NAME,
+                    "the signature is not one of this file with this key",
+                    vec![keys],
+                ),
             }
         }
     })

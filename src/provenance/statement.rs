@@ -1,7 +1,8 @@
-//! Provenance of the report files as an in-toto Statement v1 with a predicate of SLSA Provenance v1, which other programs can read.
+//! Provenance of the report files as an in-toto Statement v1 with a predicate of SLSA Provenance
+//! v1, which other programs can read.
 //!
-//! Formats: in-toto Attestation Framework, "Statement" and "ResourceDescriptor"; SLSA v1.0, "Provenance". It contains neither time nor
-//! host, so that the same input gives the same bytes.
+//! Formats: in-toto Attestation Framework, "Statement" and "ResourceDescriptor"; SLSA v1.0,
+//! "Provenance". It contains neither time nor host, so that the same input gives the same bytes.
 
 use std::path::Path;
 
@@ -18,25 +19,39 @@ pub const FILE: &str = "statement.json";
 
 const STATEMENT: &str = "https://in-toto.io/Statement/v1";
 const PREDICATE: &str = "https://slsa.dev/provenance/v1";
-/// Build type, which defines the external parameters: a package URL of the page that describes them.
+/// Build type, which defines the external parameters: a package URL of the page that describes
+/// them.
 const CERTIFY: &str = "pkg:cargo/fishplate?run=certify-v1#docs/provenance.md";
 const BUILDER: &str = "pkg:cargo/fishplate";
 
 /// The statement about the files of a report; each with its path inside the output folder.
 pub fn statement(found: &Certification, files: &[(String, Vec<u8>)]) -> String {
-    let subject: Vec<Value> = files.iter().map(|(name, bytes)| resource(name, &sha256(bytes))).collect();
+    let subject: Vec<Value> =
+        files.iter().map(|(name, bytes)| resource(name, &sha256(bytes))).collect();
     let protocol = &found.protocol;
     let parameters: Map<String, Value> = protocol
         .parameters
         .iter()
-        .map(|parameter| (parameter.name.clone(), json!({"value": parameter.value, "setBy": parameter.set_by})))
+        .map(|parameter| {
+            (parameter.name.clone(), json!({"value": parameter.value, "setBy": parameter.set_by}))
+        })
         .collect();
-    let mut dependencies: Vec<Value> =
-        protocol.files.iter().map(|file| resource(&format!("protocol/{}", file.name), &file.sha256)).collect();
-    dependencies.extend(found.campaign.files.iter().map(|file| resource(&format!("campaign/{}", file.path), &file.sha256)));
+    let mut dependencies: Vec<Value> = protocol
+        .files
+        .iter()
+        .map(|file| resource(&format!("protocol/{}", file.name), &file.sha256))
+        .collect();
+    dependencies.extend(
+        found
+            .campaign
+            .files
+            .iter()
+            .map(|file| resource(&format!("campaign/{}", file.path), &file.sha256)),
+    );
     let mut campaign = Map::from_iter([("name".to_string(), json!(found.campaign.name))]);
     if !found.campaign.members.is_empty() {
-        let names: Vec<&str> = found.campaign.members.iter().map(|member| member.short_name.as_str()).collect();
+        let names: Vec<&str> =
+            found.campaign.members.iter().map(|member| member.short_name.as_str()).collect();
         campaign.insert("members".into(), json!(names));
     }
     let statement = json!({
@@ -84,23 +99,33 @@ pub fn check(folder: &Path) -> Option<Check> {
     let value: Value = serde_json::from_slice(&bytes).unwrap_or(Value::Null);
     let subjects = value["subject"].as_array().filter(|_| value["_type"] == STATEMENT);
     let Some(subjects) = subjects else {
-        return Some(Check::differs(NAME, format!("`{FILE}` is not an in-toto Statement v1"), Vec::new()));
+        return Some(Check::differs(
+            NAME,
+            format!("`{FILE}` is not an in-toto Statement v1"),
+            Vec::new(),
+        ));
     };
     let mut details = Vec::new();
     for subject in subjects {
-        let (Some(name), Some(said)) = (subject["name"].as_str(), subject["digest"]["sha256"].as_str()) else {
+        let (Some(name), Some(said)) =
+            (subject["name"].as_str(), subject["digest"]["sha256"].as_str())
+        else {
             details.push("a subject has no name or no SHA-256".into());
             continue;
         };
         match fingerprint(folder, name) {
             Ok(Some((hash, _))) if hash == said => {}
-            Ok(Some((hash, _))) => details.push(format!("changed: {name}: SHA-256 {said} in the statement, {hash} now")),
+            Ok(Some((hash, _))) => details
+                .push(format!("changed: {name}: SHA-256 {said} in the statement, {hash} now")),
             Ok(None) => details.push(format!("missing: {name}")),
             Err(problem) => details.push(format!("not readable: {name}: {}", problem.says)),
         }
     }
     if details.is_empty() {
-        return Some(Check::agrees(NAME, format!("{} files have the SHA-256 given in {FILE}", subjects.len())));
+        return Some(Check::agrees(
+            NAME,
+            format!("{} files have the SHA-256 given in {FILE}", subjects.len()),
+        ));
     }
     Some(Check::differs(NAME, "files differ from those in the statement", details))
 }

@@ -38,12 +38,21 @@ pub struct Traced {
 /// With a campaign, its rows and values are read and computed again.
 ///
 /// # Errors
-/// `no-such-quantity`, `no-such-section`, `no-such-signal`, `not-evaluated`; problems of the campaign.
-pub fn trace(carried: &Carried, compiled: Option<&Compiled>, asked: Asked<'_>, campaigns: &[PathBuf]) -> Result<Traced, Problems> {
+/// `no-such-quantity`, `no-such-section`, `no-such-signal`, `not-evaluated`; problems of the
+/// campaign.
+pub fn trace(
+    carried: &Carried,
+    compiled: Option<&Compiled>,
+    asked: Asked<'_>,
+    campaigns: &[PathBuf],
+) -> Result<Traced, Problems> {
     let (quantity, pair) = find(carried, asked).map_err(|problem| Problems(vec![problem]))?;
     let index = compiled.and_then(|compiled| {
         let index = compiled.plan.quantities.iter().position(|known| known.id == quantity.id)?;
-        let signal = compiled.plan.quantities[index].positions.iter().position(|position| position.name == pair.signal)?;
+        let signal = compiled.plan.quantities[index]
+            .positions
+            .iter()
+            .position(|position| position.name == pair.signal)?;
         Some((index, signal))
     });
     let again = match (compiled, index) {
@@ -51,21 +60,40 @@ pub fn trace(carried: &Carried, compiled: Option<&Compiled>, asked: Asked<'_>, c
             let mut opened = super::verify::open(carried, campaigns)?;
             let (plan, graph) = (&compiled.plan, &compiled.graph);
             find::in_all(plan, graph, &mut opened)?;
-            Some(single(plan, graph, Campaigns::from(&opened), index, (asked.section, pair.record.as_deref()))?)
+            Some(single(
+                plan,
+                graph,
+                Campaigns::from(&opened),
+                index,
+                (asked.section, pair.record.as_deref()),
+            )?)
         }
         _ => None,
     };
     let mut out = head(quantity, pair);
     if let Some((compiled, index)) = compiled.zip(index) {
         rule(&mut out, compiled, quantity, index.0);
-        operations(&mut out, carried, compiled, index, asked.section)
-            .map_err(|says| Problems(vec![Problem::error("not-evaluated", format!("the result does not match its protocol: {says}"))]))?;
+        operations(&mut out, carried, compiled, index, asked.section).map_err(|says| {
+            Problems(vec![Problem::error(
+                "not-evaluated",
+                format!("the result does not match its protocol: {says}"),
+            )])
+        })?;
     } else {
-        let _ = writeln!(out, "\nThe protocol is not available: give report.pdf, which contains it, or name it with `--protocol`.");
+        let _ = writeln!(
+            out,
+            "\nThe protocol is not available: give report.pdf, which contains it, or name it with `--protocol`."
+        );
     }
     let mut agrees = true;
-    let read = |file: &File| again.as_ref().is_some_and(|again| again.records.iter().any(|side| side.file.path == file.path));
-    let within = compiled.zip(index).and_then(|(compiled, index)| compiled.plan.quantities[index.0].evaluation.pairing()?.within());
+    let read = |file: &File| {
+        again
+            .as_ref()
+            .is_some_and(|again| again.records.iter().any(|side| side.file.path == file.path))
+    };
+    let within = compiled.zip(index).and_then(|(compiled, index)| {
+        compiled.plan.quantities[index.0].evaluation.pairing()?.within()
+    });
     // A run is the record of many sections: it stands once.
     let mut files: Vec<&File> = Vec::new();
     for file in records(carried, pair, within.map(|side| side.kind().key()), &read) {
@@ -74,14 +102,26 @@ pub fn trace(carried: &Carried, compiled: Option<&Compiled>, asked: Asked<'_>, c
         }
     }
     for file in &files {
-        let side = again.as_ref().and_then(|again| again.records.iter().find(|side| side.file.path == file.path));
+        let side = again
+            .as_ref()
+            .and_then(|again| again.records.iter().find(|side| side.file.path == file.path));
         agrees &= record(&mut out, file, pair, side, compiled.zip(index));
     }
     if let Some(again) = &again {
-        agrees &= again.records.iter().all(|side| files.iter().any(|file| file.path == side.file.path));
+        agrees &=
+            again.records.iter().all(|side| files.iter().any(|file| file.path == side.file.path));
         agrees &= near(again.difference, pair.difference);
-        let same = if near(again.difference, pair.difference) { "as in the report" } else { "NOT as in the report" };
-        let _ = writeln!(out, "\ncomputed again: {}{}, {same}", again.difference, suffix(&quantity.unit));
+        let same = if near(again.difference, pair.difference) {
+            "as in the report"
+        } else {
+            "NOT as in the report"
+        };
+        let _ = writeln!(
+            out,
+            "\ncomputed again: {}{}, {same}",
+            again.difference,
+            suffix(&quantity.unit)
+        );
     }
     statistics(&mut out, carried, quantity, pair);
     Ok(Traced { text: out, agrees })
@@ -94,22 +134,45 @@ fn near(a: f64, b: f64) -> bool {
 
 fn find<'a>(carried: &'a Carried, asked: Asked<'_>) -> Result<(&'a Quantity, &'a Pair), Problem> {
     let results = &carried.results;
-    let quantity = results.quantities.iter().find(|quantity| quantity.id == asked.quantity).ok_or_else(|| {
-        Problem::error("no-such-quantity", format!("the report has no quantity `{}`", asked.quantity))
+    let quantity = results
+        .quantities
+        .iter()
+        .find(|quantity| quantity.id == asked.quantity)
+        .ok_or_else(|| {
+            Problem::error(
+                "no-such-quantity",
+                format!("the report has no quantity `{}`", asked.quantity),
+            )
             .suggest(asked.quantity, results.quantities.iter().map(|quantity| quantity.id.as_str()))
-    })?;
-    let section = results.sections.iter().find(|section| section.section == asked.section).ok_or_else(|| {
-        Problem::error("no-such-section", format!("the report has no section `{}`", asked.section))
+        })?;
+    let section = results
+        .sections
+        .iter()
+        .find(|section| section.section == asked.section)
+        .ok_or_else(|| {
+            Problem::error(
+                "no-such-section",
+                format!("the report has no section `{}`", asked.section),
+            )
             .suggest(asked.section, results.sections.iter().map(|section| section.section.as_str()))
-    })?;
+        })?;
     if let Some(reason) = section.reason.as_ref().filter(|_| !section.used) {
-        return Err(Problem::error("not-evaluated", format!("section {} is not used: {reason}", section.section)));
+        return Err(Problem::error(
+            "not-evaluated",
+            format!("section {} is not used: {reason}", section.section),
+        ));
     }
-    let here: Vec<&Pair> = quantity.values.iter().filter(|pair| pair.section == asked.section).collect();
-    let of_signal: Vec<&Pair> = here.iter().filter(|pair| pair.signal == asked.signal).copied().collect();
+    let here: Vec<&Pair> =
+        quantity.values.iter().filter(|pair| pair.section == asked.section).collect();
+    let of_signal: Vec<&Pair> =
+        here.iter().filter(|pair| pair.signal == asked.signal).copied().collect();
     if of_signal.is_empty() {
-        let says = format!("{} has no value of `{}` in section {}", quantity.id, asked.signal, asked.section);
-        return Err(Problem::error("no-such-signal", says).suggest(asked.signal, here.iter().map(|pair| pair.signal.as_str())));
+        let says = format!(
+            "{} has no value of `{}` in section {}",
+            quantity.id, asked.signal, asked.section
+        );
+        return Err(Problem::error("no-such-signal", says)
+            .suggest(asked.signal, here.iter().map(|pair| pair.signal.as_str())));
     }
     let names: Vec<&str> = of_signal.iter().filter_map(|pair| pair.record.as_deref()).collect();
     let found = match asked.record {
@@ -135,8 +198,12 @@ fn suffix(unit: &str) -> String {
 fn head(quantity: &Quantity, pair: &Pair) -> String {
     let unit = suffix(&quantity.unit);
     let zone = pair.zone.as_ref().map_or_else(String::new, |zone| format!(" (zone {zone})"));
-    let record = pair.record.as_ref().map_or_else(String::new, |record| format!(", record {record}"));
-    let mut out = format!("{}: {}\nsection {}{zone}, signal {}{record}\n\n", quantity.id, quantity.title, pair.section, pair.signal);
+    let record =
+        pair.record.as_ref().map_or_else(String::new, |record| format!(", record {record}"));
+    let mut out = format!(
+        "{}: {}\nsection {}{zone}, signal {}{record}\n\n",
+        quantity.id, quantity.title, pair.section, pair.signal
+    );
     for (name, value) in [("simulated", pair.simulated), ("measured", pair.measured)] {
         if let Some(value) = value {
             let _ = writeln!(out, "  {name:<11}{value}{unit}");
@@ -160,8 +227,12 @@ fn said(place: Option<&Place>) -> String {
 fn rule(out: &mut String, compiled: &Compiled, quantity: &Quantity, index: usize) {
     let plan = &compiled.plan.quantities[index];
     let _ = writeln!(out, "\nrule{}", said(quantity.rule.as_ref()));
-    let rows =
-        [("of", &plan.words.of), ("filter", &plan.words.filter), ("value", &plan.words.processing), ("compared", &plan.words.comparison)];
+    let rows = [
+        ("of", &plan.words.of),
+        ("filter", &plan.words.filter),
+        ("value", &plan.words.processing),
+        ("compared", &plan.words.comparison),
+    ];
     for (name, words) in rows {
         let _ = writeln!(out, "  {name:<11}{words}");
     }
@@ -170,21 +241,36 @@ fn rule(out: &mut String, compiled: &Compiled, quantity: &Quantity, index: usize
     }
 }
 
-fn operations(out: &mut String, carried: &Carried, compiled: &Compiled, index: (usize, usize), section: &str) -> Result<(), String> {
+fn operations(
+    out: &mut String,
+    carried: &Carried,
+    compiled: &Compiled,
+    index: (usize, usize),
+    section: &str,
+) -> Result<(), String> {
     let recorded = carried.results.recorded(&compiled.plan)?;
-    let nodes = crate::run::replay::operations(&compiled.plan, &compiled.graph, &recorded, index, section)?;
+    let nodes =
+        crate::run::replay::operations(&compiled.plan, &compiled.graph, &recorded, index, section)?;
     let node = |id: &usize| &compiled.graph.nodes[*id];
     let width = nodes.iter().map(|id| node(id).label.chars().count()).max().unwrap_or(0).min(60);
     let _ = writeln!(out, "\noperations in order, each with the first rule that requires it");
     for id in &nodes {
         let Node { operation, label, from, .. } = node(id);
-        let _ = writeln!(out, "  {:<8} {label:<width$}  ({})", operation.stage().in_words(), place(from));
+        let _ = writeln!(
+            out,
+            "  {:<8} {label:<width$}  ({})",
+            operation.stage().in_words(),
+            place(from)
+        );
     }
     let columns = nodes.iter().filter_map(|id| match &node(id).operation {
         Operation::Read { column } => Some(column.as_str()),
         _ => None,
     });
-    let axis = [Some(&compiled.plan.axis), compiled.plan.time.as_ref()].into_iter().flatten().map(|axis| axis.column.as_str());
+    let axis = [Some(&compiled.plan.axis), compiled.plan.time.as_ref()]
+        .into_iter()
+        .flatten()
+        .map(|axis| axis.column.as_str());
     let columns: Vec<&str> = axis.chain(columns).collect();
     let _ = writeln!(out, "\ncolumns read: {}", columns.join(", "));
     if let Some(section) = carried.results.sections.iter().find(|known| known.section == section) {
@@ -194,15 +280,21 @@ fn operations(out: &mut String, carried: &Carried, compiled: &Compiled, index: (
     Ok(())
 }
 
-/// The records that a value was taken from, the simulated one first, and those that were read to compute it again.
+/// The records that a value was taken from, the simulated one first, and those that were read to
+/// compute it again.
 fn records<'a>(
     carried: &'a Carried,
     pair: &'a Pair,
     within: Option<&'static str>,
     read: &'a dyn Fn(&File) -> bool,
 ) -> impl Iterator<Item = &'a File> {
-    let took_part = move |kind: &str, name: Option<&str>| match (within, pair.record.as_deref().and_then(|of| of.split_once(", "))) {
-        (Some(within), Some((first, second))) => kind == within && name.is_some_and(|name| name == first || name == second),
+    let took_part = move |kind: &str, name: Option<&str>| match (
+        within,
+        pair.record.as_deref().and_then(|of| of.split_once(", ")),
+    ) {
+        (Some(within), Some((first, second))) => {
+            kind == within && name.is_some_and(|name| name == first || name == second)
+        }
         _ => took_part(pair.record.as_deref(), kind == "simulation", name),
     };
     let of = move |file: &&File, kind: &str| {
@@ -212,11 +304,19 @@ fn records<'a>(
         })
     };
     let all = &carried.results.campaign.files;
-    ["simulation", "measurement"].into_iter().flat_map(move |kind| all.iter().filter(move |file| of(file, kind)))
+    ["simulation", "measurement"]
+        .into_iter()
+        .flat_map(move |kind| all.iter().filter(move |file| of(file, kind)))
 }
 
 /// Describes one record; returns whether it is unchanged and gives the same value.
-fn record(out: &mut String, file: &File, pair: &Pair, side: Option<&Side>, compiled: Option<(&Compiled, (usize, usize))>) -> bool {
+fn record(
+    out: &mut String,
+    file: &File,
+    pair: &Pair,
+    side: Option<&Side>,
+    compiled: Option<(&Compiled, (usize, usize))>,
+) -> bool {
     let _ = writeln!(out, "\n{}\n  SHA-256    {}", file.path, file.sha256);
     let (Some(side), Some((compiled, index))) = (side, compiled) else { return true };
     let mut agrees = side.file.sha256 == file.sha256;
@@ -224,7 +324,11 @@ fn record(out: &mut String, file: &File, pair: &Pair, side: Option<&Side>, compi
         let _ = writeln!(out, "  CHANGED    {} now", side.file.sha256);
     }
     let (first, last) = side.inside;
-    let _ = writeln!(out, "  rows       {first} to {last} lie in the section, {} to {} are filtered", side.filtered.0, side.filtered.1);
+    let _ = writeln!(
+        out,
+        "  rows       {first} to {last} lie in the section, {} to {} are filtered",
+        side.filtered.0, side.filtered.1
+    );
     let plan = &compiled.plan.quantities[index.0];
     for (node, value, samples) in &side.reduced {
         let node = &compiled.graph.nodes[*node];
@@ -239,7 +343,11 @@ fn record(out: &mut String, file: &File, pair: &Pair, side: Option<&Side>, compi
     if let (Some(value), Some(before)) = (side.value, before) {
         let same = near(value, before);
         agrees &= same;
-        let words = if same { "as in the report".to_string() } else { format!("NOT the {before} of the report") };
+        let words = if same {
+            "as in the report".to_string()
+        } else {
+            format!("NOT the {before} of the report")
+        };
         let _ = writeln!(out, "  value      {value}{}, {words}", plan.unit.suffix());
     }
     agrees
@@ -257,18 +365,26 @@ fn statistics(out: &mut String, carried: &Carried, quantity: &Quantity, pair: &P
     let _ = writeln!(out, "\nenters");
     // Of groups told apart by more than the zone, the estimates of the section's zone are listed.
     let zone = pair.zone.as_ref().map(|zone| format!("zone {zone}"));
-    let of_zone = |scope: &str| scope.split(", ").next().filter(|first| first.starts_with("zone ")).map(str::to_string);
-    let other = |statistic: &&Statistic| of_zone(&statistic.scope).is_some_and(|of| Some(of) != zone);
+    let of_zone = |scope: &str| {
+        scope.split(", ").next().filter(|first| first.starts_with("zone ")).map(str::to_string)
+    };
+    let other =
+        |statistic: &&Statistic| of_zone(&statistic.scope).is_some_and(|of| Some(of) != zone);
     for statistic in quantity.statistics.iter().filter(|statistic| !other(statistic)) {
-        let scope = if statistic.scope == "all" { String::new() } else { format!(", {}", statistic.scope) };
+        let scope =
+            if statistic.scope == "all" { String::new() } else { format!(", {}", statistic.scope) };
         let unit = suffix(&statistic.unit);
-        let shown = |value: Option<f64>| value.map_or_else(|| "-".to_string(), |value| format!("{}{unit}", significant(value, 5)));
+        let shown = |value: Option<f64>| {
+            value
+                .map_or_else(|| "-".to_string(), |value| format!("{}{unit}", significant(value, 5)))
+        };
         let holds = match statistic.holds {
             Some(true) => "holds",
             Some(false) => "EXCEEDS",
             None => "not assessable",
         };
-        let share = statistic.normalised.map_or_else(String::new, |share| format!(", share {share:.3}"));
+        let share =
+            statistic.normalised.map_or_else(String::new, |share| format!(", share {share:.3}"));
         let _ = writeln!(
             out,
             "  {}{scope}: {} of {} values, limit {} ({}){share}: {holds}{}",

@@ -39,14 +39,26 @@ pub fn alone(carried: &Carried, given: Option<&Family>) -> (Vec<Check>, Option<C
     let mut problems = Problems::default();
     let compiled = carried.compiled(&sources, &mut problems).filter(|_| !problems.any_error());
     let Some(compiled) = compiled else {
-        let details = problems.0.iter().map(|problem| format!("{}: {}", problem.code, problem.says)).collect();
-        checks.push(Check::differs("protocol rules", "the protocol in the report has errors", details));
+        let details = problems
+            .0
+            .iter()
+            .map(|problem| format!("{}: {}", problem.code, problem.says))
+            .collect();
+        checks.push(Check::differs(
+            "protocol rules",
+            "the protocol in the report has errors",
+            details,
+        ));
         return (checks, None);
     };
-    let found = compare(&carried.value["protocol"], &json::protocol(&protocol_info(&compiled)), "protocol");
+    let found =
+        compare(&carried.value["protocol"], &json::protocol(&protocol_info(&compiled)), "protocol");
     checks.push(Check::of(
         "protocol rules",
-        format!("{} and the parameters are those of the report", count(compiled.plan.quantities.len(), "quantity", "quantities")),
+        format!(
+            "{} and the parameters are those of the report",
+            count(compiled.plan.quantities.len(), "quantity", "quantities")
+        ),
         "the protocol in the report contradicts its results",
         details(&found),
     ));
@@ -55,13 +67,20 @@ pub fn alone(carried: &Carried, given: Option<&Family>) -> (Vec<Check>, Option<C
 }
 
 fn with_help(problem: &Problem) -> String {
-    problem.help.as_ref().map_or_else(|| problem.says.clone(), |help| format!("{}: {help}", problem.says))
+    problem
+        .help
+        .as_ref()
+        .map_or_else(|| problem.says.clone(), |help| format!("{}: {help}", problem.says))
 }
 
-/// Checks the text form of the results, which is unique, so that manual changes such as a repeated key are detected.
+/// Checks the text form of the results, which is unique, so that manual changes such as a repeated
+/// key are detected.
 fn form(carried: &Carried) -> Check {
     if carried.results.fishplate != THIS {
-        let says = format!("written by fishplate {}, this is {THIS}: the form is not compared", carried.results.fishplate);
+        let says = format!(
+            "written by fishplate {}, this is {THIS}: the form is not compared",
+            carried.results.fishplate
+        );
         return Check::not_checked("form", says);
     }
     let again = json::text(&carried.value);
@@ -82,8 +101,11 @@ fn files_beside(carried: &Carried) -> Vec<Check> {
     let Some(folder) = &carried.folder else { return Vec::new() };
     let mut checks = Vec::new();
     if carried.pdf.is_some() {
-        let differs =
-            if carried.other_results { vec!["results.json differs from the one inside report.pdf".to_string()] } else { Vec::new() };
+        let differs = if carried.other_results {
+            vec!["results.json differs from the one inside report.pdf".to_string()]
+        } else {
+            Vec::new()
+        };
         let agrees = "results.json is the same as inside report.pdf";
         checks.push(Check::of("results.json", agrees, "two results", differs));
     }
@@ -97,27 +119,47 @@ fn protocol_text(carried: &Carried, texts: &[&str]) -> Check {
     for (file, text) in named.files.iter().zip(texts) {
         let found = sha256(text.as_bytes());
         if found != file.sha256 {
-            details.push(format!("{}: SHA-256 {} in the results, {found} of the text", file.name, file.sha256));
+            details.push(format!(
+                "{}: SHA-256 {} in the results, {found} of the text",
+                file.name, file.sha256
+            ));
         }
     }
     let all = sha256(texts.concat().as_bytes());
     if details.is_empty() && all != named.sha256 {
-        details.push(format!("all files together: SHA-256 {} in the results, {all} of the texts", named.sha256));
+        details.push(format!(
+            "all files together: SHA-256 {} in the results, {all} of the texts",
+            named.sha256
+        ));
     }
     let agrees = match texts.len() {
         1 => "its file has the SHA-256 given in the results".to_string(),
         many => format!("{many} files have the SHA-256 given in the results"),
     };
-    Check::of("protocol text", agrees, "the protocol in the report is not the one that was evaluated", details)
+    Check::of(
+        "protocol text",
+        agrees,
+        "the protocol in the report is not the one that was evaluated",
+        details,
+    )
 }
 
 /// Checks that statistics, verdict and reasons follow from the printed values.
 fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
     const NAME: &str = "statistics";
-    let replayed = carried.results.recorded(&compiled.plan).and_then(|recorded| replay(&compiled.plan, &compiled.graph, &recorded));
+    let replayed = carried
+        .results
+        .recorded(&compiled.plan)
+        .and_then(|recorded| replay(&compiled.plan, &compiled.graph, &recorded));
     let replayed = match replayed {
         Ok(replayed) => replayed,
-        Err(says) => return Check::differs(NAME, "the values cannot be evaluated with the protocol", vec![says]),
+        Err(says) => {
+            return Check::differs(
+                NAME,
+                "the values cannot be evaluated with the protocol",
+                vec![says],
+            );
+        }
     };
     let value = |key: &str| carried.value.get(key).unwrap_or(&Value::Null);
     let mut details: Vec<String> = replayed.contradictions;
@@ -145,9 +187,13 @@ fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
         numbers += found.numbers;
         details.extend(found.differences.iter().map(|one| told(one, "follows from the values")));
     }
-    let of: usize = carried.results.quantities.iter().map(|quantity| quantity.statistics.len()).sum();
-    let values: usize = carried.results.quantities.iter().map(|quantity| quantity.values.len()).sum();
-    let agrees = format!("{of} statistics, their limits and the verdict follow from {values} values ({numbers} numbers compared)");
+    let of: usize =
+        carried.results.quantities.iter().map(|quantity| quantity.statistics.len()).sum();
+    let values: usize =
+        carried.results.quantities.iter().map(|quantity| quantity.values.len()).sum();
+    let agrees = format!(
+        "{of} statistics, their limits and the verdict follow from {values} values ({numbers} numbers compared)"
+    );
     Check::of(NAME, agrees, "statistics or the verdict do not follow from the values", details)
 }
 
@@ -174,14 +220,20 @@ pub fn of_as_many(carried: &Carried, campaigns: &[PathBuf]) -> Result<(), Proble
     let says = match members.len() {
         0 => format!("the report is of one campaign, not of {}", campaigns.len()),
         many => {
-            let names: Vec<&str> = members.iter().map(|member| member.short_name.as_str()).collect();
-            format!("the report is of {many} campaigns, not of {}; give these: {}", campaigns.len(), names.join("; "))
+            let names: Vec<&str> =
+                members.iter().map(|member| member.short_name.as_str()).collect();
+            format!(
+                "the report is of {many} campaigns, not of {}; give these: {}",
+                campaigns.len(),
+                names.join("; ")
+            )
         }
     };
     Err(Problem::error("number-of-campaigns", says))
 }
 
-/// Checks of inputs, numbers and pages against the campaign, or all of a pool: as many as [`of_as_many`] wants.
+/// Checks of inputs, numbers and pages against the campaign, or all of a pool: as many as
+/// [`of_as_many`] wants.
 pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>) -> Vec<Check> {
     let opened = open(carried, again.campaigns);
     let mut lost = Vec::new();
@@ -203,19 +255,36 @@ pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>)
     let certified = compiled.map(|compiled| -> Result<Certification, Problems> {
         let mut campaigns = opened.as_ref().map_err(Clone::clone)?.clone();
         let found = find::in_all(&compiled.plan, &compiled.graph, &mut campaigns)?;
-        let certified = certify(compiled, Campaigns::from(&campaigns), Settings { traces: again.plots }, again.progress)?;
+        let certified = certify(
+            compiled,
+            Campaigns::from(&campaigns),
+            Settings { traces: again.plots },
+            again.progress,
+        )?;
         Ok(Certification { found, ..certified })
     });
     if let Some(Ok(found)) = &certified {
-        let known = |path: &str| carried.results.campaign.files.iter().any(|file| file.path == path);
+        let known =
+            |path: &str| carried.results.campaign.files.iter().any(|file| file.path == path);
         let extra = found.campaign.files.iter().filter(|file| !known(&file.path));
-        lost.extend(extra.map(|file| format!("extra: {} is read now, but was not read for the report", file.path)));
-        let unread = carried.results.campaign.files.iter().filter(|file| !found.campaign.files.iter().any(|now| now.path == file.path));
+        lost.extend(extra.map(|file| {
+            format!("extra: {} is read now, but was not read for the report", file.path)
+        }));
+        let unread = carried
+            .results
+            .campaign
+            .files
+            .iter()
+            .filter(|file| !found.campaign.files.iter().any(|now| now.path == file.path));
         lost.extend(unread.map(|file| format!("no longer read: {}", file.path)));
     }
     let files = count(carried.results.campaign.files.len(), "file has", "files have");
-    let inputs =
-        Check::of("input files", format!("{files} the SHA-256 of the report"), "the campaign differs from that of the report", lost);
+    let inputs = Check::of(
+        "input files",
+        format!("{files} the SHA-256 of the report"),
+        "the campaign differs from that of the report",
+        lost,
+    );
     let same = inputs.outcome == Outcome::Agrees;
     let mut checks = vec![inputs];
     match certified {
@@ -225,7 +294,11 @@ pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>)
                 Some(at) => format!("{}: {} ({at})", problem.code, problem.says),
                 None => format!("{}: {}", problem.code, problem.says),
             });
-            checks.push(Check::differs("run again", "the campaign can no longer be evaluated", told.collect()));
+            checks.push(Check::differs(
+                "run again",
+                "the campaign can no longer be evaluated",
+                told.collect(),
+            ));
         }
         Some(Ok(found)) => checks.extend(compared(carried, &found, again.plots, same)),
     }
@@ -238,20 +311,28 @@ pub fn against(carried: &Carried, compiled: Option<&Compiled>, again: Again<'_>)
 /// One cannot be opened, or is not of the pool.
 pub fn open(carried: &Carried, folders: &[PathBuf]) -> Result<Vec<Campaign>, Problems> {
     let mut problems = Problems::default();
-    let mut opened: Vec<Campaign> = folders.iter().filter_map(|folder| Campaign::open(folder, &mut problems)).collect();
+    let mut opened: Vec<Campaign> =
+        folders.iter().filter_map(|folder| Campaign::open(folder, &mut problems)).collect();
     if problems.any_error() {
         return Err(problems);
     }
-    let members: Vec<&str> = carried.results.campaign.members.iter().map(|member| member.short_name.as_str()).collect();
+    let members: Vec<&str> =
+        carried.results.campaign.members.iter().map(|member| member.short_name.as_str()).collect();
     if !members.is_empty() {
         for campaign in &opened {
             let name = &campaign.short_name;
             if !members.contains(&name.value.as_str()) {
-                let problem = Problem::error("unknown-campaign", format!("the report has no campaign `{}`", name.value)).at(&name.span);
+                let problem = Problem::error(
+                    "unknown-campaign",
+                    format!("the report has no campaign `{}`", name.value),
+                )
+                .at(&name.span);
                 problems.push(problem.suggest(&name.value, members.iter().copied()));
             }
         }
-        opened.sort_by_key(|campaign| members.iter().position(|name| *name == campaign.short_name.value));
+        opened.sort_by_key(|campaign| {
+            members.iter().position(|name| *name == campaign.short_name.value)
+        });
     }
     if problems.any_error() { Err(problems) } else { Ok(opened) }
 }
@@ -267,7 +348,8 @@ fn place<'a>(
         return Some((folders.first()?.as_path(), path));
     }
     let (name, inside) = path.split_once('/')?;
-    let campaign = opened.as_ref().ok()?.iter().find(|campaign| campaign.short_name.value == name)?;
+    let campaign =
+        opened.as_ref().ok()?.iter().find(|campaign| campaign.short_name.value == name)?;
     Some((campaign.folder(), inside))
 }
 
@@ -289,9 +371,16 @@ fn compared(carried: &Carried, found: &Certification, plots: usize, inputs: bool
     let mut all = compare(&before, &now, "");
     // The verdict first, as the most relevant difference.
     all.differences.sort_by_key(|one| one.path != "verdict");
-    let rounded = if all.rounded == 0 { String::new() } else { format!(", {} of them up to rounding", all.rounded) };
+    let rounded = if all.rounded == 0 {
+        String::new()
+    } else {
+        format!(", {} of them up to rounding", all.rounded)
+    };
     let agrees = format!("all {} numbers are the same as in the report{rounded}", all.numbers);
-    let differs = format!("{} from the report", count(all.differences.len(), "value differs", "values differ"));
+    let differs = format!(
+        "{} from the report",
+        count(all.differences.len(), "value differs", "values differ")
+    );
     let numbers = Check::of("run again", agrees, differs, details(&all));
     let same = inputs && numbers.outcome == Outcome::Agrees;
     let mut checks = vec![numbers];
@@ -301,11 +390,21 @@ fn compared(carried: &Carried, found: &Certification, plots: usize, inputs: bool
     checks
 }
 
-/// Compares the pages byte by byte, which is exact for the same input. Data added after them may be a signature of another program.
-fn pages(carried: &Carried, pdf: &[u8], found: &Certification, (results, plots): (&str, usize), same: bool) -> Check {
+/// Compares the pages byte by byte, which is exact for the same input. Data added after them may be
+/// a signature of another program.
+fn pages(
+    carried: &Carried,
+    pdf: &[u8],
+    found: &Certification,
+    (results, plots): (&str, usize),
+    same: bool,
+) -> Check {
     const NAME: &str = "pages";
     if carried.results.fishplate != THIS {
-        return Check::not_checked(NAME, format!("written by fishplate {}, this is {THIS}", carried.results.fishplate));
+        return Check::not_checked(
+            NAME,
+            format!("written by fishplate {}, this is {THIS}", carried.results.fishplate),
+        );
     }
     if !same {
         return Check::not_checked(NAME, "inputs or numbers differ already");
@@ -313,16 +412,38 @@ fn pages(carried: &Carried, pdf: &[u8], found: &Certification, (results, plots):
     let names = attached::protocol_names(found);
     let attachments = attached::attachments(found, results, &names);
     match typst::typeset(&view::view(found), &figure::figures(found), &attachments) {
-        Err(problems) => Check::not_possible(NAME, problems.0.first().map_or_else(String::new, |problem| problem.says.clone())),
-        Ok(made) if made.bytes == pdf => Check::agrees(NAME, "the PDF is, byte for byte, the one the program writes"),
+        Err(problems) => Check::not_possible(
+            NAME,
+            problems.0.first().map_or_else(String::new, |problem| problem.says.clone()),
+        ),
+        Ok(made) if made.bytes == pdf => {
+            Check::agrees(NAME, "the PDF is, byte for byte, the one the program writes")
+        }
         Ok(made) if pdf.starts_with(&made.bytes) => {
             let added = pdf.len() - made.bytes.len();
-            Check::agrees(NAME, format!("the PDF is the one the program writes, with {added} bytes added at its end"))
+            Check::agrees(
+                NAME,
+                format!(
+                    "the PDF is the one the program writes, with {added} bytes added at its end"
+                ),
+            )
         }
         Ok(made) => {
-            let at = made.bytes.iter().zip(pdf).position(|(a, b)| a != b).unwrap_or(made.bytes.len().min(pdf.len()));
-            let help = format!("from byte {} on; if the report has a number of plots other than {plots}, give it with `--plots`", at + 1);
-            Check::differs(NAME, "the PDF differs from the one the program writes from these inputs", vec![help])
+            let at = made
+                .bytes
+                .iter()
+                .zip(pdf)
+                .position(|(a, b)| a != b)
+                .unwrap_or(made.bytes.len().min(pdf.len()));
+            let help = format!(
+                "from byte {} on; if the report has a number of plots other than {plots}, give it with `--plots`",
+                at + 1
+            );
+            Check::differs(
+                NAME,
+                "the PDF differs from the one the program writes from these inputs",
+                vec![help],
+            )
         }
     }
 }
@@ -335,9 +456,15 @@ fn details(found: &Compared) -> Vec<String> {
 fn told(one: &Difference, now: &str) -> String {
     let of = if one.of.is_empty() { String::new() } else { format!(" ({})", one.of) };
     match (&one.before, &one.after) {
-        (Some(before), Some(after)) => format!("{}{of}: {before} in the report, {after} {now}", one.path),
+        (Some(before), Some(after)) => {
+            format!("{}{of}: {before} in the report, {after} {now}", one.path)
+        }
         (Some(before), None) => format!("{}{of}: {before} in the report, missing {now}", one.path),
-        (None, after) => format!("{}{of}: missing in the report, {} {now}", one.path, after.as_deref().unwrap_or_default()),
+        (None, after) => format!(
+            "{}{of}: missing in the report, {} {now}",
+            one.path,
+            after.as_deref().unwrap_or_default()
+        ),
     }
 }
 

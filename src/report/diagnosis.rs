@@ -1,4 +1,5 @@
-//! A diagnosis as a document: answer, location of the gap, causes, reduction of the gap, detectable effects.
+//! A diagnosis as a document: answer, location of the gap, causes, reduction of the gap, detectable
+//! effects.
 
 use crate::report::detectable::detectable;
 use crate::report::figure;
@@ -7,10 +8,12 @@ use crate::report::study::{Chapter, Document, Head, Item, Table};
 use crate::report::view::{self, Fact, Finding};
 use crate::result::Certification;
 use crate::result::diagnosis::{
-    Cause, Diagnosis, Invariant, NamedEffect, QuantityShrink, Ratio, Shape, Shrink, Slope, Trend, Value, Where,
+    Cause, Diagnosis, Invariant, NamedEffect, QuantityShrink, Ratio, Shape, Shrink, Slope, Trend,
+    Value, Where,
 };
 
-/// Number of significant cells listed, and of cells listed where fewer are significant; diagnosis.json contains all.
+/// Number of significant cells listed, and of cells listed where fewer are significant;
+/// diagnosis.json contains all.
 const CELLS: usize = 30;
 const FIRST_CELLS: usize = 12;
 /// Share of the gap below which a cell is not listed.
@@ -19,7 +22,8 @@ const LEAST_SHARE: f64 = 0.0005;
 const TRENDS: usize = 12;
 const FEW: usize = 4;
 
-/// The diagnosis as printed in both reports. `before` is the protocol evaluated on the campaign as it is.
+/// The diagnosis as printed in both reports. `before` is the protocol evaluated on the campaign as
+/// it is.
 #[must_use]
 pub fn document(found: &Diagnosis, before: &Certification) -> Document {
     let mut chapters = vec![answer(found), places(found)];
@@ -48,12 +52,17 @@ pub fn document(found: &Diagnosis, before: &Certification) -> Document {
             Fact { name: "Verdict before".into(), value: before.verdict_word().into() },
             Fact {
                 name: "Verdict with the effects".into(),
+                value: found.shrink.as_ref().map_or("-".into(), |shrink| {
+                    before.protocol.verdict_words.word(shrink.verdict_after).to_owned()
+                }),
+            },
+            Fact {
+                name: "Gap removed".into(),
                 value: found
                     .shrink
                     .as_ref()
-                    .map_or("-".into(), |shrink| before.protocol.verdict_words.word(shrink.verdict_after).to_owned()),
+                    .map_or("-".into(), |shrink| share(shrink.fraction_removed)),
             },
-            Fact { name: "Gap removed".into(), value: found.shrink.as_ref().map_or("-".into(), |shrink| share(shrink.fraction_removed)) },
             Fact { name: "Sections".into(), value: found.how.sections.to_string() },
         ],
         symbols: before.quantities.iter().map(|quantity| quantity.symbol.clone()).collect(),
@@ -105,16 +114,32 @@ fn answer(found: &Diagnosis) -> Chapter {
 }
 
 fn places(found: &Diagnosis) -> Chapter {
-    let told = |(at, place): &(usize, &Where)| place.significant || *at < FIRST_CELLS && place.share_of_gap >= LEAST_SHARE;
+    let told = |(at, place): &(usize, &Where)| {
+        place.significant || *at < FIRST_CELLS && place.share_of_gap >= LEAST_SHARE
+    };
     let size = |place: &Where, value: f64| match place.unit.as_str() {
         "-" => number::with_unit(&number::fixed(100.0 * value, 0), "%"),
-        unit => number::with_unit(&number::fixed(value, number::decimals_of([place.difference_rms], 3)), unit),
+        unit => number::with_unit(
+            &number::fixed(value, number::decimals_of([place.difference_rms], 3)),
+            unit,
+        ),
     };
     let rows = found.r#where.iter().enumerate().filter(told).take(CELLS).map(|(_, place)| {
-        let p = if place.p_value < 1e-6 { "<\u{a0}0.000001".into() } else { number::significant(place.p_value, 2) };
+        let p = if place.p_value < 1e-6 {
+            "<\u{a0}0.000001".into()
+        } else {
+            number::significant(place.p_value, 2)
+        };
         vec![
             place.quantity.clone(),
-            place.says.split(", ").skip(1).take(2).filter(|part| *part != place.wavelength_or_band).collect::<Vec<_>>().join(", "),
+            place
+                .says
+                .split(", ")
+                .skip(1)
+                .take(2)
+                .filter(|part| *part != place.wavelength_or_band)
+                .collect::<Vec<_>>()
+                .join(", "),
             place.wavelength_or_band.clone(),
             place.zones.join(", "),
             size(place, place.difference),
@@ -146,7 +171,8 @@ fn places(found: &Diagnosis) -> Chapter {
         text.push_str(" No single cell does; the conclusions below rest on all cells together.");
     }
     let caption = "Share of the gap by quantity and position, zone and band; darker cells have a larger share (scale below); a dot marks significant cells";
-    let map = Item::figure("map", caption, "Map of cells, darker where the share of the gap is larger");
+    let map =
+        Item::figure("map", caption, "Map of cells, darker where the share of the gap is larger");
     let mut items = vec![Item::text(text), map, Item::Table { table }];
     if !found.invariants.is_empty() {
         items.push(Item::Table { table: invariants(&found.invariants, !found.causes.is_empty()) });
@@ -154,7 +180,9 @@ fn places(found: &Diagnosis) -> Chapter {
     items.extend(trends(found));
     if !found.shapes.is_empty() {
         items.push(Item::Table { table: shapes(&found.shapes) });
-        items.push(Item::List { entries: found.shapes.iter().map(|shape| shape.says.clone()).collect() });
+        items.push(Item::List {
+            entries: found.shapes.iter().map(|shape| shape.says.clone()).collect(),
+        });
     }
     chapter("where", "Where the gap lies", items)
 }
@@ -164,7 +192,13 @@ fn invariants(all: &[Invariant], named: bool) -> Table {
     let rows = all.iter().map(|one| {
         let decimals = number::decimals_of([one.before, one.after, one.allowed], 3);
         let number = |value: f64| number::with_unit(&number::fixed(value, decimals), &one.unit);
-        let off = |value: f64, allowed: f64| if allowed > 0.0 { number::fixed(value.abs() / allowed, 1) } else { number::NONE.to_owned() };
+        let off = |value: f64, allowed: f64| {
+            if allowed > 0.0 {
+                number::fixed(value.abs() / allowed, 1)
+            } else {
+                number::NONE.to_owned()
+            }
+        };
         let mut cells = vec![one.name.clone(), one.parity.to_owned(), number(one.before)];
         cells.extend(named.then(|| number(one.after)));
         cells.extend([number(one.allowed), off(one.before, one.allowed)]);
@@ -175,7 +209,10 @@ fn invariants(all: &[Invariant], named: bool) -> Table {
                    allowed is one standard deviation, which is the unit of the deviations (after: including the effects)";
     let mut head = vec![Head::text("Sum"), Head::text("Symmetry"), Head::number("As simulated")];
     head.extend(named.then(|| Head::number("With the effects")));
-    head.extend([Head::number("Allowed"), Head::number(if named { "Deviation before" } else { "Deviation" })]);
+    head.extend([
+        Head::number("Allowed"),
+        Head::number(if named { "Deviation before" } else { "Deviation" }),
+    ]);
     head.extend(named.then(|| Head::number("Deviation after")));
     Table { caption: caption.into(), head, rows: rows.collect() }
 }
@@ -185,9 +222,16 @@ fn trends(found: &Diagnosis) -> Vec<Item> {
     if found.trends_tested == 0 {
         return Vec::new();
     }
-    let significant: Vec<&Trend> = found.trends.iter().filter(|trend| trend.before.significant || trend.after.significant).collect();
+    let significant: Vec<&Trend> = found
+        .trends
+        .iter()
+        .filter(|trend| trend.before.significant || trend.after.significant)
+        .collect();
     let gone = significant.iter().filter(|trend| !trend.after.significant).count();
-    let mut text = format!("Of {} trends of a difference over a column of the section table, ", found.trends_tested);
+    let mut text = format!(
+        "Of {} trends of a difference over a column of the section table, ",
+        found.trends_tested
+    );
     let named = !found.causes.is_empty();
     text += &match (significant.len(), named) {
         (0, _) if found.trends.is_empty() => "none exceeds the allowed difference.".to_owned(),
@@ -205,19 +249,30 @@ fn trends(found: &Diagnosis) -> Vec<Item> {
             found.together.join("; ")
         );
     }
-    let listed: Vec<&Trend> = if significant.is_empty() { found.trends.iter().take(FEW).collect() } else { significant };
+    let listed: Vec<&Trend> =
+        if significant.is_empty() { found.trends.iter().take(FEW).collect() } else { significant };
     let row = |trend: &&Trend| {
         let change = |slope: &Slope| {
             let decimals = number::decimals_of([slope.change, slope.low, slope.high], 2);
-            let of = |value: f64| if trend.unit == "-" { number::fixed(100.0 * value, 0) } else { number::fixed(value, decimals) };
+            let of = |value: f64| {
+                if trend.unit == "-" {
+                    number::fixed(100.0 * value, 0)
+                } else {
+                    number::fixed(value, decimals)
+                }
+            };
             let unit = if trend.unit == "-" { "%" } else { &trend.unit };
             let mark = if slope.significant { " *" } else { "" };
             let between = format!("({} to {})", of(slope.low), of(slope.high));
             format!("{} {}{mark}", of(slope.change), number::with_unit(&between, unit))
         };
         let last = if named { &trend.after } else { &trend.before };
-        let mut cells =
-            vec![format!("{}, {}", trend.quantity, trend.position), trend.wavelength_or_band.clone(), over(trend), change(&trend.before)];
+        let mut cells = vec![
+            format!("{}, {}", trend.quantity, trend.position),
+            trend.wavelength_or_band.clone(),
+            over(trend),
+            change(&trend.before),
+        ];
         cells.extend(named.then(|| change(last)));
         cells.push(number::fixed(last.correlation, 2));
         cells
@@ -226,31 +281,55 @@ fn trends(found: &Diagnosis) -> Vec<Item> {
         "Change of simulated - measured over the range of a column of the section table, by generalised least squares on that column \
          alone, with a 90 % interval; * significant at a false discovery rate of 5 %. {}r is the correlation of the differences as simulated{}",
         // A machine without left and right curves has none.
-        if found.mirrored { "Levels that change sign with the curve are turned to one direction. " } else { "" },
+        if found.mirrored {
+            "Levels that change sign with the curve are turned to one direction. "
+        } else {
+            ""
+        },
         if named { ", with the effects" } else { "" }
     );
-    let mut head = vec![Head::text("Quantity"), Head::short("Band"), Head::text("Over"), Head::number("As simulated")];
+    let mut head = vec![
+        Head::text("Quantity"),
+        Head::short("Band"),
+        Head::text("Over"),
+        Head::number("As simulated"),
+    ];
     head.extend(named.then(|| Head::number("With effects")));
     head.push(Head::number("r"));
     let table = Table { caption, head, rows: listed.iter().take(TRENDS).map(row).collect() };
-    if table.rows.is_empty() { vec![Item::text(text)] } else { vec![Item::text(text), Item::Table { table }] }
+    if table.rows.is_empty() {
+        vec![Item::text(text)]
+    } else {
+        vec![Item::text(text), Item::Table { table }]
+    }
 }
 
 /// A covariate with its range; the unit is printed once.
 fn over(trend: &Trend) -> String {
     let unit = |end: &str| end.rsplit_once(' ').map(|(_, unit)| unit.to_owned());
     let same = unit(&trend.from).filter(|of| Some(of) == unit(&trend.to).as_ref());
-    let from = same.and_then(|unit| trend.from.strip_suffix(&unit).map(str::trim_end)).unwrap_or(&trend.from);
+    let from = same
+        .and_then(|unit| trend.from.strip_suffix(&unit).map(str::trim_end))
+        .unwrap_or(&trend.from);
     format!("{}: {from} to {}", trend.covariate, trend.to)
 }
 
 fn shapes(all: &[Shape]) -> Table {
     let rows = all.iter().map(|shape| {
         let ratio = |ratio: Ratio| {
-            format!("{} ({} to {})", number::fixed(ratio.value, 2), number::fixed(ratio.low, 2), number::fixed(ratio.high, 2))
+            format!(
+                "{} ({} to {})",
+                number::fixed(ratio.value, 2),
+                number::fixed(ratio.low, 2),
+                number::fixed(ratio.high, 2)
+            )
         };
-        let share =
-            |share: Option<f64>| share.map_or_else(|| number::NONE.to_owned(), |share| format!("{} %", number::fixed(100.0 * share, 0)));
+        let share = |share: Option<f64>| {
+            share.map_or_else(
+                || number::NONE.to_owned(),
+                |share| format!("{} %", number::fixed(100.0 * share, 0)),
+            )
+        };
         vec![
             shape.quantity.clone(),
             ratio(shape.rms),
@@ -281,12 +360,17 @@ fn value(value: &Value) -> String {
 }
 
 fn assumed(value: &Value) -> String {
-    value.assumed.map_or_else(|| "-".into(), |assumed| number::with_unit(&number::significant(assumed, 4), &value.unit))
+    value.assumed.map_or_else(
+        || "-".into(),
+        |assumed| number::with_unit(&number::significant(assumed, 4), &value.unit),
+    )
 }
 
 fn interval(value: &Value) -> String {
     match (value.low, value.high) {
-        (Some(low), Some(high)) => format!("{} to {}", number::significant(low, 4), number::significant(high, 4)),
+        (Some(low), Some(high)) => {
+            format!("{} to {}", number::significant(low, 4), number::significant(high, 4))
+        }
         _ => "-".into(),
     }
 }
@@ -299,7 +383,11 @@ fn cause_rows(cause: &Cause) -> Vec<Vec<String>> {
             let only = |text: String| if first { text } else { String::new() };
             rows.push(vec![
                 only(cause.rank.to_string()),
-                if at == 0 { format!("{}{}{}", effect.title, told.on(), effect.only_in()) } else { String::new() },
+                if at == 0 {
+                    format!("{}{}{}", effect.title, told.on(), effect.only_in())
+                } else {
+                    String::new()
+                },
                 told.parameter.clone(),
                 assumed(told.value),
                 value(told.value),
@@ -315,7 +403,10 @@ fn cause_rows(cause: &Cause) -> Vec<Vec<String>> {
 
 fn found_by(effect: &NamedEffect) -> String {
     let stands = effect.stability.map_or(String::new(), |first| {
-        format!("; in {} % of the resamples of the sections it has the most evidence", number::fixed(100.0 * first, 0))
+        format!(
+            "; in {} % of the resamples of the sections it has the most evidence",
+            number::fixed(100.0 * first, 0)
+        )
     });
     format!("{}: {}{stands}", effect.title, effect.added_by)
 }
@@ -338,20 +429,27 @@ fn causes(found: &Diagnosis) -> Chapter {
         let rows = found.causes.iter().flat_map(cause_rows).collect();
         items.push(Item::Table { table: Table { caption: caption.into(), head, rows } });
         let entries: Vec<String> = found.causes[0].effects.iter().map(found_by).collect();
-        items.push(Item::Heading { text: "How the effects were found, and their stability".into() });
+        items
+            .push(Item::Heading { text: "How the effects were found, and their stability".into() });
         items.push(Item::List { entries });
     }
     if !found.vetoed.is_empty() {
         items.push(Item::Heading { text: "Rejected effects".into() });
-        items.push(Item::List { entries: found.vetoed.iter().map(|vetoed| vetoed.says.clone()).collect() });
+        items.push(Item::List {
+            entries: found.vetoed.iter().map(|vetoed| vetoed.says.clone()).collect(),
+        });
     }
     chapter("which", "Cause", items)
 }
 
 fn shrunk(shrink: &Shrink) -> Chapter {
-    let number = |value: Option<f64>| value.map_or_else(|| number::NONE.to_owned(), |value| number::fixed(value, 3));
+    let number = |value: Option<f64>| {
+        value.map_or_else(|| number::NONE.to_owned(), |value| number::fixed(value, 3))
+    };
     let percent = |value: f64| number::fixed(100.0 * value, 0);
-    let share = |value: Option<f64>| value.map_or_else(|| number::NONE.to_owned(), |value| format!("{} %", percent(value)));
+    let share = |value: Option<f64>| {
+        value.map_or_else(|| number::NONE.to_owned(), |value| format!("{} %", percent(value)))
+    };
     let row = |quantity: &QuantityShrink| {
         vec![
             quantity.id.clone(),
@@ -359,7 +457,12 @@ fn shrunk(shrink: &Shrink) -> Chapter {
             number(quantity.normalised_mean_after),
             number(quantity.normalised_std_before),
             number(quantity.normalised_std_after),
-            format!("{} ({} to {}) %", percent(quantity.fraction_removed), percent(quantity.low), percent(quantity.high)),
+            format!(
+                "{} ({} to {}) %",
+                percent(quantity.fraction_removed),
+                percent(quantity.low),
+                percent(quantity.high)
+            ),
             share(quantity.variance_explained),
             share(quantity.variance_explained_above_noise),
         ]
@@ -404,7 +507,11 @@ fn shrunk(shrink: &Shrink) -> Chapter {
         )));
     }
     if shrink.shares.len() > 1 {
-        let entries = shrink.shares.iter().map(|(name, share)| format!("{name}: {} %", number::fixed(100.0 * share, 0))).collect();
+        let entries = shrink
+            .shares
+            .iter()
+            .map(|(name, share)| format!("{name}: {} %", number::fixed(100.0 * share, 0)))
+            .collect();
         items.push(Item::Heading { text: "Contribution of each effect".into() });
         items.push(Item::List { entries });
     }
@@ -414,7 +521,11 @@ fn shrunk(shrink: &Shrink) -> Chapter {
 fn signals(found: &Diagnosis) -> Option<Chapter> {
     let item = |(at, picture): (usize, &crate::result::diagnosis::Picture)| {
         let caption = format!("Section {}: {}", picture.section, picture.says);
-        Item::figure(format!("signals-{at}"), caption, "Measured and simulated signals over distance")
+        Item::figure(
+            format!("signals-{at}"),
+            caption,
+            "Measured and simulated signals over distance",
+        )
     };
     let items: Vec<Item> = found.pictures.iter().enumerate().map(item).collect();
     (!items.is_empty()).then(|| chapter("signals", "Signals with the largest gap", items))
@@ -432,7 +543,10 @@ fn how(found: &Diagnosis) -> Chapter {
         ("Features", how.features.to_string()),
         ("Simulated sections", found.simulations_run.to_string()),
         ("Evidence required", number::fixed(how.threshold, 1)),
-        ("Drawn campaigns without an effect in which one would be named", share(found.false_name_rate)),
+        (
+            "Drawn campaigns without an effect in which one would be named",
+            share(found.false_name_rate),
+        ),
         ("Chi-squared per feature, before", number::fixed(how.chi_squared_before, 3)),
         ("Chi-squared per feature, after", number::fixed(how.chi_squared_after, 3)),
         (

@@ -1,4 +1,5 @@
-//! The estimates of a quantity, limit by limit: a limit by group has one result for each group, often hundreds in all.
+//! The estimates of a quantity, limit by limit: a limit by group has one result for each group,
+//! often hundreds in all.
 
 use crate::result::{QuantityResult, StatisticResult};
 
@@ -10,7 +11,8 @@ pub struct OfLimit<'a> {
 }
 
 impl<'a> OfLimit<'a> {
-    /// The result nearest to its limit or farthest beyond: one that fails before one that holds before one that is not assessed.
+    /// The result nearest to its limit or farthest beyond: one that fails before one that holds
+    /// before one that is not assessed.
     pub fn decisive(&self) -> &'a StatisticResult {
         let rank = |one: &StatisticResult| match one.holds {
             Some(false) => (2, one.normalised.unwrap_or(f64::INFINITY)),
@@ -48,7 +50,8 @@ impl<'a> OfLimit<'a> {
         format!("{} of {}{open}", self.count(Some(true)), self.results.len())
     }
 
-    /// Why the limit is not assessed: the first reason of a group. Where a group fails, that is no reason of what the limit came to.
+    /// Why the limit is not assessed: the first reason of a group. Where a group fails, that is no
+    /// reason of what the limit came to.
     pub fn reason(&self) -> Option<&'a str> {
         if self.holds().is_some() {
             return None;
@@ -66,7 +69,9 @@ impl<'a> OfLimit<'a> {
 pub fn limits(quantity: &QuantityResult) -> Vec<OfLimit<'_>> {
     let mut limits: Vec<OfLimit<'_>> = Vec::new();
     for one in &quantity.statistics {
-        let same = |other: &StatisticResult| (&other.name, &other.limit_text, &other.rule) == (&one.name, &one.limit_text, &one.rule);
+        let same = |other: &StatisticResult| {
+            (&other.name, &other.limit_text, &other.rule) == (&one.name, &one.limit_text, &one.rule)
+        };
         match limits.iter_mut().find(|limit| same(limit.results[0])) {
             Some(limit) => limit.results.push(one),
             None => limits.push(OfLimit { results: vec![one] }),
@@ -75,26 +80,36 @@ pub fn limits(quantity: &QuantityResult) -> Vec<OfLimit<'_>> {
     limits
 }
 
-/// The limits that are printed as one row with their decisive group: all of an assessed quantity; of others those by group of more than
-/// a zone.
+/// The limits that are printed as one row with their decisive group: all of an assessed quantity;
+/// of others those by group of more than a zone.
 pub fn condensed(quantity: &QuantityResult) -> Vec<OfLimit<'_>> {
     let mut limits = limits(quantity);
-    limits.retain(|limit| quantity.from.is_some() || limit.by_group() && !limit.results[0].group.is_empty());
+    limits.retain(|limit| {
+        quantity.from.is_some() || limit.by_group() && !limit.results[0].group.is_empty()
+    });
     limits
 }
 
 /// The results that are printed each by itself.
 pub fn single(quantity: &QuantityResult) -> Vec<&StatisticResult> {
     let condensed = condensed(quantity);
-    let among = |one: &StatisticResult| condensed.iter().any(|limit| limit.results.iter().any(|other| std::ptr::eq(*other, one)));
+    let among = |one: &StatisticResult| {
+        condensed.iter().any(|limit| limit.results.iter().any(|other| std::ptr::eq(*other, one)))
+    };
     quantity.statistics.iter().filter(|one| !among(one)).collect()
 }
 
 /// The decisive result of each condensed limit, and all others.
 pub fn representatives(quantity: &QuantityResult) -> Vec<&StatisticResult> {
     let condensed = condensed(quantity);
-    let of = |one: &StatisticResult| condensed.iter().find(|limit| limit.results.iter().any(|other| std::ptr::eq(*other, one)));
-    quantity.statistics.iter().filter(|one| of(one).is_none_or(|limit| std::ptr::eq(limit.decisive(), *one))).collect()
+    let of = |one: &StatisticResult| {
+        condensed.iter().find(|limit| limit.results.iter().any(|other| std::ptr::eq(*other, one)))
+    };
+    quantity
+        .statistics
+        .iter()
+        .filter(|one| of(one).is_none_or(|limit| std::ptr::eq(limit.decisive(), *one)))
+        .collect()
 }
 
 /// The zones that a result is of; none where it is of all.
@@ -102,7 +117,10 @@ pub fn zones(one: &StatisticResult) -> Vec<&str> {
     if let Some((_, zone)) = one.group.iter().find(|(key, _)| key == "zone") {
         return vec![zone];
     }
-    let Some(rest) = one.scope.strip_prefix("zones ").or_else(|| one.scope.strip_prefix("zone ")) else { return Vec::new() };
+    let Some(rest) = one.scope.strip_prefix("zones ").or_else(|| one.scope.strip_prefix("zone "))
+    else {
+        return Vec::new();
+    };
     let several = one.scope.starts_with("zones ");
     // After the zones, the scope names keys and conditions, which have more than one word.
     let zones = rest.split(", ").take_while(|word| !word.contains(' '));
@@ -142,8 +160,12 @@ mod tests {
 
     #[test]
     fn one_that_fails_decides_before_a_larger_ratio() {
-        let all =
-            [result("a", Some(true), Some(0.9)), result("b", Some(false), Some(0.4)), result("c", None, None), result("d", None, None)];
+        let all = [
+            result("a", Some(true), Some(0.9)),
+            result("b", Some(false), Some(0.4)),
+            result("c", None, None),
+            result("d", None, None),
+        ];
         let limit = OfLimit { results: all.iter().collect() };
         assert_eq!(
             (limit.decisive().scope.as_str(), limit.holds(), limit.holding().as_str()),
@@ -155,9 +177,14 @@ mod tests {
 
     #[test]
     fn a_reason_is_one_of_what_the_limit_came_to() {
-        let open = StatisticResult { reason: Some("cant_deficiency does not vary".into()), ..result("c", None, None) };
-        let [holds, fails] = [result("a", Some(true), Some(0.9)), result("b", Some(false), Some(1.4))];
-        let reason = |results: Vec<&StatisticResult>| OfLimit { results }.reason().map(str::to_string);
+        let open = StatisticResult {
+            reason: Some("cant_deficiency does not vary".into()),
+            ..result("c", None, None)
+        };
+        let [holds, fails] =
+            [result("a", Some(true), Some(0.9)), result("b", Some(false), Some(1.4))];
+        let reason =
+            |results: Vec<&StatisticResult>| OfLimit { results }.reason().map(str::to_string);
         assert_eq!(reason(vec![&holds, &open]).as_deref(), Some("cant_deficiency does not vary"));
         assert_eq!((reason(vec![&open, &fails]), reason(vec![&holds])), (None, None));
     }
@@ -166,7 +193,14 @@ mod tests {
     fn zones_are_read_from_the_scope() {
         let zones_of = |scope: &str| zones(&result(scope, None, None)).join("+");
         assert_eq!(
-            ["all", "zone 3", "zones 2, 3", "zones 2, 3, wheelset 1", "zone 4, direction is straight"].map(zones_of),
+            [
+                "all",
+                "zone 3",
+                "zones 2, 3",
+                "zones 2, 3, wheelset 1",
+                "zone 4, direction is straight"
+            ]
+            .map(zones_of),
             ["", "3", "2+3", "2+3", "4"]
         );
     }

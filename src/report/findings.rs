@@ -33,7 +33,13 @@ pub fn rows(findings: &[Finding]) -> Vec<Row> {
         let section = finding.section.as_deref();
         let alike = groups.iter_mut().find(|(first, _)| {
             (&first.code, &first.channel, &first.record, &first.cause, first.consequence)
-                == (&finding.code, &finding.channel, &finding.record, &finding.cause, finding.consequence)
+                == (
+                    &finding.code,
+                    &finding.channel,
+                    &finding.record,
+                    &finding.cause,
+                    finding.consequence,
+                )
                 && (first.section.is_some() && section.is_some() || first.says == finding.says)
         });
         match alike {
@@ -67,9 +73,17 @@ fn named(sections: &[&str]) -> String {
 
 /// A row as one line of text.
 pub fn line(row: &Row) -> String {
-    let about: Vec<&str> = [&row.subject, &row.sections].into_iter().map(String::as_str).filter(|part| !part.is_empty()).collect();
+    let about: Vec<&str> = [&row.subject, &row.sections]
+        .into_iter()
+        .map(String::as_str)
+        .filter(|part| !part.is_empty())
+        .collect();
     let about = if about.is_empty() { String::new() } else { format!("{}: ", about.join(", ")) };
-    let cause = if row.cause.is_empty() { String::new() } else { format!(" (likely cause: {})", row.cause) };
+    let cause = if row.cause.is_empty() {
+        String::new()
+    } else {
+        format!(" (likely cause: {})", row.cause)
+    };
     format!("{about}{}{cause} [{}; {}]", row.says, row.code, row.consequence)
 }
 
@@ -78,16 +92,24 @@ mod tests {
     use super::*;
 
     fn finding(section: Option<&str>, says: &str) -> Finding {
-        Finding { section: section.map(str::to_string), channel: Some("Y_1R".into()), ..Finding::note("wheel-load", says) }
+        Finding {
+            section: section.map(str::to_string),
+            channel: Some("Y_1R".into()),
+            ..Finding::note("wheel-load", says)
+        }
     }
 
     #[test]
     fn the_same_in_many_sections_is_one_row() {
-        let mut all: Vec<Finding> = (1..=7).map(|at| finding(Some(&format!("S0{at}")), &format!("mean {at} kN"))).collect();
+        let mut all: Vec<Finding> =
+            (1..=7).map(|at| finding(Some(&format!("S0{at}")), &format!("mean {at} kN"))).collect();
         all.push(finding(None, "a fact of the campaign"));
         let rows = rows(&all);
         assert_eq!(rows.len(), 2);
-        assert_eq!(line(&rows[0]), "Y_1R, S01, S02, S03, S04 and 3 more: mean 1 kN [wheel-load; noted]");
+        assert_eq!(
+            line(&rows[0]),
+            "Y_1R, S01, S02, S03, S04 and 3 more: mean 1 kN [wheel-load; noted]"
+        );
         assert_eq!(line(&rows[1]), "Y_1R: a fact of the campaign [wheel-load; noted]");
     }
 }

@@ -20,12 +20,15 @@ pub fn in_words(found: &FoundSections) -> String {
     )
 }
 
-/// `run R1: the shift that aligns the measurement with the simulation, by correlation: +0.02 to -10.91 m along the run (28 of 30 windows)
-/// ...`; nothing where it is not known.
+/// `run R1: the shift that aligns the measurement with the simulation, by correlation: +0.02 to
+/// -10.91 m along the run (28 of 30 windows) ...`; nothing where it is not known.
 pub fn drift_in_words(run: &FoundInRun, unit: &str) -> Option<String> {
     let Drift { points, along, windows, corrected } = run.drift.as_ref()?;
     let range = |shifts: &mut dyn Iterator<Item = f64>| {
-        let (least, most) = shifts.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), shift| (least.min(shift), most.max(shift)));
+        let (least, most) = shifts
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), shift| {
+                (least.min(shift), most.max(shift))
+            });
         format!("{least:+.2} to {most:+.2} {unit}")
     };
     let mut parts = Vec::new();
@@ -35,7 +38,11 @@ pub fn drift_in_words(run: &FoundInRun, unit: &str) -> Option<String> {
     }
     if !points.is_empty() {
         let all = range(&mut points.iter().map(|point| point.shift));
-        parts.push(format!("{all} at {} section{}", points.len(), if points.len() == 1 { "" } else { "s" }));
+        parts.push(format!(
+            "{all} at {} section{}",
+            points.len(),
+            if points.len() == 1 { "" } else { "s" }
+        ));
     }
     let done = if *corrected {
         "this was added to the distance of the measurement"
@@ -51,7 +58,13 @@ pub fn drift_in_words(run: &FoundInRun, unit: &str) -> Option<String> {
 
 /// `rejected first by: steady speed 5 120, in no zone 311`.
 pub fn rejected_in_words(found: &FoundSections) -> String {
-    let one = |rejected: &Rejected| format!("{} {}", rejected.reason.to_lowercase(), count(rejected.places as u64));
+    let one = |rejected: &Rejected| {
+        format!("{} {}", rejected.reason.to_lowercase(), count(rejected.places as u64))
+    };
     let all: Vec<String> = found.rejected().iter().map(one).collect();
-    if all.is_empty() { String::new() } else { format!("rejected, each by the first reason: {}", all.join("; ")) }
+    if all.is_empty() {
+        String::new()
+    } else {
+        format!("rejected, each by the first reason: {}", all.join("; "))
+    }
 }

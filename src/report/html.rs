@@ -1,7 +1,8 @@
 //! The HTML report: one self-contained file, filled by minijinja from `templates/`.
 //!
-//! User text is data: it is escaped by the engine, and hidden characters are made visible. The page's policy allows only its own style
-//! and script, by their hashes, so that even a fault in escaping could neither execute code nor load anything.
+//! User text is data: it is escaped by the engine, and hidden characters are made visible. The
+//! page's policy allows only its own style and script, by their hashes, so that even a fault in
+//! escaping could neither execute code nor load anything.
 
 mod symbols;
 
@@ -50,14 +51,16 @@ const GRAPH: &str = "graph";
 
 /// The report as one HTML page.
 ///
-/// `figures` are SVG texts of this program by their names in the view ([`super::view::FigureView::name`]); a missing figure is
-/// omitted. The same arguments give the same bytes.
+/// `figures` are SVG texts of this program by their names in the view
+/// ([`super::view::FigureView::name`]); a missing figure is omitted. The same arguments give the
+/// same bytes.
 ///
 /// # Errors
 ///
 /// `report-template`: a template cannot be filled.
 pub fn html(data: &ReportData, figures: &[(String, String)]) -> Result<String, Problems> {
-    filled("report.html", data, figures).map_err(|error| Problems(vec![Problem::error("report-template", error)]))
+    filled("report.html", data, figures)
+        .map_err(|error| Problems(vec![Problem::error("report-template", error)]))
 }
 
 /// A study as one HTML page.
@@ -66,7 +69,8 @@ pub fn html(data: &ReportData, figures: &[(String, String)]) -> Result<String, P
 ///
 /// As [`html`].
 pub fn study_html(data: &Document, figures: &[(String, String)]) -> Result<String, Problems> {
-    filled("study.html", data, figures).map_err(|error| Problems(vec![Problem::error("report-template", error)]))
+    filled("study.html", data, figures)
+        .map_err(|error| Problems(vec![Problem::error("report-template", error)]))
 }
 
 /// Chapters under a title as one HTML page.
@@ -85,12 +89,21 @@ pub fn chapters_html(title: &str, chapters: &[Chapter]) -> Result<String, Proble
         .map_err(|error| Problems(vec![Problem::error("report-template", error)]))
 }
 
-fn filled(frame: &str, data: &impl Serialize, figures: &[(String, String)]) -> Result<String, String> {
+fn filled(
+    frame: &str,
+    data: &impl Serialize,
+    figures: &[(String, String)],
+) -> Result<String, String> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
-    environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build().map_err(said)?);
-    environment.add_filter("symbol", |text: String| Value::from_safe_string(symbols::typeset(&text)));
-    environment.add_filter("symbols", |text: String, known: Vec<String>| Value::from_safe_string(symbols::typeset_in(&text, &known)));
+    environment.set_syntax(
+        SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build().map_err(said)?,
+    );
+    environment
+        .add_filter("symbol", |text: String| Value::from_safe_string(symbols::typeset(&text)));
+    environment.add_filter("symbols", |text: String, known: Vec<String>| {
+        Value::from_safe_string(symbols::typeset_in(&text, &known))
+    });
     for (name, text) in TEMPLATES {
         environment.add_template(name, text).map_err(said)?;
     }
@@ -101,8 +114,10 @@ fn filled(frame: &str, data: &impl Serialize, figures: &[(String, String)]) -> R
         .map(|(name, svg)| (name.as_str(), Value::from_safe_string(svg.trim_end().to_owned())))
         .collect();
     // The graph is wide and has its own styles: an embedded image keeps both apart from the page.
-    let graph =
-        figures.iter().find(|(name, _)| name == GRAPH).map(|(_, svg)| format!("data:image/svg+xml;base64,{}", base64(svg.as_bytes())));
+    let graph = figures
+        .iter()
+        .find(|(name, _)| name == GRAPH)
+        .map(|(_, svg)| format!("data:image/svg+xml;base64,{}", base64(svg.as_bytes())));
     let page = environment.get_template(frame).map_err(said)?;
     page.render(context! {
         data => shown(&data),
@@ -123,7 +138,8 @@ fn said(error: minijinja::Error) -> String {
     }
 }
 
-/// Content security policy: only the page's own style and script, identified by their hashes, and embedded images are allowed.
+/// Content security policy: only the page's own style and script, identified by their hashes, and
+/// embedded images are allowed.
 fn policy() -> String {
     let known = |text: &str| format!("'sha256-{}'", base64(&Sha256::digest(text.as_bytes())));
     format!(
@@ -138,10 +154,14 @@ fn shown(value: &Json) -> Value {
     match value {
         Json::Null => Value::from(()),
         Json::Bool(truth) => Value::from(*truth),
-        Json::Number(number) => number.as_i64().map_or_else(|| Value::from(number.as_f64()), Value::from),
+        Json::Number(number) => {
+            number.as_i64().map_or_else(|| Value::from(number.as_f64()), Value::from)
+        }
         Json::String(text) => Value::from(visible(text)),
         Json::Array(items) => Value::from(items.iter().map(shown).collect::<Vec<_>>()),
-        Json::Object(map) => Value::from_pairs(map.iter().map(|(key, item)| (key.clone(), shown(item)))),
+        Json::Object(map) => {
+            Value::from_pairs(map.iter().map(|(key, item)| (key.clone(), shown(item))))
+        }
     }
 }
 
@@ -168,8 +188,15 @@ mod tests {
     /// RFC 4648, section 10.
     #[test]
     fn base64_vectors_of_the_rfc() {
-        let vectors =
-            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("fooba", "Zm9vYmE="), ("foobar", "Zm9vYmFy")];
+        let vectors = [
+            ("", ""),
+            ("f", "Zg=="),
+            ("fo", "Zm8="),
+            ("foo", "Zm9v"),
+            ("foob", "Zm9vYg=="),
+            ("fooba", "Zm9vYmE="),
+            ("foobar", "Zm9vYmFy"),
+        ];
         for (plain, coded) in vectors {
             assert_eq!(base64(plain.as_bytes()), coded);
         }

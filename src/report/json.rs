@@ -1,10 +1,12 @@
-//! `results.json`: the result in machine-readable form; fixed order of keys, full precision, `null` with a reason.
+//! `results.json`: the result in machine-readable form; fixed order of keys, full precision, `null`
+//! with a reason.
 
 use serde_json::{Map, Value, json};
 
 use super::{attached, estimates};
 use crate::result::{
-    CampaignInfo, Certification, ProtocolFile, ProtocolInfo, QuantityResult, Reported, StatisticResult, ZoneResult, report,
+    CampaignInfo, Certification, ProtocolFile, ProtocolInfo, QuantityResult, Reported,
+    StatisticResult, ZoneResult, report,
 };
 
 /// The complete result, ending in a line break.
@@ -23,7 +25,10 @@ pub fn results(found: &Certification) -> String {
         root.insert("verdicts".into(), json!(found.verdicts));
     }
     root.insert("quantities".into(), quantities(&found.quantities));
-    root.insert("sections".into(), Value::Array(found.sections.iter().map(|section| zone_as_number(json!(section))).collect()));
+    root.insert(
+        "sections".into(),
+        Value::Array(found.sections.iter().map(|section| zone_as_number(json!(section))).collect()),
+    );
     if !found.reported.is_empty() {
         root.insert("reported".into(), reported(&found.reported, "sections"));
     }
@@ -92,12 +97,18 @@ fn quantity(quantity: &QuantityResult) -> Value {
     entry.insert("unit".into(), json!(quantity.unit));
     entry.insert("pairs".into(), json!(quantity.values.len()));
     entry.insert("n".into(), json!(quantity.n));
-    let named = |name: &str| quantity.statistics.iter().find(|statistic| statistic.name == name && statistic.scope == "all");
+    let named = |name: &str| {
+        quantity
+            .statistics
+            .iter()
+            .find(|statistic| statistic.name == name && statistic.scope == "all")
+    };
     let (mean, std) = (named("mean"), named("std"));
     if quantity.has_sides && (mean.is_some() || std.is_some()) {
         let value = |of: Option<&StatisticResult>| json!(of.and_then(|statistic| statistic.value));
         let limit = |of: Option<&StatisticResult>| json!(of.and_then(|statistic| statistic.limit));
-        let share = |of: Option<&StatisticResult>| json!(of.and_then(|statistic| statistic.normalised));
+        let share =
+            |of: Option<&StatisticResult>| json!(of.and_then(|statistic| statistic.normalised));
         entry.insert("mean".into(), value(mean));
         entry.insert("std".into(), value(std));
         entry.insert("limit_mean".into(), limit(mean));
@@ -106,7 +117,10 @@ fn quantity(quantity: &QuantityResult) -> Value {
         entry.insert("normalised_std".into(), share(std));
     } else {
         // The statistic closest to its limit represents the quantity; all statistics follow.
-        let worst = quantity.statistics.iter().max_by(|a, b| a.normalised.unwrap_or(-1.0).total_cmp(&b.normalised.unwrap_or(-1.0)));
+        let worst = quantity
+            .statistics
+            .iter()
+            .max_by(|a, b| a.normalised.unwrap_or(-1.0).total_cmp(&b.normalised.unwrap_or(-1.0)));
         match &quantity.from {
             Some(side) => entry.insert("assessed".into(), json!(side)),
             None => entry.insert("metric".into(), json!(quantity.comparison)),
@@ -120,7 +134,8 @@ fn quantity(quantity: &QuantityResult) -> Value {
     entry.insert("rule".into(), json!(quantity.rule));
     entry.insert("statistics".into(), json!(quantity.statistics));
     if quantity.from.is_some() {
-        entry.insert("groups".into(), Value::Array(quantity.statistics.iter().map(group).collect()));
+        entry
+            .insert("groups".into(), Value::Array(quantity.statistics.iter().map(group).collect()));
     }
     if !quantity.reported.is_empty() {
         entry.insert("reported".into(), reported(&quantity.reported, "values"));
@@ -189,7 +204,10 @@ fn group(one: &StatisticResult) -> Value {
 fn reported(all: &[Reported], of: &str) -> Value {
     let one = |one: &Reported| {
         let mut entry = Map::new();
-        entry.insert("keys".into(), one.group.iter().map(|(key, member)| (key.clone(), json!(member))).collect());
+        entry.insert(
+            "keys".into(),
+            one.group.iter().map(|(key, member)| (key.clone(), json!(member))).collect(),
+        );
         entry.insert("where".into(), json!(one.condition));
         entry.insert("estimate".into(), json!(one.name));
         entry.insert("title".into(), json!(one.title));
@@ -210,7 +228,9 @@ fn reported(all: &[Reported], of: &str) -> Value {
 /// Writes the name of a zone as a number if it is an integer.
 fn zone_as_number(mut entry: Value) -> Value {
     if let Some(zone) = entry.get_mut("zone")
-        && let Some(number) = zone.as_str().and_then(|zone| zone.parse::<i64>().ok().filter(|number| number.to_string() == zone))
+        && let Some(number) = zone
+            .as_str()
+            .and_then(|zone| zone.parse::<i64>().ok().filter(|number| number.to_string() == zone))
     {
         *zone = json!(number);
     }

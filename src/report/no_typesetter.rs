@@ -1,4 +1,5 @@
-//! Replaces `typst` in a build without the feature `typeset`: the same functions, which return an error.
+//! Replaces `typst` in a build without the feature `typeset`: the same functions, which return an
+//! error.
 
 use crate::problem::{Problem, Problems};
 use crate::report::pdf::{Attachment, Pdf};
@@ -10,7 +11,11 @@ use crate::report::view::ReportData;
 /// # Errors
 ///
 /// `no-typesetter`, always.
-pub fn typeset(_: &ReportData, _: &[(String, String)], _: &[Attachment<'_>]) -> Result<Pdf, Problems> {
+pub fn typeset(
+    _: &ReportData,
+    _: &[(String, String)],
+    _: &[Attachment<'_>],
+) -> Result<Pdf, Problems> {
     Err(refusal())
 }
 
@@ -19,7 +24,11 @@ pub fn typeset(_: &ReportData, _: &[(String, String)], _: &[Attachment<'_>]) -> 
 /// # Errors
 ///
 /// `no-typesetter`, always.
-pub fn typeset_study(_: &Document, _: &[(String, String)], _: &[Attachment<'_>]) -> Result<Pdf, Problems> {
+pub fn typeset_study(
+    _: &Document,
+    _: &[(String, String)],
+    _: &[Attachment<'_>],
+) -> Result<Pdf, Problems> {
     Err(refusal())
 }
 

@@ -1,7 +1,7 @@
 //! Number format of the report, common to all tables, figures and pages.
 //!
-//! A printed number never hides a decision based on it: [`beside`] adds decimals until the printed value and limit compare as they do in
-//! full precision.
+//! A printed number never hides a decision based on it: [`beside`] adds decimals until the printed
+//! value and limit compare as they do in full precision.
 
 /// Printed for a missing value: an en dash.
 pub const NONE: &str = "–";
@@ -12,7 +12,8 @@ const MOST_DECIMALS: usize = 6;
 
 /// Decimals for a column of values in one unit.
 ///
-/// The unit gives the usual number; a column of small values gets more, so that its largest value shows two significant digits.
+/// The unit gives the usual number; a column of small values gets more, so that its largest value
+/// shows two significant digits.
 pub fn decimals(unit: &str, values: impl IntoIterator<Item = f64>) -> usize {
     let usual = match unit {
         "m/s^2" | "m/s²" | "rad" => 4,
@@ -22,7 +23,10 @@ pub fn decimals(unit: &str, values: impl IntoIterator<Item = f64>) -> usize {
         "N" | "kg" | "Pa" => 0,
         _ => 3,
     };
-    let largest = values.into_iter().filter(|value| value.is_finite()).fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let largest = values
+        .into_iter()
+        .filter(|value| value.is_finite())
+        .fold(0.0_f64, |largest, value| largest.max(value.abs()));
     if largest == 0.0 {
         return usual;
     }
@@ -30,20 +34,33 @@ pub fn decimals(unit: &str, values: impl IntoIterator<Item = f64>) -> usize {
     if needed > MOST_DECIMALS as f64 { usual } else { usual.max(needed as usize) }
 }
 
-/// Decimals that show `digits` significant digits of the largest value, for values that are printed side by side.
+/// Decimals that show `digits` significant digits of the largest value, for values that are printed
+/// side by side.
 pub fn decimals_of(values: impl IntoIterator<Item = f64>, digits: usize) -> usize {
-    let largest = values.into_iter().filter(|value| value.is_finite()).fold(0.0_f64, |largest, value| largest.max(value.abs()));
-    if largest == 0.0 { 0 } else { (digits as f64 - 1.0 - largest.log10().floor()).clamp(0.0, MOST_DECIMALS as f64) as usize }
+    let largest = values
+        .into_iter()
+        .filter(|value| value.is_finite())
+        .fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    if largest == 0.0 {
+        0
+    } else {
+        (digits as f64 - 1.0 - largest.log10().floor()).clamp(0.0, MOST_DECIMALS as f64) as usize
+    }
 }
 
 /// A number with a fixed number of decimals and a true minus sign; never `−0.00`.
 ///
-/// Very large and very small numbers are printed with a power of ten; a value that is not finite is printed as [`NONE`].
+/// Very large and very small numbers are printed with a power of ten; a value that is not finite is
+/// printed as [`NONE`].
 pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return NONE.to_owned();
     }
-    if value.abs() >= 1e9 || (value != 0.0 && value.abs() < 0.5 * 10_f64.powi(-(MOST_DECIMALS as i32)) && decimals >= MOST_DECIMALS) {
+    if value.abs() >= 1e9
+        || (value != 0.0
+            && value.abs() < 0.5 * 10_f64.powi(-(MOST_DECIMALS as i32))
+            && decimals >= MOST_DECIMALS)
+    {
         return scientific(value);
     }
     signed(&format!("{value:.decimals$}"))
@@ -54,7 +71,8 @@ pub fn optional(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(|| NONE.to_owned(), |value| fixed(value, decimals))
 }
 
-/// A number with `digits` significant digits, without trailing zeros after the decimal point: for limits, settings, extents.
+/// A number with `digits` significant digits, without trailing zeros after the decimal point: for
+/// limits, settings, extents.
 pub fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return NONE.to_owned();
@@ -70,16 +88,18 @@ pub fn significant(value: f64, digits: usize) -> String {
     signed(trimmed(&format!("{value:.decimals$}")))
 }
 
-/// A value that is compared with a limit, with additional decimals until the printed pair compares as the exact pair does: 10.0004 against
-/// 10 is not printed as `10.00`.
+/// A value that is compared with a limit, with additional decimals until the printed pair compares
+/// as the exact pair does: 10.0004 against 10 is not printed as `10.00`.
 pub fn beside(value: f64, limit: f64, decimals: usize) -> String {
-    let shown = |places: usize| format!("{:.places$}", value.abs()).parse::<f64>().unwrap_or(f64::NAN);
+    let shown =
+        |places: usize| format!("{:.places$}", value.abs()).parse::<f64>().unwrap_or(f64::NAN);
     let beyond = value.abs() > limit;
     let places = (decimals..decimals + 12).find(|places| (shown(*places) > limit) == beyond);
     fixed(value, places.unwrap_or(decimals))
 }
 
-/// Ratios of a value and its limit beyond this tell no more than that: a least value divided by a number near zero, for instance.
+/// Ratios of a value and its limit beyond this tell no more than that: a least value divided by a
+/// number near zero, for instance.
 const FAR: f64 = 1000.0;
 
 /// A ratio of a value and its limit, which is met up to 1.
@@ -110,7 +130,11 @@ pub fn count(value: u64) -> String {
 
 /// A printed number with its unit and no line break between them; a dimensionless number alone.
 pub fn with_unit(number: &str, unit: &str) -> String {
-    if unit.is_empty() || unit == "-" { number.to_owned() } else { format!("{number}\u{a0}{}", self::unit(unit)) }
+    if unit.is_empty() || unit == "-" {
+        number.to_owned()
+    } else {
+        format!("{number}\u{a0}{}", self::unit(unit))
+    }
 }
 
 /// A unit as printed: `m/s^2` becomes `m/s²`; `-` for a dimensionless number becomes an en dash.
@@ -143,7 +167,8 @@ pub fn formula(text: &str) -> String {
     raised(&text.replace(" - ", " \u{2212} ").replace(" * ", " · "))
 }
 
-/// A sentence with its numbers and units as in the tables: `-2e-5 m/s^2 <= 1 1/m` becomes `−2·10⁻⁵ m/s² ≤ 1 m⁻¹`.
+/// A sentence with its numbers and units as in the tables: `-2e-5 m/s^2 <= 1 1/m` becomes `−2·10⁻⁵
+/// m/s² ≤ 1 m⁻¹`.
 pub fn raised(text: &str) -> String {
     let text = text.replace("<=", "≤").replace(">=", "≥");
     let mut printed = String::with_capacity(text.len());
@@ -156,13 +181,17 @@ pub fn raised(text: &str) -> String {
         let mut taken = letter.len_utf8();
         match letter {
             '^' if starts_number(after.trim_start_matches('-')) => {
-                let exponent = &after[..after.find(|c: char| c != '-' && !c.is_ascii_digit()).unwrap_or(after.len())];
-                printed.extend(exponent.chars().map(|c| if c == '-' { '⁻' } else { superscript(c) }));
+                let exponent = &after[..after
+                    .find(|c: char| c != '-' && !c.is_ascii_digit())
+                    .unwrap_or(after.len())];
+                printed
+                    .extend(exponent.chars().map(|c| if c == '-' { '⁻' } else { superscript(c) }));
                 taken += exponent.len();
             }
             'e' if behind_digit && after.strip_prefix(['-', MINUS]).is_some_and(starts_number) => {
                 let digits = after.trim_start_matches(['-', MINUS]);
-                let digits = &digits[..digits.find(|c: char| !c.is_ascii_digit()).unwrap_or(digits.len())];
+                let digits =
+                    &digits[..digits.find(|c: char| !c.is_ascii_digit()).unwrap_or(digits.len())];
                 printed.push_str("·10⁻");
                 printed.extend(digits.chars().map(superscript));
                 taken += after.find(|c: char| c.is_ascii_digit()).unwrap_or(0) + digits.len();
@@ -173,7 +202,11 @@ pub fn raised(text: &str) -> String {
                 printed.push_str(&format!("{unit}⁻¹"));
                 taken += 2 + unit.len();
             }
-            '-' if starts_number(after) && before.is_none_or(|c| matches!(c, ' ' | '\u{a0}' | '(')) => printed.push(MINUS),
+            '-' if starts_number(after)
+                && before.is_none_or(|c| matches!(c, ' ' | '\u{a0}' | '(')) =>
+            {
+                printed.push(MINUS)
+            }
             _ => printed.push(letter),
         }
         before = rest[..taken].chars().last();
@@ -189,7 +222,8 @@ fn reciprocal(text: &str) -> Option<&str> {
     let after = &unit[end..];
     // A point ends a sentence, or joins units.
     let goes_on = after.strip_prefix('.').is_some_and(|rest| rest.starts_with(char::is_alphabetic));
-    (end > 0 && !goes_on && !after.starts_with(['^', '/', '*', '_', '(', '²', '³'])).then_some(&unit[..end])
+    (end > 0 && !goes_on && !after.starts_with(['^', '/', '*', '_', '(', '²', '³']))
+        .then_some(&unit[..end])
 }
 
 /// Text that is a number gets a true minus sign; other text is unchanged.
@@ -205,7 +239,8 @@ pub fn is_number(text: &str) -> bool {
 fn scientific(value: f64) -> String {
     let text = format!("{value:.2e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    let raised: String = exponent.chars().map(|c| if c == '-' { '⁻' } else { superscript(c) }).collect();
+    let raised: String =
+        exponent.chars().map(|c| if c == '-' { '⁻' } else { superscript(c) }).collect();
     format!("{}·10{raised}", signed(trimmed(mantissa)))
 }
 
@@ -240,11 +275,20 @@ mod tests {
 
     #[test]
     fn formulas_get_signs_and_raised_exponents() {
-        assert_eq!(formula("sign(measured) * (simulated - measured)"), "sign(measured) · (simulated \u{2212} measured)");
+        assert_eq!(
+            formula("sign(measured) * (simulated - measured)"),
+            "sign(measured) · (simulated \u{2212} measured)"
+        );
         assert_eq!(formula("a <= 0.1 m^-1; b >= 2 m/s^2"), "a ≤ 0.1 m⁻¹; b ≥ 2 m/s²");
         assert_eq!(formula("a^b 3-4 ^"), "a^b 3-4 ^");
-        assert_eq!(raised("-2e-5 m/s^2 (-1 1/m), 1.6e\u{2212}41, 3 1/m."), "\u{2212}2·10⁻⁵ m/s² (\u{2212}1 m⁻¹), 1.6·10⁻⁴¹, 3 m⁻¹.");
-        assert_eq!(raised("T-1 2026-04-20, 1 / m, 1/m, 2 1/m^2, S1e"), "T-1 2026-04-20, 1 / m, 1/m, 2 1/m², S1e");
+        assert_eq!(
+            raised("-2e-5 m/s^2 (-1 1/m), 1.6e\u{2212}41, 3 1/m."),
+            "\u{2212}2·10⁻⁵ m/s² (\u{2212}1 m⁻¹), 1.6·10⁻⁴¹, 3 m⁻¹."
+        );
+        assert_eq!(
+            raised("T-1 2026-04-20, 1 / m, 1/m, 2 1/m^2, S1e"),
+            "T-1 2026-04-20, 1 / m, 1/m, 2 1/m², S1e"
+        );
         assert_eq!(
             (unit("1/m"), unit("1/m/s"), ratio(3e40), ratio(1.004)),
             ("m⁻¹".into(), "1/m/s".into(), ">\u{a0}1000".into(), "1.004".into())

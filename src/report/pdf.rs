@@ -1,4 +1,5 @@
-//! A typeset report as bytes, and the files that it carries; with or without a typesetter in the build.
+//! A typeset report as bytes, and the files that it carries; with or without a typesetter in the
+//! build.
 
 use crate::problem::Problems;
 

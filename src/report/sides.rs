@@ -1,4 +1,5 @@
-//! What the two values of a pair are called: simulated and measured, a record and what is central of all, a repeat and its original.
+//! What the two values of a pair are called: simulated and measured, a record and what is central
+//! of all, a repeat and its original.
 
 use crate::result::{Certification, QuantityResult, Trace};
 
@@ -16,7 +17,8 @@ impl Sides {
     pub fn of(quantity: &QuantityResult) -> Self {
         let (one, other, short) = match (&quantity.among, quantity.repeats) {
             (Some(_), _) => {
-                let center = quantity.spread.as_ref().map(|spread| format!("{} of all", spread.center));
+                let center =
+                    quantity.spread.as_ref().map(|spread| format!("{} of all", spread.center));
                 let short = if quantity.against.is_some() { "other" } else { "all" };
                 let other = quantity.against.as_ref().map(|title| title.to_lowercase()).or(center);
                 ("record", other.unwrap_or_else(|| "all records".to_owned()), ["rec.", short])
@@ -44,7 +46,8 @@ impl Sides {
 
 /// The names of the two curves of a plot.
 pub fn of_trace(trace: &Trace, found: &Certification) -> (&'static str, &'static str) {
-    let repeats = found.quantities.iter().any(|quantity| quantity.id == trace.quantity && quantity.repeats);
+    let repeats =
+        found.quantities.iter().any(|quantity| quantity.id == trace.quantity && quantity.repeats);
     if repeats { ("repeat", "original") } else { ("simulated", "measured") }
 }
 

@@ -1,10 +1,25 @@
 //! All tables of the report as CSV.
 
-use crate::result::{Certification, ClassSpread, CoordinateRange, DomainResult, OfRecord, QuantityResult, Reported, WantedPoint};
+use crate::result::{
+    Certification, ClassSpread, CoordinateRange, DomainResult, OfRecord, QuantityResult, Reported,
+    WantedPoint,
+};
 
 /// Columns of estimates without a limit; the quantity is empty where they are of sections.
-const REPORTED: [&str; 12] =
-    ["quantity", "estimate", "title", "scope", "where", "count", "n", "unit", "value", "low 95 %", "high 95 %", "reason"];
+const REPORTED: [&str; 12] = [
+    "quantity",
+    "estimate",
+    "title",
+    "scope",
+    "where",
+    "count",
+    "n",
+    "unit",
+    "value",
+    "low 95 %",
+    "high 95 %",
+    "reason",
+];
 
 fn reported_row(quantity: Option<&QuantityResult>, one: &Reported) -> Vec<String> {
     vec![
@@ -80,8 +95,11 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
         statistics.collect(),
     )?;
     let all_reported = found.reported.iter().map(|one| (None, one));
-    let all_reported = all_reported.chain(found.quantities.iter().flat_map(|of| of.reported.iter().map(move |one| (Some(of), one))));
-    let rows: Vec<Vec<String>> = all_reported.map(|(quantity, one)| reported_row(quantity, one)).collect();
+    let all_reported = all_reported.chain(
+        found.quantities.iter().flat_map(|of| of.reported.iter().map(move |one| (Some(of), one))),
+    );
+    let rows: Vec<Vec<String>> =
+        all_reported.map(|(quantity, one)| reported_row(quantity, one)).collect();
     if !rows.is_empty() {
         add("reported", &REPORTED, rows)?;
     }
@@ -114,7 +132,19 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
             with(row, campaign, 2)
         })
     });
-    let columns = ["quantity", "unit", "section", "zone", "signal", "record", "simulated", "measured", "difference", "value", "samples"];
+    let columns = [
+        "quantity",
+        "unit",
+        "section",
+        "zone",
+        "signal",
+        "record",
+        "simulated",
+        "measured",
+        "difference",
+        "value",
+        "samples",
+    ];
     add("values", &header(&columns, 2), pairs.collect())?;
     if found.quantities.iter().any(|quantity| quantity.spread.is_some()) {
         add("spreads", &SPREADS, spreads(found, of_records))?;
@@ -149,7 +179,21 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
     });
     add(
         "findings",
-        &header(&["rule", "section", "record", "channel", "value", "expected", "unit", "finding", "likely cause", "consequence"], 1),
+        &header(
+            &[
+                "rule",
+                "section",
+                "record",
+                "channel",
+                "value",
+                "expected",
+                "unit",
+                "finding",
+                "likely cause",
+                "consequence",
+            ],
+            1,
+        ),
         findings.collect(),
     )?;
     let zones = found.zones.iter().map(|z| {
@@ -163,28 +207,56 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
             z.holds.to_string(),
         ]
     });
-    add("zones", &["zone", "title", "condition", "given", "used", "minimum", "holds"], zones.collect())?;
+    add(
+        "zones",
+        &["zone", "title", "condition", "given", "used", "minimum", "holds"],
+        zones.collect(),
+    )?;
     if !found.found.is_empty() {
-        let rows = found.found.iter().flat_map(|found| found.runs.iter().map(move |run| (found, run))).flat_map(|(found, run)| {
-            run.stretches.iter().map(move |stretch| {
-                let of = found.campaign.clone().unwrap_or_default();
-                let ends = [stretch.from, stretch.to].map(|x| number(Some(x)));
-                let [from, to] = ends;
-                vec![of, run.run.clone(), from, to, found.axis_unit.clone(), stretch.places.to_string(), stretch.reason.clone()]
-            })
-        });
-        add("rejected", &["campaign", "run", "from", "to", "unit", "places", "reason"], rows.collect())?;
+        let rows = found
+            .found
+            .iter()
+            .flat_map(|found| found.runs.iter().map(move |run| (found, run)))
+            .flat_map(|(found, run)| {
+                run.stretches.iter().map(move |stretch| {
+                    let of = found.campaign.clone().unwrap_or_default();
+                    let ends = [stretch.from, stretch.to].map(|x| number(Some(x)));
+                    let [from, to] = ends;
+                    vec![
+                        of,
+                        run.run.clone(),
+                        from,
+                        to,
+                        found.axis_unit.clone(),
+                        stretch.places.to_string(),
+                        stretch.reason.clone(),
+                    ]
+                })
+            });
+        add(
+            "rejected",
+            &["campaign", "run", "from", "to", "unit", "places", "reason"],
+            rows.collect(),
+        )?;
     }
     if let Some(reduction) = &found.reduction {
-        let kept =
-            reduction.kept.iter().flat_map(|(group, kept)| kept.iter().map(move |one| vec![group.clone(), one.clone(), "true".into()]));
-        let left = reduction.left_out.iter().map(|one| vec![String::new(), one.clone(), "false".into()]);
+        let kept = reduction.kept.iter().flat_map(|(group, kept)| {
+            kept.iter().map(move |one| vec![group.clone(), one.clone(), "true".into()])
+        });
+        let left =
+            reduction.left_out.iter().map(|one| vec![String::new(), one.clone(), "false".into()]);
         add("reduction", &["group", "section", "kept"], kept.chain(left).collect())?;
     }
-    let domain = found
-        .domain
-        .iter()
-        .map(|d| vec![d.name.clone(), d.unit.clone(), d.scope.clone(), number(Some(d.low)), number(Some(d.high)), d.count.to_string()]);
+    let domain = found.domain.iter().map(|d| {
+        vec![
+            d.name.clone(),
+            d.unit.clone(),
+            d.scope.clone(),
+            number(Some(d.low)),
+            number(Some(d.high)),
+            d.count.to_string(),
+        ]
+    });
     add("domain", &["quantity", "unit", "scope", "low", "high", "sections"], domain.collect())?;
     if !found.application.is_empty() {
         let head = [
@@ -206,25 +278,35 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
     let several = found.campaign.vehicle.iter().any(|item| item.of.is_some());
     let vehicle = found.campaign.vehicle.iter().chain(&found.campaign.facts).map(|item| {
         let unit = item.unit.clone().unwrap_or_default();
-        let row = vec![item.name.clone(), item.value.clone(), unit, item.unit_assumed.to_string(), item.used.to_string()];
+        let row = vec![
+            item.name.clone(),
+            item.value.clone(),
+            unit,
+            item.unit_assumed.to_string(),
+            item.used.to_string(),
+        ];
         with(row, several.then(|| item.of.clone().unwrap_or_default()), 5)
     });
     let mut columns = vec!["name", "value", "unit", "unit assumed", "used by the protocol"];
     columns.extend(several.then_some("of"));
     add("vehicle", &columns, vehicle.collect())?;
-    let parameters = found
-        .protocol
-        .parameters
-        .iter()
-        .map(|p| vec![p.name.clone(), p.title.clone(), p.value.clone(), p.default.clone(), p.set_by.clone()]);
+    let parameters = found.protocol.parameters.iter().map(|p| {
+        vec![p.name.clone(), p.title.clone(), p.value.clone(), p.default.clone(), p.set_by.clone()]
+    });
     add("parameters", &["parameter", "title", "value", "default", "set by"], parameters.collect())?;
-    let deviations = found
-        .protocol
-        .deviations
-        .iter()
-        .map(|d| vec![d.rule.clone(), d.before.clone().unwrap_or_default(), d.after.clone().unwrap_or_default()]);
+    let deviations = found.protocol.deviations.iter().map(|d| {
+        vec![
+            d.rule.clone(),
+            d.before.clone().unwrap_or_default(),
+            d.after.clone().unwrap_or_default(),
+        ]
+    });
     add("deviations", &["rule", "parent", "this protocol"], deviations.collect())?;
-    let files = found.campaign.files.iter().map(|file| vec![file.path.clone(), file.bytes.to_string(), file.sha256.clone()]);
+    let files = found
+        .campaign
+        .files
+        .iter()
+        .map(|file| vec![file.path.clone(), file.bytes.to_string(), file.sha256.clone()]);
     add("files", &["file", "bytes", "sha256"], files.collect())?;
     Ok(all)
 }
@@ -262,11 +344,19 @@ const SPREADS_BETWEEN: [&str; 13] = [
 ];
 
 /// Rows for each quantity with several records and each class of sections, after what these are.
-fn spreads(found: &Certification, rows: impl Fn(&ClassSpread) -> Vec<Vec<String>>) -> Vec<Vec<String>> {
+fn spreads(
+    found: &Certification,
+    rows: impl Fn(&ClassSpread) -> Vec<Vec<String>>,
+) -> Vec<Vec<String>> {
     let of_quantity = |quantity: &QuantityResult| -> Vec<Vec<String>> {
         let Some(spread) = &quantity.spread else { return Vec::new() };
         let of_class = |class: &ClassSpread| {
-            let of = [quantity.id.clone(), quantity.unit.clone(), spread.center.clone(), class.zone.clone().unwrap_or_default()];
+            let of = [
+                quantity.id.clone(),
+                quantity.unit.clone(),
+                spread.center.clone(),
+                class.zone.clone().unwrap_or_default(),
+            ];
             rows(class).into_iter().map(move |row| [of.to_vec(), row].concat())
         };
         spread.classes.iter().flat_map(of_class).collect()
@@ -292,7 +382,13 @@ fn of_records(class: &ClassSpread) -> Vec<Vec<String>> {
 }
 
 fn between(class: &ClassSpread) -> Vec<Vec<String>> {
-    let numbers = [class.range_of_means, class.std_of_means, class.mean_range, class.mean_std, class.widest.value];
+    let numbers = [
+        class.range_of_means,
+        class.std_of_means,
+        class.mean_range,
+        class.mean_std,
+        class.widest.value,
+    ];
     let mut row = vec![class.records.len().to_string(), class.places.to_string()];
     row.extend(numbers.map(|value| value.to_string()));
     row.extend([class.widest.section.clone(), class.widest.signal.clone()]);
@@ -307,10 +403,11 @@ fn with(mut row: Vec<String>, cell: Option<String>, at: usize) -> Vec<String> {
     row
 }
 
-/// A cell that a spreadsheet does not interpret as a formula: such text gets an apostrophe in front, the spreadsheets' own mark of text
-/// (OWASP, CSV Injection).
+/// A cell that a spreadsheet does not interpret as a formula: such text gets an apostrophe in
+/// front, the spreadsheets' own mark of text (OWASP, CSV Injection).
 fn inert(cell: &str) -> std::borrow::Cow<'_, str> {
-    let formula = cell.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']) && cell.parse::<f64>().is_err();
+    let formula =
+        cell.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']) && cell.parse::<f64>().is_err();
     if formula { format!("'{cell}").into() } else { cell.into() }
 }
 
@@ -318,7 +415,11 @@ fn inert(cell: &str) -> std::borrow::Cow<'_, str> {
 ///
 /// # Errors
 /// An error of the CSV writer, which writes to memory.
-pub fn csv_file(name: &str, header: &[&str], rows: Vec<Vec<String>>) -> Result<(String, Vec<u8>), csv::Error> {
+pub fn csv_file(
+    name: &str,
+    header: &[&str],
+    rows: Vec<Vec<String>>,
+) -> Result<(String, Vec<u8>), csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(header)?;
     for row in rows {

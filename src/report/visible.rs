@@ -1,9 +1,10 @@
 //! Makes hidden characters visible, so that no name can hide text or look like another.
 
-/// Text with white space as spaces and every character without a visible glyph spelled out: `a\u{202e}b` becomes `a⟨U+202E⟩b`.
+/// Text with white space as spaces and every character without a visible glyph spelled out:
+/// `a\u{202e}b` becomes `a⟨U+202E⟩b`.
 ///
-/// These are control characters, changes of writing direction, characters of zero width, private and noncharacters, which include those
-/// that XML and HTML forbid.
+/// These are control characters, changes of writing direction, characters of zero width, private
+/// and noncharacters, which include those that XML and HTML forbid.
 pub fn visible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
@@ -33,7 +34,10 @@ mod tests {
     #[test]
     fn what_cannot_be_seen_is_spelled_out() {
         assert_eq!(visible("Straße 中 שלום z̈ ✓ 🚆"), "Straße 中 שלום z̈ ✓ 🚆");
-        assert_eq!(visible("a\u{202e}b\u{0}c\u{200b}d\u{feff}\u{e000}\u{ffff}"), "a⟨U+202E⟩b⟨U+0000⟩c⟨U+200B⟩d⟨U+FEFF⟩⟨U+E000⟩⟨U+FFFF⟩");
+        assert_eq!(
+            visible("a\u{202e}b\u{0}c\u{200b}d\u{feff}\u{e000}\u{ffff}"),
+            "a⟨U+202E⟩b⟨U+0000⟩c⟨U+200B⟩d⟨U+FEFF⟩⟨U+E000⟩⟨U+FFFF⟩"
+        );
         assert_eq!(visible("two\nlines\tand"), "two lines and");
     }
 }

@@ -16,8 +16,8 @@ pub struct Blind {
     pub calibration: Vec<Calibration>,
 }
 
-/// Single effects with a detectability from `from` to the next bin: number, number named first, and the interval of the share
-/// (Wilson, 95 %).
+/// Single effects with a detectability from `from` to the next bin: number, number named first, and
+/// the interval of the share (Wilson, 95 %).
 #[derive(Clone, Debug, Serialize)]
 pub struct BySize {
     pub from: f64,
@@ -27,7 +27,8 @@ pub struct BySize {
     pub high: f64,
 }
 
-/// First causes of similar probability: mean probability, number of correct ones, and the interval of the share (Wilson, 95 %).
+/// First causes of similar probability: mean probability, number of correct ones, and the interval
+/// of the share (Wilson, 95 %).
 #[derive(Clone, Debug, Serialize)]
 pub struct Calibration {
     pub said: f64,
@@ -48,7 +49,8 @@ pub struct Case {
     pub ambiguity_set: Vec<String>,
     /// Length of the whitened change by the true effects, in standard deviations.
     pub detectability: Option<f64>,
-    /// With several true effects: the smallest part of one that no size of the others reproduces, in standard deviations.
+    /// With several true effects: the smallest part of one that no size of the others reproduces,
+    /// in standard deviations.
     pub weakest: Option<f64>,
     pub first_is_right: bool,
     pub in_first_two: bool,
@@ -59,11 +61,13 @@ pub struct Case {
     pub shrink_said: Option<f64>,
     pub shrink_true: Option<f64>,
     pub probability: Option<f64>,
-    /// Cells of the map: changed by the truth, called significant, and both. Nothing if the truth is not in the catalogue.
+    /// Cells of the map: changed by the truth, called significant, and both. Nothing if the truth
+    /// is not in the catalogue.
     pub cells: Option<Places>,
     /// Whether the truth changes the first cell of the map; nothing if it changes none.
     pub first_cell_moved: Option<bool>,
-    /// Sections of the effects that are both named and true: true ones, named ones, and both. Nothing if they act in all sections.
+    /// Sections of the effects that are both named and true: true ones, named ones, and both.
+    /// Nothing if they act in all sections.
     pub sections: Option<Places>,
     /// Why there is no diagnosis or no truth.
     pub fault: Option<String>,

@@ -16,7 +16,8 @@ pub struct Comparison {
     pub agreement: Vec<Agreement>,
     pub sensitivity: Vec<Sensitivity>,
     pub applicability: Vec<Applicability>,
-    /// Of exactly two related protocols: what differs, and what each difference does; empty otherwise.
+    /// Of exactly two related protocols: what differs, and what each difference does; empty
+    /// otherwise.
     pub differences: Vec<Difference>,
     /// Of two protocols that are no variants of each other: the number of rules that differ.
     pub unrelated: Option<usize>,
@@ -109,7 +110,8 @@ pub struct Agreement {
     pub b: String,
     /// Number of sections that both give a score.
     pub sections: usize,
-    /// Sections by requirement met and not met: rows by `a`, columns by `b`. `None` where a metric has no limit.
+    /// Sections by requirement met and not met: rows by `a`, columns by `b`. `None` where a metric
+    /// has no limit.
     pub contingency: Option<[[usize; 2]; 2]>,
     /// Spearman's rank correlation of the scores.
     pub spearman: Option<f64>,
@@ -127,7 +129,8 @@ pub struct Sensitivity {
     /// `offset`, `gain`, `time shift`, `noise`, `choice of sections`.
     pub disturbance: String,
     pub sizes: Vec<f64>,
-    /// Root mean square, over all limits of the metric and all campaigns, of the change of value / limit.
+    /// Root mean square, over all limits of the metric and all campaigns, of the change of value /
+    /// limit.
     pub values: Vec<Option<f64>>,
     /// Why a value is missing.
     pub reasons: Vec<Option<String>>,
@@ -157,7 +160,8 @@ pub struct Applicability {
     pub campaign: Option<String>,
     /// Number of quantities with the metric.
     pub quantities: usize,
-    /// Whether doubled records leave its values as they are, double them, or neither: `relative`, `absolute`, `neither`.
+    /// Whether doubled records leave its values as they are, double them, or neither: `relative`,
+    /// `absolute`, `neither`.
     pub scale: Option<String>,
     /// Whether it stays the same in magnitude when simulation and measurement are exchanged.
     pub symmetric: Option<bool>,

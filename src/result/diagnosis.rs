@@ -16,10 +16,12 @@ pub struct Diagnosis {
     /// The verdict in sentences.
     pub says: Vec<String>,
     pub fit: Fit,
-    /// The verdict of the protocol on the campaign as it is, and with the effects by cross-validation.
+    /// The verdict of the protocol on the campaign as it is, and with the effects by
+    /// cross-validation.
     pub protocol_before: Verdict,
     pub protocol_after: Option<Verdict>,
-    /// Share of campaigns drawn from what is allowed, with nothing hidden, in which an effect would be named.
+    /// Share of campaigns drawn from what is allowed, with nothing hidden, in which an effect would
+    /// be named.
     pub false_name_rate: f64,
     pub calibration: Calibration,
     /// Faults of the recording; their channels are excluded.
@@ -32,7 +34,8 @@ pub struct Diagnosis {
     pub trends_tested: usize,
     /// Correlated covariates, between which the campaign does not discriminate.
     pub together: Vec<String>,
-    /// Variation of the sizes of operations on the signals over the campaign; a correct effect has one size.
+    /// Variation of the sizes of operations on the signals over the campaign; a correct effect has
+    /// one size.
     pub drifts: Vec<Drift>,
     pub shapes: Vec<Shape>,
     pub causes: Vec<Cause>,
@@ -49,7 +52,8 @@ pub struct Diagnosis {
     pub how: How,
     pub notes: Vec<String>,
     pub simulations_run: usize,
-    /// Simulated time of all runs in s, inside the sections. Not wall-clock time, so that the same input gives the same bytes.
+    /// Simulated time of all runs in s, inside the sections. Not wall-clock time, so that the same
+    /// input gives the same bytes.
     pub seconds: f64,
     /// Whether sections may be mirrored: left and right curves.
     #[serde(skip)]
@@ -59,7 +63,8 @@ pub struct Diagnosis {
     pub pictures: Vec<Picture>,
 }
 
-/// What the search names in campaigns drawn on the basis of this one, with known effects. The consistency checks are left out.
+/// What the search names in campaigns drawn on the basis of this one, with known effects. The
+/// consistency checks are left out.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Calibration {
     /// Single effects that are named, and nothing else.
@@ -136,10 +141,11 @@ pub struct Where {
     pub zones: Vec<String>,
     pub sections: Vec<String>,
     pub wavelength_or_band: String,
-    /// Mean difference, simulated - measured. Levels in the unit of the channel, as sign(measured) (simulated - measured); bands as the
-    /// ratio of the rms, simulated / measured - 1.
+    /// Mean difference, simulated - measured. Levels in the unit of the channel, as sign(measured)
+    /// (simulated - measured); bands as the ratio of the rms, simulated / measured - 1.
     pub difference: f64,
-    /// Root mean square of the same differences; larger than the mean where they vary between sections and wheels.
+    /// Root mean square of the same differences; larger than the mean where they vary between
+    /// sections and wheels.
     pub difference_rms: f64,
     pub unit: String,
     pub share_of_gap: f64,
@@ -149,7 +155,8 @@ pub struct Where {
     pub says: String,
 }
 
-/// A sum of quasi-static values that only some causes can change: mean over the sections, simulated - measured.
+/// A sum of quasi-static values that only some causes can change: mean over the sections, simulated
+/// - measured.
 #[derive(Clone, Debug, Serialize)]
 pub struct Invariant {
     pub name: String,
@@ -165,7 +172,8 @@ pub struct Invariant {
     pub allowed_after: f64,
 }
 
-/// Trend of a difference over a column of the section table: generalised least squares on that column alone.
+/// Trend of a difference over a column of the section table: generalised least squares on that
+/// column alone.
 #[derive(Clone, Debug, Serialize)]
 pub struct Trend {
     pub quantity: String,
@@ -202,8 +210,9 @@ pub struct Drift {
     pub p_value: f64,
 }
 
-/// Change of simulated - measured over the range of a covariate, with a 90 % interval. Levels in their unit, turned to one direction if
-/// they change sign with the curve; bands as the ratio of the rms, simulated / measured - 1.
+/// Change of simulated - measured over the range of a covariate, with a 90 % interval. Levels in
+/// their unit, turned to one direction if they change sign with the curve; bands as the ratio of
+/// the rms, simulated / measured - 1.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Slope {
     pub change: f64,
@@ -228,11 +237,13 @@ pub struct Shape {
     pub peak: Ratio,
     /// Ratio of peak / rms.
     pub crest: Ratio,
-    /// The scaling of the differences of spectra between sections, if significant: `frequency` or `wavelength`.
+    /// The scaling of the differences of spectra between sections, if significant: `frequency` or
+    /// `wavelength`.
     pub keeps_to: Option<&'static str>,
     /// The reason if `keeps_to` is missing.
     pub reason: Option<&'static str>,
-    /// Share of their variance that is common to all sections, compared at equal frequency, and at equal wavelength.
+    /// Share of their variance that is common to all sections, compared at equal frequency, and at
+    /// equal wavelength.
     pub alike_by_frequency: Option<f64>,
     pub alike_by_wavelength: Option<f64>,
     pub strongest: Option<Strongest>,
@@ -283,7 +294,8 @@ pub struct NamedEffect {
     pub confined_to: Option<IndexMap<String, serde_json::Value>>,
     /// How it is added: by which simulator, or by an operation on the signals.
     pub added_by: String,
-    /// Share of resamples of the sections in which no other effect has more evidence; only for members of the answer.
+    /// Share of resamples of the sections in which no other effect has more evidence; only for
+    /// members of the answer.
     pub stability: Option<f64>,
 }
 
@@ -307,10 +319,22 @@ impl NamedEffect {
                 last.channels = names;
                 continue;
             }
-            match (name.rsplit_once('.').filter(|(_, channel)| self.channels.iter().any(|known| known == channel)), told.last_mut()) {
-                (Some((of, channel)), Some(last)) if last.parameter == of && last.value == value => last.channels.push(channel.into()),
-                (Some((of, channel)), _) => told.push(Told { parameter: of.into(), value, channels: vec![channel.into()] }),
-                (None, _) => told.push(Told { parameter: name.clone(), value, channels: Vec::new() }),
+            match (
+                name.rsplit_once('.')
+                    .filter(|(_, channel)| self.channels.iter().any(|known| known == channel)),
+                told.last_mut(),
+            ) {
+                (Some((of, channel)), Some(last))
+                    if last.parameter == of && last.value == value =>
+                {
+                    last.channels.push(channel.into())
+                }
+                (Some((of, channel)), _) => {
+                    told.push(Told { parameter: of.into(), value, channels: vec![channel.into()] })
+                }
+                (None, _) => {
+                    told.push(Told { parameter: name.clone(), value, channels: Vec::new() })
+                }
             }
         }
         told
@@ -319,7 +343,11 @@ impl NamedEffect {
     /// Its confinement, such as `, only in zones 3, 4`; empty if it acts in all sections.
     #[must_use]
     pub fn only_in(&self) -> String {
-        let parts = self.confined_to.iter().flatten().map(|(column, values)| format!("{column} {}", flat(values)));
+        let parts = self
+            .confined_to
+            .iter()
+            .flatten()
+            .map(|(column, values)| format!("{column} {}", flat(values)));
         let parts = parts.collect::<Vec<_>>().join(", ");
         if parts.is_empty() { parts } else { format!(", only in {parts}") }
     }
@@ -329,7 +357,11 @@ impl Told<'_> {
     /// Its channels, such as ` on Y_1R, Y_1L`; empty if there are none.
     #[must_use]
     pub fn on(&self) -> String {
-        if self.channels.is_empty() { String::new() } else { format!(" on {}", self.channels.join(", ")) }
+        if self.channels.is_empty() {
+            String::new()
+        } else {
+            format!(" on {}", self.channels.join(", "))
+        }
     }
 }
 
@@ -383,8 +415,8 @@ pub struct Detectable {
     pub unit: String,
     /// The size without influence.
     pub neutral: f64,
-    /// Distance from neutral at which the whitened change has length 5; nothing if the range ends before. For an effect on one of several
-    /// channels, the largest of these distances.
+    /// Distance from neutral at which the whitened change has length 5; nothing if the range ends
+    /// before. For an effect on one of several channels, the largest of these distances.
     pub smallest: Option<f64>,
     /// The same on either side of neutral.
     pub below: Option<f64>,
@@ -418,7 +450,9 @@ pub struct How {
 
 /// Writes names that are integers as numbers.
 fn as_numbers<S: serde::Serializer>(names: &[String], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(names.iter().map(|name| name.parse::<i64>().map_or_else(|_| name.as_str().into(), serde_json::Value::from)))
+    serializer.collect_seq(names.iter().map(|name| {
+        name.parse::<i64>().map_or_else(|_| name.as_str().into(), serde_json::Value::from)
+    }))
 }
 
 #[cfg(test)]
@@ -427,12 +461,21 @@ mod tests {
     use serde_json::json;
 
     fn effect(parameters: &[(&str, serde_json::Value)]) -> NamedEffect {
-        let value = |value: &serde_json::Value| Value { value: value.clone(), unit: "-".into(), assumed: None, low: None, high: None };
+        let value = |value: &serde_json::Value| Value {
+            value: value.clone(),
+            unit: "-".into(),
+            assumed: None,
+            low: None,
+            high: None,
+        };
         NamedEffect {
             name: "effect".into(),
             title: "Effect".into(),
             channels: vec!["Y_1R".into(), "Y_1L".into(), "Q_1R".into()],
-            parameters: parameters.iter().map(|(name, of)| ((*name).to_owned(), value(of))).collect(),
+            parameters: parameters
+                .iter()
+                .map(|(name, of)| ((*name).to_owned(), value(of)))
+                .collect(),
             confined_to: Some(IndexMap::from([("zones".into(), json!([3, 4]))])),
             added_by: String::new(),
             stability: None,
@@ -443,18 +486,30 @@ mod tests {
     fn what_channels_have_alike_is_told_once() {
         let told = |parameters: &[(&str, serde_json::Value)]| {
             let effect = effect(parameters);
-            let one = |told: Told<'_>| format!("{} {}{}", told.parameter, told.value.text(), told.on());
+            let one =
+                |told: Told<'_>| format!("{} {}{}", told.parameter, told.value.text(), told.on());
             effect.told().into_iter().map(one).collect::<Vec<_>>()
         };
-        let alike = [("measurement.gain.Y_1R", json!(0.8)), ("measurement.gain.Y_1L", json!(0.8)), ("measurement.gain.Q_1R", json!(0.8))];
+        let alike = [
+            ("measurement.gain.Y_1R", json!(0.8)),
+            ("measurement.gain.Y_1L", json!(0.8)),
+            ("measurement.gain.Q_1R", json!(0.8)),
+        ];
         assert_eq!(told(&alike), ["measurement.gain 0.8 on Y_1R, Y_1L, Q_1R"]);
         assert_eq!(told(&alike[..1]), ["measurement.gain 0.8 on Y_1R"]);
         // Equal values of different parameters are not combined.
-        let others = [("out_of_roundness.wheelset", json!(2)), ("out_of_roundness.harmonic", json!(2))];
+        let others =
+            [("out_of_roundness.wheelset", json!(2)), ("out_of_roundness.harmonic", json!(2))];
         assert_eq!(told(&others), ["out_of_roundness.wheelset 2", "out_of_roundness.harmonic 2"]);
-        let low_pass = [("measurement.lowpass", json!(6)), ("measurement.lowpass_channels", json!(["Y_1R", "Y_1L"]))];
+        let low_pass = [
+            ("measurement.lowpass", json!(6)),
+            ("measurement.lowpass_channels", json!(["Y_1R", "Y_1L"])),
+        ];
         assert_eq!(told(&low_pass), ["measurement.lowpass 6 on Y_1R, Y_1L"]);
-        assert_eq!(told(&[("measurement.swap", json!([["Y_1R", "Y_2R"]]))]), ["measurement.swap Y_1R, Y_2R"]);
+        assert_eq!(
+            told(&[("measurement.swap", json!([["Y_1R", "Y_2R"]]))]),
+            ["measurement.swap Y_1R, Y_2R"]
+        );
         assert_eq!(effect(&[]).only_in(), ", only in zones 3, 4");
         assert_eq!(NamedEffect { confined_to: None, ..effect(&[]) }.only_in(), "");
     }

@@ -7,7 +7,8 @@ use super::RulePlace;
 
 /// A domain of the protocol, of the sections of one group.
 ///
-/// Distances are Euclidean, with every coordinate divided by its range over the sections of the group.
+/// Distances are Euclidean, with every coordinate divided by its range over the sections of the
+/// group.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DomainResult {
     /// Name of the domain in the protocol.
@@ -66,7 +67,8 @@ pub struct WantedPoint {
     pub nearest: Option<Vec<f64>>,
     /// The point less the nearest point of the hull.
     pub outside_by: Option<Vec<f64>>,
-    /// How far each value lies beyond the range of the sections, without sign; 0 within it. `None` without sections.
+    /// How far each value lies beyond the range of the sections, without sign; 0 within it. `None`
+    /// without sections.
     pub beyond_range: Option<Vec<f64>>,
     pub nearest_section: Option<String>,
     /// From the nearest section, in ranges of the coordinates.

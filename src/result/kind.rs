@@ -11,7 +11,8 @@ pub enum Kind {
     Validation,
     /// Quantities are of one record by itself.
     Assessment,
-    /// Every quantity compares records of one side: several with what is central of them, or repeats with their originals.
+    /// Every quantity compares records of one side: several with what is central of them, or
+    /// repeats with their originals.
     Comparison,
     /// Validation and assessment.
     Mixed,
@@ -23,8 +24,9 @@ impl Kind {
         Self::of_all(quantities.iter().map(QuantityResult::kind))
     }
 
-    /// Of a protocol with quantities of these kinds. Comparisons of records of one side make a comparison only where there is nothing else:
-    /// a validation that also looks at repeats is a validation.
+    /// Of a protocol with quantities of these kinds. Comparisons of records of one side make a
+    /// comparison only where there is nothing else: a validation that also looks at repeats is a
+    /// validation.
     pub fn of_all(kinds: impl Iterator<Item = Self>) -> Self {
         let kinds: Vec<Self> = kinds.collect();
         let some = |kind| kinds.contains(&kind);
@@ -111,7 +113,10 @@ impl Certification {
 
     /// Sides of which records are in the quantities: simulated, measured.
     pub fn reads(&self) -> (bool, bool) {
-        let any = |side: &str| self.quantities.is_empty() || self.quantities.iter().any(|quantity| quantity.reads(side));
+        let any = |side: &str| {
+            self.quantities.is_empty()
+                || self.quantities.iter().any(|quantity| quantity.reads(side))
+        };
         (any("simulated"), any("measured"))
     }
 }
@@ -142,7 +147,10 @@ mod tests {
     fn a_verdict_that_cannot_be_given_has_no_word_of_its_own() {
         let words = VerdictWords { good: "accepted".into(), bad: "rejected".into() };
         let all = [Verdict::Validated, Verdict::NotValidated, Verdict::NotAssessable];
-        assert_eq!(all.map(|verdict| words.word(verdict)), ["accepted", "rejected", "not assessable"]);
+        assert_eq!(
+            all.map(|verdict| words.word(verdict)),
+            ["accepted", "rejected", "not assessable"]
+        );
         assert_eq!(VerdictWords::of(Kind::Assessment).good, "requirements met");
     }
 }

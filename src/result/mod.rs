@@ -1,6 +1,7 @@
 //! Result of a certification: plain data, without logic or input/output.
 //!
-//! Numbers are in the unit named beside them. A value that could not be computed is `None` with a reason, never NaN.
+//! Numbers are in the unit named beside them. A value that could not be computed is `None` with a
+//! reason, never NaN.
 
 pub mod blind;
 pub mod comparison;
@@ -24,7 +25,8 @@ pub use finding::{Consequence, Finding};
 pub use kind::{Kind, VerdictWords};
 pub use origin::{FittedTo, ImportedOne, ImportedSide, OriginInfo};
 pub use quantity::{
-    LimitFactor, Outside, PairValue, QuantityResult, RegressionAt, RegressionFigure, RegressionPoint, Reported, Sample, StatisticResult,
+    LimitFactor, Outside, PairValue, QuantityResult, RegressionAt, RegressionFigure,
+    RegressionPoint, Reported, Sample, StatisticResult,
 };
 pub use report::ReportItem;
 pub use spread::{ClassSpread, Furthest, OfRecord, Spread};
@@ -57,7 +59,8 @@ pub struct Certification {
     pub zones: Vec<ZoneResult>,
     /// Range of each numeric section column over the used sections: the validity domain.
     pub domain: Vec<DomainRange>,
-    /// Wanted operation inside and outside what the sections cover; empty if the protocol does not ask.
+    /// Wanted operation inside and outside what the sections cover; empty if the protocol does not
+    /// ask.
     pub application: Vec<DomainResult>,
     /// Plots of the most relevant sections.
     pub traces: Vec<Trace>,
@@ -202,7 +205,8 @@ pub struct RecordOf {
     pub name: Option<String>,
 }
 
-/// Whether a record took part in a value: by the record that the value names, `simpack` or `simpack, run1`, and the name of the record.
+/// Whether a record took part in a value: by the record that the value names, `simpack` or
+/// `simpack, run1`, and the name of the record.
 pub fn took_part(value: Option<&str>, simulated: bool, name: Option<&str>) -> bool {
     let (Some(value), Some(name)) = (value, name) else { return true };
     match value.split_once(", ") {
@@ -288,12 +292,20 @@ pub struct ZoneResult {
 impl ZoneResult {
     /// Why the zone has too few sections.
     pub fn lack(&self) -> Option<String> {
-        let says = || format!("zone {} has {}; at least {} required", self.zone, usable_sections(self.used, self.sites), self.minimum);
+        let says = || {
+            format!(
+                "zone {} has {}; at least {} required",
+                self.zone,
+                usable_sections(self.used, self.sites),
+                self.minimum
+            )
+        };
         (!self.holds).then(says)
     }
 }
 
-/// `2 usable sections`; with repeats, `3 usable sections of 2 sites (a repeat is no further section)`.
+/// `2 usable sections`; with repeats, `3 usable sections of 2 sites (a repeat is no further
+/// section)`.
 pub fn usable_sections(sections: usize, sites: usize) -> String {
     let plural = |count: usize| if count == 1 { "" } else { "s" };
     let in_words = format!("{sections} usable section{}", plural(sections));
@@ -316,7 +328,8 @@ pub struct DomainRange {
     pub count: usize,
 }
 
-/// Simulated and measured signal of one section, filtered as specified for the quantity, thinned for plotting.
+/// Simulated and measured signal of one section, filtered as specified for the quantity, thinned
+/// for plotting.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Trace {
     pub quantity: String,
@@ -328,14 +341,16 @@ pub struct Trace {
     pub unit: String,
     pub axis: String,
     pub axis_unit: String,
-    /// The evaluated section on the axis; of a loop the range of the measurement, without bounds where there is none.
+    /// The evaluated section on the axis; of a loop the range of the measurement, without bounds
+    /// where there is none.
     #[serde(deserialize_with = "unbounded_below")]
     pub start: f64,
     #[serde(deserialize_with = "unbounded_above")]
     pub end: f64,
     pub measured: Curve,
     pub simulated: Curve,
-    /// Of several records that are compared with each other: the name of the one above, and all others.
+    /// Of several records that are compared with each other: the name of the one above, and all
+    /// others.
     pub record: Option<String>,
     pub others: Vec<(String, Curve)>,
 }

@@ -90,9 +90,15 @@ mod tests {
             .note()
         };
         assert_eq!(of(&[], &[], 0), None);
-        assert_eq!(of(&["friction = 0.23"], &[], 0).as_deref(), Some("simulation with effect friction = 0.23"));
+        assert_eq!(
+            of(&["friction = 0.23"], &[], 0).as_deref(),
+            Some("simulation with effect friction = 0.23")
+        );
         let other = "simulation with effects a = 1 and b = 2, fitted to other measurements";
         assert_eq!(of(&["a = 1", "b = 2"], std::slice::from_ref(&file), 0).as_deref(), Some(other));
-        assert_eq!(of(&["a = 1"], &[file], 1).as_deref(), Some("with a simulation fitted to the same measurements"));
+        assert_eq!(
+            of(&["a = 1"], &[file], 1).as_deref(),
+            Some("with a simulation fitted to the same measurements")
+        );
     }
 }

@@ -24,16 +24,18 @@ pub struct QuantityResult {
     pub clause: Option<String>,
     pub source: Option<String>,
     pub notes: Vec<String>,
-    /// Whether `values` contain simulated and measured values; false for a metric that gives one number for both signals, and for an
-    /// assessment.
+    /// Whether `values` contain simulated and measured values; false for a metric that gives one
+    /// number for both signals, and for an assessment.
     pub has_sides: bool,
     /// The record that is assessed by itself: `measured`; `None` where records are compared.
     pub from: Option<String>,
-    /// The side whose records are compared with each other, or with what is central of them: `simulated`.
+    /// The side whose records are compared with each other, or with what is central of them:
+    /// `simulated`.
     pub among: Option<String>,
     /// What stands on the other side there, if not all of them: a title.
     pub against: Option<String>,
-    /// Whether sections that were measured again are compared with their originals: `simulated` is the repeat, `measured` the original.
+    /// Whether sections that were measured again are compared with their originals: `simulated` is
+    /// the repeat, `measured` the original.
     pub repeats: bool,
     /// How far several records of one side are apart.
     pub spread: Option<Spread>,
@@ -72,13 +74,14 @@ pub struct StatisticResult {
     pub group: Vec<(String, String)>,
     /// Number of pairs.
     pub count: usize,
-    /// Number of sites of the pairs. Pairs of one site (its positions, its repeats) are not independent.
+    /// Number of sites of the pairs. Pairs of one site (its positions, its repeats) are not
+    /// independent.
     pub n: usize,
     /// Unit of value and limit.
     pub unit: String,
     pub value: Option<f64>,
-    /// 95 % confidence interval where defined, for independent sites and n - 1 degrees of freedom (mean: Student's t; standard deviation:
-    /// chi-square).
+    /// 95 % confidence interval where defined, for independent sites and n - 1 degrees of freedom
+    /// (mean: Student's t; standard deviation: chi-square).
     pub interval: Option<(f64, f64)>,
     /// The interval contains the limit: another choice of sections could change the result.
     pub marginal: bool,
@@ -91,7 +94,8 @@ pub struct StatisticResult {
     /// Of an estimate that is a regression with one regressor.
     #[serde(skip)]
     pub regression: Option<Box<RegressionFigure>>,
-    /// Of an estimate that is a share of the values: where it divides them, in the unit of the quantity.
+    /// Of an estimate that is a share of the values: where it divides them, in the unit of the
+    /// quantity.
     #[serde(skip)]
     pub divided_at: Option<f64>,
     /// Of an estimate with regressions: regressors that are read outside their data.
@@ -166,7 +170,8 @@ pub struct RegressionFigure {
     pub slope: f64,
     /// From the smallest regressor or target to the largest.
     pub curve: Vec<RegressionAt>,
-    /// What the bound is of, in words: `99 % prediction bound`; `None` where the estimate is the fitted value.
+    /// What the bound is of, in words: `99 % prediction bound`; `None` where the estimate is the
+    /// fitted value.
     pub bound: Option<String>,
     /// Regressor at which the estimate is taken, and the estimate.
     pub target: f64,
@@ -214,7 +219,8 @@ pub struct PairValue {
     pub record: Option<String>,
     pub simulated: Option<f64>,
     pub measured: Option<f64>,
-    /// What estimates are taken of: the difference; of a quantity without sides its metric, or the value that is assessed.
+    /// What estimates are taken of: the difference; of a quantity without sides its metric, or the
+    /// value that is assessed.
     pub difference: f64,
     /// Number of samples (or windows) of the measured value.
     pub samples: usize,
@@ -224,7 +230,12 @@ impl PairValue {
     /// The signal, and which value and record it is where there are several: `SigmaY_1, p99.85`.
     #[must_use]
     pub fn label(&self) -> String {
-        [Some(&self.signal), self.taken.as_ref(), self.record.as_ref()].into_iter().flatten().cloned().collect::<Vec<_>>().join(", ")
+        [Some(&self.signal), self.taken.as_ref(), self.record.as_ref()]
+            .into_iter()
+            .flatten()
+            .cloned()
+            .collect::<Vec<_>>()
+            .join(", ")
     }
 }
 

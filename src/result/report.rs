@@ -7,7 +7,8 @@ use serde_json::{Map, Value};
 /// An item that an assessor expects in a report.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ReportItem {
-    /// Path in the block `report` of the campaign: its key, preceded by the key of the enclosing map, if any.
+    /// Path in the block `report` of the campaign: its key, preceded by the key of the enclosing
+    /// map, if any.
     pub path: Vec<String>,
     pub title: String,
     /// Clause of ISO/IEC 17025:2017 that requires it, if any.

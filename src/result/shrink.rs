@@ -32,7 +32,8 @@ pub struct HeldOut {
     /// `run = P`, or `cross-validation`.
     pub what: String,
     pub sections: Vec<String>,
-    /// The gap on these sections before and after, and the removed share with its 90 % interval; nothing where no effect is named.
+    /// The gap on these sections before and after, and the removed share with its 90 % interval;
+    /// nothing where no effect is named.
     pub before: Option<f64>,
     pub after: Option<f64>,
     pub fraction_removed: Option<f64>,
@@ -50,7 +51,8 @@ pub struct Touched {
     /// 90 % interval, by resampling sections.
     pub low: f64,
     pub high: f64,
-    /// Removed share of the squared differences of all values, each divided by the limit of its quantity's standard deviation.
+    /// Removed share of the squared differences of all values, each divided by the limit of its
+    /// quantity's standard deviation.
     pub variance_explained: f64,
 }
 
@@ -63,11 +65,13 @@ pub struct QuantityShrink {
     pub normalised_mean_after: Option<f64>,
     /// Removed share of the sum of squared differences.
     pub variance_explained: Option<f64>,
-    /// Share of the sum of squared differences that is due to the declared noise of the channels; nothing where no noise is declared.
+    /// Share of the sum of squared differences that is due to the declared noise of the channels;
+    /// nothing where no noise is declared.
     pub noise_floor: Option<f64>,
     /// Removed share of the part above the noise; nothing where there is no such part.
     pub variance_explained_above_noise: Option<f64>,
-    /// Removed share of the root mean square of its normalised values; 90 % interval by resampling sections.
+    /// Removed share of the root mean square of its normalised values; 90 % interval by resampling
+    /// sections.
     pub fraction_removed: f64,
     pub low: f64,
     pub high: f64,

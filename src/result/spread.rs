@@ -1,4 +1,5 @@
-//! How far several records of one side are from each other: simulations by several codes, or runs of a measurement.
+//! How far several records of one side are from each other: simulations by several codes, or runs
+//! of a measurement.
 
 use serde::Serialize;
 
@@ -41,7 +42,8 @@ pub struct OfRecord {
     pub std: Option<f64>,
     pub rms: f64,
     pub largest: Furthest,
-    /// By the root mean square of the deviations, from 1 for the smallest; equal ones have the same rank.
+    /// By the root mean square of the deviations, from 1 for the smallest; equal ones have the same
+    /// rank.
     pub rank: usize,
 }
 

@@ -1,4 +1,5 @@
-//! Result of a study: dependence of the verdict on the selection of sections, the synchronisation, and the parameters of the protocol.
+//! Result of a study: dependence of the verdict on the selection of sections, the synchronisation,
+//! and the parameters of the protocol.
 
 use serde::Serialize;
 
@@ -75,7 +76,8 @@ pub struct QuantitySpread {
     pub title: String,
     pub symbol: String,
     pub unit: String,
-    /// Share of the selections that do not meet one of its limits, and of those in which no other quantity fails.
+    /// Share of the selections that do not meet one of its limits, and of those in which no other
+    /// quantity fails.
     pub failing: f64,
     pub alone: Option<f64>,
     pub statistics: Vec<StatisticSpread>,
@@ -157,7 +159,8 @@ pub struct Removal {
     pub tried: usize,
     /// No more sections can be removed without falling below the number that the protocol requires.
     pub complete: bool,
-    /// If no set that was tried changes the verdict: a larger one that does, not necessarily the smallest.
+    /// If no set that was tried changes the verdict: a larger one that does, not necessarily the
+    /// smallest.
     pub larger: Option<Vec<String>>,
 }
 
@@ -197,7 +200,8 @@ pub struct AtOffset {
     pub study: Result<SelectionStudy, String>,
     /// Differences from the case without offset.
     pub changes: Vec<String>,
-    /// Selections whose verdict differs from that without offset, or the reason why they cannot be compared.
+    /// Selections whose verdict differs from that without offset, or the reason why they cannot be
+    /// compared.
     pub flips: Result<Flips, String>,
     /// Sections that cannot be used at this offset, with the reason.
     pub lost: Vec<(String, String)>,

@@ -1,6 +1,8 @@
 //! A study that is asked for, of any kind.
 
-use super::{Settings, Synchronisation, Vary, all_choices, countable, parameters, sections, synchronisation};
+use super::{
+    Settings, Synchronisation, Vary, all_choices, countable, parameters, sections, synchronisation,
+};
 use crate::certify::Compiled;
 use crate::check::Overrides;
 use crate::data::Campaigns;
@@ -20,7 +22,8 @@ impl Asked {
     /// Whether the study can be made; the number of its steps.
     ///
     /// # Errors
-    /// The verdict does not rest on limits alone; `several-records`: a selection takes one value of each section and signal.
+    /// The verdict does not rest on limits alone; `several-records`: a selection takes one value of
+    /// each section and signal.
     pub fn ready(&self, compiled: &Compiled, campaigns: Campaigns<'_>) -> Result<usize, Problems> {
         countable(compiled)?;
         match self {
@@ -28,7 +31,9 @@ impl Asked {
                 campaigns.one_of_each().map_err(|problem| Problems(vec![problem]))?;
                 Ok(campaigns.sections())
             }
-            Self::Parameters(_) => Ok(1 + self.vary(compiled).iter().map(|vary| vary.values.len()).sum::<usize>()),
+            Self::Parameters(_) => {
+                Ok(1 + self.vary(compiled).iter().map(|vary| vary.values.len()).sum::<usize>())
+            }
         }
     }
 
@@ -53,7 +58,9 @@ impl Asked {
         match self {
             Self::Sections => sections(compiled, campaigns, settings, progress),
             Self::Sync(asked) => synchronisation(compiled, campaigns, settings, asked, progress),
-            Self::Parameters(_) => parameters(compiled, campaigns, overrides, settings, &self.vary(compiled), progress),
+            Self::Parameters(_) => {
+                parameters(compiled, campaigns, overrides, settings, &self.vary(compiled), progress)
+            }
         }
     }
 }

@@ -35,7 +35,8 @@ pub struct Settings {
 /// Study of all selections of sections.
 ///
 /// # Errors
-/// As [`crate::run::run`]; `too-few-sections`: a zone has fewer usable sections than a selection takes.
+/// As [`crate::run::run`]; `too-few-sections`: a zone has fewer usable sections than a selection
+/// takes.
 pub fn sections<'a>(
     compiled: &Compiled,
     campaigns: impl Into<Campaigns<'a>>,
@@ -43,16 +44,27 @@ pub fn sections<'a>(
     progress: Progress<'_>,
 ) -> Result<Study, Problems> {
     let campaigns = campaigns.into();
-    let evaluated = evaluate(&compiled.plan, &compiled.graph, campaigns, &Shifts::NONE, progress)?.swap_remove(0);
+    let evaluated = evaluate(&compiled.plan, &compiled.graph, campaigns, &Shifts::NONE, progress)?
+        .swap_remove(0);
     let vehicle = evaluated.vehicle(&compiled.plan);
-    sections_of(compiled, &evaluated, campaign_info(&compiled.plan, campaigns, evaluated.files.clone(), vehicle), settings)
+    sections_of(
+        compiled,
+        &evaluated,
+        campaign_info(&compiled.plan, campaigns, evaluated.files.clone(), vehicle),
+        settings,
+    )
 }
 
 /// The same of sections that were evaluated before.
 ///
 /// # Errors
 /// `too-few-sections`.
-pub fn sections_of(compiled: &Compiled, evaluated: &Evaluated, campaign: CampaignInfo, settings: &Settings) -> Result<Study, Problems> {
+pub fn sections_of(
+    compiled: &Compiled,
+    evaluated: &Evaluated,
+    campaign: CampaignInfo,
+    settings: &Settings,
+) -> Result<Study, Problems> {
     let (case, reduction) = case_of(evaluated, &compiled.plan, settings).map_err(too_few)?;
     let found = SelectionStudy { reduction, ..selections(&case, &settings.selections) };
     let notes = evaluated.notes().iter().chain(&found.lacking).cloned().collect();
@@ -71,17 +83,29 @@ pub fn countable(compiled: &Compiled) -> Result<(), Problems> {
         Decision::Person(_) => "is judged by a person",
     };
     let name = overall.name.as_ref().map_or_else(String::new, |name| format!(" `{name}`"));
-    let problem = Problem::error("study-verdict", format!("the overall verdict{name} {why}: a study can only count limits"));
+    let problem = Problem::error(
+        "study-verdict",
+        format!("the overall verdict{name} {why}: a study can only count limits"),
+    );
     let problem = problem.at(&overall.span);
-    Err(Problems(vec![problem.help("write a variant of the protocol whose overall verdict is one by limits, and study that")]))
+    Err(Problems(vec![problem.help(
+        "write a variant of the protocol whose overall verdict is one by limits, and study that",
+    )]))
 }
 
 fn too_few(says: String) -> Problems {
-    Problems(vec![Problem::error("too-few-sections", says).help("provide more sections, or reduce the number per selection with `--take`")])
+    Problems(vec![
+        Problem::error("too-few-sections", says)
+            .help("provide more sections, or reduce the number per selection with `--take`"),
+    ])
 }
 
 /// The sections to select from, reduced if required.
-fn case_of(evaluated: &Evaluated, plan: &Plan, settings: &Settings) -> Result<(Case, Option<Reduction>), String> {
+fn case_of(
+    evaluated: &Evaluated,
+    plan: &Plan,
+    settings: &Settings,
+) -> Result<(Case, Option<Reduction>), String> {
     let case = Case::of(&evaluated.pool(plan), settings.take)?;
     Ok(match settings.reduce {
         None => (case, None),
@@ -92,10 +116,20 @@ fn case_of(evaluated: &Evaluated, plan: &Plan, settings: &Settings) -> Result<(C
     })
 }
 
-fn joined(compiled: &Compiled, campaigns: Campaigns<'_>, evaluated: &Evaluated, found: Found) -> Study {
+fn joined(
+    compiled: &Compiled,
+    campaigns: Campaigns<'_>,
+    evaluated: &Evaluated,
+    found: Found,
+) -> Study {
     Study {
         protocol: protocol_info(compiled),
-        campaign: campaign_info(&compiled.plan, campaigns, evaluated.files.clone(), evaluated.vehicle(&compiled.plan)),
+        campaign: campaign_info(
+            &compiled.plan,
+            campaigns,
+            evaluated.files.clone(),
+            evaluated.vehicle(&compiled.plan),
+        ),
         notes: evaluated.notes().to_vec(),
         found,
     }

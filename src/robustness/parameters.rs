@@ -18,7 +18,8 @@ use crate::syntax::document::Text;
 /// A parameter or a rule, and its values as written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Vary {
-    /// The name of a parameter, or the words that lead to a rule: `quantity NAME limit std`, or to several: `every limit std`.
+    /// The name of a parameter, or the words that lead to a rule: `quantity NAME limit std`, or to
+    /// several: `every limit std`.
     pub name: String,
     pub values: Vec<String>,
 }
@@ -26,7 +27,9 @@ pub struct Vary {
 /// Every parameter with a choice of words, over all its words.
 pub fn all_choices(plan: &Plan) -> Vec<Vary> {
     let choices = plan.parameters.iter().filter(|parameter| !parameter.choices.is_empty());
-    choices.map(|parameter| Vary { name: parameter.name.clone(), values: parameter.choices.clone() }).collect()
+    choices
+        .map(|parameter| Vary { name: parameter.name.clone(), values: parameter.choices.clone() })
+        .collect()
 }
 
 /// Evaluates the protocol for each value of each parameter or rule, with the others unchanged.
@@ -50,7 +53,10 @@ pub fn parameters<'a>(
     let mut problems = Problems::default();
     for varied in vary {
         if let Some(found) = Variable::find(compiled, &varied.name, &mut problems) {
-            let each = varied.values.iter().map(|value| found.with(&compiled.family, overrides, value, &mut problems));
+            let each = varied
+                .values
+                .iter()
+                .map(|value| found.with(&compiled.family, overrides, value, &mut problems));
             let values: Vec<Option<Compiled>> = each.collect();
             compiled_values.push((varied, found, values));
         }
@@ -59,7 +65,8 @@ pub fn parameters<'a>(
         return Err(problems);
     }
     let quiet = |_: &str| {};
-    let evaluated = evaluate(plan, &compiled.graph, campaigns, &Shifts::NONE, &quiet)?.swap_remove(0);
+    let evaluated =
+        evaluate(plan, &compiled.graph, campaigns, &Shifts::NONE, &quiet)?.swap_remove(0);
     progress("baseline");
     let base = at_value(&evaluated, compiled, settings, "baseline", true);
     let mut parameters = Vec::new();
@@ -73,7 +80,8 @@ pub fn parameters<'a>(
                 found.push(AtValue { value: shown, ..base.clone() });
                 continue;
             }
-            let evaluated = evaluate(&other.plan, &other.graph, campaigns, &Shifts::NONE, &quiet)?.swap_remove(0);
+            let evaluated = evaluate(&other.plan, &other.graph, campaigns, &Shifts::NONE, &quiet)?
+                .swap_remove(0);
             found.push(at_value(&evaluated, &other, settings, &shown, false));
         }
         parameters.push(Varied {
@@ -84,7 +92,12 @@ pub fn parameters<'a>(
             values: found,
         });
     }
-    Ok(joined(compiled, campaigns, &evaluated, Found::Parameters(ParameterStudy { base, parameters })))
+    Ok(joined(
+        compiled,
+        campaigns,
+        &evaluated,
+        Found::Parameters(ParameterStudy { base, parameters }),
+    ))
 }
 
 /// A parameter, a rule or a group of limits.
@@ -95,13 +108,20 @@ enum Variable<'a> {
 }
 
 impl<'a> Variable<'a> {
-    /// A name without spaces is a parameter; several words address a rule, `every limit` and a statistic several rules.
+    /// A name without spaces is a parameter; several words address a rule, `every limit` and a
+    /// statistic several rules.
     fn find(compiled: &'a Compiled, name: &str, problems: &mut Problems) -> Option<Self> {
         if Scale::asked(name) {
-            return Scale::find(&compiled.family.merged, name).map(Self::Scale).map_err(|problem| problems.push(*problem)).ok();
+            return Scale::find(&compiled.family.merged, name)
+                .map(Self::Scale)
+                .map_err(|problem| problems.push(*problem))
+                .ok();
         }
         if name.contains(char::is_whitespace) {
-            return Rule::find(&compiled.family.merged, name).map(Self::Rule).map_err(|problem| problems.push(*problem)).ok();
+            return Rule::find(&compiled.family.merged, name)
+                .map(Self::Rule)
+                .map_err(|problem| problems.push(*problem))
+                .ok();
         }
         let parameters = &compiled.plan.parameters;
         if let Some(parameter) = parameters.iter().find(|parameter| parameter.name == name) {
@@ -114,11 +134,21 @@ impl<'a> Variable<'a> {
     }
 
     /// The protocol with another value.
-    fn with(&self, family: &Family, overrides: &Overrides, value: &str, problems: &mut Problems) -> Option<Compiled> {
+    fn with(
+        &self,
+        family: &Family,
+        overrides: &Overrides,
+        value: &str,
+        problems: &mut Problems,
+    ) -> Option<Compiled> {
         match self {
-            Self::Parameter(parameter) => with(family.clone(), overrides, &parameter.name, value, problems),
+            Self::Parameter(parameter) => {
+                with(family.clone(), overrides, &parameter.name, value, problems)
+            }
             Self::Rule(rule) => compile(rule.with(family, value), overrides, problems),
-            Self::Scale(scale) => compile(scale.with(family, value, problems)?, overrides, problems),
+            Self::Scale(scale) => {
+                compile(scale.with(family, value, problems)?, overrides, problems)
+            }
         }
     }
 
@@ -145,13 +175,22 @@ impl<'a> Variable<'a> {
                 let set = plan.parameters.iter().find(|other| other.name == parameter.name);
                 set.map_or_else(|| value.to_owned(), |set| set.value.clone())
             }
-            Self::Scale(_) => value.trim().parse::<f64>().map_or_else(|_| value.to_owned(), |factor| factor.to_string()),
+            Self::Scale(_) => value
+                .trim()
+                .parse::<f64>()
+                .map_or_else(|_| value.to_owned(), |factor| factor.to_string()),
             Self::Rule(_) => value.split_whitespace().collect::<Vec<_>>().join(" "),
         }
     }
 }
 
-fn with(family: Family, overrides: &Overrides, name: &str, value: &str, problems: &mut Problems) -> Option<Compiled> {
+fn with(
+    family: Family,
+    overrides: &Overrides,
+    name: &str,
+    value: &str,
+    problems: &mut Problems,
+) -> Option<Compiled> {
     let mut overrides = overrides.clone();
     let source = Source::new("--vary", format!("{name}={value}"));
     let span = source.span(name.len() + 1..source.text.len());
@@ -160,7 +199,13 @@ fn with(family: Family, overrides: &Overrides, name: &str, value: &str, problems
     compile(family, &overrides, problems)
 }
 
-fn at_value(evaluated: &Evaluated, compiled: &Compiled, settings: &Settings, value: &str, is_base: bool) -> AtValue {
+fn at_value(
+    evaluated: &Evaluated,
+    compiled: &Compiled,
+    settings: &Settings,
+    value: &str,
+    is_base: bool,
+) -> AtValue {
     let judged = evaluated.judge(&compiled.plan, &compiled.graph);
     let statistics: Vec<Selected> = judged
         .quantities
@@ -178,9 +223,14 @@ fn at_value(evaluated: &Evaluated, compiled: &Compiled, settings: &Settings, val
         .collect();
     let largest = statistics
         .iter()
-        .filter_map(|statistic| statistic.normalised.map(|share| (format!("{} of {}", statistic.name, statistic.symbol), share)))
+        .filter_map(|statistic| {
+            statistic
+                .normalised
+                .map(|share| (format!("{} of {}", statistic.name, statistic.symbol), share))
+        })
         .max_by(|a, b| a.1.total_cmp(&b.1));
-    let study = case_of(evaluated, &compiled.plan, settings).map(|(case, _)| marked(&case, &settings.selections).0);
+    let study = case_of(evaluated, &compiled.plan, settings)
+        .map(|(case, _)| marked(&case, &settings.selections).0);
     AtValue {
         value: value.to_owned(),
         is_base,

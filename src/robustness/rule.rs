@@ -31,27 +31,55 @@ impl Rule {
         let kind = words[0];
         let Some(known) = keys::kind(kind) else {
             let kinds = document.blocks.iter().map(|block| block.kind.text.as_str());
-            let problem = wrong(format!("`--vary {address}`: a protocol has no block `{kind}`")).suggest(kind, kinds);
+            let problem = wrong(format!("`--vary {address}`: a protocol has no block `{kind}`"))
+                .suggest(kind, kinds);
             return Err(Box::new(problem.help("write a parameter's name, or a block, its name and a key: `quantity <name> limit std`")));
         };
-        let named =
-            words.get(1).is_some_and(|name| document.blocks.iter().any(|block| block.kind.text == kind && block.name_text() == *name));
+        let named = words.get(1).is_some_and(|name| {
+            document
+                .blocks
+                .iter()
+                .any(|block| block.kind.text == kind && block.name_text() == *name)
+        });
         let known = known.with_name(known.named || named);
-        let (name, rest) = if known.named { (words.get(1).copied().unwrap_or(""), words.get(2..)) } else { ("", words.get(1..)) };
+        let (name, rest) = if known.named {
+            (words.get(1).copied().unwrap_or(""), words.get(2..))
+        } else {
+            ("", words.get(1..))
+        };
         let rest = rest.unwrap_or(&[]);
         let block_words = if known.named { format!("{kind} {name}") } else { kind.to_owned() };
-        let same =
-            |block: &&Block| block.kind.text == kind && block.name.is_some() == known.named && (!known.named || block.name_text() == name);
-        let Some((at, block)) = document.blocks.iter().enumerate().find(|(_, block)| same(block)) else {
-            let names: Vec<&str> = document.blocks.iter().filter(|block| block.kind.text == kind).map(Block::name_text).collect();
-            return Err(Box::new(wrong(format!("`--vary {address}`: the protocol has no {kind} `{name}`")).suggest(name, names)));
+        let same = |block: &&Block| {
+            block.kind.text == kind
+                && block.name.is_some() == known.named
+                && (!known.named || block.name_text() == name)
         };
-        let fields: Vec<(usize, String)> =
-            block.fields.iter().enumerate().filter_map(|(at, field)| stays(field, rest).map(|stays| (at, stays))).collect();
+        let Some((at, block)) = document.blocks.iter().enumerate().find(|(_, block)| same(block))
+        else {
+            let names: Vec<&str> = document
+                .blocks
+                .iter()
+                .filter(|block| block.kind.text == kind)
+                .map(Block::name_text)
+                .collect();
+            return Err(Box::new(
+                wrong(format!("`--vary {address}`: the protocol has no {kind} `{name}`"))
+                    .suggest(name, names),
+            ));
+        };
+        let fields: Vec<(usize, String)> = block
+            .fields
+            .iter()
+            .enumerate()
+            .filter_map(|(at, field)| stays(field, rest).map(|stays| (at, stays)))
+            .collect();
         match fields.as_slice() {
             [(field, stays)] => {
                 let value = joined(block.fields[*field].value.text.split_whitespace());
-                let title = block.title.as_ref().map_or_else(|| block_words.clone(), |title| title.text.clone());
+                let title = block
+                    .title
+                    .as_ref()
+                    .map_or_else(|| block_words.clone(), |title| title.text.clone());
                 Ok(Self {
                     words: joined(words.iter().copied()),
                     block: at,
@@ -62,13 +90,25 @@ impl Rule {
                 })
             }
             [] => {
-                let has: Vec<&str> = block.fields.iter().map(|field| field.key.text.as_str()).collect();
+                let has: Vec<&str> =
+                    block.fields.iter().map(|field| field.key.text.as_str()).collect();
                 let key = rest.first().copied().unwrap_or("");
-                Err(Box::new(wrong(format!("`--vary {address}`: {block_words} has no rule `{}`", rest.join(" "))).suggest(key, has)))
+                Err(Box::new(
+                    wrong(format!(
+                        "`--vary {address}`: {block_words} has no rule `{}`",
+                        rest.join(" ")
+                    ))
+                    .suggest(key, has),
+                ))
             }
             several => {
-                let each = several.iter().map(|(at, _)| format!("`{} {}`", block.fields[*at].key.text, block.fields[*at].value.text));
-                let help = format!("add the first words of one of them: {}", each.collect::<Vec<_>>().join(", "));
+                let each = several.iter().map(|(at, _)| {
+                    format!("`{} {}`", block.fields[*at].key.text, block.fields[*at].value.text)
+                });
+                let help = format!(
+                    "add the first words of one of them: {}",
+                    each.collect::<Vec<_>>().join(", ")
+                );
                 Err(Box::new(wrong(format!("`--vary {address}` matches several rules")).help(help)))
             }
         }
@@ -78,9 +118,14 @@ impl Rule {
     pub fn with(&self, family: &Family, value: &str) -> Family {
         let mut family = family.clone();
         let source = Source::new("--vary", format!("{} {value}", self.words));
-        let text = if self.stays.is_empty() { value.to_owned() } else { format!("{} {value}", self.stays) };
+        let text = if self.stays.is_empty() {
+            value.to_owned()
+        } else {
+            format!("{} {value}", self.stays)
+        };
         let span = source.span(source.text.len() - text.len()..source.text.len());
-        family.merged.blocks[self.block].fields[self.field].value = Text { text, span, exact: true };
+        family.merged.blocks[self.block].fields[self.field].value =
+            Text { text, span, exact: true };
         family
     }
 }

@@ -44,7 +44,8 @@ pub fn synchronisation<'a>(
     offsets.sort_by(f64::total_cmp);
     offsets.dedup();
     let si: Vec<f64> = offsets.iter().map(|offset| unit.to_si(*offset)).collect();
-    let shifts = Shifts { offsets: &si, farthest: Some(unit.to_si(asked.farthest)), correct: asked.correct };
+    let shifts =
+        Shifts { offsets: &si, farthest: Some(unit.to_si(asked.farthest)), correct: asked.correct };
     let all = evaluate(plan, graph, campaigns, &shifts, progress)?;
     let zero = offsets.iter().position(|offset| *offset == 0.0).unwrap_or(0);
     let mut base = Case::of(&all[zero].pool(plan), settings.take).map_err(too_few)?;
@@ -55,8 +56,11 @@ pub fn synchronisation<'a>(
     let selection = draw(&base, &mut Random::new(settings.selections.seed, 0));
     let fails = marked(&base, &settings.selections).1;
     let without = Without { case: &base, fails, selection: &selection };
-    let mut found: Vec<AtOffset> =
-        all.iter().zip(&offsets).map(|(evaluated, offset)| at_offset(evaluated, compiled, settings, *offset, &without)).collect();
+    let mut found: Vec<AtOffset> = all
+        .iter()
+        .zip(&offsets)
+        .map(|(evaluated, offset)| at_offset(evaluated, compiled, settings, *offset, &without))
+        .collect();
     let words = plan.verdict_words();
     for at in (0..found.len()).filter(|at| *at != zero) {
         found[at].changes = changes(&found[zero], &found[at], &words);
@@ -89,7 +93,13 @@ struct Without<'a> {
     selection: &'a [usize],
 }
 
-fn at_offset(evaluated: &Evaluated, compiled: &Compiled, settings: &Settings, offset: f64, without: &Without<'_>) -> AtOffset {
+fn at_offset(
+    evaluated: &Evaluated,
+    compiled: &Compiled,
+    settings: &Settings,
+    offset: f64,
+    without: &Without<'_>,
+) -> AtOffset {
     let Compiled { plan, graph, .. } = compiled;
     let judged = evaluated.judge(plan, graph);
     let pool = evaluated.pool(plan);
@@ -98,8 +108,13 @@ fn at_offset(evaluated: &Evaluated, compiled: &Compiled, settings: &Settings, of
         None => Ok(case),
         Some(_) => case.with_sections_of(without.case),
     });
-    let selected = case.as_ref().ok().filter(|_| usable).map_or_else(Vec::new, |case| case.judge(without.selection).1);
-    let counted = case.as_ref().map_err(Clone::clone).map(|case| (case, marked(case, &settings.selections)));
+    let selected = case
+        .as_ref()
+        .ok()
+        .filter(|_| usable)
+        .map_or_else(Vec::new, |case| case.judge(without.selection).1);
+    let counted =
+        case.as_ref().map_err(Clone::clone).map(|case| (case, marked(case, &settings.selections)));
     let flips = counted.as_ref().map_err(Clone::clone).and_then(|(case, (_, fails))| {
         let before = Marked { case: without.case, fails: without.fails.as_ref() };
         flips(before, Marked { case, fails: fails.as_ref() }, &settings.selections)
@@ -116,20 +131,34 @@ fn at_offset(evaluated: &Evaluated, compiled: &Compiled, settings: &Settings, of
     }
 }
 
-/// Differences from the case without offset: the verdict on all sections, limits of all sections, limits of the single selection, and
-/// the number of selections with another verdict.
+/// Differences from the case without offset: the verdict on all sections, limits of all sections,
+/// limits of the single selection, and the number of selections with another verdict.
 fn changes(base: &AtOffset, at: &AtOffset, words: &VerdictWords) -> Vec<String> {
     let mut changes = Vec::new();
     if base.verdict != at.verdict {
-        changes.push(format!("all sections: {} instead of {}", words.word(at.verdict), words.word(base.verdict)));
+        changes.push(format!(
+            "all sections: {} instead of {}",
+            words.word(at.verdict),
+            words.word(base.verdict)
+        ));
     }
-    for reason in at.reasons.iter().filter(|reason| at.verdict != Verdict::NotAssessable && !same_limit(&base.reasons, reason)) {
+    for reason in at
+        .reasons
+        .iter()
+        .filter(|reason| at.verdict != Verdict::NotAssessable && !same_limit(&base.reasons, reason))
+    {
         changes.push(format!("all sections: {reason}"));
     }
-    for reason in base.reasons.iter().filter(|reason| at.verdict != Verdict::NotAssessable && !same_limit(&at.reasons, reason)) {
+    for reason in base
+        .reasons
+        .iter()
+        .filter(|reason| at.verdict != Verdict::NotAssessable && !same_limit(&at.reasons, reason))
+    {
         changes.push(format!("all sections, no longer: {reason}"));
     }
-    for (before, now) in base.selected.iter().zip(&at.selected).filter(|(before, now)| before.holds != now.holds) {
+    for (before, now) in
+        base.selected.iter().zip(&at.selected).filter(|(before, now)| before.holds != now.holds)
+    {
         let word = if now.holds { "met" } else { "not met" };
         changes.push(format!(
             "single selection: criterion on the {} of {} {word} instead of {}",
@@ -146,7 +175,8 @@ fn same_limit(reasons: &[String], reason: &str) -> bool {
     reasons.iter().any(|known| of_limit(known) == of_limit(reason))
 }
 
-/// The words of a reason before the value: `Y_qst: mean (zone 1)` of `Y_qst: mean (zone 1) 4.33 kN exceeds the limit ...`.
+/// The words of a reason before the value: `Y_qst: mean (zone 1)` of `Y_qst: mean (zone 1) 4.33 kN
+/// exceeds the limit ...`.
 fn of_limit(reason: &str) -> Vec<&str> {
     let verbs = ["exceeds", "is", "does"];
     let words = reason.split_whitespace().take_while(|word| !verbs.contains(word));
@@ -168,9 +198,19 @@ mod tests {
 
     #[test]
     fn a_limit_is_known_again_whatever_its_value() {
-        let known = ["Q: 95 % value (zones 1, 2) 4.33 kN exceeds the limit 3.33 kN by 30 %".to_owned()];
-        assert!(same_limit(&known, "Q: 95 % value (zones 1, 2) \u{2212}5.1 kN exceeds in magnitude the limit 3.33 kN by 53 %"));
-        assert!(!same_limit(&known, "Q: 95 % value (zone 1) 4.33 kN exceeds the limit 3.33 kN by 30 %"));
-        assert!(!same_limit(&known, "Q: 90 % value (zones 1, 2) 4.33 kN exceeds the limit 3.33 kN by 30 %"));
+        let known =
+            ["Q: 95 % value (zones 1, 2) 4.33 kN exceeds the limit 3.33 kN by 30 %".to_owned()];
+        assert!(same_limit(
+            &known,
+            "Q: 95 % value (zones 1, 2) \u{2212}5.1 kN exceeds in magnitude the limit 3.33 kN by 53 %"
+        ));
+        assert!(!same_limit(
+            &known,
+            "Q: 95 % value (zone 1) 4.33 kN exceeds the limit 3.33 kN by 30 %"
+        ));
+        assert!(!same_limit(
+            &known,
+            "Q: 90 % value (zones 1, 2) 4.33 kN exceeds the limit 3.33 kN by 30 %"
+        ));
     }
 }

@@ -1,4 +1,5 @@
-//! What the values of sections are judged with: the same for every part of a campaign, and without any record.
+//! What the values of sections are judged with: the same for every part of a campaign, and without
+//! any record.
 
 use serde::{Deserialize, Serialize};
 
@@ -36,8 +37,8 @@ impl Basis {
         self.facts.items(plan)
     }
 
-    /// The values of all sections at one shift, `None` where they are missing. If `needed`, at least one section must be usable.
-    /// `reduction`: that of the records as they are.
+    /// The values of all sections at one shift, `None` where they are missing. If `needed`, at
+    /// least one section must be usable. `reduction`: that of the records as they are.
     ///
     /// # Errors
     /// As [`super::run`].
@@ -55,15 +56,21 @@ impl Basis {
             missing.push(unit.name.clone());
         }
         let missing = missing_in_words(&missing, units.len());
-        let values: Vec<SectionValues> = values.into_iter().map(Option::unwrap_or_default).collect();
+        let values: Vec<SectionValues> =
+            values.into_iter().map(Option::unwrap_or_default).collect();
         let copies = copies::find(plan, &units, &values);
         requirements::take_over(plan, &self.facts, &mut units, &values, &copies, &mut notes)?;
         stop_on_fault(plan, &units, &values)?;
         let reduction = keep::keep(plan, &self.facts, &mut units, &values, reduction);
         let values = without_unused_originals(plan, &units, values);
-        let findings: Vec<Finding> = values.iter().flat_map(|values| values.findings.iter().cloned()).chain(copies).collect();
+        let findings: Vec<Finding> = values
+            .iter()
+            .flat_map(|values| values.findings.iter().cloned())
+            .chain(copies)
+            .collect();
         // Sections excluded by a plausibility rule state the reason in the findings of a report.
-        let refused_by_finding = findings.iter().any(|finding| finding.consequence == Consequence::NotUsed);
+        let refused_by_finding =
+            findings.iter().any(|finding| finding.consequence == Consequence::NotUsed);
         let needed = needed && !refused_by_finding && missing.is_none();
         if needed && units.iter().all(|unit| unit.fault.is_some()) {
             return Err(nothing_usable(&units, values));
@@ -71,7 +78,17 @@ impl Basis {
         let application = domain::compared(plan, &self.facts, &units, &self.wanted);
         let findings = findings.into_iter().chain(domain::findings(&application)).collect();
         let files = values.iter().flat_map(|values| values.files.iter().cloned()).collect();
-        Ok(Evaluated { facts: self.facts.clone(), units, values, findings, application, notes, reduction, missing, files })
+        Ok(Evaluated {
+            facts: self.facts.clone(),
+            units,
+            values,
+            findings,
+            application,
+            notes,
+            reduction,
+            missing,
+            files,
+        })
     }
 
     /// Whether it is one of a plan, as a file may claim.
@@ -83,19 +100,25 @@ impl Basis {
         if self.facts.vehicles.is_empty() {
             return Err("it has no vehicle".into());
         }
-        if !self.facts.vehicles.iter().all(|of| vehicle(of.data.len()) && vehicle(of.assumed.len())) {
+        if !self.facts.vehicles.iter().all(|of| vehicle(of.data.len()) && vehicle(of.assumed.len()))
+        {
             return Err("its vehicle data are not those that the protocol reads".into());
         }
         for unit in &self.units {
-            let inside = unit.vehicle < self.facts.vehicles.len() && unit.original.is_none_or(|original| original < self.units.len());
+            let inside = unit.vehicle < self.facts.vehicles.len()
+                && unit.original.is_none_or(|original| original < self.units.len());
             if unit.columns.len() != plan.columns.len() || !inside {
                 return Err(format!("its section {} is not one of the protocol", unit.name));
             }
         }
         let of_domain = |(domain, points): (&crate::check::plan::Domain, &Vec<Point>)| {
-            points.iter().all(|point| point.values.len() == domain.over.len() && point.group.len() == domain.each.len())
+            points.iter().all(|point| {
+                point.values.len() == domain.over.len() && point.group.len() == domain.each.len()
+            })
         };
-        if self.wanted.len() != plan.domains.len() || !plan.domains.iter().zip(&self.wanted).all(of_domain) {
+        if self.wanted.len() != plan.domains.len()
+            || !plan.domains.iter().zip(&self.wanted).all(of_domain)
+        {
             return Err("its wanted operation is not that of the protocol".into());
         }
         Ok(())
@@ -113,12 +136,20 @@ fn missing_in_words(names: &[String], of: usize) -> Option<String> {
     Some(format!("values of {} of {of} sections are missing: {named}{more}", names.len()))
 }
 
-/// A repeat whose original is not used cannot be compared: quantities of repeats have no rows in it.
-pub(super) fn without_unused_originals(plan: &Plan, units: &[Unit], mut values: Vec<SectionValues>) -> Vec<SectionValues> {
-    let unused = |unit: &Unit| unit.original.is_some_and(|original| units[original].fault.is_some());
+/// A repeat whose original is not used cannot be compared: quantities of repeats have no rows in
+/// it.
+pub(super) fn without_unused_originals(
+    plan: &Plan,
+    units: &[Unit],
+    mut values: Vec<SectionValues>,
+) -> Vec<SectionValues> {
+    let unused =
+        |unit: &Unit| unit.original.is_some_and(|original| units[original].fault.is_some());
     for (_, values) in units.iter().zip(&mut values).filter(|(unit, _)| unused(unit)) {
         let of_quantities = plan.quantities.iter().zip(&mut values.rows);
-        of_quantities.filter(|(quantity, _)| quantity.evaluation.of_repeats()).for_each(|(_, rows)| rows.clear());
+        of_quantities
+            .filter(|(quantity, _)| quantity.evaluation.of_repeats())
+            .for_each(|(_, rows)| rows.clear());
     }
     values
 }

@@ -2,8 +2,9 @@
 
 use crate::units::Dimension;
 
-/// A factor between the value found and the expected value, with its most probable cause. Only units of measure are listed. Causes
-/// that belong to a quantity, such as an axle load in place of a wheel load, are stated in the protocol.
+/// A factor between the value found and the expected value, with its most probable cause. Only
+/// units of measure are listed. Causes that belong to a quantity, such as an axle load in place of
+/// a wheel load, are stated in the protocol.
 struct Factor {
     /// What is measured; `None` is anything.
     of: Option<Dimension>,
@@ -16,8 +17,16 @@ const fn factor(of: Dimension, factor: f64, says: &'static str) -> Factor {
 }
 
 const FACTORS: &[Factor] = &[
-    factor(Dimension::FORCE, 1000.0, "a unit that is off by a factor of 1000, such as N in place of kN"),
-    factor(Dimension::FORCE, 9.806_65, "a unit that is off by a factor of about 10, such as kgf or daN in place of N"),
+    factor(
+        Dimension::FORCE,
+        1000.0,
+        "a unit that is off by a factor of 1000, such as N in place of kN",
+    ),
+    factor(
+        Dimension::FORCE,
+        9.806_65,
+        "a unit that is off by a factor of about 10, such as kgf or daN in place of N",
+    ),
     factor(Dimension::FORCE, 8.0, "a factor of 8"),
     factor(Dimension::FORCE, 4.0, "a factor of 4"),
     factor(Dimension::FORCE, 2.0, "a factor of 2"),
@@ -28,8 +37,8 @@ const FACTORS: &[Factor] = &[
     Factor { of: None, factor: 1000.0, says: "a unit that is off by a factor of 1000" },
 ];
 
-/// Tolerance for a ratio to agree with a factor (as a factor, in both directions). Expected values are rough (payload, roll angle),
-/// and the factors lie far apart; 9.81 and 10 are one entry.
+/// Tolerance for a ratio to agree with a factor (as a factor, in both directions). Expected values
+/// are rough (payload, roll angle), and the factors lie far apart; 9.81 and 10 are one entry.
 const NEARNESS: f64 = 1.25;
 
 /// The cause, by what is measured; `None` where the ratio agrees with no factor.
@@ -46,8 +55,13 @@ pub fn likely(found: f64, expected: f64, of: Dimension) -> Option<String> {
         None
     } else {
         let possible = || FACTORS.iter().filter(|factor| factor.of.is_none_or(|own| own == of));
-        let direct = possible().find(|factor| near(factor.factor)).map(|factor| factor.says.to_string());
-        direct.or_else(|| possible().find(|factor| near(1.0 / factor.factor)).map(|factor| format!("{}, the other way round", factor.says)))
+        let direct =
+            possible().find(|factor| near(factor.factor)).map(|factor| factor.says.to_string());
+        direct.or_else(|| {
+            possible()
+                .find(|factor| near(1.0 / factor.factor))
+                .map(|factor| format!("{}, the other way round", factor.says))
+        })
     };
     match (ratio < 0.0, size) {
         (true, None) => Some("a reversed sign".into()),

@@ -17,7 +17,8 @@ use crate::graph::{InputNode, NodeId};
 use crate::result::CheckResult;
 use crate::units::Dimension;
 
-/// Checks that use the track record; without one their result is "not checked". Returns the values of the track record.
+/// Checks that use the track record; without one their result is "not checked". Returns the values
+/// of the track record.
 pub fn track_checks(
     work: &Work<'_>,
     unit: &Unit,
@@ -25,13 +26,20 @@ pub fn track_checks(
     known: &Known<'_>,
     values: &mut SectionValues,
 ) -> Result<Evaluated, Fault> {
-    let mut wanted: BTreeSet<NodeId> =
-        work.graph.checks.iter().flatten().map(|input| input.node).filter(|&node| work.graph.nodes[node].track).collect();
+    let mut wanted: BTreeSet<NodeId> = work
+        .graph
+        .checks
+        .iter()
+        .flatten()
+        .map(|input| input.node)
+        .filter(|&node| work.graph.nodes[node].track)
+        .collect();
     wanted.extend(questions.wanted(work, true));
     let campaign = work.campaign(unit);
     let there = || match campaign.record_source(RecordKind::Track, &unit.cell) {
         Ok(_) => Ok(true),
-        // A missing track record is stated for each check; a track record that cannot be read is a fault.
+        // A missing track record is stated for each check; a track record that cannot be read is a
+        // fault.
         Err(problem) if problem.code == "file-unreadable" => Err(Fault::new(problem.says)),
         Err(_) => Ok(false),
     };
@@ -44,10 +52,18 @@ pub fn track_checks(
         if !inputs.is_empty() && !inputs.iter().all(|input| work.graph.nodes[input.node].track) {
             // Replaced after both records are evaluated.
             let says = "not checked: the records could not be evaluated".into();
-            values.checks.push(CheckResult { name: check.name.clone(), title: check.title.clone(), holds: None, says });
+            values.checks.push(CheckResult {
+                name: check.name.clone(),
+                title: check.title.clone(),
+                holds: None,
+                says,
+            });
             continue;
         }
-        let value = |input: &InputNode| number_of(&found, input.node).map_err(|_| "not checked: there is no track record".to_string());
+        let value = |input: &InputNode| {
+            number_of(&found, input.node)
+                .map_err(|_| "not checked: there is no track record".to_string())
+        };
         let inputs: Vec<Result<f64, String>> = inputs.iter().map(value).collect();
         values.checks.push(checked(work, check, known, &inputs));
     }
@@ -62,9 +78,14 @@ pub fn record_checks(work: &Work<'_>, sides: &Sides<'_>, values: &mut SectionVal
             continue;
         }
         let of_pair = |(record, two): (Option<Arc<str>>, Two<'_>)| {
-            let inputs: Vec<Result<f64, String>> = inputs.iter().map(|input| two.input(input, side)).collect();
+            let inputs: Vec<Result<f64, String>> =
+                inputs.iter().map(|input| two.input(input, side)).collect();
             let found = checked(work, check, two.known, &inputs);
-            CheckResult { says: record.map_or_else(|| found.says.clone(), |name| format!("{name}: {}", found.says)), ..found }
+            CheckResult {
+                says: record
+                    .map_or_else(|| found.says.clone(), |name| format!("{name}: {}", found.says)),
+                ..found
+            }
         };
         let mut found: Vec<CheckResult> = sides.pairs().map(of_pair).collect();
         found.sort_by_key(|one| one.holds.map_or(1, |holds| if holds { 2 } else { 0 }));
@@ -74,8 +95,18 @@ pub fn record_checks(work: &Work<'_>, sides: &Sides<'_>, values: &mut SectionVal
     }
 }
 
-fn checked(work: &Work<'_>, check: &Check, known: &Known<'_>, inputs: &[Result<f64, String>]) -> CheckResult {
-    let result = |holds: Option<bool>, says: String| CheckResult { name: check.name.clone(), title: check.title.clone(), holds, says };
+fn checked(
+    work: &Work<'_>,
+    check: &Check,
+    known: &Known<'_>,
+    inputs: &[Result<f64, String>],
+) -> CheckResult {
+    let result = |holds: Option<bool>, says: String| CheckResult {
+        name: check.name.clone(),
+        title: check.title.clone(),
+        holds,
+        says,
+    };
     let spared = check.unless.as_ref().map_or(Ok(false), |unless| flag(unless, known));
     match spared {
         Ok(true) => return result(Some(true), "does not apply to this section".into()),
@@ -83,19 +114,26 @@ fn checked(work: &Work<'_>, check: &Check, known: &Known<'_>, inputs: &[Result<f
         Ok(false) => {}
     }
     match flag(&check.require, &Known { inputs, ..section(known) }) {
-        Ok(true) => result(Some(true), format!("{}{}", check.words, found_values(work, check, inputs))),
-        Ok(false) => result(Some(false), format!("not met: {}{}", check.words, found_values(work, check, inputs))),
+        Ok(true) => {
+            result(Some(true), format!("{}{}", check.words, found_values(work, check, inputs)))
+        }
+        Ok(false) => result(
+            Some(false),
+            format!("not met: {}{}", check.words, found_values(work, check, inputs)),
+        ),
         Err(reason) => result(None, reason),
     }
 }
 
-/// The values found, as text: `; found: range of curvature 0.00021 1/m, mean of curvature 0.002 1/m`.
+/// The values found, as text: `; found: range of curvature 0.00021 1/m, mean of curvature 0.002
+/// 1/m`.
 fn found_values(work: &Work<'_>, check: &Check, inputs: &[Result<f64, String>]) -> String {
     let one = |(input, value): (&Input, &Result<f64, String>)| {
         let value: f64 = format!("{:.3e}", value.as_ref().ok()?).parse().ok()?;
         let signal = input.signal.as_ref()?;
         let dimension = input.taken.gives(signal.dimension, work.plan.axis.unit.dimension);
-        let unit = if dimension == Dimension::ONE { String::new() } else { format!(" {dimension}") };
+        let unit =
+            if dimension == Dimension::ONE { String::new() } else { format!(" {dimension}") };
         let words = input.span.text().split_whitespace().collect::<Vec<_>>().join(" ");
         Some(format!("{words} {value}{unit}"))
     };

@@ -22,23 +22,39 @@ pub fn seen_columns(plan: &Plan, campaign: &Campaign, units: &[&Unit]) -> Seen {
     let kinds = sides.chain(Some(RecordKind::Track).filter(|kind| campaign.has(*kind)));
     for which in kinds.flat_map(|kind| campaign.records(kind)) {
         // A record that cannot be read is a fault of its section and is reported when it is opened.
-        let all: Vec<Option<RecordSource>> = units.par_iter().map(|unit| campaign.source_of(which, &unit.cell).ok()).collect();
+        let all: Vec<Option<RecordSource>> =
+            units.par_iter().map(|unit| campaign.source_of(which, &unit.cell).ok()).collect();
         // Sections of a run are in one file.
         let mut read = BTreeSet::new();
-        let files: Vec<RecordSource> = all.into_iter().flatten().filter(|source| read.insert(source.inside().to_string())).collect();
-        let names = |source: &RecordSource| source.headings().into_iter().flatten().map(|heading| heading.name);
+        let files: Vec<RecordSource> = all
+            .into_iter()
+            .flatten()
+            .filter(|source| read.insert(source.inside().to_string()))
+            .collect();
+        let names = |source: &RecordSource| {
+            source.headings().into_iter().flatten().map(|heading| heading.name)
+        };
         let columns = files.par_iter().flat_map_iter(names).collect();
         seen.push((which, columns));
     }
     seen
 }
 
-/// Positions of plausibility rules whose columns are in the records; other positions are not checked.
-pub fn recorded_positions(graph: &Graph, seen: &Seen, facts: &Facts, units: &[&Unit]) -> Vec<Vec<bool>> {
+/// Positions of plausibility rules whose columns are in the records; other positions are not
+/// checked.
+pub fn recorded_positions(
+    graph: &Graph,
+    seen: &Seen,
+    facts: &Facts,
+    units: &[&Unit],
+) -> Vec<Vec<bool>> {
     let there = |node: NodeId| {
         let track = graph.nodes[node].track;
-        let of_kind = || seen.iter().filter(|(which, _)| (which.kind == RecordKind::Track) == track);
-        reads(graph, node, facts, units).iter().all(|column| of_kind().all(|(_, columns)| columns.contains(column)))
+        let of_kind =
+            || seen.iter().filter(|(which, _)| (which.kind == RecordKind::Track) == track);
+        reads(graph, node, facts, units)
+            .iter()
+            .all(|column| of_kind().all(|(_, columns)| columns.contains(column)))
     };
     graph
         .plausibility
@@ -46,14 +62,20 @@ pub fn recorded_positions(graph: &Graph, seen: &Seen, facts: &Facts, units: &[&U
         .map(|rule| {
             rule.positions
                 .iter()
-                .map(|position| position.own.into_iter().chain(position.inputs.iter().map(|input| input.node)).all(there))
+                .map(|position| {
+                    position
+                        .own
+                        .into_iter()
+                        .chain(position.inputs.iter().map(|input| input.node))
+                        .all(there)
+                })
                 .collect()
         })
         .collect()
 }
 
-/// Which signals of which quantities were recorded. A position missing from every record is left out and is not a fault of each
-/// section.
+/// Which signals of which quantities were recorded. A position missing from every record is left
+/// out and is not a fault of each section.
 pub fn present_columns(
     plan: &Plan,
     graph: &Graph,
@@ -71,7 +93,9 @@ pub fn present_columns(
         .iter()
         .zip(&plan.quantities)
         .map(|(quantity, rule)| {
-            let read = |kind: RecordKind| Side::ALL.into_iter().any(|side| side.kind() == kind && rule.evaluation.reads(side));
+            let read = |kind: RecordKind| {
+                Side::ALL.into_iter().any(|side| side.kind() == kind && rule.evaluation.reads(side))
+            };
             let all: Vec<Vec<(String, WhichRecord)>> = quantity
                 .signals
                 .iter()
@@ -87,13 +111,17 @@ pub fn present_columns(
                     missing
                 })
                 .collect();
-            // If no position is recorded, the name of the channel is wrong. This is a fault and is reported.
+            // If no position is recorded, the name of the channel is wrong. This is a fault and is
+            // reported.
             let none = all.iter().all(|missing| !missing.is_empty());
             all.iter()
                 .map(|missing| {
                     if !none {
                         for (column, which) in missing {
-                            left_out.add(column, format!("the {}{of}", campaign.record_in_words(*which)));
+                            left_out.add(
+                                column,
+                                format!("the {}{of}", campaign.record_in_words(*which)),
+                            );
                         }
                     }
                     none || missing.is_empty()
@@ -134,8 +162,16 @@ impl LeftOut {
             }
         }
         let said = |(columns, records): (Vec<String>, &[String])| {
-            let (are, their) = if columns.len() > 1 { ("are", "their positions are") } else { ("is", "its position is") };
-            format!("{} {are} in no record of {}; {their} left out", listed(&columns), listed(records))
+            let (are, their) = if columns.len() > 1 {
+                ("are", "their positions are")
+            } else {
+                ("is", "its position is")
+            };
+            format!(
+                "{} {are} in no record of {}; {their} left out",
+                listed(&columns),
+                listed(records)
+            )
         };
         groups.into_iter().map(said).collect()
     }
@@ -152,13 +188,19 @@ fn listed(words: &[String]) -> String {
 /// Columns that a node needs in some section.
 fn reads(graph: &Graph, node: NodeId, facts: &Facts, units: &[&Unit]) -> BTreeSet<String> {
     let mut read = BTreeSet::new();
-    let most = graph.columns_of([node]).into_iter().map(|(column, _)| column).collect::<BTreeSet<_>>().len();
+    let most = graph
+        .columns_of([node])
+        .into_iter()
+        .map(|(column, _)| column)
+        .collect::<BTreeSet<_>>()
+        .len();
     for unit in units {
         // Most nodes need the same columns in all sections.
         if read.len() == most {
             break;
         }
-        // Where it cannot be determined which signal applies, the section is refused when it is evaluated.
+        // Where it cannot be determined which signal applies, the section is refused when it is
+        // evaluated.
         for id in needed(graph, &BTreeSet::from([node]), &unit.known(facts)).unwrap_or_default() {
             if let Operation::Read { column } = &graph.nodes[id].operation {
                 read.insert(column.clone());

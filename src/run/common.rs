@@ -53,12 +53,21 @@ struct Met {
 }
 
 impl Meetings {
-    /// The simulated axis is moved by `shift` (SI). Simulated values are interpolated at the measured samples of the section, unless their
-    /// own lie there already. The section is the same for all meetings.
-    pub fn of(&self, simulated: &Samples, measured: &Samples, extent: Option<Extent>, shift: f64) -> Result<Rc<Meeting>, String> {
+    /// The simulated axis is moved by `shift` (SI). Simulated values are interpolated at the
+    /// measured samples of the section, unless their own lie there already. The section is the same
+    /// for all meetings.
+    pub fn of(
+        &self,
+        simulated: &Samples,
+        measured: &Samples,
+        extent: Option<Extent>,
+        shift: f64,
+    ) -> Result<Rc<Meeting>, String> {
         let mut all = self.met.borrow_mut();
         let (s, m) = (&simulated.along, &measured.along);
-        let same = |met: &&Met| Arc::ptr_eq(&met.of.0, s) && Arc::ptr_eq(&met.of.1, m) && met.of.2 == shift.to_bits();
+        let same = |met: &&Met| {
+            Arc::ptr_eq(&met.of.0, s) && Arc::ptr_eq(&met.of.1, m) && met.of.2 == shift.to_bits()
+        };
         if let Some(met) = all.iter().find(same) {
             return met.found.clone();
         }
@@ -67,12 +76,19 @@ impl Meetings {
         found
     }
 
-    /// The values that a meeting has of a signal, sorted: several metrics take their distribution, at several numbers of points.
-    pub fn sorted(&self, (samples, meeting, side): (&Samples, Option<&Rc<Meeting>>, Side), values: &[f64]) -> Rc<Vec<f64>> {
+    /// The values that a meeting has of a signal, sorted: several metrics take their distribution,
+    /// at several numbers of points.
+    pub fn sorted(
+        &self,
+        (samples, meeting, side): (&Samples, Option<&Rc<Meeting>>, Side),
+        values: &[f64],
+    ) -> Rc<Vec<f64>> {
         let mut all = self.sorted.borrow_mut();
         let same = |known: &&Sorted| {
             let (of, met, from) = &known.of;
-            Arc::ptr_eq(of, &samples.values) && met.as_ref().map(Rc::as_ptr) == meeting.map(Rc::as_ptr) && *from == side
+            Arc::ptr_eq(of, &samples.values)
+                && met.as_ref().map(Rc::as_ptr) == meeting.map(Rc::as_ptr)
+                && *from == side
         };
         if let Some(known) = all.iter().find(same) {
             return Rc::clone(&known.values);
@@ -80,19 +96,32 @@ impl Meetings {
         let mut sorted = values.to_vec();
         sorted.sort_unstable_by(f64::total_cmp);
         let sorted = Rc::new(sorted);
-        all.push(Sorted { of: (Arc::clone(&samples.values), meeting.cloned(), side), values: Rc::clone(&sorted) });
+        all.push(Sorted {
+            of: (Arc::clone(&samples.values), meeting.cloned(), side),
+            values: Rc::clone(&sorted),
+        });
         sorted
     }
 }
 
 impl Meeting {
-    fn of(simulated: &Along, measured: &Arc<Along>, extent: Option<Extent>, shift: f64) -> Result<Self, String> {
+    fn of(
+        simulated: &Along,
+        measured: &Arc<Along>,
+        extent: Option<Extent>,
+        shift: f64,
+    ) -> Result<Self, String> {
         let inside = measured.part_inside(extent)?;
-        let along = if inside.len() == measured.axis.len() { Arc::clone(measured) } else { Arc::new(measured.part(inside.clone())) };
+        let along = if inside.len() == measured.axis.len() {
+            Arc::clone(measured)
+        } else {
+            Arc::new(measured.part(inside.clone()))
+        };
         let own = if shift == 0.0 { Some(simulated.part_inside(extent)?) } else { None };
         let there = |own: &Range<usize>| {
             let (s, m) = (&simulated.axis[own.clone()], &along.axis);
-            s.len() == m.len() && s.iter().zip(m.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + b.abs()))
+            s.len() == m.len()
+                && s.iter().zip(m.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + b.abs()))
         };
         let onto = match own.filter(there) {
             Some(own) => Onto::Samples(own),
@@ -127,7 +156,10 @@ struct Common {
 impl Common {
     fn of(both: &Both<'_>) -> Result<Self, String> {
         let meeting = both.meetings.of(both.simulated, both.measured, both.extent, both.shift)?;
-        let measured = Samples { along: Arc::clone(&meeting.along), values: Arc::new(meeting.measured(both.measured).to_vec()) };
+        let measured = Samples {
+            along: Arc::clone(&meeting.along),
+            values: Arc::new(meeting.measured(both.measured).to_vec()),
+        };
         Ok(Self { simulated: meeting.simulated(both.simulated).into_owned(), measured })
     }
 
@@ -143,8 +175,11 @@ impl Common {
 /// # Errors
 /// It is not defined for these samples.
 fn number_of(reducer: Reducer, samples: &Samples, method: Method) -> Result<f64, String> {
-    let value = reducer.run(&samples.along.axis, &samples.values, method).filter(|value| value.is_finite());
-    value.ok_or_else(|| format!("the {} of {} samples is not defined", reducer.in_words(), samples.values.len()))
+    let value =
+        reducer.run(&samples.along.axis, &samples.values, method).filter(|value| value.is_finite());
+    value.ok_or_else(|| {
+        format!("the {} of {} samples is not defined", reducer.in_words(), samples.values.len())
+    })
 }
 
 /// Points on the simulated axis, moved along by `shift`.
@@ -173,7 +208,12 @@ pub struct Both<'a> {
 
 impl Both<'_> {
     /// The value of a reduced expression over both sides, and the number of samples.
-    pub fn reduced(&self, reducer: Reducer, method: Method, of: &plan::Signal) -> Result<(f64, usize), String> {
+    pub fn reduced(
+        &self,
+        reducer: Reducer,
+        method: Method,
+        of: &plan::Signal,
+    ) -> Result<(f64, usize), String> {
         let common = Common::of(self)?;
         let samples = common.filled(self.signal(of, &common, method)?);
         Ok((number_of(reducer, &samples, method)?, samples.values.len()))
@@ -182,12 +222,18 @@ impl Both<'_> {
     fn signal(&self, of: &plan::Signal, common: &Common, method: Method) -> Result<Signal, String> {
         let inner = |signal: &plan::Signal| self.signal(signal, common, method);
         match &of.kind {
-            SignalKind::Side(Side::Simulated) => Ok(Signal::Samples(common.measured.with(common.simulated.clone()))),
+            SignalKind::Side(Side::Simulated) => {
+                Ok(Signal::Samples(common.measured.with(common.simulated.clone())))
+            }
             SignalKind::Side(Side::Measured) => Ok(Signal::Samples(common.measured.clone())),
             SignalKind::Scalar(expr) => Ok(Signal::Constant(number(expr, self.known)?)),
-            SignalKind::Binary(operator, left, right) => arithmetic(*operator, &inner(left)?, &inner(right)?),
+            SignalKind::Binary(operator, left, right) => {
+                arithmetic(*operator, &inner(left)?, &inner(right)?)
+            }
             SignalKind::Negative(signal) => each(&inner(signal)?, |value| -value),
-            SignalKind::Power(signal, exponent) => each(&inner(signal)?, |value| value.powi(i32::from(*exponent))),
+            SignalKind::Power(signal, exponent) => {
+                each(&inner(signal)?, |value| value.powi(i32::from(*exponent)))
+            }
             SignalKind::Call(function, arguments) => {
                 let arguments = arguments.iter().map(inner).collect::<Result<Vec<_>, _>>()?;
                 apply(&arguments.iter().collect::<Vec<_>>(), function.run)
@@ -198,22 +244,35 @@ impl Both<'_> {
                     _ => (self.measured, 0.0),
                 };
                 let distance = number(distance, self.known)?;
-                let points: Vec<f64> = common.measured.along.axis.iter().map(|x| x - distance - moved).collect();
-                let moved = resample::interpolate(&of_record.along.axis, &of_record.values, &points)
-                    .map_err(|error| format!("the record is too short beyond the section for this shift: {error}"))?;
+                let points: Vec<f64> =
+                    common.measured.along.axis.iter().map(|x| x - distance - moved).collect();
+                let moved =
+                    resample::interpolate(&of_record.along.axis, &of_record.values, &points)
+                        .map_err(|error| {
+                            format!(
+                                "the record is too short beyond the section for this shift: {error}"
+                            )
+                        })?;
                 Ok(Signal::Samples(common.measured.with(moved)))
             }
             SignalKind::OverAxis(operation, signal) => match inner(signal)? {
                 Signal::Samples(samples) => {
                     let axis = &samples.along.axis;
-                    let extent = (axis.first().copied().unwrap_or(0.0), axis.last().copied().unwrap_or(0.0));
+                    let extent =
+                        (axis.first().copied().unwrap_or(0.0), axis.last().copied().unwrap_or(0.0));
                     Ok(Signal::Samples(samples.over_axis(operation, self.known, extent)?))
                 }
-                Signal::Constant(_) => Err("a constant number has no samples along the axis".into()),
+                Signal::Constant(_) => {
+                    Err("a constant number has no samples along the axis".into())
+                }
             },
-            SignalKind::Level(reducer, signal) => Ok(Signal::Constant(number_of(*reducer, &common.filled(inner(signal)?), method)?)),
+            SignalKind::Level(reducer, signal) => {
+                Ok(Signal::Constant(number_of(*reducer, &common.filled(inner(signal)?), method)?))
+            }
             // The checker does not allow these here.
-            SignalKind::Column { .. } | SignalKind::Filtered(..) | SignalKind::Select(..) => Err("this signal has other samples".into()),
+            SignalKind::Column { .. } | SignalKind::Filtered(..) | SignalKind::Select(..) => {
+                Err("this signal has other samples".into())
+            }
         }
     }
 }

@@ -49,15 +49,20 @@ pub fn find(plan: &Plan, units: &[Unit], values: &[SectionValues]) -> Vec<Findin
                 continue;
             }
             let (later, earlier) = (&units[later], &units[earlier]);
-            let found = finding(rule, (&later.name, found.later), (&earlier.name, found.earlier), &found.channels);
+            let found = finding(
+                rule,
+                (&later.name, found.later),
+                (&earlier.name, found.earlier),
+                &found.channels,
+            );
             findings.push(Finding { campaign: later.campaign_name.clone(), ..found });
         }
     }
     findings
 }
 
-/// Which marks may stand in several places: nearly all stand in one, and need not be sorted. It errs on one side only: a mark that
-/// stands in several places is never left out.
+/// Which marks may stand in several places: nearly all stand in one, and need not be sorted. It
+/// errs on one side only: a mark that stands in several places is never left out.
 struct Several {
     once: Vec<u64>,
     again: Vec<u64>,
@@ -93,7 +98,12 @@ fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Sh
     let print = |(section, at): Place| &values[section].prints[at];
     let prints = || {
         let of_section = |(section, values): (usize, &'a SectionValues)| {
-            values.prints.iter().enumerate().filter(|(_, print)| print.rule == rule).map(move |(at, print)| ((section, at), print))
+            values
+                .prints
+                .iter()
+                .enumerate()
+                .filter(|(_, print)| print.rule == rule)
+                .map(move |(at, print)| ((section, at), print))
         };
         values.iter().enumerate().flat_map(of_section)
     };
@@ -101,7 +111,9 @@ fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Sh
     let several = Several::of(count, prints().flat_map(|(_, print)| print.marks.iter().copied()));
     let mut all: Vec<(u32, Place)> = Vec::new();
     for (place, print) in prints() {
-        all.extend(print.marks.iter().filter(|mark| several.may_have(**mark)).map(|mark| (*mark, place)));
+        all.extend(
+            print.marks.iter().filter(|mark| several.may_have(**mark)).map(|mark| (*mark, place)),
+        );
     }
     all.par_sort_unstable();
     let mut counts: BTreeMap<(Place, Place), usize> = BTreeMap::new();
@@ -124,8 +136,8 @@ fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Sh
             (true, true, _) => distinct.channels,
             (true, false, _) => distinct.sides,
             (false, true, true) => distinct.sections,
-            // Another channel of another section: reported if equality between sections and between channels (or sides) is to be
-            // found.
+            // Another channel of another section: reported if equality between sections and between
+            // channels (or sides) is to be found.
             (false, ..) => distinct.sections && (distinct.channels || distinct.sides),
         };
         if asked {
@@ -150,14 +162,18 @@ fn finding(
         (false, true) => format!(" of section {of_section}"),
         (false, false) => format!(" of the {of_record} of section {of_section}"),
     };
-    let what = if own == other && own.len() > 1 { "the same channels".to_string() } else { named(&other) };
+    let what =
+        if own == other && own.len() > 1 { "the same channels".to_string() } else { named(&other) };
     Finding {
         channel: Some(named(&own)),
         section: Some(section.to_string()),
         record: Some(record.to_string()),
         cause: rule.cause.clone(),
         consequence: consequence(rule.otherwise),
-        ..Finding::note(&rule.name, format!("{}: {} repeats the samples of {what}{place}", rule.title, named(&own)))
+        ..Finding::note(
+            &rule.name,
+            format!("{}: {} repeats the samples of {what}{place}", rule.title, named(&own)),
+        )
     }
 }
 
@@ -183,7 +199,9 @@ mod tests {
         let mut state = seed;
         (0..count)
             .map(|_| {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                state = state
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1_442_695_040_888_963_407);
                 ((state >> 40) as f64 / 100.0).round() * 0.01
             })
             .collect()
@@ -208,8 +226,9 @@ mod tests {
 
     #[test]
     fn copies_are_found_where_they_stand_and_live_signals_are_not() {
-        let print =
-            |channel: &str, kind: RecordKind, samples: &[f64]| Print::of("copies", channel, (kind.into(), kind.key().into()), samples);
+        let print = |channel: &str, kind: RecordKind, samples: &[f64]| {
+            Print::of("copies", channel, (kind.into(), kind.key().into()), samples)
+        };
         let (a, b, c) = (signal(1, 1500), signal(2, 1500), signal(3, 1500));
         let first = values(vec![
             print("Y", RecordKind::Simulation, &a),
@@ -231,16 +250,24 @@ mod tests {
         let simulated: WhichRecord = RecordKind::Simulation.into();
         assert_eq!(
             found.into_iter().map(|(place, found)| (place, found.channels)).collect::<Vec<_>>(),
-            [((1, simulated, 0, simulated), vec![("Y", "Y")]), ((1, simulated, 1, simulated), vec![("Z", "Q")])]
+            [
+                ((1, simulated, 0, simulated), vec![("Y", "Y")]),
+                ((1, simulated, 1, simulated), vec![("Z", "Q")])
+            ]
         );
     }
 
     #[test]
     fn only_what_was_asked_for_is_told() {
         let a = signal(1, 900);
-        let print = |channel: &str, kind: RecordKind| Print::of("copies", channel, (kind.into(), kind.key().into()), &a);
-        let sections =
-            [values(vec![print("Y", RecordKind::Simulation), print("Y", RecordKind::Measurement), print("Z", RecordKind::Simulation)])];
+        let print = |channel: &str, kind: RecordKind| {
+            Print::of("copies", channel, (kind.into(), kind.key().into()), &a)
+        };
+        let sections = [values(vec![
+            print("Y", RecordKind::Simulation),
+            print("Y", RecordKind::Measurement),
+            print("Z", RecordKind::Simulation),
+        ])];
         let sides = Distinct { channels: false, sections: false, sides: true };
         let found = shared("copies", sides, &sections);
         assert!(found.keys().all(|(_, later, _, earlier)| later != earlier), "{found:?}");

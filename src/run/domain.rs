@@ -1,4 +1,5 @@
-//! The validity domain: the range of each section column over the sections used, and wanted operation against their hull.
+//! The validity domain: the range of each section column over the sections used, and wanted
+//! operation against their hull.
 
 use indexmap::IndexMap;
 
@@ -9,7 +10,9 @@ use super::wanted::{Point, value, word};
 use super::words::count;
 use crate::check::plan::{Coordinate, DatumKind, Domain, OnFault, Plan, Scalar};
 use crate::metrics::hull::{self, Nearest};
-use crate::result::{Consequence, CoordinateRange, DomainRange, DomainResult, DomainSection, Finding, WantedPoint};
+use crate::result::{
+    Consequence, CoordinateRange, DomainRange, DomainResult, DomainSection, Finding, WantedPoint,
+};
 
 /// Code of the finding about wanted operation outside what the sections cover.
 const OUTSIDE: &str = "outside-domain";
@@ -18,20 +21,31 @@ const WITHOUT_HULL: &str = "no-domain";
 
 pub fn domain(plan: &Plan, units: &[Unit]) -> Vec<DomainRange> {
     let mut scopes: Vec<(String, Option<&str>)> = vec![("all".into(), None)];
-    scopes.extend(plan.zones.iter().map(|zone| (format!("zone {}", zone.name), Some(zone.name.as_str()))));
+    scopes.extend(
+        plan.zones.iter().map(|zone| (format!("zone {}", zone.name), Some(zone.name.as_str()))),
+    );
     let mut found = Vec::new();
     for (index, datum) in plan.columns.iter().enumerate() {
         let DatumKind::Number(unit) = &datum.kind else { continue };
         for (scope, zone) in &scopes {
             let values: Vec<f64> = units
                 .iter()
-                .filter(|section| section.fault.is_none() && zone.is_none_or(|zone| section.zone.as_deref() == Some(zone)))
-                .filter_map(
-                    |section| if let Ok(Scalar::Number(value)) = &section.columns[index] { Some(unit.from_si(*value)) } else { None },
-                )
+                .filter(|section| {
+                    section.fault.is_none()
+                        && zone.is_none_or(|zone| section.zone.as_deref() == Some(zone))
+                })
+                .filter_map(|section| {
+                    if let Ok(Scalar::Number(value)) = &section.columns[index] {
+                        Some(unit.from_si(*value))
+                    } else {
+                        None
+                    }
+                })
                 .collect();
             let (low, high) =
-                values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
+                values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                    (low.min(*value), high.max(*value))
+                });
             if !values.is_empty() {
                 found.push(DomainRange {
                     name: datum.title.clone(),
@@ -47,9 +61,19 @@ pub fn domain(plan: &Plan, units: &[Unit]) -> Vec<DomainRange> {
     found
 }
 
-/// One result for each domain and group of sections, in the order of the sections, then of wanted operation.
-pub fn compared(plan: &Plan, facts: &Facts, units: &[Unit], wanted: &[Vec<Point>]) -> Vec<DomainResult> {
-    plan.domains.iter().zip(wanted).flat_map(|(domain, points)| groups(plan, domain, facts, units, points)).collect()
+/// One result for each domain and group of sections, in the order of the sections, then of wanted
+/// operation.
+pub fn compared(
+    plan: &Plan,
+    facts: &Facts,
+    units: &[Unit],
+    wanted: &[Vec<Point>],
+) -> Vec<DomainResult> {
+    plan.domains
+        .iter()
+        .zip(wanted)
+        .flat_map(|(domain, points)| groups(plan, domain, facts, units, points))
+        .collect()
 }
 
 /// Sections of a group, with their values in SI, and those without.
@@ -60,14 +84,32 @@ struct Covered<'a> {
     points: Vec<&'a Point>,
 }
 
-fn groups(plan: &Plan, domain: &Domain, facts: &Facts, units: &[Unit], points: &[Point]) -> Vec<DomainResult> {
+fn groups(
+    plan: &Plan,
+    domain: &Domain,
+    facts: &Facts,
+    units: &[Unit],
+    points: &[Point],
+) -> Vec<DomainResult> {
     let mut groups: IndexMap<Vec<String>, Covered<'_>> = IndexMap::new();
     for unit in units.iter().filter(|unit| unit.fault.is_none()) {
         // A section without the word belongs to no group.
-        let Ok(group) = domain.each.iter().map(|index| word(&unit.columns[*index])).collect::<Result<Vec<_>, _>>() else { continue };
+        let Ok(group) = domain
+            .each
+            .iter()
+            .map(|index| word(&unit.columns[*index]))
+            .collect::<Result<Vec<_>, _>>()
+        else {
+            continue;
+        };
         let covered = groups.entry(group).or_default();
         let known = unit.known(facts);
-        match domain.over.iter().map(|coordinate| value(&coordinate.expr, &coordinate.name, &known)).collect::<Result<_, _>>() {
+        match domain
+            .over
+            .iter()
+            .map(|coordinate| value(&coordinate.expr, &coordinate.name, &known))
+            .collect::<Result<_, _>>()
+        {
             Ok(values) => covered.sections.push((&unit.name, values)),
             Err(_) => covered.left_out.push(unit.name.clone()),
         }
@@ -88,21 +130,41 @@ fn in_words(plan: &Plan, domain: &Domain, group: &[String]) -> String {
 fn of_group(plan: &Plan, domain: &Domain, group: &[String], covered: &Covered<'_>) -> DomainResult {
     let scope = in_words(plan, domain, group);
     let scale = Scale::of(&covered.sections, domain.over.len());
-    let scaled: Vec<Vec<f64>> = covered.sections.iter().map(|(_, values)| scale.scaled(values)).collect();
+    let scaled: Vec<Vec<f64>> =
+        covered.sections.iter().map(|(_, values)| scale.scaled(values)).collect();
     let reason = without_hull(domain, &scope, &scaled, &scale);
     let corners = if reason.is_none() { hull::corners(&scaled) } else { vec![false; scaled.len()] };
-    let shown = |values: &[f64]| -> Vec<f64> { values.iter().zip(&domain.over).map(|(value, of)| of.unit.from_si(*value)).collect() };
-    let section =
-        |((name, values), corner): (&(&str, Vec<f64>), bool)| DomainSection { section: (*name).into(), values: shown(values), corner };
+    let shown = |values: &[f64]| -> Vec<f64> {
+        values.iter().zip(&domain.over).map(|(value, of)| of.unit.from_si(*value)).collect()
+    };
+    let section = |((name, values), corner): (&(&str, Vec<f64>), bool)| DomainSection {
+        section: (*name).into(),
+        values: shown(values),
+        corner,
+    };
     let wanted = |point: &&Point| {
         let at = scale.scaled(&point.values);
         let found = if reason.is_none() { hull::nearest(&scaled, &at) } else { None };
         let inside = found.as_ref().map(Nearest::is_inside);
-        let nearest = found.as_ref().map(|found| if inside == Some(true) { point.values.clone() } else { scale.physical(&found.point) });
-        let away =
-            |nearest: &Vec<f64>| shown(&point.values.iter().zip(nearest).map(|(value, nearest)| value - nearest).collect::<Vec<_>>());
-        let to = |section: &Vec<f64>| section.iter().zip(&at).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
-        let by_section = (0..scaled.len()).map(|index| (index, to(&scaled[index]))).min_by(|a, b| a.1.total_cmp(&b.1));
+        let nearest = found.as_ref().map(|found| {
+            if inside == Some(true) { point.values.clone() } else { scale.physical(&found.point) }
+        });
+        let away = |nearest: &Vec<f64>| {
+            shown(
+                &point
+                    .values
+                    .iter()
+                    .zip(nearest)
+                    .map(|(value, nearest)| value - nearest)
+                    .collect::<Vec<_>>(),
+            )
+        };
+        let to = |section: &Vec<f64>| {
+            section.iter().zip(&at).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+        };
+        let by_section = (0..scaled.len())
+            .map(|index| (index, to(&scaled[index])))
+            .min_by(|a, b| a.1.total_cmp(&b.1));
         WantedPoint {
             point: point.name.clone(),
             values: shown(&point.values),
@@ -117,19 +179,33 @@ fn of_group(plan: &Plan, domain: &Domain, group: &[String], covered: &Covered<'_
     };
     let range = |(index, of): (usize, &Coordinate)| {
         let end = |values: &[f64]| (!scaled.is_empty()).then(|| of.unit.from_si(values[index]));
-        CoordinateRange { name: of.name.clone(), unit: of.unit.text.clone(), low: end(&scale.low), high: end(&scale.high) }
+        CoordinateRange {
+            name: of.name.clone(),
+            unit: of.unit.text.clone(),
+            low: end(&scale.low),
+            high: end(&scale.high),
+        }
     };
     DomainResult {
         domain: domain.name.clone(),
         title: domain.title.clone(),
-        group: domain.each.iter().zip(group).map(|(index, word)| (plan.columns[*index].name.clone(), word.clone())).collect(),
+        group: domain
+            .each
+            .iter()
+            .zip(group)
+            .map(|(index, word)| (plan.columns[*index].name.clone(), word.clone()))
+            .collect(),
         scope,
         coordinates: domain.over.iter().enumerate().map(range).collect(),
         sections: covered.sections.iter().zip(corners).map(section).collect(),
         left_out: covered.left_out.clone(),
         points: covered.points.iter().map(wanted).collect(),
         reason,
-        otherwise: if domain.otherwise == OnFault::NotAssessable { Consequence::NotAssessable } else { Consequence::Note },
+        otherwise: if domain.otherwise == OnFault::NotAssessable {
+            Consequence::NotAssessable
+        } else {
+            Consequence::Note
+        },
         clause: domain.clause.clone(),
         source: domain.source.clone(),
         notes: domain.notes.clone(),
@@ -148,12 +224,26 @@ pub fn recorded(plan: &Plan, results: &[DomainResult]) -> Result<Vec<Vec<Point>>
             let word = |index: &usize| result.group.get(&plan.columns[*index].name).cloned();
             let group = domain.each.iter().map(word).collect::<Option<Vec<_>>>();
             for point in &result.points {
-                let values: Vec<f64> = point.values.iter().zip(&domain.over).map(|(value, of)| of.unit.to_si(*value)).collect();
+                let values: Vec<f64> = point
+                    .values
+                    .iter()
+                    .zip(&domain.over)
+                    .map(|(value, of)| of.unit.to_si(*value))
+                    .collect();
                 match &group {
                     Some(group) if point.values.len() == domain.over.len() => {
-                        points.push(Point { name: point.point.clone(), values, group: group.clone() });
+                        points.push(Point {
+                            name: point.point.clone(),
+                            values,
+                            group: group.clone(),
+                        });
                     }
-                    _ => return Err(format!("domain `{}`: `{}` does not fit the protocol", domain.name, point.point)),
+                    _ => {
+                        return Err(format!(
+                            "domain `{}`: `{}` does not fit the protocol",
+                            domain.name, point.point
+                        ));
+                    }
                 }
             }
         }
@@ -171,7 +261,9 @@ struct Scale {
 impl Scale {
     fn of(sections: &[(&str, Vec<f64>)], coordinates: usize) -> Self {
         let end = |start: f64, other: fn(f64, f64) -> f64| -> Vec<f64> {
-            (0..coordinates).map(|at| sections.iter().map(|(_, values)| values[at]).fold(start, other)).collect()
+            (0..coordinates)
+                .map(|at| sections.iter().map(|(_, values)| values[at]).fold(start, other))
+                .collect()
         };
         Self { low: end(f64::INFINITY, f64::min), high: end(f64::NEG_INFINITY, f64::max) }
     }
@@ -183,7 +275,11 @@ impl Scale {
     }
 
     fn scaled(&self, values: &[f64]) -> Vec<f64> {
-        values.iter().enumerate().map(|(at, value)| (value - self.low[at]) / self.range(at)).collect()
+        values
+            .iter()
+            .enumerate()
+            .map(|(at, value)| (value - self.low[at]) / self.range(at))
+            .collect()
     }
 
     fn physical(&self, scaled: &[f64]) -> Vec<f64> {
@@ -192,12 +288,21 @@ impl Scale {
 
     /// By how much values lie outside the ranges.
     fn beyond(&self, values: &[f64]) -> Vec<f64> {
-        values.iter().enumerate().map(|(at, value)| (self.low[at] - value).max(value - self.high[at]).max(0.0)).collect()
+        values
+            .iter()
+            .enumerate()
+            .map(|(at, value)| (self.low[at] - value).max(value - self.high[at]).max(0.0))
+            .collect()
     }
 }
 
 /// Why sections have no hull of as many dimensions as there are coordinates.
-fn without_hull(domain: &Domain, group: &str, scaled: &[Vec<f64>], scale: &Scale) -> Option<String> {
+fn without_hull(
+    domain: &Domain,
+    group: &str,
+    scaled: &[Vec<f64>],
+    scale: &Scale,
+) -> Option<String> {
     let needed = domain.over.len() + 1;
     if scaled.is_empty() {
         let of = if domain.each.is_empty() { String::new() } else { format!(" of {group}") };
@@ -214,8 +319,13 @@ fn without_hull(domain: &Domain, group: &str, scaled: &[Vec<f64>], scale: &Scale
     if extends == domain.over.len() {
         return None;
     }
-    let same: Vec<&str> =
-        domain.over.iter().enumerate().filter(|(at, _)| scale.low[*at] == scale.high[*at]).map(|(_, of)| of.name.as_str()).collect();
+    let same: Vec<&str> = domain
+        .over
+        .iter()
+        .enumerate()
+        .filter(|(at, _)| scale.low[*at] == scale.high[*at])
+        .map(|(_, of)| of.name.as_str())
+        .collect();
     let lie = match (same.as_slice(), extends) {
         ([], 1) => "the sections lie on one line".to_string(),
         ([], 2) => "the sections lie in one plane".to_string(),
@@ -225,31 +335,55 @@ fn without_hull(domain: &Domain, group: &str, scaled: &[Vec<f64>], scale: &Scale
     Some(format!("{lie}: their hull is flat"))
 }
 
-/// A finding for each point of wanted operation outside, and for each group with such points and without a hull.
+/// A finding for each point of wanted operation outside, and for each group with such points and
+/// without a hull.
 pub fn findings(results: &[DomainResult]) -> Vec<Finding> {
-    results.iter().flat_map(|result| result.reason.as_ref().map_or_else(|| outside(result), |reason| no_hull(result, reason))).collect()
+    results
+        .iter()
+        .flat_map(|result| {
+            result.reason.as_ref().map_or_else(|| outside(result), |reason| no_hull(result, reason))
+        })
+        .collect()
 }
 
 fn no_hull(result: &DomainResult, reason: &str) -> Vec<Finding> {
     if result.points.is_empty() {
         return Vec::new();
     }
-    let says = format!("{}: {reason}; nothing can be said of {}", titled(result), count(result.points.len(), "point"));
+    let says = format!(
+        "{}: {reason}; nothing can be said of {}",
+        titled(result),
+        count(result.points.len(), "point")
+    );
     vec![Finding { consequence: result.otherwise, ..Finding::note(WITHOUT_HULL, says) }]
 }
 
 fn outside(result: &DomainResult) -> Vec<Finding> {
     let finding = |point: &WantedPoint| {
-        let by = point.outside_by.iter().flatten().zip(&result.coordinates).filter(|(by, _)| by.abs() > 0.0);
+        let by = point
+            .outside_by
+            .iter()
+            .flatten()
+            .zip(&result.coordinates)
+            .filter(|(by, _)| by.abs() > 0.0);
         let far = |(by, of): (&f64, &CoordinateRange)| {
             let unit = if of.unit == "-" { String::new() } else { format!(" {}", of.unit) };
             // What is left of a coordinate in which the nearest point is the same is rounding.
             let range = of.high.zip(of.low).map_or(0.0, |(high, low)| high - low);
-            (by.abs() > hull::INSIDE * range)
-                .then(|| format!("{} {}{unit} {}", of.name.to_lowercase(), short(by.abs()), if *by > 0.0 { "above" } else { "below" }))
+            (by.abs() > hull::INSIDE * range).then(|| {
+                format!(
+                    "{} {}{unit} {}",
+                    of.name.to_lowercase(),
+                    short(by.abs()),
+                    if *by > 0.0 { "above" } else { "below" }
+                )
+            })
         };
         let by: Vec<String> = by.filter_map(far).collect();
-        let section = point.nearest_section.as_ref().map_or(String::new(), |section| format!("; nearest section {section}"));
+        let section = point
+            .nearest_section
+            .as_ref()
+            .map_or(String::new(), |section| format!("; nearest section {section}"));
         let distance = point.distance.unwrap_or(f64::NAN);
         let says = format!(
             "{}: `{}` lies outside what the sections cover, by {} of their range: {}{section}",
@@ -258,7 +392,12 @@ fn outside(result: &DomainResult) -> Vec<Finding> {
             short(distance),
             by.join(", ")
         );
-        Finding { value: point.distance, expected: Some(0.0), consequence: result.otherwise, ..Finding::note(OUTSIDE, says) }
+        Finding {
+            value: point.distance,
+            expected: Some(0.0),
+            consequence: result.otherwise,
+            ..Finding::note(OUTSIDE, says)
+        }
     };
     result.points.iter().filter(|point| point.inside == Some(false)).map(finding).collect()
 }
@@ -282,7 +421,11 @@ pub fn barred(results: &[DomainResult]) -> Vec<String> {
 }
 
 fn titled(result: &DomainResult) -> String {
-    if result.scope == "all" { result.title.clone() } else { format!("{}, {}", result.title, result.scope) }
+    if result.scope == "all" {
+        result.title.clone()
+    } else {
+        format!("{}, {}", result.title, result.scope)
+    }
 }
 
 /// A number of a sentence: three digits.

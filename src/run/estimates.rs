@@ -11,7 +11,8 @@ use super::unit::Unit;
 use crate::catalog::Statistic;
 use crate::check::evaluate::{flag, number, words};
 use crate::check::plan::{
-    DataReducer, DatumKind, Estimate, EstimateKind, Expr, Fit, Key, Kind, OfGroup, Operator, Plan, Position, Scalar, Taking, Type,
+    DataReducer, DatumKind, Estimate, EstimateKind, Expr, Fit, Key, Kind, OfGroup, Operator, Plan,
+    Position, Scalar, Taking, Type,
 };
 use crate::check::values::Values;
 use crate::metrics::cluster::{self, Bounds, Draws, Mean, StandardDeviation};
@@ -43,7 +44,11 @@ impl Group<'_> {
 
     fn sections(&self) -> Vec<&Unit> {
         let mut seen = HashSet::new();
-        self.members.iter().map(|member| member.unit).filter(|unit| seen.insert(unit.name.as_str())).collect()
+        self.members
+            .iter()
+            .map(|member| member.unit)
+            .filter(|unit| seen.insert(unit.name.as_str()))
+            .collect()
     }
 
     /// The value of an expression over the group, SI.
@@ -63,8 +68,11 @@ impl Group<'_> {
 
     /// As [`Self::number`], with other values in place of those of the rows.
     fn over(&self, of: &OfGroup, values: &[f64]) -> Result<f64, String> {
-        let taken: Vec<Result<f64, String>> = of.taken.iter().map(|taking| self.take(taking, values)).collect();
-        let of_vehicle = |vehicle: &Vehicle| number(&of.expr, &Known { inputs: &taken, ..Known::vehicle(vehicle) });
+        let taken: Vec<Result<f64, String>> =
+            of.taken.iter().map(|taking| self.take(taking, values)).collect();
+        let of_vehicle = |vehicle: &Vehicle| {
+            number(&of.expr, &Known { inputs: &taken, ..Known::vehicle(vehicle) })
+        };
         self.facts.agreed(self.members, of_vehicle, |value| format!("{value} (SI)"))
     }
 
@@ -72,19 +80,26 @@ impl Group<'_> {
         match taking {
             Taking::Statistic(statistic, ddof) => statistic_of(*statistic, *ddof, values),
             Taking::Count => Ok(self.units().into_iter().collect::<BTreeSet<_>>().len() as f64),
-            Taking::Weighted { statistic, ddof, by } => {
-                weighted_statistic(*statistic, *ddof, values, &self.weights(by, self.units_of_rows())?)
+            Taking::Weighted { statistic, ddof, by } => weighted_statistic(
+                *statistic,
+                *ddof,
+                values,
+                &self.weights(by, self.units_of_rows())?,
+            ),
+            Taking::EachGroup { reducer, keys, of } => {
+                self.of_each_group(*reducer, keys, of, values)
             }
-            Taking::EachGroup { reducer, keys, of } => self.of_each_group(*reducer, keys, of, values),
             Taking::Share { condition, of_sections: true, by, .. } => {
                 let sections = self.sections();
                 let holds = sections.iter().map(|unit| flag(condition, &unit.known(self.facts)));
                 share(holds, by.as_ref().map(|by| self.weights(by, sections.iter().copied())))
             }
             Taking::Share { condition, of_sections: false, others, by } => {
-                let others: Vec<Result<f64, String>> = others.iter().map(|other| self.take(other, values)).collect();
+                let others: Vec<Result<f64, String>> =
+                    others.iter().map(|other| self.take(other, values)).collect();
                 let of_row = |(member, value): (&Member<'_>, &f64)| {
-                    let inputs: Vec<Result<f64, String>> = [Ok(*value)].into_iter().chain(others.iter().cloned()).collect();
+                    let inputs: Vec<Result<f64, String>> =
+                        [Ok(*value)].into_iter().chain(others.iter().cloned()).collect();
                     flag(condition, &Known { inputs: &inputs, ..member.unit.known(self.facts) })
                 };
                 let weights = by.as_ref().map(|by| self.weights(by, self.units_of_rows()));
@@ -102,13 +117,18 @@ impl Group<'_> {
                 let sections = self.sections();
                 let data = self.data(of, sections.iter().copied())?;
                 match (reducer, by) {
-                    (DataReducer::Statistic(statistic, ddof), Some(by)) => {
-                        weighted_statistic(*statistic, *ddof, &data, &self.weights(by, sections.iter().copied())?)
-                    }
+                    (DataReducer::Statistic(statistic, ddof), Some(by)) => weighted_statistic(
+                        *statistic,
+                        *ddof,
+                        &data,
+                        &self.weights(by, sections.iter().copied())?,
+                    ),
                     _ => reduced(*reducer, &data),
                 }
             }
-            Taking::Bound { of, upper, confidence, bootstrap } => self.bound(of, *upper, *confidence, *bootstrap, values),
+            Taking::Bound { of, upper, confidence, bootstrap } => {
+                self.bound(of, *upper, *confidence, *bootstrap, values)
+            }
             Taking::Fit(fit) => self.fit(fit, values),
         }
     }
@@ -118,43 +138,78 @@ impl Group<'_> {
     }
 
     /// A number of each section.
-    fn data<'u>(&self, of: &Expr, units: impl Iterator<Item = &'u Unit>) -> Result<Vec<f64>, String> {
-        units.map(|unit| number(of, &unit.known(self.facts)).map_err(|reason| format!("section {}: {reason}", unit.name))).collect()
+    fn data<'u>(
+        &self,
+        of: &Expr,
+        units: impl Iterator<Item = &'u Unit>,
+    ) -> Result<Vec<f64>, String> {
+        units
+            .map(|unit| {
+                number(of, &unit.known(self.facts))
+                    .map_err(|reason| format!("section {}: {reason}", unit.name))
+            })
+            .collect()
     }
 
     /// Weights are not negative.
-    fn weights<'u>(&self, by: &Expr, units: impl Iterator<Item = &'u Unit> + Clone) -> Result<Vec<f64>, String> {
+    fn weights<'u>(
+        &self,
+        by: &Expr,
+        units: impl Iterator<Item = &'u Unit> + Clone,
+    ) -> Result<Vec<f64>, String> {
         let weights = self.data(by, units.clone())?;
         match units.zip(&weights).find(|(_, weight)| **weight < 0.0) {
-            Some((unit, _)) => Err(format!("section {}: its weight `{}` is negative", unit.name, words(by))),
+            Some((unit, _)) => {
+                Err(format!("section {}: its weight `{}` is negative", unit.name, words(by)))
+            }
             None => Ok(weights),
         }
     }
 
-    /// The groups that the rows form by some keys: what each is called, and the numbers of its rows.
+    /// The groups that the rows form by some keys: what each is called, and the numbers of its
+    /// rows.
     pub fn groups(&self, keys: &[Key]) -> IndexMap<String, Vec<usize>> {
         let mut groups: IndexMap<String, Vec<usize>> = IndexMap::new();
         for (row, member) in self.members.iter().enumerate() {
-            let name: Vec<String> = keys.iter().map(|key| of_key(self.plan, self.positions, key, member).1).collect();
+            let name: Vec<String> =
+                keys.iter().map(|key| of_key(self.plan, self.positions, key, member).1).collect();
             groups.entry(name.join(", ")).or_default().push(row);
         }
         groups
     }
 
-    fn of_each_group(&self, reducer: DataReducer, keys: &[Key], of: &OfGroup, values: &[f64]) -> Result<f64, String> {
+    fn of_each_group(
+        &self,
+        reducer: DataReducer,
+        keys: &[Key],
+        of: &OfGroup,
+        values: &[f64],
+    ) -> Result<f64, String> {
         let one = |(name, rows): (String, Vec<usize>)| {
             let members: Vec<Member<'_>> = rows.iter().map(|&row| self.members[row]).collect();
             let values: Vec<f64> = rows.iter().map(|&row| values[row]).collect();
-            Group { members: &members, ..*self }.over(of, &values).map_err(|reason| format!("{name}: {reason}"))
+            Group { members: &members, ..*self }
+                .over(of, &values)
+                .map_err(|reason| format!("{name}: {reason}"))
         };
-        let numbers = self.groups(keys).into_iter().map(one).collect::<Result<Vec<f64>, String>>()?;
+        let numbers =
+            self.groups(keys).into_iter().map(one).collect::<Result<Vec<f64>, String>>()?;
         reduced(reducer, &numbers).map_err(|reason| reason.replace("value", "group"))
     }
 
-    /// An end of the one-sided confidence interval of an estimate: in closed form for a mean or a standard deviation with divisor
-    /// n-1, else by a bootstrap of the independent units.
-    fn bound(&self, of: &Estimate, upper: bool, confidence: f64, bootstrap: bool, values: &[f64]) -> Result<f64, String> {
-        let EstimateKind::Of(of_group) = &of.kind else { return Err("a single value has no interval".into()) };
+    /// An end of the one-sided confidence interval of an estimate: in closed form for a mean or a
+    /// standard deviation with divisor n-1, else by a bootstrap of the independent units.
+    fn bound(
+        &self,
+        of: &Estimate,
+        upper: bool,
+        confidence: f64,
+        bootstrap: bool,
+        values: &[f64],
+    ) -> Result<f64, String> {
+        let EstimateKind::Of(of_group) = &of.kind else {
+            return Err("a single value has no interval".into());
+        };
         some_scatter(values)?;
         let units = self.units();
         let probability = if upper { confidence } else { 1.0 - confidence };
@@ -163,33 +218,43 @@ impl Group<'_> {
         {
             let weights = self.weights(by, self.units_of_rows())?;
             let rows: Vec<(f64, f64)> = values.iter().copied().zip(weights).collect();
-            let found = cluster::by_site(&rows, &units).and_then(|sites| cluster::weighted_mean(&sites)?.bound(probability));
+            let found = cluster::by_site(&rows, &units)
+                .and_then(|sites| cluster::weighted_mean(&sites)?.bound(probability));
             return found.map_err(|error| error.to_string());
         }
         let found = match of.statistic() {
             Some((Statistic::Named(entry), _)) if !bootstrap && entry.name == "mean" => {
-                cluster::by_site(values, &units).and_then(|sites| Mean::of(&sites)?.bound(probability))
+                cluster::by_site(values, &units)
+                    .and_then(|sites| Mean::of(&sites)?.bound(probability))
             }
             Some((Statistic::Named(entry), 1)) if !bootstrap && entry.name == "std" => {
-                cluster::by_site(values, &units).and_then(|sites| StandardDeviation::of(&sites)?.bound(probability))
+                cluster::by_site(values, &units)
+                    .and_then(|sites| StandardDeviation::of(&sites)?.bound(probability))
             }
             _ => {
                 // A statistic alone depends on the values only, and the draws are many.
-                if let (Kind::Input(0), [Taking::Statistic(statistic, ddof)]) = (&of_group.expr.kind, of_group.taken.as_slice()) {
+                if let (Kind::Input(0), [Taking::Statistic(statistic, ddof)]) =
+                    (&of_group.expr.kind, of_group.taken.as_slice())
+                {
                     let found = cluster::by_site(values, &units).and_then(|sites| {
-                        let estimate = |values: &[f64]| statistic_of(*statistic, *ddof, values).ok();
-                        cluster::bootstrap(&sites, &*Draws::usual(sites.len())?, estimate)?.bound(probability)
+                        let estimate =
+                            |values: &[f64]| statistic_of(*statistic, *ddof, values).ok();
+                        cluster::bootstrap(&sites, &*Draws::usual(sites.len())?, estimate)?
+                            .bound(probability)
                     });
                     return found.map_err(|error| error.to_string());
                 }
                 let rows: Vec<usize> = (0..values.len()).collect();
                 let estimate = |rows: &[usize]| {
-                    let members: Vec<Member<'_>> = rows.iter().map(|&row| self.members[row]).collect();
+                    let members: Vec<Member<'_>> =
+                        rows.iter().map(|&row| self.members[row]).collect();
                     let values: Vec<f64> = rows.iter().map(|&row| values[row]).collect();
                     Group { members: &members, ..*self }.over(of_group, &values).ok()
                 };
-                cluster::by_site(&rows, &units)
-                    .and_then(|sites| cluster::bootstrap(&sites, &*Draws::usual(sites.len())?, estimate)?.bound(probability))
+                cluster::by_site(&rows, &units).and_then(|sites| {
+                    cluster::bootstrap(&sites, &*Draws::usual(sites.len())?, estimate)?
+                        .bound(probability)
+                })
             }
         };
         found.map_err(|error| error.to_string())
@@ -207,44 +272,63 @@ impl Group<'_> {
     }
 
     pub(super) fn fitted(&self, fit: &Fit, values: &[f64]) -> Result<Fitted, String> {
-        let regressors = fit.over.iter().map(|regressor| self.data(regressor, self.units_of_rows())).collect::<Result<Vec<_>, _>>()?;
-        let at = fit.at.iter().map(|target| self.over(target, values)).collect::<Result<Vec<_>, _>>()?;
+        let regressors = fit
+            .over
+            .iter()
+            .map(|regressor| self.data(regressor, self.units_of_rows()))
+            .collect::<Result<Vec<_>, _>>()?;
+        let at =
+            fit.at.iter().map(|target| self.over(target, values)).collect::<Result<Vec<_>, _>>()?;
         let regression = Regression::fit(values, &regressors).map_err(|error| error.to_string())?;
         Ok(Fitted { regression, regressors, at })
     }
 
-    /// The bound of a share of the values: X of `share where value <= X`, in SI. `None` of other estimates, and of a bound that differs from
-    /// section to section.
+    /// The bound of a share of the values: X of `share where value <= X`, in SI. `None` of other
+    /// estimates, and of a bound that differs from section to section.
     pub fn divided_at(&self, of: &OfGroup) -> Option<f64> {
-        let (Kind::Input(0), [Taking::Share { condition, of_sections: false, others, by: None }]) = (&of.expr.kind, of.taken.as_slice())
+        let (Kind::Input(0), [Taking::Share { condition, of_sections: false, others, by: None }]) =
+            (&of.expr.kind, of.taken.as_slice())
         else {
             return None;
         };
         let Kind::Binary(operator, left, right) = &condition.kind else { return None };
-        let compares = matches!(operator, Operator::Less | Operator::LessEqual | Operator::Greater | Operator::GreaterEqual);
+        let compares = matches!(
+            operator,
+            Operator::Less | Operator::LessEqual | Operator::Greater | Operator::GreaterEqual
+        );
         if !compares || !matches!(left.kind, Kind::Input(0)) {
             return None;
         }
         let values = self.values();
         let value = Err("the bound of a share is the same for all values".to_string());
-        let inputs: Vec<Result<f64, String>> = [value].into_iter().chain(others.iter().map(|other| self.take(other, &values))).collect();
-        let of_vehicle = |vehicle: &Vehicle| number(right, &Known { inputs: &inputs, ..Known::vehicle(vehicle) });
+        let inputs: Vec<Result<f64, String>> = [value]
+            .into_iter()
+            .chain(others.iter().map(|other| self.take(other, &values)))
+            .collect();
+        let of_vehicle = |vehicle: &Vehicle| {
+            number(right, &Known { inputs: &inputs, ..Known::vehicle(vehicle) })
+        };
         self.facts.agreed(self.members, of_vehicle, f64::to_string).ok()
     }
 
-    /// The diagram of a regression with one regressor, in the unit of the quantity; `None` for other estimates and where there is
-    /// no value.
+    /// The diagram of a regression with one regressor, in the unit of the quantity; `None` for
+    /// other estimates and where there is no value.
     pub fn figure(&self, of: &OfGroup, unit: &units::Unit) -> Option<RegressionFigure> {
-        let (Kind::Input(0), [Taking::Fit(fit)]) = (&of.expr.kind, of.taken.as_slice()) else { return None };
+        let (Kind::Input(0), [Taking::Fit(fit)]) = (&of.expr.kind, of.taken.as_slice()) else {
+            return None;
+        };
         let [over] = fit.over.as_slice() else { return None };
         let values = self.values();
         let Fitted { regression, regressors, at } = self.fitted(fit, &values).ok()?;
         let (xs, target) = (regressors.first()?, *at.first()?);
         let x_unit = self.unit_of(over);
-        let (low, high) = xs.iter().fold((target, target), |(low, high), x| (low.min(*x), high.max(*x)));
+        let (low, high) =
+            xs.iter().fold((target, target), |(low, high), x| (low.min(*x), high.max(*x)));
         let at_place = |step: usize| {
             let x = low + (high - low) * step as f64 / STEPS as f64;
-            let bound = fit.confidence.and_then(|confidence| bound_at(&regression, fit, confidence, &[x]).ok());
+            let bound = fit
+                .confidence
+                .and_then(|confidence| bound_at(&regression, fit, confidence, &[x]).ok());
             Some(RegressionAt {
                 x: x_unit.from_si(x),
                 fitted: unit.from_si(regression.at(&[x]).ok()?),
@@ -266,7 +350,9 @@ impl Group<'_> {
             intercept: unit.from_si(intercept),
             slope: unit.from_si(x_unit.to_si(slope)),
             curve: (0..=STEPS).map(at_place).collect::<Option<_>>()?,
-            bound: fit.confidence.map(|confidence| format!("{} % {kind}", rounded(100.0 * confidence))),
+            bound: fit
+                .confidence
+                .map(|confidence| format!("{} % {kind}", rounded(100.0 * confidence))),
             target: x_unit.from_si(target),
             value: unit.from_si(self.fit(fit, &values).ok()?),
             regressor_unit: x_unit.text,
@@ -278,14 +364,19 @@ impl Group<'_> {
     /// In which a regressor is printed.
     pub(super) fn unit_of(&self, regressor: &Expr) -> units::Unit {
         match (&regressor.kind, &regressor.ty) {
-            (Kind::Column(index), _) if let DatumKind::Number(unit) = &self.plan.columns[*index].kind => unit.clone(),
+            (Kind::Column(index), _)
+                if let DatumKind::Number(unit) = &self.plan.columns[*index].kind =>
+            {
+                unit.clone()
+            }
             (_, Type::Number(dimension)) => units::Unit::si(*dimension),
             _ => units::Unit::one(),
         }
     }
 }
 
-/// Number of pieces of a regression curve in a diagram. A hyperbola then looks smooth at a few centimetres.
+/// Number of pieces of a regression curve in a diagram. A hyperbola then looks smooth at a few
+/// centimetres.
 const STEPS: usize = 32;
 
 /// A regression with the numbers it was fitted to and the point at which it is evaluated.
@@ -295,14 +386,20 @@ pub(super) struct Fitted {
     pub at: Vec<f64>,
 }
 
-fn bound_at(regression: &Regression, fit: &Fit, confidence: f64, at: &[f64]) -> Result<f64, String> {
+fn bound_at(
+    regression: &Regression,
+    fit: &Fit,
+    confidence: f64,
+    at: &[f64],
+) -> Result<f64, String> {
     let kind = if fit.prediction { regression::Kind::Prediction } else { regression::Kind::Mean };
     let side = if fit.lower { regression::Side::Lower } else { regression::Side::Upper };
     let tails = if fit.one_sided { Tails::One } else { Tails::Two };
     regression.bound(at, kind, side, tails, confidence).map_err(|error| error.to_string())
 }
 
-/// Values that are all equal have no scatter from which an interval could follow: one of width zero would claim certainty.
+/// Values that are all equal have no scatter from which an interval could follow: one of width zero
+/// would claim certainty.
 fn some_scatter(values: &[f64]) -> Result<(), String> {
     match values {
         [first, rest @ ..] if !rest.is_empty() && rest.iter().all(|value| value == first) => {
@@ -312,7 +409,8 @@ fn some_scatter(values: &[f64]) -> Result<(), String> {
     }
 }
 
-/// A percentage without rounding errors of its conversion from a share: 99.9, not 99.90000000000001.
+/// A percentage without rounding errors of its conversion from a share: 99.9, not
+/// 99.90000000000001.
 fn rounded(percent: f64) -> f64 {
     (percent * 1e9).round() / 1e9
 }
@@ -327,9 +425,13 @@ pub fn statistic_of(statistic: Statistic, ddof: usize, values: &[f64]) -> Result
         Statistic::Named(entry) => (entry.run)(values, ddof),
         Statistic::Each => None,
     };
-    found
-        .filter(|value| value.is_finite())
-        .ok_or_else(|| format!("not defined for {} value{}", values.len(), if values.len() == 1 { "" } else { "s" }))
+    found.filter(|value| value.is_finite()).ok_or_else(|| {
+        format!(
+            "not defined for {} value{}",
+            values.len(),
+            if values.len() == 1 { "" } else { "s" }
+        )
+    })
 }
 
 /// Of numbers of sections or of groups.
@@ -342,7 +444,12 @@ fn reduced(reducer: DataReducer, numbers: &[f64]) -> Result<f64, String> {
 
 /// # Errors
 /// No weight is above zero, or too few are.
-fn weighted_statistic(statistic: Statistic, ddof: usize, values: &[f64], weights: &[f64]) -> Result<f64, String> {
+fn weighted_statistic(
+    statistic: Statistic,
+    ddof: usize,
+    values: &[f64],
+    weights: &[f64],
+) -> Result<f64, String> {
     let counting = weights.iter().filter(|weight| **weight > 0.0).count();
     if counting == 0 {
         return Err("no weight is above zero".into());
@@ -362,7 +469,10 @@ fn weighted_statistic(statistic: Statistic, ddof: usize, values: &[f64], weights
     found.ok_or_else(|| format!("not defined for {counting} value{s} with a weight above zero"))
 }
 
-fn share(found: impl Iterator<Item = Result<bool, String>>, weights: Option<Result<Vec<f64>, String>>) -> Result<f64, String> {
+fn share(
+    found: impl Iterator<Item = Result<bool, String>>,
+    weights: Option<Result<Vec<f64>, String>>,
+) -> Result<f64, String> {
     let found = found.collect::<Result<Vec<bool>, _>>()?;
     if found.is_empty() {
         return Err("a share needs at least one value".into());

@@ -1,4 +1,5 @@
-//! Exchanged channels: a measured channel that agrees with another simulated channel better than with its own.
+//! Exchanged channels: a measured channel that agrees with another simulated channel better than
+//! with its own.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -26,8 +27,14 @@ pub fn find(
     unit: &Unit,
     sides: &Sides<'_>,
 ) -> Vec<Finding> {
-    let (Some(simulated), false) = (sides.simulated.first(), channels.len() < 2) else { return Vec::new() };
-    sides.measured.iter().flat_map(|measured| in_record((rule, test), channels, (work, unit), simulated, measured)).collect()
+    let (Some(simulated), false) = (sides.simulated.first(), channels.len() < 2) else {
+        return Vec::new();
+    };
+    sides
+        .measured
+        .iter()
+        .flat_map(|measured| in_record((rule, test), channels, (work, unit), simulated, measured))
+        .collect()
 }
 
 fn in_record(
@@ -41,15 +48,23 @@ fn in_record(
     let mut covered = Covered::default();
     for (at, (name, node)) in channels.iter().enumerate() {
         let Ok(own) = samples_of(&measured.found, *node) else { continue };
-        let mut with = |node: NodeId| samples_of(&simulated.found, node).ok().and_then(|other| covered.agreement(own, other));
+        let mut with = |node: NodeId| {
+            samples_of(&simulated.found, node).ok().and_then(|other| covered.agreement(own, other))
+        };
         let Some(with_own) = with(*node) else { continue };
         // No correlation is above 1: most channels need no comparison with the others.
         if with_own + test.more >= 1.0 {
             continue;
         }
         let others = channels.iter().enumerate().filter(|(other, _)| *other != at);
-        let best = others.filter_map(|(_, (other, node))| Some((*other, with(*node)?))).max_by(|a, b| a.1.total_cmp(&b.1));
-        let Some((other, with_other)) = best.filter(|(_, best)| *best >= test.least && *best > with_own + test.more) else { continue };
+        let best = others
+            .filter_map(|(_, (other, node))| Some((*other, with(*node)?)))
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((other, with_other)) =
+            best.filter(|(_, best)| *best >= test.least && *best > with_own + test.more)
+        else {
+            continue;
+        };
         findings.push(Finding {
             code: rule.name.clone(),
             channel: Some((*name).to_string()),
@@ -71,7 +86,8 @@ fn in_record(
     findings
 }
 
-/// The points of the measurement that the simulation covers, the same for all signals of two records.
+/// The points of the measurement that the simulation covers, the same for all signals of two
+/// records.
 #[derive(Default)]
 struct Covered(Vec<Both>);
 
@@ -91,7 +107,9 @@ enum Onto {
 impl Covered {
     /// Correlation at these points.
     fn agreement(&mut self, measured: &Samples, simulated: &Samples) -> Option<f64> {
-        let same = |both: &&Both| Arc::ptr_eq(&both.of.0, &measured.along) && Arc::ptr_eq(&both.of.1, &simulated.along);
+        let same = |both: &&Both| {
+            Arc::ptr_eq(&both.of.0, &measured.along) && Arc::ptr_eq(&both.of.1, &simulated.along)
+        };
         let known = match self.0.iter().position(|both| same(&both)) {
             Some(known) => known,
             None => {
@@ -115,9 +133,15 @@ impl Both {
         if axis == along {
             return Self { of, measured: 0..axis.len(), simulated: Some(Onto::Samples) };
         }
-        let (Some(first), Some(last)) = (along.first(), along.last()) else { return Self { of, measured: 0..0, simulated: None } };
+        let (Some(first), Some(last)) = (along.first(), along.last()) else {
+            return Self { of, measured: 0..0, simulated: None };
+        };
         let inside = axis.partition_point(|at| at < first)..axis.partition_point(|at| at <= last);
         let points = axis.get(inside.clone()).unwrap_or_default();
-        Self { of, measured: inside.clone(), simulated: Located::on(along, points).ok().map(Onto::Interpolated) }
+        Self {
+            of,
+            measured: inside.clone(),
+            simulated: Located::on(along, points).ok().map(Onto::Interpolated),
+        }
     }
 }

@@ -9,7 +9,8 @@ use crate::result::{Finding, Outside, QuantityResult};
 /// Code of the finding about regressions that are read outside their data.
 const EXTRAPOLATED: &str = "extrapolated";
 
-/// Beyond the data by less than this share of their range is rounding: a target such as `mean of speed` is computed from them.
+/// Beyond the data by less than this share of their range is rounding: a target such as `mean of
+/// speed` is computed from them.
 const ROUNDING: f64 = 1e-9;
 
 impl Group<'_> {
@@ -23,7 +24,8 @@ impl Group<'_> {
             },
             Taking::EachGroup { keys, of, .. } => {
                 let group = |rows: Vec<usize>| {
-                    let members: Vec<Member<'_>> = rows.iter().map(|&row| self.members[row]).collect();
+                    let members: Vec<Member<'_>> =
+                        rows.iter().map(|&row| self.members[row]).collect();
                     Group { members: &members, ..*self }.outside(of)
                 };
                 self.groups(keys).into_values().flat_map(group).collect()
@@ -41,7 +43,10 @@ impl Group<'_> {
     fn outside_of(&self, fit: &Fit) -> Vec<Outside> {
         let Ok(fitted) = self.fitted(fit, &self.values()) else { return Vec::new() };
         let one = |(over, (data, target)): (&Expr, (&Vec<f64>, &f64))| {
-            let (low, high) = data.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+            let (low, high) =
+                data.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+                    (low.min(*x), high.max(*x))
+                });
             let room = ROUNDING * (high - low);
             if (low - room..=high + room).contains(target) {
                 return None;
@@ -72,7 +77,8 @@ pub fn findings(quantities: &[QuantityResult]) -> Vec<Finding> {
     for quantity in quantities {
         for statistic in &quantity.statistics {
             for outside in &statistic.outside {
-                let (id, title, group) = (quantity.id.as_str(), statistic.title.as_str(), statistic.scope.as_str());
+                let (id, title, group) =
+                    (quantity.id.as_str(), statistic.title.as_str(), statistic.scope.as_str());
                 let new = || Read { quantity: id, estimate: title, groups: vec![group] };
                 let Some((_, reads)) = all.iter_mut().find(|(known, _)| *known == outside) else {
                     all.push((outside, vec![new()]));
@@ -92,7 +98,8 @@ pub fn findings(quantities: &[QuantityResult]) -> Vec<Finding> {
 fn finding(outside: &Outside, reads: &[Read<'_>]) -> Finding {
     let Outside { regressor, unit, target, low, high } = outside;
     let suffix = if unit == "-" { String::new() } else { format!(" {unit}") };
-    let (beyond, side, edge) = if target < low { (low - target, "below", *low) } else { (target - high, "above", *high) };
+    let (beyond, side, edge) =
+        if target < low { (low - target, "below", *low) } else { (target - high, "above", *high) };
     let share = 100.0 * beyond / (high - low);
     let (of, groups) = match reads {
         [one] => (format!("{}: {} is", one.quantity, one.estimate), one.groups.as_slice()),
@@ -102,7 +109,11 @@ fn finding(outside: &Outside, reads: &[Read<'_>]) -> Finding {
             (format!("{}: {} estimates are", quantities.join(", "), several.len()), &[][..])
         }
     };
-    let of_groups = if groups.is_empty() || groups == ["all"] { String::new() } else { format!(" ({})", groups.join("; ")) };
+    let of_groups = if groups.is_empty() || groups == ["all"] {
+        String::new()
+    } else {
+        format!(" ({})", groups.join("; "))
+    };
     let says = format!(
         "{of} read at {regressor} = {}{suffix}, {}{suffix} {side} the data, which reach from {} to {}{suffix}; that is {share:.0} % of their range{of_groups}",
         rounded(*target),
@@ -110,5 +121,10 @@ fn finding(outside: &Outside, reads: &[Read<'_>]) -> Finding {
         rounded(*low),
         rounded(*high)
     );
-    Finding { value: Some(*target), expected: Some(edge), unit: Some(unit.clone()), ..Finding::note(EXTRAPOLATED, says) }
+    Finding {
+        value: Some(*target),
+        expected: Some(edge),
+        unit: Some(unit.clone()),
+        ..Finding::note(EXTRAPOLATED, says)
+    }
 }

@@ -35,14 +35,22 @@ pub struct Facts {
 }
 
 impl Facts {
-    /// Reads every vehicle datum that the protocol declares. A missing or ill-formed one is a problem.
+    /// Reads every vehicle datum that the protocol declares. A missing or ill-formed one is a
+    /// problem.
     pub fn read(plan: &Plan, campaigns: Campaigns<'_>, problems: &mut Problems) -> Self {
         let mut vehicles = Vec::new();
         for (number, campaign) in campaigns.iter().enumerate() {
             for vehicle in &campaign.vehicles {
-                let read = |datum| vehicle_datum(datum, vehicle, problems).unwrap_or((Ok(Scalar::Number(0.0)), false));
+                let read = |datum| {
+                    vehicle_datum(datum, vehicle, problems)
+                        .unwrap_or((Ok(Scalar::Number(0.0)), false))
+                };
                 let (data, assumed) = plan.vehicle.iter().map(read).unzip();
-                vehicles.push(Vehicle { of: campaigns.vehicle_name(number, vehicle), data, assumed });
+                vehicles.push(Vehicle {
+                    of: campaigns.vehicle_name(number, vehicle),
+                    data,
+                    assumed,
+                });
             }
         }
         Self { vehicles, by_campaign: campaigns.pooled() }
@@ -86,7 +94,9 @@ impl Facts {
         if found.len() > 1 {
             let each: Vec<String> = found
                 .iter()
-                .map(|(vehicle, value)| format!("{} for {}", shown(value), vehicle.of.as_deref().unwrap_or_default()))
+                .map(|(vehicle, value)| {
+                    format!("{} for {}", shown(value), vehicle.of.as_deref().unwrap_or_default())
+                })
                 .collect();
             return Err(format!("it depends on the vehicle: {}", each.join(", ")));
         }
@@ -97,7 +107,11 @@ impl Facts {
 impl Unit {
     /// The values of names in the section.
     pub fn known<'a>(&'a self, facts: &'a Facts) -> Known<'a> {
-        Known { columns: Some(&self.columns), extent: self.extent, ..Known::vehicle(facts.of(self)) }
+        Known {
+            columns: Some(&self.columns),
+            extent: self.extent,
+            ..Known::vehicle(facts.of(self))
+        }
     }
 }
 
@@ -131,7 +145,14 @@ pub fn item(datum: &Datum, value: Option<&Scalar>) -> DataItem {
         Some(Scalar::Flag(flag)) => flag.to_string(),
         None => String::new(),
     };
-    DataItem { name: datum.title.clone(), value, unit: unit.map(|unit| unit.text.clone()), used: true, unit_assumed: false, of: None }
+    DataItem {
+        name: datum.title.clone(),
+        value,
+        unit: unit.map(|unit| unit.text.clone()),
+        used: true,
+        unit_assumed: false,
+        of: None,
+    }
 }
 
 /// The reason why a datum that may be absent has no value.
@@ -146,7 +167,14 @@ pub const NOT_STATED: &str = "not stated";
 pub fn vehicle_item(datum: &Datum, value: &Result<Scalar, String>) -> DataItem {
     match value {
         Ok(value) => item(datum, Some(value)),
-        Err(_) => DataItem { name: datum.title.clone(), value: NOT_STATED.into(), unit: None, used: true, unit_assumed: false, of: None },
+        Err(_) => DataItem {
+            name: datum.title.clone(),
+            value: NOT_STATED.into(),
+            unit: None,
+            used: true,
+            unit_assumed: false,
+            of: None,
+        },
     }
 }
 
@@ -156,7 +184,11 @@ pub fn trimmed(value: f64) -> String {
     format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }
 
-fn vehicle_datum(datum: &Datum, vehicle: &VehicleState, problems: &mut Problems) -> Option<(Result<Scalar, String>, bool)> {
+fn vehicle_datum(
+    datum: &Datum,
+    vehicle: &VehicleState,
+    problems: &mut Problems,
+) -> Option<(Result<Scalar, String>, bool)> {
     let Some(node) = vehicle.data.lookup(&datum.key) else {
         if let Some(default) = &datum.default {
             return Some((Ok(default.clone()), false));
@@ -164,17 +196,22 @@ fn vehicle_datum(datum: &Datum, vehicle: &VehicleState, problems: &mut Problems)
         if datum.may_be_absent {
             return Some((Err(absent(datum)), false));
         }
-        let known: Vec<&str> = vehicle.data.entries().iter().map(|(key, _)| key.text.as_str()).collect();
+        let known: Vec<&str> =
+            vehicle.data.entries().iter().map(|(key, _)| key.text.as_str()).collect();
         problems.push(
-            Problem::error("missing-vehicle-data", format!("the vehicle file has no `{}` ({})", datum.key, datum.title))
-                .at(&vehicle.data.span.part(0..0))
-                .also(&datum.span, "the protocol needs it")
-                .suggest(&datum.key, known),
+            Problem::error(
+                "missing-vehicle-data",
+                format!("the vehicle file has no `{}` ({})", datum.key, datum.title),
+            )
+            .at(&vehicle.data.span.part(0..0))
+            .also(&datum.span, "the protocol needs it")
+            .suggest(&datum.key, known),
         );
         return None;
     };
     if node.value == Value::Null {
-        let problem = Problem::error("vehicle-data", format!("`{}` has no value", datum.key)).at(&node.span);
+        let problem =
+            Problem::error("vehicle-data", format!("`{}` has no value", datum.key)).at(&node.span);
         problems.push(problem.also(&datum.span, "declared here").help(format!(
             "{}: write its value{}",
             datum.title,
@@ -184,8 +221,12 @@ fn vehicle_datum(datum: &Datum, vehicle: &VehicleState, problems: &mut Problems)
     }
     let text = node.scalar_text().unwrap_or("").trim();
     let read = match &datum.kind {
-        DatumKind::Number(unit) => units::number::read(text, unit).map(|read| (Scalar::Number(read.si), !read.unit_stated)),
-        kind => scalar(kind, text).map(|value| (value, false)).map_err(|says| Refused { says, help: None }),
+        DatumKind::Number(unit) => {
+            units::number::read(text, unit).map(|read| (Scalar::Number(read.si), !read.unit_stated))
+        }
+        kind => scalar(kind, text)
+            .map(|value| (value, false))
+            .map_err(|says| Refused { says, help: None }),
     };
     let refused = match read {
         Ok((value, assumed)) => match out_of_range(datum, &value, assumed) {
@@ -194,8 +235,10 @@ fn vehicle_datum(datum: &Datum, vehicle: &VehicleState, problems: &mut Problems)
         },
         Err(refused) => refused,
     };
-    let problem = Problem::error("vehicle-data", format!("`{}`: {}", datum.key, refused.says)).at(&node.span);
-    let problem = problem.also(datum.range.as_ref().map_or(&datum.span, |range| &range.span), "declared here");
+    let problem =
+        Problem::error("vehicle-data", format!("`{}`: {}", datum.key, refused.says)).at(&node.span);
+    let problem = problem
+        .also(datum.range.as_ref().map_or(&datum.span, |range| &range.span), "declared here");
     problems.push(match refused.help {
         Some(help) => problem.help(help),
         None => problem,
@@ -213,18 +256,30 @@ fn with_unit(kind: &DatumKind) -> String {
     }
 }
 
-/// Why a number is not allowed. If its unit was assumed, the help names a unit in which the number would be allowed.
+/// Why a number is not allowed. If its unit was assumed, the help names a unit in which the number
+/// would be allowed.
 fn out_of_range(datum: &Datum, value: &Scalar, assumed: bool) -> Option<Refused> {
-    let (Some(range), Scalar::Number(si), DatumKind::Number(unit)) = (&datum.range, value, &datum.kind) else { return None };
+    let (Some(range), Scalar::Number(si), DatumKind::Number(unit)) =
+        (&datum.range, value, &datum.kind)
+    else {
+        return None;
+    };
     if (range.low..=range.high).contains(si) {
         return None;
     }
     let number = unit.from_si(*si);
     let shown = trimmed(number);
-    let says = format!("{shown}{} is outside the range of the protocol, {}", unit.suffix(), range.words);
-    let other = if assumed { units::number::units_within(number, unit, (range.low, range.high)) } else { Vec::new() };
+    let says =
+        format!("{shown}{} is outside the range of the protocol, {}", unit.suffix(), range.words);
+    let other = if assumed {
+        units::number::units_within(number, unit, (range.low, range.high))
+    } else {
+        Vec::new()
+    };
     let help = match other.first() {
-        Some(other) => format!("a number without a unit is read in {unit}; write `{shown} {other}` if that is meant"),
+        Some(other) => format!(
+            "a number without a unit is read in {unit}; write `{shown} {other}` if that is meant"
+        ),
         None => format!("{}: give its value with the unit", datum.title),
     };
     Some(Refused { says, help: Some(help) })
@@ -235,7 +290,9 @@ pub fn scalar(kind: &DatumKind, text: &str) -> Result<Scalar, String> {
     match kind {
         DatumKind::Number(unit) => match text.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(Scalar::Number(unit.to_si(number))),
-            _ if text.contains(',') => Err(format!("`{text}` has a decimal comma; numbers are written with a point")),
+            _ if text.contains(',') => {
+                Err(format!("`{text}` has a decimal comma; numbers are written with a point"))
+            }
             _ => Err(format!("`{text}` is not a number (in {unit})")),
         },
         DatumKind::Campaign => Ok(Scalar::Word(text.to_string())),
@@ -249,10 +306,16 @@ pub fn scalar(kind: &DatumKind, text: &str) -> Result<Scalar, String> {
                 return Ok(Scalar::Word(text.to_string()));
             }
             // A zone written as 1.0 is zone 1.
-            let number = text.parse::<f64>().ok().and_then(|number| words.iter().find(|word| word.parse() == Ok(number)));
+            let number = text
+                .parse::<f64>()
+                .ok()
+                .and_then(|number| words.iter().find(|word| word.parse() == Ok(number)));
             match (number, crate::problem::nearest(text, words.iter().map(String::as_str))) {
                 (Some(word), _) => Ok(Scalar::Word(word.clone())),
-                (None, Some(near)) => Err(format!("`{text}` is not one of {}; did you mean `{near}`?", words.join(", "))),
+                (None, Some(near)) => Err(format!(
+                    "`{text}` is not one of {}; did you mean `{near}`?",
+                    words.join(", ")
+                )),
                 (None, None) => Err(format!("`{text}` is not one of {}", words.join(", "))),
             }
         }

@@ -38,11 +38,20 @@ impl<'a> Estimated<'a> {
     /// Of a group without an estimate.
     pub fn empty(part: Part<'a>, members: Vec<Member<'a>>) -> Self {
         let value = Err("no value is available".into());
-        Self { part, members, value, interval: None, regression: None, divided_at: None, outside: Vec::new() }
+        Self {
+            part,
+            members,
+            value,
+            interval: None,
+            regression: None,
+            divided_at: None,
+            outside: Vec::new(),
+        }
     }
 }
 
-/// An estimate compared with its limit, and the sentence for the verdict where the limit is not met.
+/// An estimate compared with its limit, and the sentence for the verdict where the limit is not
+/// met.
 #[derive(Debug)]
 pub struct Compared {
     pub result: StatisticResult,
@@ -75,7 +84,11 @@ fn applies_to(limit: &Limit, facts: &Facts, members: &[Member<'_>]) -> Result<bo
 ///
 /// # Errors
 /// It cannot be told, or differs between the vehicles of a group that has one estimate.
-pub fn applying<'m>(limit: &Limit, facts: &Facts, mut members: Vec<Member<'m>>) -> Result<Option<Vec<Member<'m>>>, String> {
+pub fn applying<'m>(
+    limit: &Limit,
+    facts: &Facts,
+    mut members: Vec<Member<'m>>,
+) -> Result<Option<Vec<Member<'m>>>, String> {
     if !matches!(limit.estimate.kind, EstimateKind::Each) || members.is_empty() {
         return Ok(applies_to(limit, facts, &members)?.then_some(members));
     }
@@ -88,7 +101,8 @@ pub fn applying<'m>(limit: &Limit, facts: &Facts, mut members: Vec<Member<'m>>) 
 }
 
 impl<'a> Judging<'a> {
-    /// The estimates of a limit, group by group; empty where the limit does not apply to this vehicle.
+    /// The estimates of a limit, group by group; empty where the limit does not apply to this
+    /// vehicle.
     ///
     /// # Errors
     /// It cannot be determined whether the limit applies.
@@ -99,21 +113,43 @@ impl<'a> Judging<'a> {
             // Of several vehicles, those of each group decide.
             _ => {}
         }
-        let parts = parts(self.plan, Grouped::values(self.quantity), &limit.scope, self.members, self.facts);
+        let parts = parts(
+            self.plan,
+            Grouped::values(self.quantity),
+            &limit.scope,
+            self.members,
+            self.facts,
+        );
         Ok(parts.into_iter().filter_map(|part| self.of_part(limit, part)).collect())
     }
 
     fn group<'g>(&'g self, members: &'g [Member<'g>]) -> Group<'g> {
-        Group { plan: self.plan, facts: self.facts, positions: &self.quantity.positions, members, table: self.table }
+        Group {
+            plan: self.plan,
+            facts: self.facts,
+            positions: &self.quantity.positions,
+            members,
+            table: self.table,
+        }
     }
 
     /// `None` of a group whose vehicle the limit does not apply to.
     fn of_part(&self, limit: &Limit, part: Part<'a>) -> Option<Estimated<'a>> {
-        let none = |reason: String| Estimated { value: Err(reason), ..Estimated::empty(part.clone(), Vec::new()) };
-        let members = match part.members(self.facts, self.members).map(|members| applying(limit, self.facts, members)) {
+        let none = |reason: String| Estimated {
+            value: Err(reason),
+            ..Estimated::empty(part.clone(), Vec::new())
+        };
+        let members = match part
+            .members(self.facts, self.members)
+            .map(|members| applying(limit, self.facts, members))
+        {
             Ok(Ok(Some(members))) => members,
             Ok(Ok(None)) => return None,
-            Ok(Err(reason)) => return Some(none(format!("it cannot be determined whether the limit applies: {reason}"))),
+            Ok(Err(reason)) => {
+                return Some(none(format!(
+                    "it cannot be determined whether the limit applies: {reason}"
+                )));
+            }
             Err(reason) => return Some(none(reason)),
         };
         Some(self.estimated(&limit.estimate, part, members))
@@ -121,7 +157,13 @@ impl<'a> Judging<'a> {
 
     /// An estimate of each of its groups, without a limit.
     pub fn of_report(&self, report: &'a Report) -> Vec<Estimated<'a>> {
-        let parts = parts(self.plan, Grouped::values(self.quantity), &report.scope, self.members, self.facts);
+        let parts = parts(
+            self.plan,
+            Grouped::values(self.quantity),
+            &report.scope,
+            self.members,
+            self.facts,
+        );
         let of_part = |part: Part<'a>| match part.members(self.facts, self.members) {
             Ok(members) => self.estimated(&report.estimate, part, members),
             Err(reason) => Estimated { value: Err(reason), ..Estimated::empty(part, Vec::new()) },
@@ -129,7 +171,12 @@ impl<'a> Judging<'a> {
         parts.into_iter().map(of_part).collect()
     }
 
-    fn estimated(&self, estimate: &Estimate, part: Part<'a>, members: Vec<Member<'a>>) -> Estimated<'a> {
+    fn estimated(
+        &self,
+        estimate: &Estimate,
+        part: Part<'a>,
+        members: Vec<Member<'a>>,
+    ) -> Estimated<'a> {
         if members.is_empty() {
             return Estimated::empty(part, members);
         }
@@ -145,27 +192,45 @@ impl<'a> Judging<'a> {
                     _ => None,
                 };
                 let interval = entry.and_then(|entry| entry.interval);
-                let interval = interval.and_then(|interval| interval(&group.values(), &group.units()));
+                let interval =
+                    interval.and_then(|interval| interval(&group.values(), &group.units()));
                 let divided_at = group.divided_at(of);
-                (group.number(of).map(Some), interval, group.figure(of, &self.quantity.unit), divided_at, group.outside(of))
+                (
+                    group.number(of).map(Some),
+                    interval,
+                    group.figure(of, &self.quantity.unit),
+                    divided_at,
+                    group.outside(of),
+                )
             }
         };
         Estimated { part, members, value, interval, regression, divided_at, outside }
     }
 
     /// Compares the estimates with the limit, group by group.
-    pub fn against(&self, limit: &'a Limit, estimated: Result<Vec<Estimated<'a>>, String>) -> Vec<Compared> {
+    pub fn against(
+        &self,
+        limit: &'a Limit,
+        estimated: Result<Vec<Estimated<'a>>, String>,
+    ) -> Vec<Compared> {
         match estimated {
             Ok(groups) => groups.iter().map(|group| self.of_group(limit, group)).collect(),
             Err(reason) => {
                 let mut result = self.empty(limit, "all".into(), Vec::new(), &[]);
-                result.reason = Some(format!("it cannot be determined whether the limit applies: {reason}"));
+                result.reason =
+                    Some(format!("it cannot be determined whether the limit applies: {reason}"));
                 vec![Compared { result, fails: None }]
             }
         }
     }
 
-    fn empty(&self, limit: &'a Limit, scope: String, group: Vec<(String, String)>, members: &[Member<'_>]) -> StatisticResult {
+    fn empty(
+        &self,
+        limit: &'a Limit,
+        scope: String,
+        group: Vec<(String, String)>,
+        members: &[Member<'_>],
+    ) -> StatisticResult {
         StatisticResult {
             name: limit.estimate.name.clone(),
             title: limit.estimate.title.clone(),
@@ -192,12 +257,14 @@ impl<'a> Judging<'a> {
     }
 
     fn sample(&self, members: &[Member<'_>]) -> Sample {
-        let values: Vec<f64> = members.iter().map(|member| self.quantity.unit.from_si(member.row.value)).collect();
+        let values: Vec<f64> =
+            members.iter().map(|member| self.quantity.unit.from_si(member.row.value)).collect();
         Sample { mean: mean(&values), std: standard_deviation(&values, Divisor::Sample) }
     }
 
     fn of_group(&self, limit: &'a Limit, group: &Estimated<'a>) -> Compared {
-        let mut result = self.empty(limit, group.part.in_words(), group.part.keys(), &group.members);
+        let mut result =
+            self.empty(limit, group.part.in_words(), group.part.keys(), &group.members);
         result.factors = factors(self.plan, &self.facts.among(&group.members), limit);
         result.regression = group.regression.clone().map(Box::new);
         result.divided_at = group.divided_at.map(|value| self.quantity.unit.from_si(value));
@@ -227,25 +294,40 @@ impl<'a> Judging<'a> {
     }
 
     /// Compares one number with one limit.
-    fn one(&self, limit: &'a Limit, group: &Estimated<'a>, value: f64, result: &mut StatisticResult) -> Result<bool, String> {
+    fn one(
+        &self,
+        limit: &'a Limit,
+        group: &Estimated<'a>,
+        value: f64,
+        result: &mut StatisticResult,
+    ) -> Result<bool, String> {
         let show = |value: f64| self.unit(limit).from_si(value);
         result.value = Some(show(value));
         result.interval = group.interval.map(|(low, high)| (show(low), show(high)));
-        let bound = self.common_bound(limit, &group.part, &group.members).map_err(|reason| no_limit(&reason))?;
+        let bound = self
+            .common_bound(limit, &group.part, &group.members)
+            .map_err(|reason| no_limit(&reason))?;
         result.limit = Some(show(bound));
         let (normalised, holds) = against(value, bound, limit.at_least);
         result.normalised = normalised;
-        result.marginal = group.interval.is_some_and(|interval| spans(interval, bound, limit.at_least));
+        result.marginal =
+            group.interval.is_some_and(|interval| spans(interval, bound, limit.at_least));
         Ok(holds)
     }
 
     /// Compares every row with its own limit; the worst row decides.
-    fn each(&self, limit: &'a Limit, members: &[Member<'_>], result: &mut StatisticResult) -> Result<bool, String> {
+    fn each(
+        &self,
+        limit: &'a Limit,
+        members: &[Member<'_>],
+        result: &mut StatisticResult,
+    ) -> Result<bool, String> {
         let mut worst: Option<(bool, f64, f64, f64)> = None;
         let mut all_hold = true;
         for member in members {
             let unit = member.unit;
-            // If this limit refers to that of another statistic, the latter is taken for the section's zone.
+            // If this limit refers to that of another statistic, the latter is taken for the
+            // section's zone.
             let part = Part::of_section(self.plan, limit, unit);
             let bound = self
                 .bound(limit, &part, &[*member], &unit.known(self.facts))
@@ -253,7 +335,8 @@ impl<'a> Judging<'a> {
             let value = member.row.value;
             let (normalised, holds) = against(value, bound, limit.at_least);
             all_hold &= holds;
-            // A value that fails is worse than any that passes, also where no share can be computed.
+            // A value that fails is worse than any that passes, also where no share can be
+            // computed.
             let share = normalised.unwrap_or(if holds { 0.0 } else { f64::INFINITY });
             if worst.is_none_or(|(held, before, _, _)| (!holds, share) > (!held, before)) {
                 worst = Some((holds, share, value, bound));
@@ -267,13 +350,24 @@ impl<'a> Judging<'a> {
     }
 
     /// The limit of a group with one estimate, SI: the same for all its vehicles.
-    pub fn common_bound(&self, limit: &Limit, part: &Part<'_>, members: &[Member<'_>]) -> Result<f64, String> {
+    pub fn common_bound(
+        &self,
+        limit: &Limit,
+        part: &Part<'_>,
+        members: &[Member<'_>],
+    ) -> Result<f64, String> {
         let unit = self.unit(limit);
-        let of_vehicle = |vehicle: &Vehicle| self.bound(limit, part, members, &Known::vehicle(vehicle));
-        let found = self.facts.agreed(members, of_vehicle, |bound| format!("{}{}", significant(unit.from_si(*bound), 4), unit.suffix()));
+        let of_vehicle =
+            |vehicle: &Vehicle| self.bound(limit, part, members, &Known::vehicle(vehicle));
+        let found = self.facts.agreed(members, of_vehicle, |bound| {
+            format!("{}{}", significant(unit.from_si(*bound), 4), unit.suffix())
+        });
         found.map_err(|reason| {
             if self.facts.vehicles.len() > 1 {
-                format!("{reason}; give each its own: `for each {}`", if self.facts.by_campaign { "campaign" } else { "state" })
+                format!(
+                    "{reason}; give each its own: `for each {}`",
+                    if self.facts.by_campaign { "campaign" } else { "state" }
+                )
             } else {
                 reason
             }
@@ -281,7 +375,13 @@ impl<'a> Judging<'a> {
     }
 
     /// The limit of one value or group, SI, with what names stand for there.
-    pub fn bound(&self, limit: &Limit, part: &Part<'_>, members: &[Member<'_>], known: &Known<'_>) -> Result<f64, String> {
+    pub fn bound(
+        &self,
+        limit: &Limit,
+        part: &Part<'_>,
+        members: &[Member<'_>],
+        known: &Known<'_>,
+    ) -> Result<f64, String> {
         let group = self.group(members);
         Bounds { quantity: self.quantity, part, group, known }.of(limit, 0)
     }
@@ -292,7 +392,8 @@ pub fn rule_place(span: &Span) -> RulePlace {
     RulePlace { file: span.source.file_name(), line: span.line() }
 }
 
-/// The sentence of a limit that is not met: `Y_qst: mean 4.33 kN exceeds the limit 3.33 kN by 30 %`.
+/// The sentence of a limit that is not met: `Y_qst: mean 4.33 kN exceeds the limit 3.33 kN by 30
+/// %`.
 fn sentence(quantity: &Quantity, limit: &Limit, result: &StatisticResult) -> String {
     let scope = if result.scope == "all" { String::new() } else { format!(" ({})", result.scope) };
     let unit = if result.unit == "-" { String::new() } else { format!(" {}", result.unit) };
@@ -320,11 +421,14 @@ fn excess(ratio: f64) -> String {
     }
 }
 
-/// Value and limit with three significant digits, or with more if the rounded texts would be equal or in the wrong order.
+/// Value and limit with three significant digits, or with more if the rounded texts would be equal
+/// or in the wrong order.
 fn apart(value: f64, bound: f64) -> (String, String) {
     let read = |text: &str| text.replace('\u{2212}', "-").parse::<f64>().unwrap_or(f64::NAN).abs();
     let shown = |digits: usize| (significant(value, digits), significant(bound, digits));
-    let right = |(a, b): &(String, String)| (read(a) > read(b)) == (value.abs() > bound.abs()) && read(a) != read(b);
+    let right = |(a, b): &(String, String)| {
+        (read(a) > read(b)) == (value.abs() > bound.abs()) && read(a) != read(b)
+    };
     (LEAST_DIGITS..MOST_DIGITS).map(shown).find(right).unwrap_or_else(|| shown(MOST_DIGITS))
 }
 
@@ -345,8 +449,8 @@ fn significant(value: f64, digits: usize) -> String {
     format!("{value:.decimals$}").replace('-', "\u{2212}")
 }
 
-/// Whether an interval contains values on both sides of a limit, so that the data do not decide. For a limited magnitude, minus the
-/// limit counts as well.
+/// Whether an interval contains values on both sides of a limit, so that the data do not decide.
+/// For a limited magnitude, minus the limit counts as well.
 fn spans((low, high): (f64, f64), bound: f64, at_least: bool) -> bool {
     let inside = |bound: f64| low < bound && bound < high;
     inside(bound) || !at_least && inside(-bound)
@@ -356,7 +460,8 @@ fn no_limit(reason: &str) -> String {
     format!("its limit cannot be evaluated: {reason}")
 }
 
-/// Share of the limit used, and whether the limit is met. For "at least", the share is limit / value.
+/// Share of the limit used, and whether the limit is met. For "at least", the share is limit /
+/// value.
 fn against(value: f64, bound: f64, at_least: bool) -> (Option<f64>, bool) {
     let room = EQUAL * bound.abs();
     if at_least {
@@ -376,7 +481,8 @@ pub struct Bounds<'a> {
 }
 
 impl Bounds<'_> {
-    /// The limit with its factors. A reference to another statistic means the limit of that statistic, with its factors.
+    /// The limit with its factors. A reference to another statistic means the limit of that
+    /// statistic, with its factors.
     pub fn of(&self, limit: &Limit, depth: usize) -> Result<f64, String> {
         if depth > self.quantity.limits.len() {
             return Err("it depends on itself".into());
@@ -400,7 +506,9 @@ impl Bounds<'_> {
         let mut found: Option<(Closeness, &Limit)> = None;
         for limit in self.quantity.limits.iter().filter(|limit| limit.estimate.name == name) {
             let Some(closeness) = self.part.covered_by(&limit.scope) else { continue };
-            if applies(limit, self.known.vehicle)? && found.is_none_or(|(before, _)| closeness > before) {
+            if applies(limit, self.known.vehicle)?
+                && found.is_none_or(|(before, _)| closeness > before)
+            {
                 found = Some((closeness, limit));
             }
         }
@@ -443,7 +551,10 @@ impl Values for Named<'_> {
 
 /// Evaluates the estimates and limits of a quantity, group by group.
 pub fn compared(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) -> Vec<Compared> {
-    let of_limit = |nodes: &LimitNodes| match (&graph.nodes[nodes.estimate].operation, &graph.nodes[nodes.limit].operation) {
+    let of_limit = |nodes: &LimitNodes| match (
+        &graph.nodes[nodes.estimate].operation,
+        &graph.nodes[nodes.limit].operation,
+    ) {
         (Operation::Estimate(estimate), Operation::Limit(limit)) => {
             let judging = *judging;
             judging.against(limit, judging.estimate(estimate))

@@ -21,23 +21,39 @@ pub struct TooFew {
 impl TooFew {
     /// Why nothing is estimated of some rows: all of them are of this group.
     pub fn reason(&self, members: &[Member<'_>]) -> Option<String> {
-        members.iter().all(|member| self.rows.contains(&std::ptr::from_ref(member.row))).then(|| self.says.clone())
+        members
+            .iter()
+            .all(|member| self.rows.contains(&std::ptr::from_ref(member.row)))
+            .then(|| self.says.clone())
     }
 }
 
 /// Pairs of members: of one unit of independence and signal, repeats are no further pairs.
 pub fn pairs(plan: &Plan, members: &[Member<'_>]) -> usize {
-    independent(plan, members).into_iter().zip(members.iter().map(|member| member.signal)).collect::<BTreeSet<_>>().len()
+    independent(plan, members)
+        .into_iter()
+        .zip(members.iter().map(|member| member.signal))
+        .collect::<BTreeSet<_>>()
+        .len()
 }
 
 /// `2 pairs of section and signal; at least 3 required`
 pub fn in_words(pairs: usize, rows: usize, needed: usize) -> String {
-    let of = if pairs == rows { "section and signal" } else { "site and signal (a repeat is no further section)" };
+    let of = if pairs == rows {
+        "section and signal"
+    } else {
+        "site and signal (a repeat is no further section)"
+    };
     format!("{} of {of}; at least {needed} required", count(pairs, "pair"))
 }
 
 /// The groups of a quantity with too few pairs.
-pub fn too_few(plan: &Plan, quantity: &Quantity, members: &[Member<'_>], facts: &Facts) -> Vec<TooFew> {
+pub fn too_few(
+    plan: &Plan,
+    quantity: &Quantity,
+    members: &[Member<'_>],
+    facts: &Facts,
+) -> Vec<TooFew> {
     let mut found = Vec::new();
     for minimum in &quantity.minimum_of_groups {
         for part in parts(plan, Grouped::values(quantity), &minimum.scope, members, facts) {

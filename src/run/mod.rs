@@ -1,4 +1,5 @@
-//! Executes a graph over a campaign: records in parallel, one at a time per worker, to plain results.
+//! Executes a graph over a campaign: records in parallel, one at a time per worker, to plain
+//! results.
 
 mod basis;
 mod causes;
@@ -59,8 +60,8 @@ use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
 use crate::result::study::Reduction;
 use crate::result::{
-    DataItem, DomainRange, DomainResult, FileHash, Finding, QuantityResult, Reported, SectionResult, Trace, Verdict, VerdictResult,
-    ZoneResult,
+    DataItem, DomainRange, DomainResult, FileHash, Finding, QuantityResult, Reported,
+    SectionResult, Trace, Verdict, VerdictResult, ZoneResult,
 };
 
 pub use basis::Basis;
@@ -135,8 +136,8 @@ pub struct Evaluated {
 /// Executes the whole protocol: reduces every section to its values, then judges them.
 ///
 /// # Errors
-/// Reasons why the campaign cannot be used as a whole: missing vehicle data, no usable section, or a fault for which the protocol
-/// states `stop`.
+/// Reasons why the campaign cannot be used as a whole: missing vehicle data, no usable section, or
+/// a fault for which the protocol states `stop`.
 pub fn run<'a>(
     plan: &Plan,
     graph: &Graph,
@@ -149,7 +150,8 @@ pub fn run<'a>(
     judge(plan, graph, (&prepared.basis, sections), (settings, &Signals::Of(&prepared.work())))
 }
 
-/// Judges the values of sections. Sections without values are missing, and the verdict is then not assessable.
+/// Judges the values of sections. Sections without values are missing, and the verdict is then not
+/// assessable.
 ///
 /// # Errors
 /// As [`run`].
@@ -168,7 +170,8 @@ pub fn judge(
     findings.extend(told::findings(plan, &evaluated.facts, &judged.quantities));
     findings.extend(extrapolation::findings(&judged.quantities));
     let (mut traces, mut notes) = (Vec::new(), notes.clone());
-    for trace in traces::traces((plan, graph), units, &judged.quantities, settings.traces, signals) {
+    for trace in traces::traces((plan, graph), units, &judged.quantities, settings.traces, signals)
+    {
         match trace {
             Ok(trace) => traces.push(trace),
             Err(note) => notes.push(note),
@@ -199,7 +202,11 @@ pub fn judge(
 ///
 /// # Errors
 /// As [`run`].
-pub fn evaluated(plan: &Plan, basis: &Basis, sections: Vec<Numbered>) -> Result<Evaluated, Problems> {
+pub fn evaluated(
+    plan: &Plan,
+    basis: &Basis,
+    sections: Vec<Numbered>,
+) -> Result<Evaluated, Problems> {
     let mut values: Vec<Option<SectionValues>> = vec![None; basis.units.len()];
     for (number, of_section) in sections {
         if let Some(place) = values.get_mut(number) {
@@ -209,7 +216,8 @@ pub fn evaluated(plan: &Plan, basis: &Basis, sections: Vec<Numbered>) -> Result<
     basis.evaluated(plan, values, true, None)
 }
 
-/// Evaluates every section with the measurement at each of several shifts (SI of the axis). Filters run once.
+/// Evaluates every section with the measurement at each of several shifts (SI of the axis). Filters
+/// run once.
 ///
 /// # Errors
 /// As [`run`].
@@ -239,8 +247,16 @@ pub fn evaluate<'a>(
 impl Evaluated {
     /// Results of quantities and verdicts over all usable sections.
     pub fn judge(&self, plan: &Plan, graph: &Graph) -> Judged {
-        let barred = self.missing.iter().cloned().chain(domain::barred(&self.application)).collect();
-        judge::judge(plan, graph, &self.facts, &self.units, &self.values, &judge::Told { findings: &self.findings, barred })
+        let barred =
+            self.missing.iter().cloned().chain(domain::barred(&self.application)).collect();
+        judge::judge(
+            plan,
+            graph,
+            &self.facts,
+            &self.units,
+            &self.values,
+            &judge::Told { findings: &self.findings, barred },
+        )
     }
 
     /// All values and limits that the verdict depends on.
@@ -265,11 +281,14 @@ impl Evaluated {
 
     /// Each section with its estimated shift (SI of the axis), where it was requested.
     pub fn offsets(&self) -> impl Iterator<Item = (&str, Option<&str>, Option<&Offset>)> {
-        self.units.iter().zip(&self.values).map(|(unit, values)| (unit.name.as_str(), unit.zone.as_deref(), values.offset.as_ref()))
+        self.units.iter().zip(&self.values).map(|(unit, values)| {
+            (unit.name.as_str(), unit.zone.as_deref(), values.offset.as_ref())
+        })
     }
 }
 
-/// Checks what a run reads before any record: the data of vehicles and sections, and wanted operation. Records need not exist.
+/// Checks what a run reads before any record: the data of vehicles and sections, and wanted
+/// operation. Records need not exist.
 pub fn check_data(plan: &Plan, campaign: &Campaign, problems: &mut Problems) {
     let campaigns = Campaigns::from(campaign);
     campaigns.check(problems);
@@ -312,9 +331,15 @@ impl<'a> Prepared<'a> {
             let names = || campaigns.iter().map(|campaign| campaign.short_name.value.as_str());
             if !names().any(|name| name == asked.value) {
                 let says = format!("none of the campaigns is called `{}`", asked.value);
-                let problem = Problem::error("unknown-campaign", says).at(&asked.span).suggest(&asked.value, names());
+                let problem = Problem::error("unknown-campaign", says)
+                    .at(&asked.span)
+                    .suggest(&asked.value, names());
                 let known = names().collect::<Vec<_>>().join("; ");
-                problems.push(if problem.help.is_some() { problem } else { problem.help(format!("there is {known}")) });
+                problems.push(if problem.help.is_some() {
+                    problem
+                } else {
+                    problem.help(format!("there is {known}"))
+                });
             }
         }
         members(plan, campaigns, &mut problems);
@@ -329,7 +354,9 @@ impl<'a> Prepared<'a> {
         for (number, campaign) in campaigns.iter().enumerate() {
             let units: Vec<&Unit> = units.iter().filter(|unit| unit.campaign == number).collect();
             let seen = columns::seen_columns(plan, campaign, &units);
-            present.push(columns::present_columns(plan, graph, campaign, &seen, &facts, &units, &mut notes));
+            present.push(columns::present_columns(
+                plan, graph, campaign, &seen, &facts, &units, &mut notes,
+            ));
             recorded.push(columns::recorded_positions(graph, &seen, &facts, &units));
             if plan.reads(Side::Measured) {
                 notes.extend(campaign.offsets_in_words());
@@ -364,10 +391,15 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    fn evaluate(&self, shifts: &Shifts<'_>, progress: Progress<'_>) -> Result<Vec<Evaluated>, Problems> {
+    fn evaluate(
+        &self,
+        shifts: &Shifts<'_>,
+        progress: Progress<'_>,
+    ) -> Result<Vec<Evaluated>, Problems> {
         let mut values = self.shifted(Shard::WHOLE, shifts, progress);
         let mut at = |at: usize, reduction: Option<&Reduction>| {
-            let values = values.iter_mut().map(|(_, all)| Some(std::mem::take(&mut all[at]))).collect();
+            let values =
+                values.iter_mut().map(|(_, all)| Some(std::mem::take(&mut all[at]))).collect();
             self.basis.evaluated(self.plan, values, shifts.offsets[at] == 0.0, reduction)
         };
         // The same sections at every shift: a reduction looks at the records as they are.
@@ -389,17 +421,27 @@ fn members(plan: &Plan, campaigns: Campaigns<'_>, problems: &mut Problems) {
         for record in &plan.records {
             let kind = record.side.kind();
             let all = campaign.records(kind);
-            let names: Vec<&str> = all.iter().filter_map(|which| campaign.record_called(*which).map(AsRef::as_ref)).collect();
-            for member in record.members.iter().filter(|member| !names.contains(&member.value.as_str())) {
+            let names: Vec<&str> = all
+                .iter()
+                .filter_map(|which| campaign.record_called(*which).map(AsRef::as_ref))
+                .collect();
+            for member in
+                record.members.iter().filter(|member| !names.contains(&member.value.as_str()))
+            {
                 let says = format!("the campaign{of} has no {} `{}`", kind.key(), member.value);
-                let problem = Problem::error("unknown-record", says).at(&member.span).suggest(&member.value, names.iter().copied());
+                let problem = Problem::error("unknown-record", says)
+                    .at(&member.span)
+                    .suggest(&member.value, names.iter().copied());
                 let named = campaign.tree.get(kind.key()).map(|node| node.span.clone());
-                let problem = named.map_or(problem.clone(), |at| problem.also(&at, "the records of the campaign"));
+                let problem = named
+                    .map_or(problem.clone(), |at| problem.also(&at, "the records of the campaign"));
                 problems.push(match (&problem.help, names.is_empty()) {
                     (Some(_), _) => problem,
-                    (None, true) => {
-                        problem.help(format!("give its records names in campaign.yaml: `{}: {{{}: folder}}`", kind.key(), member.value))
-                    }
+                    (None, true) => problem.help(format!(
+                        "give its records names in campaign.yaml: `{}: {{{}: folder}}`",
+                        kind.key(),
+                        member.value
+                    )),
                     (None, false) => problem.help(format!("there is {}", names.join(", "))),
                 });
             }
@@ -407,7 +449,8 @@ fn members(plan: &Plan, campaigns: Campaigns<'_>, problems: &mut Problems) {
     }
 }
 
-/// Ends the run at a fault in one section, where the protocol states `stop`. The problems of the records give the place.
+/// Ends the run at a fault in one section, where the protocol states `stop`. The problems of the
+/// records give the place.
 fn stop_on_fault(plan: &Plan, units: &[Unit], values: &[SectionValues]) -> Result<(), Problems> {
     if plan.sections.faulty != OnFault::Stop {
         return Ok(());
@@ -418,8 +461,15 @@ fn stop_on_fault(plan: &Plan, units: &[Unit], values: &[SectionValues]) -> Resul
         for problem in told {
             problems.push(problem.clone());
         }
-        let why = unit.fault.as_ref().filter(|_| told.is_empty()).map_or(String::new(), |fault| format!(": {fault}"));
-        let says = format!("section {} is faulty, and the protocol states `stop` for faulty sections{why}", unit.name);
+        let why = unit
+            .fault
+            .as_ref()
+            .filter(|_| told.is_empty())
+            .map_or(String::new(), |fault| format!(": {fault}"));
+        let says = format!(
+            "section {} is faulty, and the protocol states `stop` for faulty sections{why}",
+            unit.name
+        );
         let problem = Problem::error("faulty-section", says);
         problems.push(match &unit.span {
             Some(span) => problem.at(span),
@@ -429,7 +479,8 @@ fn stop_on_fault(plan: &Plan, units: &[Unit], values: &[SectionValues]) -> Resul
     if problems.any_error() { Err(problems) } else { Ok(()) }
 }
 
-/// Used if every section is faulty: the problems of the records are more useful than a report without numbers.
+/// Used if every section is faulty: the problems of the records are more useful than a report
+/// without numbers.
 fn nothing_usable(units: &[Unit], values: Vec<SectionValues>) -> Problems {
     const MOST: usize = 8;
     // A problem that occurs in several sections is shown once, with the number of occurrences.
@@ -452,10 +503,18 @@ fn nothing_usable(units: &[Unit], values: Vec<SectionValues>) -> Problems {
     let left_out = told.len().saturating_sub(MOST);
     let mut all = Problems::default();
     for (problem, more) in told.into_values().take(MOST) {
-        let says = if more == 0 { problem.says } else { format!("{}; the same {more} times more", problem.says) };
+        let says = if more == 0 {
+            problem.says
+        } else {
+            format!("{}; the same {more} times more", problem.says)
+        };
         all.push(Problem { says, ..problem });
     }
     let end = Problem::error("no-usable-section", "no section of the campaign can be used");
-    all.push(if left_out == 0 { end } else { end.help(format!("{left_out} more problems are not shown")) });
+    all.push(if left_out == 0 {
+        end
+    } else {
+        end.help(format!("{left_out} more problems are not shown"))
+    });
     all
 }

@@ -1,4 +1,5 @@
-//! What a run reads: columns of records and of the table of sections, vehicle data, and the rules that need each of them.
+//! What a run reads: columns of records and of the table of sections, vehicle data, and the rules
+//! that need each of them.
 
 mod parts;
 
@@ -10,7 +11,9 @@ use super::facts::trimmed;
 use super::section::wanted_of;
 use super::sections::STATE;
 use super::wanted::columns as wanted_columns;
-use crate::check::plan::{Datum, DatumKind, Expr, Independent, InputSide, Kind, Plan, Quantity, Scalar, Side, Test};
+use crate::check::plan::{
+    Datum, DatumKind, Expr, Independent, InputSide, Kind, Plan, Quantity, Scalar, Side, Test,
+};
 use crate::data::campaign::POINT_KEY;
 use crate::data::sites;
 use crate::graph::{Graph, InputNode, NodeId, QuantityNodes};
@@ -19,12 +22,14 @@ use crate::units::Unit;
 #[derive(Clone, Debug, Default)]
 pub struct Needs {
     pub channels: Vec<ChannelNeed>,
-    /// The positions of each quantity, by which it is known whether one without a channel can be left out.
+    /// The positions of each quantity, by which it is known whether one without a channel can be
+    /// left out.
     pub positions: Vec<Positions>,
     /// Columns of the table of sections; none where whole records are evaluated.
     pub sections: Vec<DatumNeed>,
     pub vehicle: Vec<DatumNeed>,
-    /// Section data that are found in runs, by their columns; absent where the protocol does not look for sections.
+    /// Section data that are found in runs, by their columns; absent where the protocol does not
+    /// look for sections.
     pub found: Option<Vec<String>>,
     /// Columns of the table of wanted operation; none where the protocol has no domain.
     pub application: Vec<DatumNeed>,
@@ -42,24 +47,36 @@ pub struct Positions {
 impl ChannelNeed {
     /// Whether a number depends on it only where sections are looked for in runs.
     pub fn of_search_alone(&self) -> bool {
-        let others = self.users.rules.iter().filter(|rule| *rule != SEARCH && !rule.starts_with(PLAUSIBILITY));
+        let others = self
+            .users
+            .rules
+            .iter()
+            .filter(|rule| *rule != SEARCH && !rule.starts_with(PLAUSIBILITY));
         self.users.quantities.is_empty() && others.count() == 0
     }
 }
 
 impl Needs {
-    /// Whether nothing can be evaluated of an axis, a check or a quantity if columns are missing, of which the need is one. Otherwise only
-    /// positions are left out.
+    /// Whether nothing can be evaluated of an axis, a check or a quantity if columns are missing,
+    /// of which the need is one. Otherwise only positions are left out.
     pub fn blocks(&self, need: &ChannelNeed, missing: &dyn Fn(&str, &str) -> bool) -> bool {
-        let uses = |of: &Positions| of.records.contains(&need.record) && of.columns.iter().any(|columns| columns.contains(&need.column));
-        let lacks =
-            |of: &Positions, columns: &[String]| columns.iter().any(|column| of.records.iter().any(|record| missing(record, column)));
+        let uses = |of: &Positions| {
+            of.records.contains(&need.record)
+                && of.columns.iter().any(|columns| columns.contains(&need.column))
+        };
+        let lacks = |of: &Positions, columns: &[String]| {
+            columns.iter().any(|column| of.records.iter().any(|record| missing(record, column)))
+        };
         need.users.rules.iter().any(|rule| !rule.starts_with(PLAUSIBILITY))
-            || self.positions.iter().any(|of| uses(of) && of.columns.iter().all(|columns| lacks(of, columns)))
+            || self
+                .positions
+                .iter()
+                .any(|of| uses(of) && of.columns.iter().all(|columns| lacks(of, columns)))
     }
 }
 
-/// Beginning of the user that is a plausibility rule: it looks at a channel only where it was recorded.
+/// Beginning of the user that is a plausibility rule: it looks at a channel only where it was
+/// recorded.
 const PLAUSIBILITY: &str = "plausibility ";
 
 /// The user that is the search for sections in runs.
@@ -112,19 +129,33 @@ pub fn needs(plan: &Plan, graph: &Graph) -> Needs {
         sections.push(given("section", "Name of the section and of its records", None, "sections"));
         sections.push(given("start", "Start of the section", Some(&plan.axis.unit), "sections"));
         sections.push(given("end", "End of the section", Some(&plan.axis.unit), "sections"));
-        let own = plan.columns.iter().zip(columns).filter(|(datum, _)| datum.kind != DatumKind::Campaign);
+        let own =
+            plan.columns.iter().zip(columns).filter(|(datum, _)| datum.kind != DatumKind::Campaign);
         sections.extend(own.map(|(datum, users)| datum_need(datum, users)));
-        let others: Vec<DatumNeed> =
-            of_every_table(plan).into_iter().filter(|need| sections.iter().all(|known| known.key != need.key)).collect();
+        let others: Vec<DatumNeed> = of_every_table(plan)
+            .into_iter()
+            .filter(|need| sections.iter().all(|known| known.key != need.key))
+            .collect();
         sections.extend(others);
     }
-    let vehicle = plan.vehicle.iter().zip(vehicle).map(|(datum, users)| datum_need(datum, users)).collect();
+    let vehicle =
+        plan.vehicle.iter().zip(vehicle).map(|(datum, users)| datum_need(datum, users)).collect();
     let found = plan.sections.find.as_ref().map(|find| {
         let is_found = |index: &usize| !super::find::is_stated(plan, find, *index);
-        (0..plan.columns.len()).filter(is_found).map(|index| plan.columns[index].key.clone()).collect()
+        (0..plan.columns.len())
+            .filter(is_found)
+            .map(|index| plan.columns[index].key.clone())
+            .collect()
     });
     let channels = channels(plan, graph);
-    Needs { channels, positions: positions(plan, graph), sections, vehicle, found, application: application(plan) }
+    Needs {
+        channels,
+        positions: positions(plan, graph),
+        sections,
+        vehicle,
+        found,
+        application: application(plan),
+    }
 }
 
 /// A column that the program itself reads.
@@ -141,7 +172,8 @@ fn given(key: &str, title: &str, unit: Option<&Unit>, rule: &str) -> DatumNeed {
     }
 }
 
-/// Columns that every table of sections may have: they say which sections are one site, and the state of the vehicle.
+/// Columns that every table of sections may have: they say which sections are one site, and the
+/// state of the vehicle.
 fn of_every_table(plan: &Plan) -> Vec<DatumNeed> {
     let optional = |key: &str, title: &str, rule: &str| DatumNeed {
         required: false,
@@ -149,9 +181,13 @@ fn of_every_table(plan: &Plan) -> Vec<DatumNeed> {
         ..given(key, title, None, rule)
     };
     let of_repeats = |quantity: &&Quantity| quantity.evaluation.of_repeats();
-    let repeats: Vec<String> = plan.quantities.iter().filter(of_repeats).map(|quantity| quantity.id.clone()).collect();
-    let mut repeat =
-        optional(sites::REPEAT_OF, "Name of the section that was measured before, where this one repeats it", "independent site");
+    let repeats: Vec<String> =
+        plan.quantities.iter().filter(of_repeats).map(|quantity| quantity.id.clone()).collect();
+    let mut repeat = optional(
+        sites::REPEAT_OF,
+        "Name of the section that was measured before, where this one repeats it",
+        "independent site",
+    );
     if !repeats.is_empty() {
         repeat.required = true;
         repeat.default = None;
@@ -160,8 +196,16 @@ fn of_every_table(plan: &Plan) -> Vec<DatumNeed> {
     vec![
         repeat,
         optional(sites::SITE, "The same text for all sections of one site", "independent site"),
-        optional(sites::TRACK, "Name of the track; sections that overlap on it are one site", "independent site"),
-        optional(STATE, "State of the vehicle, where the campaign has a vehicle file for each state", "vehicle states"),
+        optional(
+            sites::TRACK,
+            "Name of the track; sections that overlap on it are one site",
+            "independent site",
+        ),
+        optional(
+            STATE,
+            "State of the vehicle, where the campaign has a vehicle file for each state",
+            "vehicle states",
+        ),
     ]
 }
 
@@ -170,12 +214,22 @@ fn application(plan: &Plan) -> Vec<DatumNeed> {
     let Some(first) = plan.domains.first() else { return Vec::new() };
     let users = |index: usize| {
         let of = plan.domains.iter().filter(|domain| wanted_columns(domain).contains(&index));
-        Users { quantities: Vec::new(), rules: of.map(|domain| format!("domain {}", domain.name)).collect() }
+        Users {
+            quantities: Vec::new(),
+            rules: of.map(|domain| format!("domain {}", domain.name)).collect(),
+        }
     };
-    let mut point = given(POINT_KEY, "Name of the point of wanted operation", None, &format!("domain {}", first.name));
-    point.users.rules = plan.domains.iter().map(|domain| format!("domain {}", domain.name)).collect();
+    let mut point = given(
+        POINT_KEY,
+        "Name of the point of wanted operation",
+        None,
+        &format!("domain {}", first.name),
+    );
+    point.users.rules =
+        plan.domains.iter().map(|domain| format!("domain {}", domain.name)).collect();
     let read = plan.columns.iter().enumerate().map(|(index, datum)| (datum, users(index)));
-    let read = read.filter(|(datum, users)| datum.kind != DatumKind::Campaign && !users.rules.is_empty());
+    let read =
+        read.filter(|(datum, users)| datum.kind != DatumKind::Campaign && !users.rules.is_empty());
     std::iter::once(point).chain(read.map(|(datum, users)| datum_need(datum, users))).collect()
 }
 
@@ -187,12 +241,14 @@ fn datum_need(datum: &Datum, users: Users) -> DatumNeed {
         _ => Vec::new(),
     };
     let default = datum.default.as_ref().map(|default| match default {
-        Scalar::Number(value) => unit.map_or_else(|| trimmed(*value), |unit| trimmed(unit.from_si(*value)) + &unit.suffix()),
+        Scalar::Number(value) => unit
+            .map_or_else(|| trimmed(*value), |unit| trimmed(unit.from_si(*value)) + &unit.suffix()),
         Scalar::Word(word) => word.clone(),
         Scalar::Flag(flag) => flag.to_string(),
     });
     let range = datum.range.as_ref().map(|range| range.words.clone());
-    let default = default.or_else(|| datum.may_be_absent.then(|| super::facts::NOT_STATED.to_string()));
+    let default =
+        default.or_else(|| datum.may_be_absent.then(|| super::facts::NOT_STATED.to_string()));
     DatumNeed {
         key: datum.key.clone(),
         title: datum.title.clone(),
@@ -207,21 +263,31 @@ fn datum_need(datum: &Datum, users: Users) -> DatumNeed {
 
 fn positions(plan: &Plan, graph: &Graph) -> Vec<Positions> {
     let of = |(quantity, nodes): (&Quantity, &QuantityNodes)| Positions {
-        records: Side::ALL.into_iter().filter(|side| quantity.evaluation.reads(*side)).map(Side::in_words).collect(),
+        records: Side::ALL
+            .into_iter()
+            .filter(|side| quantity.evaluation.reads(*side))
+            .map(Side::in_words)
+            .collect(),
         columns: nodes
             .signals
             .iter()
             .map(|signal| {
                 let mut wanted = BTreeSet::new();
                 wanted_of(quantity, signal, &mut wanted);
-                graph.columns_of(wanted).into_iter().filter(|(_, of_track)| !of_track).map(|(column, _)| column).collect()
+                graph
+                    .columns_of(wanted)
+                    .into_iter()
+                    .filter(|(_, of_track)| !of_track)
+                    .map(|(column, _)| column)
+                    .collect()
             })
             .collect(),
     };
     plan.quantities.iter().zip(&graph.quantities).map(of).collect()
 }
 
-/// By record and column: whether a number depends on it, and its users. In the order of the records and of the protocol.
+/// By record and column: whether a number depends on it, and its users. In the order of the records
+/// and of the protocol.
 type Read = BTreeMap<(usize, usize), (bool, Users)>;
 
 fn channels(plan: &Plan, graph: &Graph) -> Vec<ChannelNeed> {
@@ -237,15 +303,27 @@ fn channels(plan: &Plan, graph: &Graph) -> Vec<ChannelNeed> {
     // Time and axis stand first; the track record needs no time.
     let axes: Vec<_> = plan.time.iter().chain([&plan.axis]).collect();
     let axes_at: Vec<usize> = axes.iter().map(|axis| number(&mut names, &axis.column)).collect();
-    let sides =
-        |reads: &dyn Fn(Side) -> bool| (0..).zip(Side::ALL).filter(|(_, side)| reads(*side)).map(|(at, _)| at).collect::<Vec<usize>>();
+    let sides = |reads: &dyn Fn(Side) -> bool| {
+        (0..)
+            .zip(Side::ALL)
+            .filter(|(_, side)| reads(*side))
+            .map(|(at, _)| at)
+            .collect::<Vec<usize>>()
+    };
     let all = sides(&|side| plan.reads(side));
     for &side in &all {
-        axes_at
-            .iter()
-            .for_each(|&at| drop(read.insert((side, at), (true, Users { quantities: Vec::new(), rules: vec!["records".into()] }))));
+        axes_at.iter().for_each(|&at| {
+            drop(read.insert(
+                (side, at),
+                (true, Users { quantities: Vec::new(), rules: vec!["records".into()] }),
+            ))
+        });
     }
-    let mut add = |nodes: BTreeSet<NodeId>, records: &[usize], user: &str, is_quantity: bool, [required, of_track_too]: [bool; 2]| {
+    let mut add = |nodes: BTreeSet<NodeId>,
+                   records: &[usize],
+                   user: &str,
+                   is_quantity: bool,
+                   [required, of_track_too]: [bool; 2]| {
         for (column, of_track) in graph.columns_of(nodes) {
             let at = number(&mut names, &column);
             let of: &[usize] = if of_track { &[Side::ALL.len()] } else { records };
@@ -260,19 +338,32 @@ fn channels(plan: &Plan, graph: &Graph) -> Vec<ChannelNeed> {
     for (quantity, nodes) in plan.quantities.iter().zip(&graph.quantities) {
         let mut wanted = BTreeSet::new();
         nodes.signals.iter().for_each(|signal| wanted_of(quantity, signal, &mut wanted));
-        add(wanted, &sides(&|side| quantity.evaluation.reads(side)), &quantity.id, true, [true, false]);
+        add(
+            wanted,
+            &sides(&|side| quantity.evaluation.reads(side)),
+            &quantity.id,
+            true,
+            [true, false],
+        );
     }
-    let nodes_of = |inputs: &[InputNode]| inputs.iter().flat_map(InputNode::nodes).collect::<BTreeSet<_>>();
+    let nodes_of =
+        |inputs: &[InputNode]| inputs.iter().flat_map(InputNode::nodes).collect::<BTreeSet<_>>();
     for (check, inputs) in plan.checks.iter().zip(&graph.checks) {
         add(nodes_of(inputs), &all, &format!("check {}", check.name), false, [true, false]);
     }
     for (rule, nodes) in plan.plausibility.iter().zip(&graph.plausibility) {
-        let of = nodes.positions.iter().flat_map(|position| position.own.into_iter().chain(nodes_of(&position.inputs))).collect();
+        let of = nodes
+            .positions
+            .iter()
+            .flat_map(|position| position.own.into_iter().chain(nodes_of(&position.inputs)))
+            .collect();
         add(of, &all, &format!("{PLAUSIBILITY}{}", rule.name), false, [false; 2]);
     }
     if plan.sections.find.is_some() {
         let own = sides(&|side| side == super::find::own_side(plan));
-        for inputs in graph.find.data.iter().chain(&graph.find.conditions).chain([&graph.find.prefer]) {
+        for inputs in
+            graph.find.data.iter().chain(&graph.find.conditions).chain([&graph.find.prefer])
+        {
             for input in inputs {
                 let of = match input.side {
                     InputSide::Own => own.clone(),
@@ -291,10 +382,22 @@ fn channels(plan: &Plan, graph: &Graph) -> Vec<ChannelNeed> {
     read.into_iter()
         .map(|((record, at), (required, users))| {
             let column = names[at].clone();
-            let axis = axes.iter().find(|axis| axis.column == column).map(|axis| (None, axis.unit.text.clone()));
-            let found = declared.get(&(column.clone(), record == track)).map(|(channel, unit)| (Some(channel.clone()), unit.text.clone()));
+            let axis = axes
+                .iter()
+                .find(|axis| axis.column == column)
+                .map(|axis| (None, axis.unit.text.clone()));
+            let found = declared
+                .get(&(column.clone(), record == track))
+                .map(|(channel, unit)| (Some(channel.clone()), unit.text.clone()));
             let (channel, unit) = found.or(axis).unwrap_or_default();
-            ChannelNeed { record: Side::ALL.get(record).map_or(TRACK, |side| side.in_words()), column, channel, unit, required, users }
+            ChannelNeed {
+                record: Side::ALL.get(record).map_or(TRACK, |side| side.in_words()),
+                column,
+                channel,
+                unit,
+                required,
+                users,
+            }
         })
         .collect()
 }
@@ -311,7 +414,9 @@ fn declared(plan: &Plan) -> BTreeMap<(String, bool), (String, Unit)> {
     impl See for Declared {
         fn expr(&mut self, _: &Expr) {}
         fn channel(&mut self, column: &str, channel: &str, unit: &Unit, track: bool) {
-            self.0.entry((column.to_string(), track)).or_insert_with(|| (channel.to_string(), unit.clone()));
+            self.0
+                .entry((column.to_string(), track))
+                .or_insert_with(|| (channel.to_string(), unit.clone()));
         }
     }
     let mut found = Declared(BTreeMap::new());
@@ -336,7 +441,8 @@ fn data_users(plan: &Plan) -> [Vec<Users>; 2] {
             self.0[0].insert(index);
         }
     }
-    let mut users = [vec![Users::default(); plan.columns.len()], vec![Users::default(); plan.vehicle.len()]];
+    let mut users =
+        [vec![Users::default(); plan.columns.len()], vec![Users::default(); plan.vehicle.len()]];
     for rule in &plan.quantities {
         let mut data = Data::default();
         quantity(rule, &mut data);
@@ -370,10 +476,16 @@ fn other_rules(plan: &Plan) -> Vec<(String, Parts<'_>)> {
     ));
     if let Some(find) = &plan.sections.find {
         for datum in &find.data {
-            rules.push((format!("found {}", plan.columns[datum.column].key), Box::new(|see| of_signals(&datum.of, see))));
+            rules.push((
+                format!("found {}", plan.columns[datum.column].key),
+                Box::new(|see| of_signals(&datum.of, see)),
+            ));
         }
         for condition in &find.conditions {
-            rules.push((format!("find {}", condition.name), Box::new(|see| of_signals(&condition.require, see))));
+            rules.push((
+                format!("find {}", condition.name),
+                Box::new(|see| of_signals(&condition.require, see)),
+            ));
         }
         let rest = |see: &mut dyn See| {
             find.length.iter().for_each(|length| see.expr(length));
@@ -382,10 +494,15 @@ fn other_rules(plan: &Plan) -> Vec<(String, Parts<'_>)> {
         rules.push(("find".into(), Box::new(rest)));
     }
     if let Some(keep) = &plan.sections.keep {
-        rules.push(("keep".into(), Box::new(|see| keep.each.iter().for_each(|&index| see.column(index)))));
+        rules.push((
+            "keep".into(),
+            Box::new(|see| keep.each.iter().for_each(|&index| see.column(index))),
+        ));
     }
     for zone in &plan.zones {
-        let parts = move |see: &mut dyn See| zone.condition.iter().chain(&zone.minimum_length).for_each(|part| see.expr(part));
+        let parts = move |see: &mut dyn See| {
+            zone.condition.iter().chain(&zone.minimum_length).for_each(|part| see.expr(part))
+        };
         rules.push((format!("zone {}", zone.name), Box::new(parts)));
     }
     for check in &plan.checks {

@@ -1,5 +1,5 @@
-//! Plausibility rules that cannot be asked of a section, because a cell of the table of sections is empty: sound data and data that were
-//! never looked at must not look alike.
+//! Plausibility rules that cannot be asked of a section, because a cell of the table of sections is
+//! empty: sound data and data that were never looked at must not look alike.
 
 use super::facts::{Facts, Known};
 use super::requirements::sections_in_words;
@@ -33,7 +33,10 @@ pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
     let finding = |(column, names, rules): (usize, Vec<&str>, Vec<&str>)| {
         let key = &plan.columns[column].key;
         let of = sections_in_words(&names, units.len());
-        let says = format!("the table of sections does not state `{key}` ({of}); not checked there: {}", rules.join("; "));
+        let says = format!(
+            "the table of sections does not state `{key}` ({of}); not checked there: {}",
+            rules.join("; ")
+        );
         Finding { channel: Some(key.clone()), ..Finding::note(NOT_ASKED, says) }
     };
     found.into_iter().map(finding).collect()
@@ -42,7 +45,9 @@ pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
 /// The column without which the rule has no answer in this section.
 fn missing(rule: &Plausibility, facts: &Facts, unit: &Unit) -> Option<usize> {
     let Test::Require(requirement) = &rule.test else { return None };
-    let of = |reason: String| unit.columns.iter().position(|column| column.as_ref().err() == Some(&reason));
+    let of = |reason: String| {
+        unit.columns.iter().position(|column| column.as_ref().err() == Some(&reason))
+    };
     let known = unit.known(facts);
     match rule.unless.as_ref().map(|unless| flag(unless, &known)) {
         Some(Ok(true)) => return None,

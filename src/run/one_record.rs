@@ -21,7 +21,9 @@ pub fn one_record(
 ) -> Result<(Vec<(NodeId, Found)>, Opened), Fault> {
     let keys = work.sharing(unit).map(|sharing| sharing.keys);
     let evaluate = |opened: &Opened, needed: &BTreeSet<NodeId>| {
-        opened.evaluate(work.graph, needed, wanted, known, work.plan.sections.percentiles, keys).map(|found| (found, slow(work, needed)))
+        opened
+            .evaluate(work.graph, needed, wanted, known, work.plan.sections.percentiles, keys)
+            .map(|found| (found, slow(work, needed)))
     };
     let (found, opened) = with_record(work, unit, which, wanted, known, evaluate)?;
     values.files.push(opened.file.clone());

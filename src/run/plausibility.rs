@@ -12,7 +12,9 @@ use super::section_values::SectionValues;
 use super::sides::{Evaluated, RecordOfSide, Sides, number_of, samples_of, section};
 use super::unit::Unit;
 use crate::check::evaluate::{flag, number, words};
-use crate::check::plan::{Comparison, Exchanged, InputSide, Looks, Plausibility, Requirement, Test};
+use crate::check::plan::{
+    Comparison, Exchanged, InputSide, Looks, Plausibility, Requirement, Test,
+};
 use crate::graph::{InputNode, NodeId, PositionNodes};
 use crate::result::Finding;
 use crate::units::Dimension;
@@ -27,22 +29,38 @@ type Asked<'a> = (&'a Plausibility, &'a PositionNodes, &'a str);
 pub struct Questions<'a>(Vec<Asked<'a>>);
 
 impl<'a> Questions<'a> {
-    /// Every rule that applies to the section, at every recorded position. A rule is passed over where it cannot be determined, for a
-    /// missing datum, whether it applies or to which signal.
+    /// Every rule that applies to the section, at every recorded position. A rule is passed over
+    /// where it cannot be determined, for a missing datum, whether it applies or to which signal.
     pub fn of(work: &Work<'a>, unit: &Unit, known: &Known<'_>) -> Self {
-        let applies = |rule: &Plausibility| rule.unless.as_ref().map_or(Ok(false), |unless| flag(unless, known)) == Ok(false);
+        let applies = |rule: &Plausibility| {
+            rule.unless.as_ref().map_or(Ok(false), |unless| flag(unless, known)) == Ok(false)
+        };
         let decided = |nodes: &PositionNodes| {
-            let nodes: BTreeSet<NodeId> = nodes.own.into_iter().chain(nodes.inputs.iter().flat_map(InputNode::nodes)).collect();
+            let nodes: BTreeSet<NodeId> = nodes
+                .own
+                .into_iter()
+                .chain(nodes.inputs.iter().flat_map(InputNode::nodes))
+                .collect();
             needed(work.graph, &nodes, known).is_ok()
         };
         let (plan, graph, recorded) = (work.plan, work.graph, &work.recorded[unit.campaign]);
         let of_rule = |(at, rule): (usize, &'a Plausibility)| {
             let positions = graph.plausibility[at].positions.iter().zip(&recorded[at]).enumerate();
-            let name = |position: usize| rule.signals.get(position).map_or("", |(name, _)| name.as_str());
+            let name =
+                |position: usize| rule.signals.get(position).map_or("", |(name, _)| name.as_str());
             let asked = positions.filter(|(_, (nodes, recorded))| **recorded && decided(nodes));
-            asked.map(|(position, (nodes, _))| (rule, nodes, name(position))).collect::<Vec<Asked<'a>>>()
+            asked
+                .map(|(position, (nodes, _))| (rule, nodes, name(position)))
+                .collect::<Vec<Asked<'a>>>()
         };
-        Self(plan.plausibility.iter().enumerate().filter(|(_, rule)| applies(rule)).flat_map(of_rule).collect())
+        Self(
+            plan.plausibility
+                .iter()
+                .enumerate()
+                .filter(|(_, rule)| applies(rule))
+                .flat_map(of_rule)
+                .collect(),
+        )
     }
 
     /// Nodes whose values the rules need, of the track record (`track`) or of the other records.
@@ -51,7 +69,9 @@ impl<'a> Questions<'a> {
         for (rule, nodes, _) in &self.0 {
             let of_rule = nodes.inputs.iter().flat_map(InputNode::nodes);
             wanted.extend(of_rule.filter(|&node| work.graph.nodes[node].track == track));
-            if let (Test::Distinct(_) | Test::Exchanged(_), Some(own), false) = (&rule.test, nodes.own, track) {
+            if let (Test::Distinct(_) | Test::Exchanged(_), Some(own), false) =
+                (&rule.test, nodes.own, track)
+            {
                 wanted.insert(own);
             }
         }
@@ -60,12 +80,20 @@ impl<'a> Questions<'a> {
 }
 
 /// Checks one section and adds its findings to the values.
-pub fn look((work, unit): (&Work<'_>, &Unit), questions: &Questions<'_>, sides: &Sides<'_>, track: &Evaluated, values: &mut SectionValues) {
+pub fn look(
+    (work, unit): (&Work<'_>, &Unit),
+    questions: &Questions<'_>,
+    sides: &Sides<'_>,
+    track: &Evaluated,
+    values: &mut SectionValues,
+) {
     let mut channels: Vec<(&Plausibility, Exchanged, exchanged::Channels<'_>)> = Vec::new();
     for &(rule, nodes, name) in &questions.0 {
         match &rule.test {
             Test::Exchanged(test) => match (nodes.own, channels.last_mut()) {
-                (Some(own), Some((of, _, list))) if std::ptr::eq(*of, rule) => list.push((name, own)),
+                (Some(own), Some((of, _, list))) if std::ptr::eq(*of, rule) => {
+                    list.push((name, own))
+                }
                 (Some(own), _) => channels.push((rule, *test, vec![(name, own)])),
                 (None, _) => {}
             },
@@ -75,9 +103,16 @@ pub fn look((work, unit): (&Work<'_>, &Unit), questions: &Questions<'_>, sides: 
             }
             Test::Distinct(_) => {
                 for record in sides.simulated.iter().chain(sides.measured) {
-                    if let Some(samples) = nodes.own.and_then(|own| samples_of(&record.found, own).ok()) {
+                    if let Some(samples) =
+                        nodes.own.and_then(|own| samples_of(&record.found, own).ok())
+                    {
                         let words = work.campaign(unit).record_in_words(record.which);
-                        values.prints.push(Print::of(&rule.name, name, (record.which, words), &samples.values));
+                        values.prints.push(Print::of(
+                            &rule.name,
+                            name,
+                            (record.which, words),
+                            &samples.values,
+                        ));
                     }
                 }
             }
@@ -98,23 +133,47 @@ struct Position<'a> {
 }
 
 impl Position<'_> {
-    fn look(&self, sides: &Sides<'_>, nodes: &PositionNodes, track: &Evaluated, findings: &mut Vec<Finding>) {
+    fn look(
+        &self,
+        sides: &Sides<'_>,
+        nodes: &PositionNodes,
+        track: &Evaluated,
+        findings: &mut Vec<Finding>,
+    ) {
         match self.requirement.of {
             Looks::Data => findings.extend(self.finding(sides.known, &[], None)),
             Looks::Track => {
-                let inputs: Vec<_> = nodes.inputs.iter().map(|input: &InputNode| number_of(track, input.node)).collect();
+                let inputs: Vec<_> = nodes
+                    .inputs
+                    .iter()
+                    .map(|input: &InputNode| number_of(track, input.node))
+                    .collect();
                 findings.extend(self.finding(sides.known, &inputs, Some("track".into())));
             }
             Looks::BothSides => {
                 for (name, two) in sides.pairs() {
-                    let inputs: Vec<_> = nodes.inputs.iter().map(|input| two.input(input, InputSide::Measured)).collect();
-                    findings.extend(self.finding(sides.known, &inputs, name.as_deref().map(str::to_string)));
+                    let inputs: Vec<_> = nodes
+                        .inputs
+                        .iter()
+                        .map(|input| two.input(input, InputSide::Measured))
+                        .collect();
+                    findings.extend(self.finding(
+                        sides.known,
+                        &inputs,
+                        name.as_deref().map(str::to_string),
+                    ));
                 }
             }
             Looks::EachSide => {
-                for (records, side) in [(sides.simulated, InputSide::Simulated), (sides.measured, InputSide::Measured)] {
+                for (records, side) in
+                    [(sides.simulated, InputSide::Simulated), (sides.measured, InputSide::Measured)]
+                {
                     for record in records {
-                        let inputs: Vec<_> = nodes.inputs.iter().map(|input| sides.alone(record).input(input, side)).collect();
+                        let inputs: Vec<_> = nodes
+                            .inputs
+                            .iter()
+                            .map(|input| sides.alone(record).input(input, side))
+                            .collect();
                         findings.extend(self.finding(sides.known, &inputs, Some(self.of(record))));
                     }
                 }
@@ -127,12 +186,21 @@ impl Position<'_> {
     }
 
     /// `None` where the requirement is met, or cannot be evaluated because a datum is missing.
-    fn finding(&self, known: &Known<'_>, inputs: &[Result<f64, String>], record: Option<String>) -> Option<Finding> {
+    fn finding(
+        &self,
+        known: &Known<'_>,
+        inputs: &[Result<f64, String>],
+        record: Option<String>,
+    ) -> Option<Finding> {
         let known = Known { inputs, ..section(known) };
         if flag(&self.requirement.holds, &known) != Ok(false) {
             return None;
         }
-        let failing = self.requirement.compared.iter().find(|comparison| flag(&comparison.holds, &known) == Ok(false));
+        let failing = self
+            .requirement
+            .compared
+            .iter()
+            .find(|comparison| flag(&comparison.holds, &known) == Ok(false));
         let numbers = failing.and_then(|Comparison { found, expected, unit, about, .. }| {
             let of = |expr| number(expr, &known).ok().map(|value| unit.from_si(value));
             Some((of(found)?, of(expected)?, unit, words(found), *about))
@@ -141,13 +209,21 @@ impl Position<'_> {
             Some((value, expected, unit, what, _)) => {
                 let unit = if unit.text == "-" { String::new() } else { format!(" {unit}") };
                 let (value, expected) = (rounded(*value), rounded(*expected));
-                format!("{}: {what} is {value}{unit}; required: {} ({expected}{unit})", self.rule.title, self.requirement.words)
+                format!(
+                    "{}: {what} is {value}{unit}; required: {} ({expected}{unit})",
+                    self.rule.title, self.requirement.words
+                )
             }
             None => format!("{}; required: {}", self.rule.title, self.requirement.words),
         };
-        // Units explain a ratio of two amounts that should be alike, not of two correlations, nor of a value and a bound.
-        let amounts = numbers.as_ref().filter(|(_, _, unit, _, about)| *about && unit.dimension != Dimension::ONE);
-        let guessed = amounts.and_then(|(value, expected, unit, ..)| causes::likely(*value, *expected, unit.dimension));
+        // Units explain a ratio of two amounts that should be alike, not of two correlations, nor
+        // of a value and a bound.
+        let amounts = numbers
+            .as_ref()
+            .filter(|(_, _, unit, _, about)| *about && unit.dimension != Dimension::ONE);
+        let guessed = amounts.and_then(|(value, expected, unit, ..)| {
+            causes::likely(*value, *expected, unit.dimension)
+        });
         let cause: Vec<String> = guessed.into_iter().chain(self.rule.cause.clone()).collect();
         Some(Finding {
             code: self.rule.name.clone(),

@@ -1,5 +1,5 @@
-//! Everything a verdict depends on, for studies of the selection of sections: the values of every section and every limit with its
-//! bound, in the unit of the quantity.
+//! Everything a verdict depends on, for studies of the selection of sections: the values of every
+//! section and every limit with its bound, in the unit of the quantity.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::sync::Arc;
@@ -14,7 +14,9 @@ use super::table::{Member, Row, Table};
 use super::unit::Unit;
 use crate::catalog::Statistic;
 use crate::check::evaluate::number;
-use crate::check::plan::{Decision, EstimateKind, Kind, Limit, MinimumOfGroups, OfGroup, Plan, Quantity, Taking};
+use crate::check::plan::{
+    Decision, EstimateKind, Kind, Limit, MinimumOfGroups, OfGroup, Plan, Quantity, Taking,
+};
 
 pub use crate::check::plan::Rule;
 
@@ -53,7 +55,8 @@ pub struct PooledQuantity {
     pub title: String,
     pub symbol: String,
     pub unit: String,
-    /// For every section, the signals recorded with their differences; empty for a section not used.
+    /// For every section, the signals recorded with their differences; empty for a section not
+    /// used.
     pub values: Vec<Vec<(usize, f64)>>,
     pub minimum_signals: usize,
     pub minimum_pairs: usize,
@@ -93,20 +96,39 @@ pub struct Estimator {
 }
 
 impl Estimator {
-    fn new(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &Units<'_>) -> Self {
+    fn new(
+        rules: &Arc<(Plan, Facts)>,
+        judging: &Judging<'_>,
+        limit: &Limit,
+        part: &Part<'_>,
+        units: &Units<'_>,
+    ) -> Self {
         let Judging { plan, facts, quantity, members, table, .. } = *judging;
         let inside = part.members(facts, members).unwrap_or_default();
-        let numbered = |member: &Member<'_>| Some((units.number(member.unit)?, member.unit.clone(), member.row.clone()));
+        let numbered = |member: &Member<'_>| {
+            Some((units.number(member.unit)?, member.unit.clone(), member.row.clone()))
+        };
         let rows = inside.iter().filter_map(numbered).collect();
         let others = match limit.estimate.others().is_empty() {
             true => Vec::new(),
-            false => table.iter().map(|rows| rows.clone().map(|rows| rows.iter().filter_map(numbered).collect())).collect(),
+            false => table
+                .iter()
+                .map(|rows| rows.clone().map(|rows| rows.iter().filter_map(numbered).collect()))
+                .collect(),
         };
         let bound = judging.common_bound(limit, part, &inside).unwrap_or(f64::NAN);
         Self {
             rules: Arc::clone(rules),
-            quantity: plan.quantities.iter().position(|known| known.id == quantity.id).unwrap_or_default(),
-            limit: quantity.limits.iter().position(|known| known.span == limit.span && known.scope.same(&limit.scope)).unwrap_or_default(),
+            quantity: plan
+                .quantities
+                .iter()
+                .position(|known| known.id == quantity.id)
+                .unwrap_or_default(),
+            limit: quantity
+                .limits
+                .iter()
+                .position(|known| known.span == limit.span && known.scope.same(&limit.scope))
+                .unwrap_or_default(),
             rows: Arc::new(rows),
             others: Arc::new(others),
             bound,
@@ -115,10 +137,14 @@ impl Estimator {
 
     /// Rows of a repeat are selected together with those of the section that it repeats.
     pub fn take_together(&mut self, first: usize, repeat: usize) {
-        let moved = |(section, unit, row): &Numbered| (if *section == repeat { first } else { *section }, unit.clone(), row.clone());
+        let moved = |(section, unit, row): &Numbered| {
+            (if *section == repeat { first } else { *section }, unit.clone(), row.clone())
+        };
         let all = |rows: &Vec<Numbered>| rows.iter().map(moved).collect();
         self.rows = Arc::new(all(&self.rows));
-        self.others = Arc::new(self.others.iter().map(|rows| rows.as_ref().map(all).map_err(Clone::clone)).collect());
+        self.others = Arc::new(
+            self.others.iter().map(|rows| rows.as_ref().map(all).map_err(Clone::clone)).collect(),
+        );
     }
 
     /// Whether it needs rows of a section, given by index.
@@ -127,12 +153,18 @@ impl Estimator {
         has(&self.rows) || self.others.iter().flatten().any(|rows| has(rows))
     }
 
-    /// The estimate as a function of sums, where it takes only means, standard deviations and root mean squares of its rows.
+    /// The estimate as a function of sums, where it takes only means, standard deviations and root
+    /// mean squares of its rows.
     pub fn from_sums(&self, sections: usize) -> Option<FromSums<'_>> {
         let (plan, facts) = self.rules.as_ref();
-        let EstimateKind::Of(of) = &plan.quantities[self.quantity].limits[self.limit].estimate.kind else { return None };
+        let EstimateKind::Of(of) = &plan.quantities[self.quantity].limits[self.limit].estimate.kind
+        else {
+            return None;
+        };
         let of_sums = |taking: &Taking| match taking {
-            Taking::Statistic(Statistic::Named(entry), ddof) => Some((Moment::named(entry.name)?, *ddof as f64)),
+            Taking::Statistic(Statistic::Named(entry), ddof) => {
+                Some((Moment::named(entry.name)?, *ddof as f64))
+            }
             _ => None,
         };
         let taken = of.taken.iter().map(of_sums).collect::<Option<Vec<_>>>()?;
@@ -144,7 +176,8 @@ impl Estimator {
         }
         let vehicle = &facts.vehicles[vehicles.first().copied().unwrap_or(0)];
         // Sums about the common mean avoid cancellation.
-        let centre = self.rows.iter().map(|(.., row)| row.value).sum::<f64>() / self.rows.len().max(1) as f64;
+        let centre = self.rows.iter().map(|(.., row)| row.value).sum::<f64>()
+            / self.rows.len().max(1) as f64;
         let mut sums = vec![Sums::default(); sections];
         for (section, _, row) in self.rows.iter() {
             let x = row.value - centre;
@@ -153,8 +186,8 @@ impl Estimator {
         Some(FromSums { vehicle, of, taken, centre, sums, bound: self.bound })
     }
 
-    /// The estimate over the rows of some sections, given by index, divided by the limit over all sections; `None` where it is not
-    /// defined.
+    /// The estimate over the rows of some sections, given by index, divided by the limit over all
+    /// sections; `None` where it is not defined.
     pub fn over(&self, sections: &[usize]) -> Option<f64> {
         let (plan, facts) = self.rules.as_ref();
         let quantity = &plan.quantities[self.quantity];
@@ -164,12 +197,17 @@ impl Estimator {
             .others
             .iter()
             .zip(&plan.quantities)
-            .map(|(rows, quantity)| rows.as_ref().map(|rows| among(rows, quantity, sections)).map_err(Clone::clone))
+            .map(|(rows, quantity)| {
+                rows.as_ref().map(|rows| among(rows, quantity, sections)).map_err(Clone::clone)
+            })
             .collect();
-        let table: Vec<Result<&[Member<'_>], String>> =
-            others.iter().map(|rows| rows.as_ref().map(Vec::as_slice).map_err(Clone::clone)).collect();
+        let table: Vec<Result<&[Member<'_>], String>> = others
+            .iter()
+            .map(|rows| rows.as_ref().map(Vec::as_slice).map_err(Clone::clone))
+            .collect();
         let EstimateKind::Of(of) = &limit.estimate.kind else { return None };
-        let group = Group { plan, facts, positions: &quantity.positions, members: &members, table: &table };
+        let group =
+            Group { plan, facts, positions: &quantity.positions, members: &members, table: &table };
         group.number(of).ok().map(|value| value / self.bound).filter(|value| value.is_finite())
     }
 }
@@ -232,7 +270,8 @@ impl FromSums<'_> {
             Moment::RootMeanSquare => Ok((squares / n + (self.centre + x / n).powi(2)).sqrt()),
         };
         let taken: Vec<Result<f64, String>> = self.taken.iter().map(of).collect();
-        let value = number(&self.of.expr, &Known { inputs: &taken, ..Known::vehicle(self.vehicle) });
+        let value =
+            number(&self.of.expr, &Known { inputs: &taken, ..Known::vehicle(self.vehicle) });
         value.ok().map(|value| value / self.bound).filter(|value| value.is_finite())
     }
 }
@@ -240,12 +279,18 @@ impl FromSums<'_> {
 /// The rows of some sections, given by index.
 fn among<'a>(rows: &'a [Numbered], quantity: &'a Quantity, sections: &[usize]) -> Vec<Member<'a>> {
     let inside = rows.iter().filter(|(section, ..)| sections.contains(section));
-    inside.map(|(_, unit, row)| Member { unit, signal: &quantity.positions[row.position].name, row }).collect()
+    inside
+        .map(|(_, unit, row)| Member { unit, signal: &quantity.positions[row.position].name, row })
+        .collect()
 }
 
 impl std::fmt::Debug for Estimator {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Estimator").field("quantity", &self.quantity).field("limit", &self.limit).field("rows", &self.rows.len()).finish()
+        f.debug_struct("Estimator")
+            .field("quantity", &self.quantity)
+            .field("limit", &self.limit)
+            .field("rows", &self.rows.len())
+            .finish()
     }
 }
 
@@ -259,7 +304,8 @@ pub struct PooledLimit {
     /// As printed: `all`, `zone 1`.
     pub scope: String,
     pub inside: Vec<bool>,
-    /// For each position of the quantity, whether the limit applies to its values; all where it states none.
+    /// For each position of the quantity, whether the limit applies to its values; all where it
+    /// states none.
     pub positions: Vec<bool>,
     /// One bound for each section where every value has its own limit, else one.
     pub bounds: Vec<f64>,
@@ -273,7 +319,15 @@ struct Units<'a> {
 
 impl<'a> Units<'a> {
     fn of(all: &'a [Unit]) -> Self {
-        Self { all, numbers: all.iter().enumerate().rev().map(|(number, unit)| (unit.name.as_str(), number)).collect() }
+        Self {
+            all,
+            numbers: all
+                .iter()
+                .enumerate()
+                .rev()
+                .map(|(number, unit)| (unit.name.as_str(), number))
+                .collect(),
+        }
     }
 
     fn number(&self, unit: &Unit) -> Option<usize> {
@@ -281,16 +335,22 @@ impl<'a> Units<'a> {
     }
 }
 
-/// Limits whose bound has no value are left out; the run itself reports their quantity as not assessable.
+/// Limits whose bound has no value are left out; the run itself reports their quantity as not
+/// assessable.
 pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]) -> Pool {
     let (rule, about) = match &plan.overall().decision {
         Decision::Limits { rule, quantities } => (Some(*rule), quantities.as_slice()),
         Decision::Verdicts(_) | Decision::Person(_) => (None, &[][..]),
     };
     let rules = Arc::new((plan.clone(), facts.clone()));
-    let used: Vec<(&Unit, &SectionValues)> = units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
-    let rows: Vec<Rows<'_>> =
-        plan.quantities.iter().enumerate().map(|(index, quantity)| rows(plan, quantity, index, &used, facts)).collect();
+    let used: Vec<(&Unit, &SectionValues)> =
+        units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
+    let rows: Vec<Rows<'_>> = plan
+        .quantities
+        .iter()
+        .enumerate()
+        .map(|(index, quantity)| rows(plan, quantity, index, &used, facts))
+        .collect();
     let table: Vec<_> = rows.iter().map(Rows::usable).collect();
     let all = Units::of(units);
     Pool {
@@ -307,24 +367,39 @@ pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]
         zones: plan
             .zones
             .iter()
-            .map(|zone| Zone { name: zone.name.clone(), title: zone.title.clone(), needed: zone.minimum_sections })
+            .map(|zone| Zone {
+                name: zone.name.clone(),
+                title: zone.title.clone(),
+                needed: zone.minimum_sections,
+            })
             .collect(),
         minimum: plan.sections.minimum,
-        quantities: about.iter().map(|&index| pooled(&rules, index, &all, values, &table)).collect(),
+        quantities: about
+            .iter()
+            .map(|&index| pooled(&rules, index, &all, values, &table))
+            .collect(),
         rule,
     }
 }
 
-fn pooled(rules: &Arc<(Plan, Facts)>, index: usize, units: &Units<'_>, values: &[SectionValues], table: &Table<'_>) -> PooledQuantity {
+fn pooled(
+    rules: &Arc<(Plan, Facts)>,
+    index: usize,
+    units: &Units<'_>,
+    values: &[SectionValues],
+    table: &Table<'_>,
+) -> PooledQuantity {
     let (plan, facts) = rules.as_ref();
     let quantity = &plan.quantities[index];
-    let used: Vec<(&Unit, &SectionValues)> = units.all.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
+    let used: Vec<(&Unit, &SectionValues)> =
+        units.all.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
     let members = members(quantity, index, &used);
     let of_section = |(unit, values): (&Unit, &SectionValues)| {
         let rows = values.rows.get(index).filter(|_| unit.fault.is_none()).into_iter().flatten();
         rows.map(|row| (row.position, quantity.unit.from_si(row.value))).collect::<Vec<_>>()
     };
-    let impossible = used.iter().any(|(_, values)| values.impossible.iter().any(|(at, _)| *at == index));
+    let impossible =
+        used.iter().any(|(_, values)| values.impossible.iter().any(|(at, _)| *at == index));
     let judging = Judging { plan, facts, quantity, members: &members, table, too_few: &[] };
     let mut limits = Vec::new();
     for limit in &quantity.limits {
@@ -339,15 +414,25 @@ fn pooled(rules: &Arc<(Plan, Facts)>, index: usize, units: &Units<'_>, values: &
         unit: quantity.unit.text.clone(),
         values: units.all.iter().zip(values).map(of_section).collect(),
         minimum_signals: quantity.minimum_signals,
-        // A quantity that cannot be evaluated in some section is not assessable, however many pairs the others give.
+        // A quantity that cannot be evaluated in some section is not assessable, however many pairs
+        // the others give.
         minimum_pairs: if impossible { usize::MAX } else { quantity.minimum_pairs },
-        minimum_of_groups: quantity.minimum_of_groups.iter().flat_map(|minimum| minima(minimum, &judging, units)).collect(),
+        minimum_of_groups: quantity
+            .minimum_of_groups
+            .iter()
+            .flat_map(|minimum| minima(minimum, &judging, units))
+            .collect(),
         limits,
     }
 }
 
-/// A minimum, group by group. Where it cannot be told which rows belong to a group, no selection of sections has enough.
-fn minima(minimum: &MinimumOfGroups, judging: &Judging<'_>, units: &Units<'_>) -> Vec<PooledMinimum> {
+/// A minimum, group by group. Where it cannot be told which rows belong to a group, no selection of
+/// sections has enough.
+fn minima(
+    minimum: &MinimumOfGroups,
+    judging: &Judging<'_>,
+    units: &Units<'_>,
+) -> Vec<PooledMinimum> {
     let Judging { plan, facts, quantity, members, .. } = *judging;
     let of_part = |part: &Part<'_>| {
         let mut signals: Vec<BTreeSet<&str>> = vec![BTreeSet::new(); units.all.len()];
@@ -358,28 +443,49 @@ fn minima(minimum: &MinimumOfGroups, judging: &Judging<'_>, units: &Units<'_>) -
         }
         PooledMinimum { needed: minimum.needed, pairs: signals.iter().map(BTreeSet::len).collect() }
     };
-    parts(plan, Grouped::values(quantity), &minimum.scope, members, facts).iter().map(of_part).collect()
+    parts(plan, Grouped::values(quantity), &minimum.scope, members, facts)
+        .iter()
+        .map(of_part)
+        .collect()
 }
 
-fn of_part(rules: &Arc<(Plan, Facts)>, judging: &Judging<'_>, limit: &Limit, part: &Part<'_>, units: &Units<'_>) -> Option<PooledLimit> {
+fn of_part(
+    rules: &Arc<(Plan, Facts)>,
+    judging: &Judging<'_>,
+    limit: &Limit,
+    part: &Part<'_>,
+    units: &Units<'_>,
+) -> Option<PooledLimit> {
     let Judging { plan, facts, quantity, members, .. } = *judging;
     let own = applying(limit, facts, part.members(facts, members).ok()?).ok()??;
     let inside = if part.by_section() || facts.vehicles.len() > 1 {
         let named: HashSet<&str> = own.iter().map(|member| member.unit.name.as_str()).collect();
         units.all.iter().map(|unit| named.contains(unit.name.as_str())).collect()
     } else {
-        units.all.iter().map(|unit| part.has_section(unit, facts)).collect::<Result<Vec<_>, _>>().ok()?
+        units
+            .all
+            .iter()
+            .map(|unit| part.has_section(unit, facts))
+            .collect::<Result<Vec<_>, _>>()
+            .ok()?
     };
     let positions = part.positions(quantity);
-    let shown = |bound: Result<f64, String>| bound.ok().map(|bound| judging.unit(limit).from_si(bound));
+    let shown =
+        |bound: Result<f64, String>| bound.ok().map(|bound| judging.unit(limit).from_si(bound));
     let bounds = if matches!(limit.estimate.kind, EstimateKind::Each) {
         let own = |unit: &Unit| match unit.fault {
             Some(_) => Some(f64::NAN),
-            None => shown(judging.bound(limit, &Part::of_section(plan, limit, unit), &[], &unit.known(facts))),
+            None => shown(judging.bound(
+                limit,
+                &Part::of_section(plan, limit, unit),
+                &[],
+                &unit.known(facts),
+            )),
         };
         units.all.iter().map(own).collect::<Option<Vec<_>>>()?
     } else {
-        // Data of sections can be used in the limit. This bound is that of all sections; an estimate computes its own.
+        // Data of sections can be used in the limit. This bound is that of all sections; an
+        // estimate computes its own.
         vec![shown(judging.common_bound(limit, part, &own))?]
     };
     let estimate = match limit.estimate.statistic() {

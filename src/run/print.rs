@@ -4,11 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::WhichRecord;
 
-/// Number of consecutive samples of a mark. Two independent signals with a resolution of a thousandth of their range agree in eight
-/// consecutive samples by chance at one of 10^21 places.
+/// Number of consecutive samples of a mark. Two independent signals with a resolution of a
+/// thousandth of their range agree in eight consecutive samples by chance at one of 10^21 places.
 const RUN: usize = 8;
-/// One run of samples in this many becomes a mark. It is chosen by its content, so that the same runs are chosen wherever they are
-/// in a record.
+/// One run of samples in this many becomes a mark. It is chosen by its content, so that the same
+/// runs are chosen wherever they are in a record.
 const ONE_IN: u64 = 16;
 /// Marks of one signal in one section.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -24,7 +24,12 @@ pub struct Print {
 }
 
 impl Print {
-    pub fn of(rule: &str, channel: &str, (which, record): (WhichRecord, String), samples: &[f64]) -> Self {
+    pub fn of(
+        rule: &str,
+        channel: &str,
+        (which, record): (WhichRecord, String),
+        samples: &[f64],
+    ) -> Self {
         let mut marks = marks(samples);
         marks.sort_unstable();
         marks.dedup();
@@ -35,7 +40,8 @@ impl Print {
 /// Samples whose runs are hashed together: the hashes stay in the first-level cache.
 const TOGETHER: usize = 256;
 
-/// Marks of a signal: hashes of runs of samples. Constant runs are equal everywhere and give no mark; another rule reports them.
+/// Marks of a signal: hashes of runs of samples. Constant runs are equal everywhere and give no
+/// mark; another rule reports them.
 fn marks(samples: &[f64]) -> Vec<u32> {
     let mut found = Vec::with_capacity(2 * samples.len() / ONE_IN as usize);
     let mut hashes = [0; TOGETHER + RUN];
@@ -47,7 +53,8 @@ fn marks(samples: &[f64]) -> Vec<u32> {
         // The hash of a run is made of those of its halves: no step waits for the one before.
         for half in [1, 2, 4] {
             for at in 0..TOGETHER + RUN - half {
-                hashes[at] = hashes[at].rotate_left(TURN * half as u32).wrapping_add(hashes[at + half]);
+                hashes[at] =
+                    hashes[at].rotate_left(TURN * half as u32).wrapping_add(hashes[at + half]);
             }
         }
         for (run, samples) in hashes.iter().zip(part.windows(RUN)) {
@@ -70,7 +77,8 @@ fn hash_of(value: f64) -> u64 {
     hash ^ hash >> 32
 }
 
-/// Half of the bits: two signals with a thousand marks each agree in one by chance once in 4000 pairs, and copies share several.
+/// Half of the bits: two signals with a thousand marks each agree in one by chance once in 4000
+/// pairs, and copies share several.
 pub(super) fn shortened(hash: u64) -> u32 {
     (hash >> 32) as u32
 }

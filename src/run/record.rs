@@ -85,7 +85,11 @@ impl Fault {
 
     /// The faults of both records of a section.
     pub fn and(mut self, other: Self) -> Self {
-        self.says = if self.says == other.says { self.says } else { format!("{}; {}", self.says, other.says) };
+        self.says = if self.says == other.says {
+            self.says
+        } else {
+            format!("{}; {}", self.says, other.says)
+        };
         self.problems.extend(other.problems);
         self
     }
@@ -119,8 +123,13 @@ pub enum Found {
     Failed(String),
 }
 
-/// All nodes that the requested ones need in one section; of the cases of a signal, only the one that applies.
-pub fn needed(graph: &Graph, wanted: &BTreeSet<NodeId>, known: &Known<'_>) -> Result<BTreeSet<NodeId>, String> {
+/// All nodes that the requested ones need in one section; of the cases of a signal, only the one
+/// that applies.
+pub fn needed(
+    graph: &Graph,
+    wanted: &BTreeSet<NodeId>,
+    known: &Known<'_>,
+) -> Result<BTreeSet<NodeId>, String> {
     let mut needed = BTreeSet::new();
     let mut open: Vec<NodeId> = wanted.iter().copied().collect();
     while let Some(id) = open.pop() {
@@ -129,7 +138,9 @@ pub fn needed(graph: &Graph, wanted: &BTreeSet<NodeId>, known: &Known<'_>) -> Re
         }
         let node = &graph.nodes[id];
         match &node.operation {
-            Operation::Select(conditions) => open.push(node.inputs[chosen(conditions, &node.inputs, known)?]),
+            Operation::Select(conditions) => {
+                open.push(node.inputs[chosen(conditions, &node.inputs, known)?])
+            }
             _ => open.extend(&node.inputs),
         }
     }
@@ -137,7 +148,11 @@ pub fn needed(graph: &Graph, wanted: &BTreeSet<NodeId>, known: &Known<'_>) -> Re
 }
 
 /// The input of a `Select` that applies in this section.
-pub fn chosen(conditions: &[crate::check::plan::Expr], inputs: &[NodeId], known: &Known<'_>) -> Result<usize, String> {
+pub fn chosen(
+    conditions: &[crate::check::plan::Expr],
+    inputs: &[NodeId],
+    known: &Known<'_>,
+) -> Result<usize, String> {
     for (index, condition) in conditions.iter().enumerate() {
         if flag(condition, known)? {
             return Ok(index);
@@ -152,10 +167,12 @@ pub fn chosen(conditions: &[crate::check::plan::Expr], inputs: &[NodeId], known:
     ))
 }
 
-/// Reads and checks a record of one section, and evaluates the nodes that are wanted with `evaluate`.
+/// Reads and checks a record of one section, and evaluates the nodes that are wanted with
+/// `evaluate`.
 ///
 /// # Errors
-/// The record cannot be read or does not cover the section. What `evaluate` says stands beside the record.
+/// The record cannot be read or does not cover the section. What `evaluate` says stands beside the
+/// record.
 pub fn with_record<T>(
     work: &Work<'_>,
     unit: &Unit,
@@ -166,12 +183,18 @@ pub fn with_record<T>(
 ) -> Result<(Result<T, Fault>, Opened), Fault> {
     let needed = needed(work.graph, wanted, known).map_err(Fault::new)?;
     let opened = open(work, unit, which, &columns(work, which, &needed, true))?;
-    let found = evaluate(&opened, &needed).map_err(|says| Fault::new(format!("{}: {says}", opened.file.path)));
+    let found = evaluate(&opened, &needed)
+        .map_err(|says| Fault::new(format!("{}: {says}", opened.file.path)));
     Ok((found, opened))
 }
 
 /// The columns of a record that nodes need; `required`: whether the record must have them all.
-fn columns(work: &Work<'_>, which: WhichRecord, needed: &BTreeSet<NodeId>, required: bool) -> Vec<Wanted> {
+fn columns(
+    work: &Work<'_>,
+    which: WhichRecord,
+    needed: &BTreeSet<NodeId>,
+    required: bool,
+) -> Vec<Wanted> {
     let axis = &work.plan.axis;
     let mut wanted = vec![Wanted::new(axis.column.as_str(), axis.unit.dimension)];
     if let Some(time) = clock(work.plan, which) {
@@ -191,18 +214,28 @@ fn columns(work: &Work<'_>, which: WhichRecord, needed: &BTreeSet<NodeId>, requi
 
 /// The time of a record that runs along something else.
 fn clock(plan: &Plan, which: WhichRecord) -> Option<&Axis> {
-    plan.time.as_ref().filter(|time| which.kind != RecordKind::Track && time.column != plan.axis.column)
+    plan.time
+        .as_ref()
+        .filter(|time| which.kind != RecordKind::Track && time.column != plan.axis.column)
 }
 
-fn open(work: &Work<'_>, unit: &Unit, which: WhichRecord, wanted: &[Wanted]) -> Result<Opened, Fault> {
+fn open(
+    work: &Work<'_>,
+    unit: &Unit,
+    which: WhichRecord,
+    wanted: &[Wanted],
+) -> Result<Opened, Fault> {
     let Some(sharing) = work.sharing(unit) else {
-        let has = |stretched: &Arc<Stretched>| wanted.iter().all(|wanted| stretched.has(&wanted.name));
-        if let Some(opened) =
-            stretch::shared(work, unit, which, wanted)?.filter(has).and_then(|stretched| stretched.section(work, unit, which))
+        let has =
+            |stretched: &Arc<Stretched>| wanted.iter().all(|wanted| stretched.has(&wanted.name));
+        if let Some(opened) = stretch::shared(work, unit, which, wanted)?
+            .filter(has)
+            .and_then(|stretched| stretched.section(work, unit, which))
         {
             return Ok(opened);
         }
-        let read = work.campaign(unit).read(which, &unit.cell, wanted, part(work.plan, unit).as_ref());
+        let read =
+            work.campaign(unit).read(which, &unit.cell, wanted, part(work.plan, unit).as_ref());
         let (record, read) = read.map_err(|problems| Fault::of(work.campaign(unit), problems))?;
         return opened(work, unit, which, record, read);
     };
@@ -213,7 +246,10 @@ fn open(work: &Work<'_>, unit: &Unit, which: WhichRecord, wanted: &[Wanted]) -> 
     if let Some(opened) = sharing.store.open(work, unit, which, wanted, part.as_ref()) {
         return opened;
     }
-    let (record, read) = sharing.store.read(which, wanted, part.as_ref()).map_err(|problems| Fault::of(work.campaign(unit), problems))?;
+    let (record, read) = sharing
+        .store
+        .read(which, wanted, part.as_ref())
+        .map_err(|problems| Fault::of(work.campaign(unit), problems))?;
     opened(work, unit, which, record, read)
 }
 
@@ -223,7 +259,13 @@ pub fn part(plan: &Plan, unit: &Unit) -> Option<Part> {
 }
 
 /// A record that was read, checked for the section.
-pub fn opened(work: &Work<'_>, unit: &Unit, which: WhichRecord, record: Record, read: ReadFile) -> Result<Opened, Fault> {
+pub fn opened(
+    work: &Work<'_>,
+    unit: &Unit,
+    which: WhichRecord,
+    record: Record,
+    read: ReadFile,
+) -> Result<Opened, Fault> {
     let axis = &work.plan.axis;
     let section = unit.extent.map(|(start, end)| Section { start, end, at: unit.span.clone() });
     let time = clock(work.plan, which).map_or(axis.column.as_str(), |time| time.column.as_str());
@@ -231,7 +273,9 @@ pub fn opened(work: &Work<'_>, unit: &Unit, which: WhichRecord, record: Record, 
     let checked = checked.map_err(|problems| Fault::of(work.campaign(unit), problems))?;
     let sampled = Sampled::new(work.plan, which, record, checked.sampling_rate);
     let along_axis = &sampled.along.axis;
-    let extent = unit.extent.unwrap_or_else(|| (along_axis.first().copied().unwrap_or(0.0), along_axis.last().copied().unwrap_or(0.0)));
+    let extent = unit.extent.unwrap_or_else(|| {
+        (along_axis.first().copied().unwrap_or(0.0), along_axis.last().copied().unwrap_or(0.0))
+    });
     let margins = sampled.in_time.then_some((checked.before, checked.after));
     let own = unit.stretch.and_then(|_| part(work.plan, unit)).map(|part| (part.from, part.to));
     let (file, Sampled { columns, along, .. }) = (file_of(work, unit, which, &read), sampled);
@@ -258,8 +302,14 @@ impl Sampled {
     /// Of a record whose axes are sound.
     fn new(plan: &Plan, which: WhichRecord, record: Record, rate: f64) -> Self {
         let first_row = record.row_shown(0);
-        let columns: Vec<_> = record.columns.into_iter().map(|column| (column.name, Arc::new(column.values))).collect();
-        let values = |name: &str| columns.iter().find(|(known, _)| known == name).map(|(_, values)| Arc::clone(values));
+        let columns: Vec<_> = record
+            .columns
+            .into_iter()
+            .map(|column| (column.name, Arc::new(column.values)))
+            .collect();
+        let values = |name: &str| {
+            columns.iter().find(|(known, _)| known == name).map(|(_, values)| Arc::clone(values))
+        };
         let time = clock(plan, which);
         let in_time = time.is_some() || plan.axis.unit.dimension == Dimension::TIME;
         let along = Arc::new(Along {
@@ -272,7 +322,8 @@ impl Sampled {
     }
 }
 
-/// Several problems in one line, each with its place unless the text already names it, and with its help.
+/// Several problems in one line, each with its place unless the text already names it, and with its
+/// help.
 fn said(campaign: &Campaign, problems: &[Problem]) -> String {
     let mut told: Vec<(&Problem, usize)> = Vec::new();
     for problem in problems {
@@ -292,10 +343,12 @@ fn said(campaign: &Campaign, problems: &[Problem]) -> String {
     told.iter().map(sentence).collect::<Vec<_>>().join("; ")
 }
 
-/// Adds the place to a text. A text that names file and row needs none; one that names the file needs none in the header.
+/// Adds the place to a text. A text that names file and row needs none; one that names the file
+/// needs none in the header.
 fn placed(says: &str, file: &str, row: usize, more: usize) -> String {
     let names_file = says.contains(&format!("`{file}`"));
-    let names_row = row == 1 || says.split(|c: char| !c.is_ascii_digit()).any(|word| word.parse() == Ok(row));
+    let names_row =
+        row == 1 || says.split(|c: char| !c.is_ascii_digit()).any(|word| word.parse() == Ok(row));
     match more {
         0 if names_file && names_row => says.to_string(),
         0 => format!("{says} ({file}, row {row})"),
@@ -305,9 +358,17 @@ fn placed(says: &str, file: &str, row: usize, more: usize) -> String {
 
 impl Opened {
     /// A piece of a run, in which sections are looked for.
-    pub fn piece(plan: &Plan, track: bool, columns: Vec<(String, Vec<f64>)>, first_row: usize) -> Self {
-        let columns: Vec<_> = columns.into_iter().map(|(name, values)| (name, Arc::new(values))).collect();
-        let values = |name: &str| columns.iter().find(|(known, _)| known == name).map(|(_, values)| Arc::clone(values));
+    pub fn piece(
+        plan: &Plan,
+        track: bool,
+        columns: Vec<(String, Vec<f64>)>,
+        first_row: usize,
+    ) -> Self {
+        let columns: Vec<_> =
+            columns.into_iter().map(|(name, values)| (name, Arc::new(values))).collect();
+        let values = |name: &str| {
+            columns.iter().find(|(known, _)| known == name).map(|(_, values)| Arc::clone(values))
+        };
         let axis = values(&plan.axis.column).unwrap_or_default();
         let time = plan.time.as_ref().filter(|_| !track).and_then(|time| values(&time.column));
         let rate = |clock: &[f64]| match clock {
@@ -322,7 +383,16 @@ impl Opened {
         let extent = (axis.first().copied().unwrap_or(0.0), axis.last().copied().unwrap_or(0.0));
         let file = FileHash { path: String::new(), sha256: String::new(), bytes: 0, record: None };
         let along = Arc::new(Along { axis, time, rate, first_row: Some(first_row) });
-        Self { columns: Arc::new(columns), along, extent, file, margins: None, memo: None, own: None, stretch: None }
+        Self {
+            columns: Arc::new(columns),
+            along,
+            extent,
+            file,
+            margins: None,
+            memo: None,
+            own: None,
+            stretch: None,
+        }
     }
 
     /// A signal, no longer than what the section would read by itself.
@@ -333,14 +403,19 @@ impl Opened {
         }
     }
 
-    /// First and last row of the file inside the section, and of all that was read and is filtered; the header is row 1.
+    /// First and last row of the file inside the section, and of all that was read and is filtered;
+    /// the header is row 1.
     pub fn rows(&self) -> [(usize, usize); 2] {
         let first = self.along.first_row.unwrap_or(1);
         let inside = self.along.inside(self.extent);
-        [(first + inside.start, first + inside.end.saturating_sub(1)), (first, first + self.along.axis.len().saturating_sub(1))]
+        [
+            (first + inside.start, first + inside.end.saturating_sub(1)),
+            (first, first + self.along.axis.len().saturating_sub(1)),
+        ]
     }
 
-    /// Values of the requested nodes. Nodes run level by level, so that channels with the same filter are filtered together.
+    /// Values of the requested nodes. Nodes run level by level, so that channels with the same
+    /// filter are filtered together.
     pub fn evaluate(
         &self,
         graph: &Graph,
@@ -370,7 +445,9 @@ impl Opened {
     ) -> Result<Held<'a>, String> {
         let mut state = State::new(self, graph, known, method);
         let levels = state.count(needed);
-        let here = |operation: &Operation| matches!(operation, Operation::Cut | Operation::Window(_) | Operation::Reduce(_));
+        let here = |operation: &Operation| {
+            matches!(operation, Operation::Cut | Operation::Window(_) | Operation::Reduce(_))
+        };
         let placed = stretch::leading(graph, needed, here);
         let done = state.on_stretch(needed, wanted, &levels)?;
         state.run(&levels, wanted, |id| !placed[id] && !done[id])?;

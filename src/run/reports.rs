@@ -12,7 +12,15 @@ use crate::result::Reported;
 use crate::units;
 
 /// Stands for a section that is counted by itself.
-const SECTION: Row = Row { position: 0, which: 0, record: None, simulated: None, measured: None, value: 0.0, samples: 0 };
+const SECTION: Row = Row {
+    position: 0,
+    which: 0,
+    record: None,
+    simulated: None,
+    measured: None,
+    value: 0.0,
+    samples: 0,
+};
 
 /// What is reported of a quantity, group by group.
 pub fn of_quantity(graph: &Graph, nodes: &[NodeId], judging: &Judging<'_>) -> Vec<Reported> {
@@ -29,8 +37,13 @@ pub fn of_quantity(graph: &Graph, nodes: &[NodeId], judging: &Judging<'_>) -> Ve
 }
 
 /// What is reported of the sections used, group by group.
-pub fn of_sections<'a>(plan: &Plan, facts: &Facts, used: impl Iterator<Item = &'a Unit>) -> Vec<Reported> {
-    let members: Vec<Member<'_>> = used.map(|unit| Member { unit, signal: "", row: &SECTION }).collect();
+pub fn of_sections<'a>(
+    plan: &Plan,
+    facts: &Facts,
+    used: impl Iterator<Item = &'a Unit>,
+) -> Vec<Reported> {
+    let members: Vec<Member<'_>> =
+        used.map(|unit| Member { unit, signal: "", row: &SECTION }).collect();
     let none = units::Unit::one();
     let of = |report: &Report| -> Vec<Reported> {
         let one = |part: Part<'_>| {
@@ -39,14 +52,24 @@ pub fn of_sections<'a>(plan: &Plan, facts: &Facts, used: impl Iterator<Item = &'
                 (Err(reason), _) => Err(reason.clone()),
                 (Ok(inside), _) if inside.is_empty() => Err("no section is used".into()),
                 (Ok(inside), EstimateKind::Of(of)) => {
-                    Group { plan, facts, positions: &[], members: inside, table: &[] }.number(of).map(Some)
+                    Group { plan, facts, positions: &[], members: inside, table: &[] }
+                        .number(of)
+                        .map(Some)
                 }
                 (Ok(_), EstimateKind::Each) => Ok(None),
             };
             let unit = report.estimate.unit.as_ref().unwrap_or(&none);
-            reported(plan, report, unit, &Estimated { value, ..Estimated::empty(part, inside.unwrap_or_default()) })
+            reported(
+                plan,
+                report,
+                unit,
+                &Estimated { value, ..Estimated::empty(part, inside.unwrap_or_default()) },
+            )
         };
-        parts(plan, Grouped::sections(), &report.scope, &members, facts).into_iter().map(one).collect()
+        parts(plan, Grouped::sections(), &report.scope, &members, facts)
+            .into_iter()
+            .map(one)
+            .collect()
     };
     plan.sections.reports.iter().flat_map(of).collect()
 }

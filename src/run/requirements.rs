@@ -1,4 +1,5 @@
-//! Requirements on the data and records of sections, and the consequences of those that are not met.
+//! Requirements on the data and records of sections, and the consequences of those that are not
+//! met.
 
 use std::collections::HashMap;
 
@@ -12,7 +13,8 @@ use crate::check::values::Watched;
 use crate::problem::{Problem, Problems};
 use crate::result::{CheckResult, Consequence, Finding};
 
-/// Relative tolerance for a minimum length, for the rounding of section ends written with two decimals.
+/// Relative tolerance for a minimum length, for the rounding of section ends written with two
+/// decimals.
 const ROUNDING: f64 = 1e-9;
 
 /// Requirements that need no record: selection of sections, condition of the zone, length.
@@ -26,24 +28,46 @@ pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
         }
         let mut checks = Vec::new();
         if let Some(only) = &plan.sections.only {
-            checks.push(condition(plan, facts, unit, "selection", "Selection of sections", only, &plan.sections.only_words));
+            checks.push(condition(
+                plan,
+                facts,
+                unit,
+                "selection",
+                "Selection of sections",
+                only,
+                &plan.sections.only_words,
+            ));
         }
-        if let Some(zone) = unit.zone.as_ref().and_then(|name| plan.zones.iter().find(|zone| zone.name == *name)) {
+        if let Some(zone) =
+            unit.zone.as_ref().and_then(|name| plan.zones.iter().find(|zone| zone.name == *name))
+        {
             if let Some(of_zone) = &zone.condition {
                 let title = format!("Zone {}", zone.name);
-                checks.push(condition(plan, facts, unit, "zone", &title, of_zone, &zone.condition_words));
+                checks.push(condition(
+                    plan,
+                    facts,
+                    unit,
+                    "zone",
+                    &title,
+                    of_zone,
+                    &zone.condition_words,
+                ));
             }
             checks.extend(length(plan, facts, unit, zone));
         }
         for check in checks {
-            // A datum missing from the vehicle file is not a fault of the section. The section is used, and a finding reports it.
+            // A datum missing from the vehicle file is not a fault of the section. The section is
+            // used, and a finding reports it.
             let untold = check.name == "length" && check.holds.is_none() && {
                 let minimum = asked(plan, unit, &check);
                 minimum.is_some_and(|minimum| !not_stated(minimum, facts.of(unit)).is_empty())
             };
             if check.holds != Some(true) && !untold {
                 let subject = match (check.name.as_str(), check.holds) {
-                    ("zone", Some(_)) => format!("does not meet the condition of zone {}", unit.zone.as_deref().unwrap_or_default()),
+                    ("zone", Some(_)) => format!(
+                        "does not meet the condition of zone {}",
+                        unit.zone.as_deref().unwrap_or_default()
+                    ),
                     ("zone", None) => format!(
                         "it cannot be determined whether it meets the condition of zone {}",
                         unit.zone.as_deref().unwrap_or_default()
@@ -58,7 +82,15 @@ pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
 }
 
 /// A condition on the section's data, reported with the data that it uses.
-fn condition(plan: &Plan, facts: &Facts, unit: &Unit, name: &str, title: &str, expr: &Expr, words: &str) -> CheckResult {
+fn condition(
+    plan: &Plan,
+    facts: &Facts,
+    unit: &Unit,
+    name: &str,
+    title: &str,
+    expr: &Expr,
+    words: &str,
+) -> CheckResult {
     let known = unit.known(facts);
     let watched = Watched::new(&known);
     let found = flag(expr, &watched);
@@ -66,9 +98,17 @@ fn condition(plan: &Plan, facts: &Facts, unit: &Unit, name: &str, title: &str, e
         .columns()
         .iter()
         .map(|&index| item(&plan.columns[index], unit.columns[index].as_ref().ok()))
-        .map(|item| format!("{} {}{}", item.name.to_lowercase(), item.value, item.unit.map_or(String::new(), |unit| format!(" {unit}"))))
+        .map(|item| {
+            format!(
+                "{} {}{}",
+                item.name.to_lowercase(),
+                item.value,
+                item.unit.map_or(String::new(), |unit| format!(" {unit}"))
+            )
+        })
         .collect();
-    let with = if read.is_empty() { String::new() } else { format!("; found: {}", read.join(", ")) };
+    let with =
+        if read.is_empty() { String::new() } else { format!("; found: {}", read.join(", ")) };
     let (holds, says) = match found {
         Ok(true) => (Some(true), format!("{words}{with}")),
         Ok(false) => (Some(false), format!("not met: {words}{with}")),
@@ -84,13 +124,18 @@ fn length(plan: &Plan, facts: &Facts, unit: &Unit, zone: &Zone) -> Option<CheckR
     let known = unit.known(facts);
     // A length written with two decimals may be below the minimum by rounding only.
     let reaches = |minimum: f64| end - start >= minimum * (1.0 - ROUNDING);
-    let found = |minimum: f64| format!("{}; at least {} required", shown(end - start), shown(minimum));
+    let found =
+        |minimum: f64| format!("{}; at least {} required", shown(end - start), shown(minimum));
     let (holds, says) = match number(minimum, &known) {
         Ok(minimum) => (Some(reaches(minimum)), found(minimum)),
         // Long enough or too short for every value of the unknown names, or not decided.
         Err(reason) => match possible(minimum, &known) {
-            Possible::Number(_, most) if reaches(most) => (Some(true), format!("{}; at most {} required", shown(end - start), shown(most))),
-            Possible::Number(least, _) if least.is_finite() && !reaches(least) => (Some(false), found(least)),
+            Possible::Number(_, most) if reaches(most) => {
+                (Some(true), format!("{}; at most {} required", shown(end - start), shown(most)))
+            }
+            Possible::Number(least, _) if least.is_finite() && !reaches(least) => {
+                (Some(false), found(least))
+            }
             _ => (None, format!("not checked: {reason}")),
         },
     };
@@ -101,19 +146,27 @@ fn length(plan: &Plan, facts: &Facts, unit: &Unit, zone: &Zone) -> Option<CheckR
 fn not_stated(expr: &Expr, vehicle: &Vehicle) -> Vec<usize> {
     let mut found = Vec::new();
     expr.visit(&mut |part| match part.kind {
-        Kind::Vehicle(index) if vehicle.data[index].is_err() && !found.contains(&index) => found.push(index),
+        Kind::Vehicle(index) if vehicle.data[index].is_err() && !found.contains(&index) => {
+            found.push(index)
+        }
         _ => {}
     });
     found
 }
 
-/// One finding for each vehicle datum that is not stated and each requirement that could not be checked without it.
+/// One finding for each vehicle datum that is not stated and each requirement that could not be
+/// checked without it.
 pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
     let mut found: Vec<(usize, &str, Vec<&str>)> = Vec::new();
     for unit in units.iter().filter(|unit| unit.fault.is_none()) {
         for check in unit.checks.iter().filter(|check| check.holds.is_none()) {
-            for index in asked(plan, unit, check).map_or_else(Vec::new, |expr| not_stated(expr, facts.of(unit))) {
-                match found.iter_mut().find(|(known, title, _)| *known == index && *title == check.title) {
+            for index in asked(plan, unit, check)
+                .map_or_else(Vec::new, |expr| not_stated(expr, facts.of(unit)))
+            {
+                match found
+                    .iter_mut()
+                    .find(|(known, title, _)| *known == index && *title == check.title)
+                {
                     Some((_, _, names)) => names.push(&unit.name),
                     None => found.push((index, &check.title, vec![&unit.name])),
                 }
@@ -123,7 +176,10 @@ pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
     let finding = |(index, title, names): (usize, &str, Vec<&str>)| {
         let key = &plan.vehicle[index].key;
         let of = sections_in_words(&names, units.len());
-        let says = format!("the vehicle file does not state `{key}`: {} not checked ({of})", title.to_lowercase());
+        let says = format!(
+            "the vehicle file does not state `{key}`: {} not checked ({of})",
+            title.to_lowercase()
+        );
         Finding { channel: Some(key.clone()), ..Finding::note("vehicle-data-not-stated", says) }
     };
     found.into_iter().map(finding).collect()
@@ -164,22 +220,34 @@ pub fn take_over(
         of_section.entry(copy.section.as_deref().unwrap_or_default()).or_default().push(copy);
     }
     for (unit, values) in units.iter_mut().zip(values) {
-        for (check, rule) in values.checks.iter().zip(&plan.checks).filter(|(check, _)| check.holds == Some(false)) {
+        for (check, rule) in
+            values.checks.iter().zip(&plan.checks).filter(|(check, _)| check.holds == Some(false))
+        {
             let says = format!("{}: {}", check.title.to_lowercase(), check.says);
             match rule.otherwise {
                 OnFault::NotUsed | OnFault::NotAssessable => unit.refuse(says, false),
                 OnFault::Note => notes.push(format!("Section {}: {says}.", unit.name)),
-                OnFault::Stop => stop.push(Problem::error("section-check", format!("section {}: {says}", unit.name)).at(&rule.span)),
+                OnFault::Stop => stop.push(
+                    Problem::error("section-check", format!("section {}: {says}", unit.name))
+                        .at(&rule.span),
+                ),
             }
         }
         let name = unit.name.clone();
-        for finding in values.findings.iter().chain(of_section.get(name.as_str()).into_iter().flatten().copied()) {
+        for finding in values
+            .findings
+            .iter()
+            .chain(of_section.get(name.as_str()).into_iter().flatten().copied())
+        {
             if finding.consequence == Consequence::NotUsed {
                 unit.refuse(finding.says.clone(), false);
             }
             let rule = plan.plausibility.iter().find(|rule| rule.name == finding.code);
             if let Some(rule) = rule.filter(|rule| rule.otherwise == OnFault::Stop) {
-                stop.push(Problem::error("not-plausible", format!("section {name}: {}", finding.says)).at(&rule.span));
+                stop.push(
+                    Problem::error("not-plausible", format!("section {name}: {}", finding.says))
+                        .at(&rule.span),
+                );
             }
         }
         unit.covered = unit.extent.or(values.extent);
@@ -189,7 +257,8 @@ pub fn take_over(
         }
     }
     notes.extend(unchecked(plan, facts, units));
-    let used = units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).map(|(_, values)| values);
+    let used =
+        units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).map(|(_, values)| values);
     notes.extend(super::margins::margin_note(used));
     if stop.any_error() { Err(stop) } else { Ok(()) }
 }
@@ -200,15 +269,22 @@ fn unchecked(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<String> {
     for unit in units.iter().filter(|unit| unit.fault.is_none()) {
         for check in unit.checks.iter().filter(|check| check.holds.is_none()) {
             // A datum missing from the vehicle file is reported by a finding.
-            if asked(plan, unit, check).is_some_and(|rule| !not_stated(rule, facts.of(unit)).is_empty()) {
+            if asked(plan, unit, check)
+                .is_some_and(|rule| !not_stated(rule, facts.of(unit)).is_empty())
+            {
                 continue;
             }
-            match found.iter_mut().find(|(title, says, _)| *title == check.title && *says == check.says) {
+            match found
+                .iter_mut()
+                .find(|(title, says, _)| *title == check.title && *says == check.says)
+            {
                 Some((_, _, names)) => names.push(&unit.name),
                 None => found.push((&check.title, &check.says, vec![&unit.name])),
             }
         }
     }
-    let sentence = |(title, says, names): (&str, &str, Vec<&str>)| format!("{title}: {says} ({}).", sections_in_words(&names, units.len()));
+    let sentence = |(title, says, names): (&str, &str, Vec<&str>)| {
+        format!("{title}: {says} ({}).", sections_in_words(&names, units.len()))
+    };
     found.into_iter().map(sentence).collect()
 }

@@ -12,8 +12,8 @@ use crate::result::{CheckResult, FileHash, Finding};
 /// Results of one section.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct SectionValues {
-    /// The rows of the section for each quantity; empty where the position was not recorded or the quantity excludes the section.
-    /// A file of values has them as its rows.
+    /// The rows of the section for each quantity; empty where the position was not recorded or the
+    /// quantity excludes the section. A file of values has them as its rows.
     #[serde(skip)]
     pub rows: Vec<Vec<Row>>,
     /// Quantities that cannot be evaluated in this section, with the signal and the reason.

@@ -31,10 +31,13 @@ pub fn units(plan: &Plan, campaigns: Campaigns<'_>, problems: &mut Problems) -> 
                 unit.name = qualified(called, &unit.name);
                 unit.site_name = qualified(called, &unit.site_name);
                 unit.campaign_name = called.map(str::to_string);
-                let named = campaign.sections.as_ref().and_then(|table| site_text(table, &unit.cell.value));
+                let named =
+                    campaign.sections.as_ref().and_then(|table| site_text(table, &unit.cell.value));
                 if let Some(text) = named {
                     match sites.iter().find(|(known, ..)| known == text) {
-                        Some((_, site, name)) => (unit.site, unit.site_name) = (*site, name.clone()),
+                        Some((_, site, name)) => {
+                            (unit.site, unit.site_name) = (*site, name.clone())
+                        }
                         None => sites.push((text.to_string(), unit.site, unit.site_name.clone())),
                     }
                 }
@@ -46,41 +49,68 @@ pub fn units(plan: &Plan, campaigns: Campaigns<'_>, problems: &mut Problems) -> 
     all
 }
 
-/// The column of the section table that says in which state the vehicle was, where there is a vehicle file for each.
+/// The column of the section table that says in which state the vehicle was, where there is a
+/// vehicle file for each.
 pub(super) const STATE: &str = "state";
 
 /// For each section the number of its vehicle.
 ///
 /// Problems: `missing-column`, `missing-state`, `unknown-state`, `no-sections`.
 fn states<'a>(campaign: &'a Campaign, problems: &mut Problems) -> HashMap<&'a str, usize> {
-    let names: Vec<&str> = campaign.vehicles.iter().filter_map(|vehicle| vehicle.state.as_deref()).collect();
+    let names: Vec<&str> =
+        campaign.vehicles.iter().filter_map(|vehicle| vehicle.state.as_deref()).collect();
     let mut found = HashMap::new();
-    let Some(node) = campaign.tree.get("vehicle").filter(|_| !names.is_empty()) else { return found };
+    let Some(node) = campaign.tree.get("vehicle").filter(|_| !names.is_empty()) else {
+        return found;
+    };
     let Some(table) = &campaign.sections else {
         let says = "the campaign has a vehicle file for each state, and no table of sections that says which is of which state";
-        problems.push(Problem::error("no-sections", says).at(&node.span).help("name it in campaign.yaml: `sections: sections.csv`"));
+        problems.push(
+            Problem::error("no-sections", says)
+                .at(&node.span)
+                .help("name it in campaign.yaml: `sections: sections.csv`"),
+        );
         return found;
     };
     let Some(column) = table.column(STATE) else {
-        let says = format!("the table of sections has no column `{STATE}`, and there is a vehicle file for each state");
+        let says = format!(
+            "the table of sections has no column `{STATE}`, and there is a vehicle file for each state"
+        );
         let header = table.columns[0].span.to(&table.columns[table.columns.len() - 1].span);
         let known = table.columns.iter().map(|column| column.name.as_str());
-        problems.push(Problem::error("missing-column", says).at(&header).also(&node.span, "the states").suggest(STATE, known));
+        problems.push(
+            Problem::error("missing-column", says)
+                .at(&header)
+                .also(&node.span, "the states")
+                .suggest(STATE, known),
+        );
         return found;
     };
     for row in 0..table.rows.len() {
-        let (Some(name), Some(cell)) = (campaign.names.get(row), table.cell(row, column)) else { continue };
+        let (Some(name), Some(cell)) = (campaign.names.get(row), table.cell(row, column)) else {
+            continue;
+        };
         let state = cell.value.trim();
         match names.iter().position(|known| *known == state) {
             Some(number) => drop(found.insert(name.value.as_str(), number)),
             None => {
                 let problem = match state {
-                    "" => Problem::error("missing-state", format!("section {} has no state", name.value)),
-                    other => {
-                        Problem::error("unknown-state", format!("section {}: there is no vehicle file for the state `{other}`", name.value))
-                    }
+                    "" => Problem::error(
+                        "missing-state",
+                        format!("section {} has no state", name.value),
+                    ),
+                    other => Problem::error(
+                        "unknown-state",
+                        format!(
+                            "section {}: there is no vehicle file for the state `{other}`",
+                            name.value
+                        ),
+                    ),
                 };
-                let problem = problem.at(&cell.span).also(&node.span, "the states").suggest(state, names.iter().copied());
+                let problem = problem
+                    .at(&cell.span)
+                    .also(&node.span, "the states")
+                    .suggest(state, names.iter().copied());
                 problems.push(problem);
             }
         }
@@ -91,7 +121,12 @@ fn states<'a>(campaign: &'a Campaign, problems: &mut Problems) -> HashMap<&'a st
 /// Reads the sections with the columns that the protocol declares.
 fn of_campaign(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec<Unit> {
     if plan.sections.whole_records {
-        return campaign.names.iter().enumerate().map(|(site, name)| whole_record(plan, campaign, name, site)).collect();
+        return campaign
+            .names
+            .iter()
+            .enumerate()
+            .map(|(site, name)| whole_record(plan, campaign, name, site))
+            .collect();
     }
     let Some(table) = &campaign.sections else {
         problems.push(
@@ -120,7 +155,9 @@ fn of_campaign(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec
     // What is stated of every run needs no column.
     let of_runs = |datum: &&Datum| {
         table.column(&datum.key).is_some()
-            || !table.names().all(|name| campaign.run_of(name).is_some_and(|run| run.fact(&datum.key).is_some()))
+            || !table
+                .names()
+                .all(|name| campaign.run_of(name).is_some_and(|run| run.fact(&datum.key).is_some()))
     };
     for datum in plan.columns.iter().filter(of_runs).chain([&start, &end]) {
         missing |= column_missing(datum, (table, "table of sections"), problems);
@@ -132,11 +169,20 @@ fn of_campaign(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec
     let mut units = Vec::new();
     for row in 0..table.rows.len() {
         let file = campaign.inside(&table.columns[0].span.source.name);
-        let row = Row { table, row, campaign: &campaign.short_name.value, file, run: campaign.run_of(&campaign.names[row]) };
-        let columns: Vec<Result<Scalar, CellFault>> = plan.columns.iter().map(|datum| row.cell(datum)).collect();
-        let ill_formed =
-            columns.iter().find_map(|cell| cell.as_ref().err().filter(|fault| fault.ill_formed).map(|fault| fault.says.clone()));
-        let columns: Vec<Result<Scalar, String>> = columns.into_iter().map(|cell| cell.map_err(|fault| fault.says)).collect();
+        let row = Row {
+            table,
+            row,
+            campaign: &campaign.short_name.value,
+            file,
+            run: campaign.run_of(&campaign.names[row]),
+        };
+        let columns: Vec<Result<Scalar, CellFault>> =
+            plan.columns.iter().map(|datum| row.cell(datum)).collect();
+        let ill_formed = columns.iter().find_map(|cell| {
+            cell.as_ref().err().filter(|fault| fault.ill_formed).map(|fault| fault.says.clone())
+        });
+        let columns: Vec<Result<Scalar, String>> =
+            columns.into_iter().map(|cell| cell.map_err(|fault| fault.says)).collect();
         let name = &campaign.names[row.row];
         let mut unit = Unit {
             name: name.value.clone(),
@@ -161,7 +207,9 @@ fn of_campaign(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec
             span: Some(name.span.clone()),
         };
         match (row.cell(&start), row.cell(&end)) {
-            (Ok(Scalar::Number(start)), Ok(Scalar::Number(end))) if start < end => unit.extent = Some((start, end)),
+            (Ok(Scalar::Number(start)), Ok(Scalar::Number(end))) if start < end => {
+                unit.extent = Some((start, end))
+            }
             (Ok(_), Ok(_)) => unit.refuse(row.placed("its start is not before its end"), true),
             (Err(fault), _) | (_, Err(fault)) => unit.refuse(fault.says, true),
         }
@@ -174,12 +222,16 @@ fn of_campaign(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec
 }
 
 fn whole_record(plan: &Plan, campaign: &Campaign, name: &Cell, site: usize) -> Unit {
-    let called = |datum: &Datum| (datum.kind == DatumKind::Campaign).then(|| Scalar::Word(campaign.short_name.value.clone()));
+    let called = |datum: &Datum| {
+        (datum.kind == DatumKind::Campaign).then(|| Scalar::Word(campaign.short_name.value.clone()))
+    };
     let columns = plan
         .columns
         .iter()
         .map(|datum| {
-            called(datum).or_else(|| datum.default.clone()).ok_or_else(|| format!("`{}` is not known of a whole record", datum.name))
+            called(datum)
+                .or_else(|| datum.default.clone())
+                .ok_or_else(|| format!("`{}` is not known of a whole record", datum.name))
         })
         .collect();
     Unit {
@@ -212,20 +264,33 @@ pub fn of_run(datum: &Datum, run: &Run, campaign: &str) -> Result<Scalar, String
         return Ok(Scalar::Word(campaign.to_string()));
     }
     let Some(fact) = run.fact(&datum.key) else {
-        return datum.default.clone().ok_or_else(|| format!("`{}` is not stated of run `{}`", datum.key, run.name.value));
+        return datum
+            .default
+            .clone()
+            .ok_or_else(|| format!("`{}` is not stated of run `{}`", datum.key, run.name.value));
     };
     let kind = match (&datum.kind, &fact.unit) {
         (DatumKind::Number(expected), Some(unit)) => match OfMeasure::parse(unit) {
             Ok(unit) if unit.dimension == expected.dimension => DatumKind::Number(unit),
-            _ => return Err(format!("`{}` of run `{}` cannot be in {unit}", datum.key, run.name.value)),
+            _ => {
+                return Err(format!(
+                    "`{}` of run `{}` cannot be in {unit}",
+                    datum.key, run.name.value
+                ));
+            }
         },
         (kind, _) => kind.clone(),
     };
-    scalar(&kind, &fact.value.value).map_err(|says| format!("`{}` of run `{}`: {says}", datum.key, run.name.value))
+    scalar(&kind, &fact.value.value)
+        .map_err(|says| format!("`{}` of run `{}`: {says}", datum.key, run.name.value))
 }
 
 /// Reports a declared column that is missing or has a unit of another dimension.
-pub fn column_missing(datum: &Datum, (table, called): (&Table, &str), problems: &mut Problems) -> bool {
+pub fn column_missing(
+    datum: &Datum,
+    (table, called): (&Table, &str),
+    problems: &mut Problems,
+) -> bool {
     if datum.kind == DatumKind::Campaign {
         return false;
     }
@@ -265,7 +330,8 @@ pub struct Row<'a> {
     pub run: Option<&'a Run>,
 }
 
-/// Why a cell has no value. An empty cell is a fault only if a rule needs it; a cell that cannot be read is always a fault.
+/// Why a cell has no value. An empty cell is a fault only if a rule needs it; a cell that cannot be
+/// read is always a fault.
 pub struct CellFault {
     pub says: String,
     pub ill_formed: bool,
@@ -276,10 +342,12 @@ impl Row<'_> {
         if datum.kind == DatumKind::Campaign {
             return Ok(Scalar::Word(self.campaign.to_string()));
         }
-        let nothing = |says: String| datum.default.clone().ok_or(CellFault { says, ill_formed: false });
+        let nothing =
+            |says: String| datum.default.clone().ok_or(CellFault { says, ill_formed: false });
         let Some(index) = self.table.column(&datum.key) else {
             if let Some(run) = self.run.filter(|run| run.fact(&datum.key).is_some()) {
-                return of_run(datum, run, self.campaign).map_err(|says| CellFault { says, ill_formed: true });
+                return of_run(datum, run, self.campaign)
+                    .map_err(|says| CellFault { says, ill_formed: true });
             }
             return nothing(format!("there is no column `{}`", datum.key));
         };
@@ -292,7 +360,10 @@ impl Row<'_> {
             (DatumKind::Number(_), Ok(unit)) => DatumKind::Number(unit),
             (kind, _) => kind.clone(),
         };
-        scalar(&of_column, text).map_err(|says| CellFault { says: self.placed(&format!("`{}`: {says}", datum.key)), ill_formed: true })
+        scalar(&of_column, text).map_err(|says| CellFault {
+            says: self.placed(&format!("`{}`: {says}", datum.key)),
+            ill_formed: true,
+        })
     }
 
     fn placed(&self, says: &str) -> String {
@@ -320,7 +391,12 @@ pub fn results(plan: &Plan, facts: &Facts, units: Vec<Unit>) -> Vec<SectionResul
                 start: axis.from_si(start),
                 end: axis.from_si(end),
                 axis_unit: axis.text.clone(),
-                columns: plan.columns.iter().zip(&unit.columns).map(|(datum, value)| item(datum, value.as_ref().ok())).collect(),
+                columns: plan
+                    .columns
+                    .iter()
+                    .zip(&unit.columns)
+                    .map(|(datum, value)| item(datum, value.as_ref().ok()))
+                    .collect(),
                 checks: unit.checks,
             }
         })

@@ -1,7 +1,9 @@
-//! What several protocols share of one section: each record is read once, and what two protocols compute alike of it is computed once.
+//! What several protocols share of one section: each record is read once, and what two protocols
+//! compute alike of it is computed once.
 //!
-//! Two nodes of two graphs are alike if they do the same with the same: operation, inputs, and the values of all names in them, for this
-//! section. Each such operation has a number ([`Keys`]); its result is kept under this number while the section is worked on ([`Memo`]).
+//! Two nodes of two graphs are alike if they do the same with the same: operation, inputs, and the
+//! values of all names in them, for this section. Each such operation has a number ([`Keys`]); its
+//! result is kept under this number while the section is worked on ([`Memo`]).
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -23,7 +25,8 @@ use crate::data::{Campaign, Record, RecordKind, WhichRecord};
 use crate::graph::{Graph, Operation};
 use crate::problem::Problem;
 
-/// The number of what each node of a graph does, the same in every graph; `None` for nodes that join records.
+/// The number of what each node of a graph does, the same in every graph; `None` for nodes that
+/// join records.
 pub type Keys = Vec<Option<usize>>;
 
 /// What nodes do in one section, in words, with their numbers.
@@ -43,12 +46,11 @@ impl Numbers {
         for node in &work.graph.nodes {
             let inputs: Option<Vec<usize>> = node.inputs.iter().map(|&input| keys[input]).collect();
             let key = match (&node.operation, inputs) {
-                (Operation::Select(conditions), _) => {
-                    chosen(conditions, &node.inputs, &known).ok().and_then(|input| keys[node.inputs[input]])
-                }
-                (operation, Some(inputs)) => {
-                    does(work, unit, &known, operation, node.track).map(|what| self.of(format!("{what} {inputs:?}")))
-                }
+                (Operation::Select(conditions), _) => chosen(conditions, &node.inputs, &known)
+                    .ok()
+                    .and_then(|input| keys[node.inputs[input]]),
+                (operation, Some(inputs)) => does(work, unit, &known, operation, node.track)
+                    .map(|what| self.of(format!("{what} {inputs:?}"))),
                 _ => None,
             };
             keys.push(key);
@@ -57,9 +59,17 @@ impl Numbers {
     }
 }
 
-/// What an operation does, all names put in. `None` where it does not work on one record, or a name has no value.
-fn does(work: &Work<'_>, unit: &Unit, known: &Known<'_>, operation: &Operation, track: bool) -> Option<String> {
-    let place = || format!("{:?}", unit.extent.map(|(start, end)| (start.to_bits(), end.to_bits())));
+/// What an operation does, all names put in. `None` where it does not work on one record, or a name
+/// has no value.
+fn does(
+    work: &Work<'_>,
+    unit: &Unit,
+    known: &Known<'_>,
+    operation: &Operation,
+    track: bool,
+) -> Option<String> {
+    let place =
+        || format!("{:?}", unit.extent.map(|(start, end)| (start.to_bits(), end.to_bits())));
     Some(match operation {
         Operation::Read { column } => {
             let time = work.plan.time.as_ref().map(|time| &time.column);
@@ -73,13 +83,19 @@ fn does(work: &Work<'_>, unit: &Unit, known: &Known<'_>, operation: &Operation, 
         Operation::OverAxis(AxisOperation::Shifted(distance)) => {
             format!("shifted {:x} {}", number(distance, known).ok()?.to_bits(), place())
         }
-        Operation::OverAxis(AxisOperation::Derivative { over_time }) => format!("derivative {over_time}"),
-        Operation::OverAxis(AxisOperation::Integral { over_time }) => format!("integral {over_time}"),
+        Operation::OverAxis(AxisOperation::Derivative { over_time }) => {
+            format!("derivative {over_time}")
+        }
+        Operation::OverAxis(AxisOperation::Integral { over_time }) => {
+            format!("integral {over_time}")
+        }
         Operation::Level => format!("level {}", place()),
         Operation::Step(spec) => format!("step {spec:?}"),
         Operation::Cut => format!("cut {}", place()),
         Operation::Window(spec) => format!("window {spec:?} {}", place()),
-        Operation::Reduce(reducer) => format!("reduce {} {:?}", reducer.in_words(), work.plan.sections.percentiles),
+        Operation::Reduce(reducer) => {
+            format!("reduce {} {:?}", reducer.in_words(), work.plan.sections.percentiles)
+        }
         Operation::Select(_)
         | Operation::Value(_)
         | Operation::Compare(_)
@@ -180,7 +196,10 @@ impl Columns {
 
     fn of(&self, kind: RecordKind) -> Vec<Wanted> {
         let names = if kind == RecordKind::Track { &self.track } else { &self.record };
-        names.iter().map(|name| Wanted { name: name.clone(), dimension: None, required: false }).collect()
+        names
+            .iter()
+            .map(|name| Wanted { name: name.clone(), dimension: None, required: false })
+            .collect()
     }
 }
 
@@ -217,10 +236,26 @@ struct Shared {
 }
 
 impl<'a> Store<'a> {
-    /// `place`: the axis, where the section lies on it, and what is read of a run, as one of the protocols asks.
-    pub fn new(campaign: &'a Campaign, cell: &'a Cell, columns: &'a Columns, place: Option<(String, Extent, Option<Part>)>) -> Self {
-        let (place, part) = place.map_or((None, None), |(axis, extent, part)| (Some((axis, extent)), part));
-        Self { campaign, cell, columns, place, part, trial: Trial::AsRecorded, base: None, records: Mutex::default() }
+    /// `place`: the axis, where the section lies on it, and what is read of a run, as one of the
+    /// protocols asks.
+    pub fn new(
+        campaign: &'a Campaign,
+        cell: &'a Cell,
+        columns: &'a Columns,
+        place: Option<(String, Extent, Option<Part>)>,
+    ) -> Self {
+        let (place, part) =
+            place.map_or((None, None), |(axis, extent, part)| (Some((axis, extent)), part));
+        Self {
+            campaign,
+            cell,
+            columns,
+            place,
+            part,
+            trial: Trial::AsRecorded,
+            base: None,
+            records: Mutex::default(),
+        }
     }
 
     /// The same section with its records changed; records that stay keep what was computed of them.
@@ -264,19 +299,30 @@ impl<'a> Store<'a> {
         let mut records = locked(&self.records);
         let shared = records.entry(which).or_insert_with(|| {
             let record = match self.base {
-                None => Ok(self.campaign.read(which, self.cell, &self.columns.of(which.kind), self.part.as_ref()).ok()),
+                None => Ok(self
+                    .campaign
+                    .read(which, self.cell, &self.columns.of(which.kind), self.part.as_ref())
+                    .ok()),
                 Some(base) => match &base.shared(which).record {
-                    Ok(Some((record, file))) => self.changed(record.clone()).map(|record| Some((record, file.clone()))),
+                    Ok(Some((record, file))) => {
+                        self.changed(record.clone()).map(|record| Some((record, file.clone())))
+                    }
                     other => other.clone(),
                 },
             };
-            Arc::new(Shared { record, opened: Mutex::default(), memo: Arc::default(), asked: AtomicUsize::new(0) })
+            Arc::new(Shared {
+                record,
+                opened: Mutex::default(),
+                memo: Arc::default(),
+                asked: AtomicUsize::new(0),
+            })
         });
         Arc::clone(shared)
     }
 
-    /// A record as a protocol asks for it. `None` where it cannot be had in common, as where protocols read different parts of a run: the
-    /// protocol then reads it by itself, and says what is wrong with it.
+    /// A record as a protocol asks for it. `None` where it cannot be had in common, as where
+    /// protocols read different parts of a run: the protocol then reads it by itself, and says what
+    /// is wrong with it.
     pub fn open(
         &self,
         work: &Work<'_>,
@@ -313,9 +359,15 @@ impl<'a> Store<'a> {
     }
 
     /// A record read by one protocol alone, in this trial.
-    pub fn read(&self, which: WhichRecord, wanted: &[Wanted], part: Option<&Part>) -> Result<(Record, ReadFile), Vec<Problem>> {
+    pub fn read(
+        &self,
+        which: WhichRecord,
+        wanted: &[Wanted],
+        part: Option<&Part>,
+    ) -> Result<(Record, ReadFile), Vec<Problem>> {
         let kind = self.trial.kind(which.kind);
-        let (record, file) = self.campaign.read(WhichRecord { kind, ..which }, self.cell, wanted, part)?;
+        let (record, file) =
+            self.campaign.read(WhichRecord { kind, ..which }, self.cell, wanted, part)?;
         let record = if self.trial.changes(which.kind) {
             self.changed(record).map_err(|says| vec![Problem::error("not-disturbed", says)])?
         } else {

@@ -1,4 +1,5 @@
-//! The evaluated records of one section, and the values, differences and metrics computed from them.
+//! The evaluated records of one section, and the values, differences and metrics computed from
+//! them.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -11,7 +12,9 @@ use super::table::Row;
 use super::unit::Unit;
 use crate::catalog::{Metric, Pair};
 use crate::check::evaluate::{flag, number};
-use crate::check::plan::{Center, Chosen, Evaluation, Expr, InputSide, Kind, Pairing, Records, Side};
+use crate::check::plan::{
+    Center, Chosen, Evaluation, Expr, InputSide, Kind, Pairing, Records, Side,
+};
 use crate::data::WhichRecord;
 use crate::graph::{InputNode, Joint, NodeId, Operation, SignalNodes, ValueNodes};
 use crate::metrics::percentile::Method;
@@ -89,7 +92,8 @@ pub struct Two<'a> {
     pub extent: Option<Extent>,
     /// Interpolation rule of percentiles.
     pub method: Method,
-    /// Added to the axis of the simulated record, SI: a repeat is at another distance than its original.
+    /// Added to the axis of the simulated record, SI: a repeat is at another distance than its
+    /// original.
     pub shift: f64,
     pub meetings: &'a Meetings,
 }
@@ -106,7 +110,15 @@ impl<'a> Sides<'a> {
         original: Option<&'a Original<'a>>,
         (known, meetings): (&'a Known<'a>, &'a Meetings),
     ) -> Self {
-        Self { simulated, measured, original, known, extent: unit.extent, method: work.plan.sections.percentiles, meetings }
+        Self {
+            simulated,
+            measured,
+            original,
+            known,
+            extent: unit.extent,
+            method: work.plan.sections.percentiles,
+            meetings,
+        }
     }
 
     fn of(&self, side: Side) -> &'a [RecordOfSide] {
@@ -119,10 +131,19 @@ impl<'a> Sides<'a> {
     /// One record in the place of both sides.
     pub fn alone(&self, record: &'a RecordOfSide) -> Two<'a> {
         let Self { known, extent, method, meetings, .. } = *self;
-        Two { simulated: &record.found, measured: &record.found, known, extent, method, shift: 0.0, meetings }
+        Two {
+            simulated: &record.found,
+            measured: &record.found,
+            known,
+            extent,
+            method,
+            shift: 0.0,
+            meetings,
+        }
     }
 
-    /// Every record of one side with every record of the other, with the names of those of which there are several.
+    /// Every record of one side with every record of the other, with the names of those of which
+    /// there are several.
     pub fn pairs(&self) -> impl Iterator<Item = (Option<Arc<str>>, Two<'a>)> {
         let Self { known, extent, method, meetings, .. } = *self;
         let of = |records: &'a [RecordOfSide]| -> Vec<(Option<Arc<str>>, &'a Evaluated)> {
@@ -134,21 +155,32 @@ impl<'a> Sides<'a> {
         let (simulated, measured) = (of(self.simulated), of(self.measured));
         simulated.into_iter().flat_map(move |(s, simulated)| {
             let one = |(m, measured): &(Option<Arc<str>>, &'a Evaluated)| {
-                (names(s.as_ref(), m.as_ref()), Two { simulated, measured, known, extent, method, shift: 0.0, meetings })
+                (
+                    names(s.as_ref(), m.as_ref()),
+                    Two { simulated, measured, known, extent, method, shift: 0.0, meetings },
+                )
             };
             measured.iter().map(one).collect::<Vec<_>>()
         })
     }
 
-    /// Every measured record of a repeat with that of its original, which takes the place of the measurement. Distances are counted
-    /// from the start of each section.
+    /// Every measured record of a repeat with that of its original, which takes the place of the
+    /// measurement. Distances are counted from the start of each section.
     fn repeats(&self) -> impl Iterator<Item = Joined<'a>> {
         let Self { known, extent: own, method, meetings, .. } = *self;
         self.original.into_iter().flat_map(move |original| {
             let extent = original.unit.extent;
             let shift = extent.zip(own).map_or(0.0, |((first, _), (again, _))| first - again);
             self.measured.iter().zip(&original.records).map(move |(repeat, first)| {
-                let two = Two { simulated: &repeat.found, measured: &first.found, known, extent, method, shift, meetings };
+                let two = Two {
+                    simulated: &repeat.found,
+                    measured: &first.found,
+                    known,
+                    extent,
+                    method,
+                    shift,
+                    meetings,
+                };
                 let second = Two { known: &original.known, ..self.alone(first) };
                 Joined { record: repeat.name.clone(), two, first: self.alone(repeat), second }
             })
@@ -158,7 +190,9 @@ impl<'a> Sides<'a> {
     /// The records that a rule asks for, in the order of the campaign.
     fn chosen(&self, work: &Work<'_>, chosen: Chosen) -> Vec<&'a RecordOfSide> {
         let members = chosen.record.map_or(&[][..], |index| &work.plan.records[index].members);
-        let named = |record: &&RecordOfSide| members.iter().any(|member| record.called.as_deref() == Some(member.value.as_str()));
+        let named = |record: &&RecordOfSide| {
+            members.iter().any(|member| record.called.as_deref() == Some(member.value.as_str()))
+        };
         self.of(chosen.side).iter().filter(|record| members.is_empty() || named(record)).collect()
     }
 
@@ -166,7 +200,12 @@ impl<'a> Sides<'a> {
     fn joined(&self, work: &Work<'_>, pairing: Pairing) -> Result<Vec<Joined<'a>>, String> {
         let pair = |first: &'a RecordOfSide, second: &'a RecordOfSide| {
             let two = Two { simulated: &first.found, measured: &second.found, ..self.alone(first) };
-            Joined { record: names(first.name.as_ref(), second.name.as_ref()), two, first: self.alone(first), second: self.alone(second) }
+            Joined {
+                record: names(first.name.as_ref(), second.name.as_ref()),
+                two,
+                first: self.alone(first),
+                second: self.alone(second),
+            }
         };
         match pairing {
             Pairing::Repeats => Ok(self.repeats().collect()),
@@ -175,7 +214,11 @@ impl<'a> Sides<'a> {
                 if all.len() < 2 {
                     return Err(one_record(of.side));
                 }
-                Ok(all.iter().enumerate().flat_map(|(at, first)| all[at + 1..].iter().map(|second| pair(first, second))).collect())
+                Ok(all
+                    .iter()
+                    .enumerate()
+                    .flat_map(|(at, first)| all[at + 1..].iter().map(|second| pair(first, second)))
+                    .collect())
             }
             Pairing::Each(one, other) => {
                 let (firsts, seconds) = (self.chosen(work, one), self.chosen(work, other));
@@ -190,7 +233,12 @@ impl<'a> Sides<'a> {
     }
 
     /// The rows of one position.
-    pub fn rows(&self, work: &Work<'_>, position: usize, nodes: &SignalNodes) -> Result<Vec<Row>, String> {
+    pub fn rows(
+        &self,
+        work: &Work<'_>,
+        position: usize,
+        nodes: &SignalNodes,
+    ) -> Result<Vec<Row>, String> {
         let Operation::Compare(evaluation) = &work.graph.nodes[nodes.compare].operation else {
             return Err("this node gives no rows".into());
         };
@@ -200,17 +248,40 @@ impl<'a> Sides<'a> {
                 let node = if common { nodes.filtered } else { nodes.processed };
                 let one = |Joined { record, two, .. }: Joined<'_>| {
                     let (value, samples) = two.compared(*metric, common, node, nodes.over)?;
-                    Ok(Row { position, which: 0, record, simulated: None, measured: None, value, samples })
+                    Ok(Row {
+                        position,
+                        which: 0,
+                        record,
+                        simulated: None,
+                        measured: None,
+                        value,
+                        samples,
+                    })
                 };
                 self.joined(work, *pairing)?.into_iter().map(one).collect()
             }
             Evaluation::Combined { of, pairing } => {
                 let one = |Joined { record, two, .. }: Joined<'_>| {
-                    let found: Vec<_> = nodes.inputs.iter().map(|input| two.counted(input, InputSide::Measured)).collect();
-                    let samples = found.iter().flatten().map(|(_, samples)| *samples).max().unwrap_or(0);
-                    let inputs: Vec<Result<f64, String>> = found.into_iter().map(|found| found.map(|(value, _)| value)).collect();
-                    let value = number(&of.expr, &Known { inputs: &inputs, ..section(self.known) })?;
-                    Ok(Row { position, which: 0, record, simulated: None, measured: None, value, samples })
+                    let found: Vec<_> = nodes
+                        .inputs
+                        .iter()
+                        .map(|input| two.counted(input, InputSide::Measured))
+                        .collect();
+                    let samples =
+                        found.iter().flatten().map(|(_, samples)| *samples).max().unwrap_or(0);
+                    let inputs: Vec<Result<f64, String>> =
+                        found.into_iter().map(|found| found.map(|(value, _)| value)).collect();
+                    let value =
+                        number(&of.expr, &Known { inputs: &inputs, ..section(self.known) })?;
+                    Ok(Row {
+                        position,
+                        which: 0,
+                        record,
+                        simulated: None,
+                        measured: None,
+                        value,
+                        samples,
+                    })
                 };
                 self.joined(work, *pairing)?.into_iter().map(one).collect()
             }
@@ -225,7 +296,11 @@ impl<'a> Sides<'a> {
                     applied = true;
                     rows.extend(self.of_value(work, records, (position, which), nodes, of)?);
                 }
-                if applied { Ok(rows) } else { Err("none of its values applies to this section".into()) }
+                if applied {
+                    Ok(rows)
+                } else {
+                    Err("none of its values applies to this section".into())
+                }
             }
         }
     }
@@ -245,7 +320,9 @@ impl<'a> Sides<'a> {
                 Ok::<_, String>((record.name.clone(), two, two.value(work, value, own(of.side))?))
             })
         };
-        let difference_of = |difference: &Expr, s: f64, m: f64| number(difference, &Known { sides: Some((s, m)), ..section(self.known) });
+        let difference_of = |difference: &Expr, s: f64, m: f64| {
+            number(difference, &Known { sides: Some((s, m)), ..section(self.known) })
+        };
         match records {
             Records::Of(of) => {
                 let one = |(record, two, value): (Option<Arc<str>>, Two<'_>, f64)| {
@@ -257,10 +334,17 @@ impl<'a> Sides<'a> {
             Records::Compared { pairing, difference } => {
                 let one = |Joined { record, two, first, second }: Joined<'_>| {
                     // Of two sides, each number may also take values of the other one.
-                    let (s, m, samples) = match pairing.within().or((*pairing == Pairing::Repeats).then_some(Side::Measured)) {
+                    let (s, m, samples) = match pairing
+                        .within()
+                        .or((*pairing == Pairing::Repeats).then_some(Side::Measured))
+                    {
                         None => {
                             let s = two.value(work, value, InputSide::Simulated)?;
-                            (s, two.value(work, value, InputSide::Measured)?, samples(&two, InputSide::Measured))
+                            (
+                                s,
+                                two.value(work, value, InputSide::Measured)?,
+                                samples(&two, InputSide::Measured),
+                            )
                         }
                         Some(side) => {
                             let s = first.value(work, value, own(side))?;
@@ -268,7 +352,15 @@ impl<'a> Sides<'a> {
                         }
                     };
                     let value = difference_of(difference, s, m)?;
-                    Ok(Row { position, which, record, simulated: Some(s), measured: Some(m), value, samples })
+                    Ok(Row {
+                        position,
+                        which,
+                        record,
+                        simulated: Some(s),
+                        measured: Some(m),
+                        value,
+                        samples,
+                    })
                 };
                 self.joined(work, *pairing)?.into_iter().map(one).collect()
             }
@@ -286,7 +378,15 @@ impl<'a> Sides<'a> {
                 let one = |(record, two, value): (Option<Arc<str>>, Two<'_>, f64)| {
                     let samples = samples(&two, own(of.side));
                     let difference = difference_of(difference, value, center)?;
-                    Ok(Row { position, which, record, simulated: Some(value), measured: Some(center), value: difference, samples })
+                    Ok(Row {
+                        position,
+                        which,
+                        record,
+                        simulated: Some(value),
+                        measured: Some(center),
+                        value: difference,
+                        samples,
+                    })
                 };
                 alone(*of).map(|found| found.and_then(one)).collect()
             }
@@ -325,7 +425,11 @@ fn own(side: Side) -> InputSide {
 
 /// Whether the samples of the record are still available after the quantity's filter.
 pub fn keeps_samples(work: &Work<'_>, nodes: &SignalNodes) -> bool {
-    let quantity = work.graph.quantities.iter().position(|known| known.signals.iter().any(|signal| signal.compare == nodes.compare));
+    let quantity = work
+        .graph
+        .quantities
+        .iter()
+        .position(|known| known.signals.iter().any(|signal| signal.compare == nodes.compare));
     quantity.is_none_or(|index| work.plan.quantities[index].keeps_samples())
 }
 
@@ -345,7 +449,8 @@ impl Two<'_> {
     fn value(&self, work: &Work<'_>, value: &ValueNodes, side: InputSide) -> Result<f64, String> {
         match &work.graph.nodes[value.node].operation {
             Operation::Value(expr) => {
-                let inputs: Vec<Result<f64, String>> = value.inputs.iter().map(|input| self.input(input, side)).collect();
+                let inputs: Vec<Result<f64, String>> =
+                    value.inputs.iter().map(|input| self.input(input, side)).collect();
                 number(expr, &Known { inputs: &inputs, ..section(self.known) })
             }
             _ => self.input(value.inputs.first().ok_or("a value takes nothing")?, side),
@@ -353,18 +458,37 @@ impl Two<'_> {
     }
 
     /// A metric of both signals of a node, and the number of measured samples.
-    fn compared(&self, metric: Metric, on_common_points: bool, node: NodeId, over: Option<NodeId>) -> Result<(f64, usize), String> {
-        let of @ (simulated, measured) = (samples_of(self.simulated, node)?, samples_of(self.measured, node)?);
-        let meeting = if on_common_points { Some(self.meetings.of(simulated, measured, self.extent, self.shift)?) } else { None };
+    fn compared(
+        &self,
+        metric: Metric,
+        on_common_points: bool,
+        node: NodeId,
+        over: Option<NodeId>,
+    ) -> Result<(f64, usize), String> {
+        let of @ (simulated, measured) =
+            (samples_of(self.simulated, node)?, samples_of(self.measured, node)?);
+        let meeting = if on_common_points {
+            Some(self.meetings.of(simulated, measured, self.extent, self.shift)?)
+        } else {
+            None
+        };
         let over = match over {
             None => None,
-            Some(node) => Some((samples_of(self.simulated, node)?, samples_of(self.measured, node)?)),
+            Some(node) => {
+                Some((samples_of(self.simulated, node)?, samples_of(self.measured, node)?))
+            }
         };
         let over = over.map(|(s, m)| (s.values.as_slice(), m.values.as_slice()));
         let (Rate::PerTime(rate) | Rate::PerLength(rate)) = measured.along.rate;
         let (axis, simulated, measured) = match &meeting {
-            Some(meeting) => (meeting.axis(), meeting.simulated(simulated), meeting.measured(measured)),
-            None => (measured.along.axis.as_slice(), Cow::Borrowed(simulated.values.as_slice()), measured.values.as_slice()),
+            Some(meeting) => {
+                (meeting.axis(), meeting.simulated(simulated), meeting.measured(measured))
+            }
+            None => (
+                measured.along.axis.as_slice(),
+                Cow::Borrowed(simulated.values.as_slice()),
+                measured.values.as_slice(),
+            ),
         };
         let pair = Pair { axis, simulated: &simulated, measured, rate, band: None, over };
         let Some(points) = metric.points() else { return Ok((metric.run(&pair)?, measured.len())) };
@@ -374,7 +498,10 @@ impl Two<'_> {
         };
         let of_simulated = quantiles(Side::Simulated, of.0, &simulated)?;
         let of_measured = quantiles(Side::Measured, of.1, measured)?;
-        Ok((metric.run(&Pair { simulated: &of_simulated, measured: &of_measured, ..pair })?, measured.len()))
+        Ok((
+            metric.run(&Pair { simulated: &of_simulated, measured: &of_measured, ..pair })?,
+            measured.len(),
+        ))
     }
 
     pub fn input(&self, input: &InputNode, side: InputSide) -> Result<f64, String> {
@@ -392,7 +519,9 @@ impl Two<'_> {
                 };
                 Ok((number_of(record, input.node)?, samples))
             }
-            Some(Joint::Metric { metric, on_common_points, over }) => self.compared(*metric, *on_common_points, input.node, *over),
+            Some(Joint::Metric { metric, on_common_points, over }) => {
+                self.compared(*metric, *on_common_points, input.node, *over)
+            }
             Some(Joint::Samples { reducer, signal }) => {
                 let both = Both {
                     simulated: samples_of(self.simulated, input.node)?,
@@ -412,8 +541,15 @@ impl Two<'_> {
     }
 
     /// Number of samples or windows of the quantity's own signal that a value was taken from.
-    fn samples(&self, work: &Work<'_>, nodes: &SignalNodes, value: &ValueNodes, side: InputSide) -> usize {
-        let own = |input: &&InputNode| work.graph.nodes[input.node].inputs.contains(&nodes.processed);
+    fn samples(
+        &self,
+        work: &Work<'_>,
+        nodes: &SignalNodes,
+        value: &ValueNodes,
+        side: InputSide,
+    ) -> usize {
+        let own =
+            |input: &&InputNode| work.graph.nodes[input.node].inputs.contains(&nodes.processed);
         let input = value.inputs.iter().find(own).or(value.inputs.first());
         match input.and_then(|input| self.record(side).get(input.node)) {
             Some(Found::Number(_, samples)) => *samples,
@@ -441,5 +577,11 @@ pub fn samples_of(found: &Evaluated, node: NodeId) -> Result<&Samples, String> {
 
 /// The same names, without inputs and sides.
 pub fn section<'a>(known: &Known<'a>) -> Known<'a> {
-    Known { vehicle: known.vehicle, columns: known.columns, extent: known.extent, inputs: &[], sides: None }
+    Known {
+        vehicle: known.vehicle,
+        columns: known.columns,
+        extent: known.extent,
+        inputs: &[],
+        sides: None,
+    }
 }

@@ -1,4 +1,5 @@
-//! One value of a result computed again, with all intermediate values, to trace where it comes from.
+//! One value of a result computed again, with all intermediate values, to trace where it comes
+//! from.
 
 use super::section::{self, OneRecord};
 use super::{Found, Prepared};
@@ -22,16 +23,19 @@ pub struct Single {
 /// The values of one record.
 #[derive(Debug)]
 pub struct Side {
-    /// The column of the value in a result; a repeat takes the place of the simulation. `None` for an assessment.
+    /// The column of the value in a result; a repeat takes the place of the simulation. `None` for
+    /// an assessment.
     pub column: Option<plan::Side>,
     pub file: FileHash,
     /// First and last row of the file inside the section; the header is row 1.
     pub inside: (usize, usize),
     /// First and last row that was read and is filtered: of a run the part around the section.
     pub filtered: (usize, usize),
-    /// Values of signals: the index of the graph node, the value in SI, and the number of samples or windows.
+    /// Values of signals: the index of the graph node, the value in SI, and the number of samples
+    /// or windows.
     pub reduced: Vec<(usize, f64, usize)>,
-    /// The value of this side, in the unit of the quantity; `None` where a metric gives one number for both.
+    /// The value of this side, in the unit of the quantity; `None` where a metric gives one number
+    /// for both.
     pub value: Option<f64>,
 }
 
@@ -48,22 +52,27 @@ pub fn single<'a>(
 ) -> Result<Single, Problems> {
     let prepared = Prepared::new(plan, graph, campaigns.into())?;
     let unit = prepared.basis.units.iter().find(|unit| unit.name == section).ok_or_else(|| {
-        let problem = Problem::error("no-such-section", format!("the campaign has no section `{section}`"));
+        let problem =
+            Problem::error("no-such-section", format!("the campaign has no section `{section}`"));
         one(problem.suggest(section, prepared.basis.units.iter().map(|unit| unit.name.as_str())))
     })?;
     if let Some(fault) = &unit.fault {
-        return Err(one(Problem::error("not-evaluated", format!("section {section} is not used: {fault}"))));
+        return Err(one(Problem::error(
+            "not-evaluated",
+            format!("section {section} is not used: {fault}"),
+        )));
     }
     let found = section::single(&prepared.work(), unit, quantity, signal).map_err(|fault| {
         let mut problems = Problems(fault.problems);
-        problems.push(Problem::error("not-evaluated", format!("section {section} cannot be evaluated: {}", fault.says)));
+        problems.push(Problem::error(
+            "not-evaluated",
+            format!("section {section} cannot be evaluated: {}", fault.says),
+        ));
         problems
     })?;
-    let row = found
-        .rows
-        .iter()
-        .find(|row| row.record.as_deref() == record)
-        .ok_or_else(|| one(Problem::error("not-evaluated", format!("section {section} has no such value"))))?;
+    let row = found.rows.iter().find(|row| row.record.as_deref() == record).ok_or_else(|| {
+        one(Problem::error("not-evaluated", format!("section {section} has no such value")))
+    })?;
     let of = &plan.quantities[quantity].unit;
     let evaluation = plan.quantities[quantity].evaluation.as_ref();
     let assessed = matches!(evaluation, Evaluation::Values { records: Records::Of(_), .. });
@@ -78,8 +87,12 @@ pub fn single<'a>(
         None => one.place,
     };
     let own = |one: &OneRecord| match both {
-        Some((first, second)) => one.name.as_deref().is_some_and(|name| name == first || name == second),
-        None => of_all || took_part(record, one.place == plan::Side::Simulated, one.name.as_deref()),
+        Some((first, second)) => {
+            one.name.as_deref().is_some_and(|name| name == first || name == second)
+        }
+        None => {
+            of_all || took_part(record, one.place == plan::Side::Simulated, one.name.as_deref())
+        }
     };
     let side = |one: OneRecord| {
         let reduced = one.found.iter().filter_map(|(node, found)| match found {
@@ -96,10 +109,21 @@ pub fn single<'a>(
         let column = if of_all { plan::Side::Simulated } else { place };
         let [inside, filtered] = one.opened.rows();
         let value = value.map(|value| of.from_si(value));
-        Side { column: (!assessed).then_some(column), reduced: reduced.collect(), inside, filtered, value, file: one.opened.file }
+        Side {
+            column: (!assessed).then_some(column),
+            reduced: reduced.collect(),
+            inside,
+            filtered,
+            value,
+            file: one.opened.file,
+        }
     };
     let (difference, samples) = (of.from_si(row.value), row.samples);
-    Ok(Single { records: found.records.into_iter().filter(own).map(side).collect(), difference, samples })
+    Ok(Single {
+        records: found.records.into_iter().filter(own).map(side).collect(),
+        difference,
+        samples,
+    })
 }
 
 fn one(problem: Problem) -> Problems {

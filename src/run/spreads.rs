@@ -6,8 +6,8 @@ use crate::check::plan::Center;
 use crate::metrics::statistics::{self, Divisor};
 use crate::result::{ClassSpread, Furthest, OfRecord, PairValue, Spread};
 
-/// Ratio of two root mean squares up to which they count as equal, less 1: far above the rounding of doubles, far below any difference
-/// that a table shows.
+/// Ratio of two root mean squares up to which they count as equal, less 1: far above the rounding
+/// of doubles, far below any difference that a table shows.
 const EQUAL: f64 = 1e-9;
 
 /// Section, signal, and which of the quantity's values.
@@ -16,25 +16,35 @@ type Place<'a> = (&'a str, &'a str, Option<&'a str>);
 /// The spread of the records; `None` where no place has two of them.
 pub fn spread(center: Center, values: &[PairValue]) -> Option<Spread> {
     let zones: IndexSet<&str> = values.iter().filter_map(|value| value.zone.as_deref()).collect();
-    let mut classes: Vec<ClassSpread> = zones.into_iter().filter_map(|zone| class(Some(zone), values)).collect();
+    let mut classes: Vec<ClassSpread> =
+        zones.into_iter().filter_map(|zone| class(Some(zone), values)).collect();
     classes.extend(class(None, values));
     (!classes.is_empty()).then(|| Spread { center: center.in_words().to_string(), classes })
 }
 
 /// Sections of one zone, or all.
 fn class(zone: Option<&str>, values: &[PairValue]) -> Option<ClassSpread> {
-    let values: Vec<&PairValue> = values.iter().filter(|value| zone.is_none() || value.zone.as_deref() == zone).collect();
+    let values: Vec<&PairValue> =
+        values.iter().filter(|value| zone.is_none() || value.zone.as_deref() == zone).collect();
     let mut records: IndexMap<&str, Vec<&PairValue>> = IndexMap::new();
     let mut places: IndexMap<Place<'_>, Vec<f64>> = IndexMap::new();
     for value in values {
         records.entry(value.record.as_deref().unwrap_or_default()).or_default().push(value);
-        places.entry((&value.section, &value.signal, value.taken.as_deref())).or_default().push(value.difference);
+        places
+            .entry((&value.section, &value.signal, value.taken.as_deref()))
+            .or_default()
+            .push(value.difference);
     }
-    let records = ranked(records.into_iter().filter_map(|(name, values)| of_record(name, &values)).collect());
+    let records =
+        ranked(records.into_iter().filter_map(|(name, values)| of_record(name, &values)).collect());
     let means: Vec<f64> = records.iter().map(|record| record.mean).collect();
-    let apart: Vec<(Place<'_>, f64, f64)> =
-        places.into_iter().filter_map(|(place, values)| Some((place, statistics::range(&values)?, std(&values)?))).collect();
-    let mean_of = |of: fn(&(Place<'_>, f64, f64)) -> f64| statistics::mean(&apart.iter().map(of).collect::<Vec<_>>());
+    let apart: Vec<(Place<'_>, f64, f64)> = places
+        .into_iter()
+        .filter_map(|(place, values)| Some((place, statistics::range(&values)?, std(&values)?)))
+        .collect();
+    let mean_of = |of: fn(&(Place<'_>, f64, f64)) -> f64| {
+        statistics::mean(&apart.iter().map(of).collect::<Vec<_>>())
+    };
     // The first of equal ones.
     let widest = apart.iter().rev().max_by(|a, b| a.1.total_cmp(&b.1))?;
     Some(ClassSpread {
@@ -61,14 +71,18 @@ fn at((section, signal, taken): Place<'_>, value: f64) -> Furthest {
 
 fn of_record(name: &str, values: &[&PairValue]) -> Option<OfRecord> {
     let deviations: Vec<f64> = values.iter().map(|value| value.difference).collect();
-    let largest = values.iter().rev().max_by(|a, b| a.difference.abs().total_cmp(&b.difference.abs()))?;
+    let largest =
+        values.iter().rev().max_by(|a, b| a.difference.abs().total_cmp(&b.difference.abs()))?;
     Some(OfRecord {
         record: name.to_string(),
         values: values.len(),
         mean: statistics::mean(&deviations)?,
         std: std(&deviations),
         rms: statistics::rms(&deviations)?,
-        largest: at((&largest.section, &largest.signal, largest.taken.as_deref()), largest.difference),
+        largest: at(
+            (&largest.section, &largest.signal, largest.taken.as_deref()),
+            largest.difference,
+        ),
         rank: 1,
     })
 }
@@ -106,7 +120,10 @@ mod tests {
         let all = [("S1", [1.0, -3.0, 2.0]), ("S2", [3.0, -5.0, 2.0])];
         let of = |(section, deviations): (&'static str, [f64; 3])| {
             let zone = zone(section);
-            ["a", "b", "c"].into_iter().zip(deviations).map(move |(record, deviation)| value(section, zone, record, deviation))
+            ["a", "b", "c"]
+                .into_iter()
+                .zip(deviations)
+                .map(move |(record, deviation)| value(section, zone, record, deviation))
         };
         all.into_iter().flat_map(of).collect()
     }
@@ -118,21 +135,36 @@ mod tests {
         let class = &found.classes[0];
         let of = |at: usize| {
             let one = &class.records[at];
-            (one.record.as_str(), one.mean, one.largest.value, one.largest.section.as_str(), one.rank)
+            (
+                one.record.as_str(),
+                one.mean,
+                one.largest.value,
+                one.largest.section.as_str(),
+                one.rank,
+            )
         };
         // Root mean squares: 5^0.5, 17^0.5, 2.
-        assert_eq!([of(0), of(1), of(2)], [("a", 2.0, 3.0, "S2", 2), ("b", -4.0, -5.0, "S2", 3), ("c", 2.0, 2.0, "S1", 1)]);
+        assert_eq!(
+            [of(0), of(1), of(2)],
+            [("a", 2.0, 3.0, "S2", 2), ("b", -4.0, -5.0, "S2", 3), ("c", 2.0, 2.0, "S1", 1)]
+        );
         assert!((class.records[0].std.expect("two values") - 2_f64.sqrt()).abs() < 1e-12);
         assert_eq!((class.places, class.range_of_means, class.mean_range), (2, 6.0, 6.5));
         assert_eq!((class.widest.value, class.widest.section.as_str()), (8.0, "S2"));
-        assert!((class.std_of_means - 12_f64.sqrt()).abs() < 1e-12 && (class.std_at_widest - 19_f64.sqrt()).abs() < 1e-12);
+        assert!(
+            (class.std_of_means - 12_f64.sqrt()).abs() < 1e-12
+                && (class.std_at_widest - 19_f64.sqrt()).abs() < 1e-12
+        );
         assert!((class.mean_std - f64::midpoint(7_f64.sqrt(), 19_f64.sqrt())).abs() < 1e-12);
     }
 
     #[test]
     fn each_zone_has_its_own_and_all_sections_come_last() {
-        let found = spread(Center::Median, &three(|section| Some(if section == "S1" { "2" } else { "3" }))).expect("a spread");
-        let zones: Vec<Option<&str>> = found.classes.iter().map(|class| class.zone.as_deref()).collect();
+        let found =
+            spread(Center::Median, &three(|section| Some(if section == "S1" { "2" } else { "3" })))
+                .expect("a spread");
+        let zones: Vec<Option<&str>> =
+            found.classes.iter().map(|class| class.zone.as_deref()).collect();
         assert_eq!(zones, [Some("2"), Some("3"), None]);
         assert_eq!((found.classes[0].records[0].std, found.classes[0].mean_range), (None, 5.0));
     }

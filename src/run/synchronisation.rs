@@ -1,4 +1,5 @@
-//! Shift of the measurement against the simulation along the axis: requested shifts, and the shift estimated from the signals.
+//! Shift of the measurement against the simulation along the axis: requested shifts, and the shift
+//! estimated from the signals.
 
 use std::collections::BTreeSet;
 
@@ -58,12 +59,20 @@ pub fn signals(work: &Work<'_>, active: &[Vec<bool>]) -> BTreeSet<NodeId> {
 }
 
 /// `None` where the shift cannot be estimated: no signal that both sides have, or none that varies.
-pub fn estimate(graph: &Graph, unit: &Unit, farthest: f64, simulated: &Evaluated, measured: &Held<'_>) -> Option<Offset> {
+pub fn estimate(
+    graph: &Graph,
+    unit: &Unit,
+    farthest: f64,
+    simulated: &Evaluated,
+    measured: &Held<'_>,
+) -> Option<Offset> {
     let (start, end) = unit.extent?;
     let mut pairs = Vec::new();
     let nodes: Vec<NodeId> = simulated.iter().map(|(node, _)| *node).collect();
     for ((node, found), group) in simulated.iter().zip(groups(graph, &nodes)) {
-        let (Found::Samples(simulated), Some(measured)) = (found, measured.samples(*node)) else { continue };
+        let (Found::Samples(simulated), Some(measured)) = (found, measured.samples(*node)) else {
+            continue;
+        };
         pairs.push(synchronise::Pair {
             simulated: (&simulated.along.axis, &simulated.values),
             measured: (&measured.along.axis, &measured.values),
@@ -75,7 +84,8 @@ pub fn estimate(graph: &Graph, unit: &Unit, farthest: f64, simulated: &Evaluated
     Some(Offset { shift, low, high, correlation })
 }
 
-/// A group index for each signal; signals that share a channel, directly or through others, are in the same group.
+/// A group index for each signal; signals that share a channel, directly or through others, are in
+/// the same group.
 fn groups(graph: &Graph, nodes: &[NodeId]) -> Vec<usize> {
     let mut group: Vec<usize> = (0..nodes.len()).collect();
     let mut seen: Vec<(NodeId, usize)> = Vec::new();

@@ -55,10 +55,12 @@ pub fn independent(plan: &Plan, members: &[Member<'_>]) -> Vec<usize> {
     let mut sections: Vec<String> = Vec::new();
     let one = |member: &Member<'_>| match plan.independent {
         Independent::Site => member.unit.site,
-        Independent::Section => sections.iter().position(|known| *known == member.unit.name).unwrap_or_else(|| {
-            sections.push(member.unit.name.clone());
-            sections.len() - 1
-        }),
+        Independent::Section => {
+            sections.iter().position(|known| *known == member.unit.name).unwrap_or_else(|| {
+                sections.push(member.unit.name.clone());
+                sections.len() - 1
+            })
+        }
         Independent::Column(index) => of_column(member.unit, index),
     };
     members.iter().map(one).collect()

@@ -1,4 +1,5 @@
-//! Several simulations under a protocol that does not tell them apart: a good one must not hide a bad one.
+//! Several simulations under a protocol that does not tell them apart: a good one must not hide a
+//! bad one.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,9 +8,10 @@ use super::table::{Member, Table};
 use crate::check::plan::{Chosen, Evaluation, Key, Limit, Pairing, Plan, Records, Side};
 use crate::graph::{Graph, QuantityNodes};
 
-/// Why limits that all simulations together meet do not decide the quantity: the first simulation that does not meet one by itself.
-/// Only for values of simulations, by themselves or with measurements, where neither quantity nor limit names a record: otherwise the
-/// protocol knows of several.
+/// Why limits that all simulations together meet do not decide the quantity: the first simulation
+/// that does not meet one by itself. Only for values of simulations, by themselves or with
+/// measurements, where neither quantity nor limit names a record: otherwise the protocol knows of
+/// several.
 pub fn fails_alone(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) -> Option<String> {
     let Judging { plan, quantity, members, table, .. } = *judging;
     let by_record = |limit: &Limit| limit.scope.each.contains(&Key::Record);
@@ -18,7 +20,10 @@ pub fn fails_alone(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) 
         return None;
     }
     let simulations = match quantity.evaluation.as_ref() {
-        Evaluation::Values { records: Records::Of(Chosen { side: Side::Simulated, record: None }), .. } => names_of(members),
+        Evaluation::Values {
+            records: Records::Of(Chosen { side: Side::Simulated, record: None }),
+            ..
+        } => names_of(members),
         evaluation if evaluation.pairing() == Some(Pairing::SIDES) => simulations(plan, table),
         _ => return None,
     };
@@ -50,9 +55,14 @@ fn names_of(members: &[Member<'_>]) -> BTreeSet<String> {
 /// The names of the simulations, if there are several.
 fn simulations(plan: &Plan, table: &Table<'_>) -> BTreeSet<String> {
     let mut names = BTreeSet::new();
-    let quantities = plan.quantities.iter().zip(table).filter(|(quantity, _)| quantity.evaluation.pairing() == Some(Pairing::SIDES));
+    let quantities = plan
+        .quantities
+        .iter()
+        .zip(table)
+        .filter(|(quantity, _)| quantity.evaluation.pairing() == Some(Pairing::SIDES));
     for (_, members) in quantities {
-        // With several of one side only, records have the names of that side: of the simulation, if the simulated values differ.
+        // With several of one side only, records have the names of that side: of the simulation, if
+        // the simulated values differ.
         let mut seen: BTreeMap<(&str, usize, usize), u64> = BTreeMap::new();
         let mut differ = false;
         for member in members.iter().copied().flatten() {
@@ -60,7 +70,9 @@ fn simulations(plan: &Plan, table: &Table<'_>) -> BTreeSet<String> {
             if let Some((simulation, _)) = record.split_once(", ") {
                 names.insert(simulation.to_string());
             } else if let Some(value) = row.simulated {
-                let first = seen.entry((&member.unit.name, row.position, row.which)).or_insert(value.to_bits());
+                let first = seen
+                    .entry((&member.unit.name, row.position, row.which))
+                    .or_insert(value.to_bits());
                 differ |= *first != value.to_bits();
             }
         }

@@ -1,4 +1,5 @@
-//! Findings about the vehicle data: assumed units, and limits with factors that depend on these data.
+//! Findings about the vehicle data: assumed units, and limits with factors that depend on these
+//! data.
 
 use super::facts::{Facts, Known, Vehicle, is_dimensioned, vehicle_item};
 use crate::check::evaluate::{flag, number};
@@ -12,7 +13,12 @@ const LIMIT_FACTOR: &str = "limit-factor";
 
 /// Findings about the vehicle data; none of them changes the verdict.
 pub fn findings(plan: &Plan, facts: &Facts, quantities: &[QuantityResult]) -> Vec<Finding> {
-    facts.vehicles.iter().filter_map(|vehicle| assumed(plan, vehicle)).chain(multiplied(quantities)).collect()
+    facts
+        .vehicles
+        .iter()
+        .filter_map(|vehicle| assumed(plan, vehicle))
+        .chain(multiplied(quantities))
+        .collect()
 }
 
 /// One finding for all numbers without a unit whose size depends on one.
@@ -24,12 +30,20 @@ fn assumed(plan: &Plan, vehicle: &Vehicle) -> Option<Finding> {
         .filter(|(datum, (_, assumed))| **assumed && is_dimensioned(&datum.kind))
         .map(|(datum, (value, _))| {
             let item = vehicle_item(datum, value);
-            format!("{} = {}{}", datum.key, item.value, item.unit.map_or(String::new(), |unit| format!(" {unit}")))
+            format!(
+                "{} = {}{}",
+                datum.key,
+                item.value,
+                item.unit.map_or(String::new(), |unit| format!(" {unit}"))
+            )
         })
         .collect();
     (!bare.is_empty()).then(|| {
         let of = vehicle.of.as_ref().map_or_else(String::new, |of| format!(" of {of}"));
-        let says = format!("the vehicle file{of} states no unit; read in the unit of the protocol: {}", bare.join(", "));
+        let says = format!(
+            "the vehicle file{of} states no unit; read in the unit of the protocol: {}",
+            bare.join(", ")
+        );
         Finding::note(UNIT_ASSUMED, says)
     })
 }
@@ -47,7 +61,12 @@ fn multiplied(quantities: &[QuantityResult]) -> Vec<Finding> {
         }
     }
     let finding = |(factor, of): (&LimitFactor, Vec<&str>)| {
-        let says = format!("the limits of {} are {}, because {}", of.join(", "), times(factor.by), factor.because);
+        let says = format!(
+            "the limits of {} are {}, because {}",
+            of.join(", "),
+            times(factor.by),
+            factor.because
+        );
         Finding { value: Some(factor.by), ..Finding::note(LIMIT_FACTOR, says) }
     };
     found.into_iter().map(finding).collect()
@@ -83,7 +102,13 @@ fn of_vehicle(plan: &Plan, vehicle: &Vehicle, limit: &Limit) -> Vec<LimitFactor>
 }
 
 /// The parts of a condition that decide its result, in words: `vehicle category is freight`.
-fn reasons(plan: &Plan, vehicle: &Vehicle, condition: &Expr, wanted: bool, found: &mut Vec<String>) {
+fn reasons(
+    plan: &Plan,
+    vehicle: &Vehicle,
+    condition: &Expr,
+    wanted: bool,
+    found: &mut Vec<String>,
+) {
     match &condition.kind {
         Kind::Not(inner) => reasons(plan, vehicle, inner, !wanted, found),
         Kind::Binary(Operator::And | Operator::Or, a, b) => {
@@ -98,7 +123,10 @@ fn reasons(plan: &Plan, vehicle: &Vehicle, condition: &Expr, wanted: bool, found
             vehicle_data(condition, &mut read);
             for index in read {
                 let item = vehicle_item(&plan.vehicle[index], &vehicle.data[index]);
-                let unit = item.unit.filter(|unit| unit != "-").map_or(String::new(), |unit| format!(" {unit}"));
+                let unit = item
+                    .unit
+                    .filter(|unit| unit != "-")
+                    .map_or(String::new(), |unit| format!(" {unit}"));
                 let says = format!("{} is {}{unit}", item.name.to_lowercase(), item.value);
                 if !found.contains(&says) {
                     found.push(says);
@@ -112,11 +140,16 @@ fn reasons(plan: &Plan, vehicle: &Vehicle, condition: &Expr, wanted: bool, found
 fn vehicle_data(expr: &Expr, found: &mut Vec<usize>) {
     match &expr.kind {
         Kind::Vehicle(index) => found.push(*index),
-        Kind::Negative(inner) | Kind::Not(inner) | Kind::Power(inner, _) => vehicle_data(inner, found),
+        Kind::Negative(inner) | Kind::Not(inner) | Kind::Power(inner, _) => {
+            vehicle_data(inner, found)
+        }
         Kind::Binary(_, a, b) => [a, b].into_iter().for_each(|side| vehicle_data(side, found)),
-        Kind::Call(_, arguments) => arguments.iter().for_each(|argument| vehicle_data(argument, found)),
+        Kind::Call(_, arguments) => {
+            arguments.iter().for_each(|argument| vehicle_data(argument, found))
+        }
         Kind::Cases(cases, otherwise) => {
-            let parts = cases.iter().flat_map(|(when, then)| [when, then]).chain(otherwise.as_deref());
+            let parts =
+                cases.iter().flat_map(|(when, then)| [when, then]).chain(otherwise.as_deref());
             parts.for_each(|part| vehicle_data(part, found));
         }
         Kind::Constant(_)

@@ -18,11 +18,13 @@ use crate::graph::{Graph, NodeId};
 use crate::result::{Curve, QuantityResult, Trace, took_part};
 use crate::units::Unit;
 
-/// Number of stretches of a plotted curve. Each keeps its smallest and largest sample, so that no peak is lost.
+/// Number of stretches of a plotted curve. Each keeps its smallest and largest sample, so that no
+/// peak is lost.
 const STRETCHES: usize = 700;
 
-/// Sections of each quantity whose signals a part keeps, the worst first. Sections that the part itself uses may be left out when all
-/// parts are together: copies of other parts, and a reduction. A plot for which nothing was kept is told.
+/// Sections of each quantity whose signals a part keeps, the worst first. Sections that the part
+/// itself uses may be left out when all parts are together: copies of other parts, and a reduction.
+/// A plot for which nothing was kept is told.
 const KEPT: usize = 3;
 
 /// Where the signals of plots come from.
@@ -49,12 +51,15 @@ impl Kept {
     pub fn is_sound(&self) -> bool {
         let sound = |curve: &Curve| curve.x.len() == curve.y.len();
         let Ok(trace) = &self.found else { return true };
-        [&trace.measured, &trace.simulated].into_iter().chain(trace.others.iter().map(|(_, curve)| curve)).all(sound)
+        [&trace.measured, &trace.simulated]
+            .into_iter()
+            .chain(trace.others.iter().map(|(_, curve)| curve))
+            .all(sound)
     }
 }
 
-/// The pair with the largest difference of each quantity, relative to its limits. The worst is first, each signal of a section
-/// once. If a plot cannot be made, a note states the reason.
+/// The pair with the largest difference of each quantity, relative to its limits. The worst is
+/// first, each signal of a section once. If a plot cannot be made, a note states the reason.
 pub fn traces(
     (plan, graph): (&Plan, &Graph),
     units: &[Section],
@@ -64,48 +69,91 @@ pub fn traces(
 ) -> Vec<Result<Trace, String>> {
     let mut picks: Vec<(f64, Pick<'_>)> = Vec::new();
     for (index, quantity) in quantities.iter().enumerate() {
-        let limit = quantity.statistics.iter().filter_map(|statistic| statistic.limit).fold(f64::NAN, f64::max);
+        let limit = quantity
+            .statistics
+            .iter()
+            .filter_map(|statistic| statistic.limit)
+            .fold(f64::NAN, f64::max);
         let scale = if limit > 0.0 { limit } else { 1.0 };
-        let worst = quantity.values.iter().max_by(|a, b| a.difference.abs().total_cmp(&b.difference.abs()));
+        let worst =
+            quantity.values.iter().max_by(|a, b| a.difference.abs().total_cmp(&b.difference.abs()));
         let Some(worst) = worst else { continue };
         let unit = units.iter().position(|unit| unit.name == worst.section);
-        let signal = plan.quantities[index].positions.iter().position(|position| position.name == worst.signal);
+        let signal = plan.quantities[index]
+            .positions
+            .iter()
+            .position(|position| position.name == worst.signal);
         if let (Some(unit), Some(signal)) = (unit, signal) {
             let pick = Pick { quantity: index, unit, signal, record: worst.record.as_deref() };
             picks.push((worst.difference.abs() / scale, pick));
         }
     }
-    picks.sort_by(|(a, first), (b, second)| b.total_cmp(a).then(first.quantity.cmp(&second.quantity)));
+    picks.sort_by(|(a, first), (b, second)| {
+        b.total_cmp(a).then(first.quantity.cmp(&second.quantity))
+    });
     let mut shown = BTreeSet::new();
-    picks.retain(|(_, pick)| shown.insert((graph.quantities[pick.quantity].signals[pick.signal].filtered, pick.unit, pick.record)));
+    picks.retain(|(_, pick)| {
+        shown.insert((
+            graph.quantities[pick.quantity].signals[pick.signal].filtered,
+            pick.unit,
+            pick.record,
+        ))
+    });
     picks.truncate(most);
     let one = |(_, pick): &(f64, Pick<'_>)| {
         let found = match signals {
-            Signals::Of(work) => trace(work, *pick, &|unit, which, wanted| evaluated(work, unit, which, wanted)),
+            Signals::Of(work) => {
+                trace(work, *pick, &|unit, which, wanted| evaluated(work, unit, which, wanted))
+            }
             Signals::Kept(kept) => kept
                 .iter()
-                .find(|kept| (kept.quantity, kept.unit, kept.signal, kept.record.as_deref()) == pick.key())
-                .map_or_else(|| Err("its signals are not in the values".into()), |kept| kept.found.clone()),
+                .find(|kept| {
+                    (kept.quantity, kept.unit, kept.signal, kept.record.as_deref()) == pick.key()
+                })
+                .map_or_else(
+                    || Err("its signals are not in the values".into()),
+                    |kept| kept.found.clone(),
+                ),
         };
-        found.map_err(|why| format!("there is no plot of {} in section {}: {why}", quantities[pick.quantity].id, units[pick.unit].name))
+        found.map_err(|why| {
+            format!(
+                "there is no plot of {} in section {}: {why}",
+                quantities[pick.quantity].id, units[pick.unit].name
+            )
+        })
     };
     picks.par_iter().map(one).collect()
 }
 
-/// The signals that plots of the whole campaign may need from these sections: of each quantity the worst ones.
+/// The signals that plots of the whole campaign may need from these sections: of each quantity the
+/// worst ones.
 pub fn kept(work: &Work<'_>, sections: &[(usize, SectionValues)]) -> Vec<Kept> {
-    let mut units: Vec<Section> = sections.iter().filter_map(|(number, _)| work.units.get(*number).cloned()).collect();
+    let mut units: Vec<Section> =
+        sections.iter().filter_map(|(number, _)| work.units.get(*number).cloned()).collect();
     let values: Vec<SectionValues> = sections.iter().map(|(_, values)| values.clone()).collect();
     // What stops a run stops it when the sections are judged.
-    let _ = requirements::take_over(work.plan, work.facts, &mut units, &values, &[], &mut Vec::new());
+    let _ =
+        requirements::take_over(work.plan, work.facts, &mut units, &values, &[], &mut Vec::new());
     let mut picks: BTreeMap<usize, Vec<Pick<'_>>> = BTreeMap::new();
     for (index, quantity) in work.plan.quantities.iter().enumerate() {
         let mut worst: Vec<(f64, Pick<'_>)> = Vec::new();
-        for (_, (number, values)) in units.iter().zip(sections).filter(|(unit, _)| unit.fault.is_none()) {
+        for (_, (number, values)) in
+            units.iter().zip(sections).filter(|(unit, _)| unit.fault.is_none())
+        {
             let size = |row: &Row| quantity.unit.from_si(row.value).abs();
             let rows = values.rows.get(index).map_or(&[][..], Vec::as_slice);
-            let Some(row) = rows.iter().max_by(|a, b| size(a).total_cmp(&size(b))) else { continue };
-            worst.push((size(row), Pick { quantity: index, unit: *number, signal: row.position, record: row.record.as_deref() }));
+            let Some(row) = rows.iter().max_by(|a, b| size(a).total_cmp(&size(b))) else {
+                continue;
+            };
+            worst.push((
+                size(row),
+                Pick {
+                    quantity: index,
+                    unit: *number,
+                    signal: row.position,
+                    record: row.record.as_deref(),
+                },
+            ));
         }
         // Of equal ones the last, as in the whole campaign.
         worst.reverse();
@@ -120,7 +168,9 @@ pub fn kept(work: &Work<'_>, sections: &[(usize, SectionValues)]) -> Vec<Kept> {
             unit: pick.unit,
             signal: pick.signal,
             record: pick.record.map(str::to_string),
-            found: trace(work, *pick, &|unit, which, wanted| together.evaluated(unit, which, wanted)),
+            found: trace(work, *pick, &|unit, which, wanted| {
+                together.evaluated(unit, which, wanted)
+            }),
         };
         picks.iter().map(one).collect::<Vec<_>>()
     };
@@ -149,17 +199,30 @@ type Signal = Result<Nodes, String>;
 /// Evaluates nodes of a record.
 type Evaluate<'a> = &'a dyn Fn(&Section, WhichRecord, &BTreeSet<NodeId>) -> Signal;
 
-fn evaluated(work: &Work<'_>, unit: &Section, which: WhichRecord, wanted: &BTreeSet<NodeId>) -> Signal {
+fn evaluated(
+    work: &Work<'_>,
+    unit: &Section,
+    which: WhichRecord,
+    wanted: &BTreeSet<NodeId>,
+) -> Signal {
     let known = unit.known(work.facts);
     let evaluate = |opened: &Opened, needed: &BTreeSet<NodeId>| {
         opened.evaluate(work.graph, needed, wanted, &known, work.plan.sections.percentiles, None)
     };
-    let (found, opened) = with_record(work, unit, which, wanted, &known, evaluate).map_err(|fault| fault.says)?;
+    let (found, opened) =
+        with_record(work, unit, which, wanted, &known, evaluate).map_err(|fault| fault.says)?;
     let around = |found: Found| match found {
         Found::Samples(samples) => Found::Samples(opened.around_section(samples)),
         other => other,
     };
-    Ok((found.map_err(|fault| fault.says)?.into_iter().map(|(node, found)| (node, around(found))).collect(), opened.extent))
+    Ok((
+        found
+            .map_err(|fault| fault.says)?
+            .into_iter()
+            .map(|(node, found)| (node, around(found)))
+            .collect(),
+        opened.extent,
+    ))
 }
 
 /// The signals of several plots of a section: each record is read once.
@@ -179,15 +242,19 @@ impl<'a> Together<'a> {
         let mut found = self.found.borrow_mut();
         let of_all = || evaluated(self.work, unit, which, &self.all).ok();
         match found.entry((unit.name.clone(), which)).or_insert_with(of_all) {
-            Some((found, extent)) => Ok((found.iter().filter(|(node, _)| wanted.contains(node)).cloned().collect(), *extent)),
+            Some((found, extent)) => Ok((
+                found.iter().filter(|(node, _)| wanted.contains(node)).cloned().collect(),
+                *extent,
+            )),
             // One of them cannot be evaluated: each by itself.
             None => evaluated(self.work, unit, which, wanted),
         }
     }
 }
 
-/// The signals of a plot: what is plotted, and the signal that a metric uses in place of the axis. A loop is plotted from the signals that
-/// were compared; other signals from the record around the section as well.
+/// The signals of a plot: what is plotted, and the signal that a metric uses in place of the axis.
+/// A loop is plotted from the signals that were compared; other signals from the record around the
+/// section as well.
 fn wanted(work: &Work<'_>, pick: &Pick<'_>) -> Vec<NodeId> {
     let nodes = &work.graph.quantities[pick.quantity].signals[pick.signal];
     match (work.plan.quantities[pick.quantity].evaluation.as_ref(), nodes.over) {
@@ -196,7 +263,8 @@ fn wanted(work: &Work<'_>, pick: &Pick<'_>) -> Vec<NodeId> {
     }
 }
 
-/// The horizontal axis of a plot: the axis of the records, or the signal that the metric uses in its place.
+/// The horizontal axis of a plot: the axis of the records, or the signal that the metric uses in
+/// its place.
 struct Over {
     node: Option<NodeId>,
     name: String,
@@ -220,9 +288,13 @@ fn trace(work: &Work<'_>, pick: Pick<'_>, evaluate: Evaluate<'_>) -> Result<Trac
     let curve_of = |unit: &Section, which: WhichRecord| {
         let (found, extent) = evaluate(unit, which, &wanted)?;
         let of = |node: NodeId| {
-            found
-                .iter()
-                .find_map(|(id, found)| if let (true, Found::Samples(samples)) = (*id == node, found) { Some(samples) } else { None })
+            found.iter().find_map(|(id, found)| {
+                if let (true, Found::Samples(samples)) = (*id == node, found) {
+                    Some(samples)
+                } else {
+                    None
+                }
+            })
         };
         let none = || "the signal has no samples".to_string();
         let samples = of(node).ok_or_else(none)?;
@@ -235,15 +307,26 @@ fn trace(work: &Work<'_>, pick: Pick<'_>, evaluate: Evaluate<'_>) -> Result<Trac
     let name = |which| work.campaign(unit).record_name(which).map(|name| name.as_ref());
     let curve = |unit: &Section, side: Side| {
         let all = work.campaign(unit).records(side.kind());
-        let which = all.into_iter().find(|&which| took_part(record, side == Side::Simulated, name(which)));
-        curve_of(unit, which.ok_or_else(|| format!("there is no {} record of it", side.in_words()))?)
+        let which =
+            all.into_iter().find(|&which| took_part(record, side == Side::Simulated, name(which)));
+        curve_of(
+            unit,
+            which.ok_or_else(|| format!("there is no {} record of it", side.in_words()))?,
+        )
     };
-    let of = |side: Side| -> Result<_, String> { if quantity.evaluation.reads(side) { curve(unit, side).map(Some) } else { Ok(None) } };
-    let original = unit.original.and_then(|original| work.units.get(original)).filter(|_| quantity.evaluation.of_repeats());
+    let of = |side: Side| -> Result<_, String> {
+        if quantity.evaluation.reads(side) { curve(unit, side).map(Some) } else { Ok(None) }
+    };
+    let original = unit
+        .original
+        .and_then(|original| work.units.get(original))
+        .filter(|_| quantity.evaluation.of_repeats());
     let (measured, simulated) = match original {
-        // The original stands in the place of the measurement; distances count from the start of each section.
+        // The original stands in the place of the measurement; distances count from the start of
+        // each section.
         Some(original) => {
-            let (repeat, (mut first, extent)) = (curve(unit, Side::Measured)?, curve(original, Side::Measured)?);
+            let (repeat, (mut first, extent)) =
+                (curve(unit, Side::Measured)?, curve(original, Side::Measured)?);
             if over.node.is_none() {
                 let shift = over.unit.from_si(repeat.1.0) - over.unit.from_si(extent.0);
                 first.x.iter_mut().for_each(|x| *x += shift);
@@ -253,8 +336,15 @@ fn trace(work: &Work<'_>, pick: Pick<'_>, evaluate: Evaluate<'_>) -> Result<Trac
         None => (of(Side::Measured)?, of(Side::Simulated)?),
     };
     let mut others = Vec::new();
-    if let Evaluation::Values { records: Records::Spread { of, .. }, .. } = quantity.evaluation.as_ref() {
-        for which in work.campaign(unit).records(of.side.kind()).into_iter().filter(|&which| name(which) != record) {
+    if let Evaluation::Values { records: Records::Spread { of, .. }, .. } =
+        quantity.evaluation.as_ref()
+    {
+        for which in work
+            .campaign(unit)
+            .records(of.side.kind())
+            .into_iter()
+            .filter(|&which| name(which) != record)
+        {
             others.push((name(which).unwrap_or_default().to_string(), curve_of(unit, which)?.0));
         }
     }
@@ -263,7 +353,10 @@ fn trace(work: &Work<'_>, pick: Pick<'_>, evaluate: Evaluate<'_>) -> Result<Trac
     let (measured, simulated) = (of_curve(measured), of_curve(simulated));
     let (start, end) = match over.node {
         None => (over.unit.from_si(extent.0), over.unit.from_si(extent.1)),
-        Some(_) => measured.x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x))),
+        Some(_) => measured
+            .x
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x))),
     };
     Ok(Trace {
         quantity: quantity.id.clone(),

@@ -14,11 +14,13 @@ pub enum Trial {
     Disturbed(Disturbance),
     /// Every channel of both sides is twice as large: tells whether a metric is relative.
     Doubled,
-    /// The measurement in the place of the simulation and the other way round: tells whether a metric treats both alike.
+    /// The measurement in the place of the simulation and the other way round: tells whether a
+    /// metric treats both alike.
     Exchanged,
 }
 
-/// A disturbance of size x changes the measured samples of a section by x times the standard deviation of each channel, as an rms.
+/// A disturbance of size x changes the measured samples of a section by x times the standard
+/// deviation of each channel, as an rms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disturbance {
     pub kind: Kind,
@@ -60,16 +62,29 @@ impl Trial {
     ///
     /// # Errors
     /// No shift makes as large a change.
-    pub fn apply(self, section: &str, record: &mut Record, axes: &[String], rows: Range<usize>) -> Result<(), String> {
+    pub fn apply(
+        self,
+        section: &str,
+        record: &mut Record,
+        axes: &[String],
+        rows: Range<usize>,
+    ) -> Result<(), String> {
         let channels = record.columns.iter_mut().filter(|column| !axes.contains(&column.name));
         match self {
             Self::AsRecorded | Self::Exchanged => {}
-            Self::Doubled => channels.for_each(|column| column.values.iter_mut().for_each(|value| *value *= 2.0)),
+            Self::Doubled => {
+                channels.for_each(|column| column.values.iter_mut().for_each(|value| *value *= 2.0))
+            }
             Self::Disturbed(Disturbance { kind: Kind::Shift, size }) => {
                 let mut channels: Vec<_> = channels.collect();
                 let scatter: Vec<(&[f64], f64)> = channels
                     .iter()
-                    .filter_map(|column| Some((column.values.as_slice(), disturb::deviation(&column.values[rows.clone()])?)))
+                    .filter_map(|column| {
+                        Some((
+                            column.values.as_slice(),
+                            disturb::deviation(&column.values[rows.clone()])?,
+                        ))
+                    })
                     .collect();
                 if scatter.is_empty() {
                     return Ok(());
@@ -77,24 +92,35 @@ impl Trial {
                 let delay = disturb::delay_of_size(&scatter, rows, size).ok_or_else(|| {
                     format!("no shift up to half of section {section} changes its channels by {size} standard deviations")
                 })?;
-                channels.iter_mut().for_each(|column| column.values = disturb::delayed(&column.values, delay));
+                channels
+                    .iter_mut()
+                    .for_each(|column| column.values = disturb::delayed(&column.values, delay));
             }
             Self::Disturbed(Disturbance { kind, size }) => {
                 for column in channels {
                     // A constant channel has no scatter to measure a change by.
-                    let Some(deviation) = disturb::deviation(&column.values[rows.clone()]) else { continue };
+                    let Some(deviation) = disturb::deviation(&column.values[rows.clone()]) else {
+                        continue;
+                    };
                     let change = size * deviation;
                     match kind {
                         Kind::Gain => {
-                            let factor = 1.0 + change / disturb::root_mean_square(&column.values[rows.clone()]);
+                            let factor = 1.0
+                                + change / disturb::root_mean_square(&column.values[rows.clone()]);
                             column.values.iter_mut().for_each(|value| *value *= factor);
                         }
                         Kind::Noise => {
                             let stream = disturb::stream([section, column.name.as_str()]);
                             let noise = disturb::noise(stream, column.values.len(), rows.clone());
-                            column.values.iter_mut().zip(noise).for_each(|(value, noise)| *value += change * noise);
+                            column
+                                .values
+                                .iter_mut()
+                                .zip(noise)
+                                .for_each(|(value, noise)| *value += change * noise);
                         }
-                        Kind::Offset | Kind::Shift => column.values.iter_mut().for_each(|value| *value += change),
+                        Kind::Offset | Kind::Shift => {
+                            column.values.iter_mut().for_each(|value| *value += change)
+                        }
                     }
                 }
             }

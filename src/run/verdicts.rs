@@ -24,7 +24,9 @@ pub struct Decided {
 
 impl Default for Decided {
     fn default() -> Self {
-        Self::not_assessable(vec!["the graph ends without a verdict; this is an error of the program".into()])
+        Self::not_assessable(vec![
+            "the graph ends without a verdict; this is an error of the program".into(),
+        ])
     }
 }
 
@@ -38,7 +40,8 @@ impl Decided {
     }
 }
 
-/// One result for each verdict of the plan. They run in the order of their nodes, so that each comes after those it uses.
+/// One result for each verdict of the plan. They run in the order of their nodes, so that each
+/// comes after those it uses.
 pub fn decide(plan: &Plan, graph: &Graph, given: &Given<'_>) -> Vec<Decided> {
     let mut order: Vec<usize> = (0..graph.verdicts.len()).collect();
     order.sort_by_key(|&at| graph.verdicts[at]);
@@ -48,7 +51,10 @@ pub fn decide(plan: &Plan, graph: &Graph, given: &Given<'_>) -> Vec<Decided> {
             decided[at] = match decision.as_ref() {
                 Decision::Limits { rule, quantities } => by_limits(plan, given, *rule, quantities),
                 Decision::Verdicts(over) => by_verdicts(plan, over, &decided),
-                Decision::Person(person) => Decided { outcome: Outcome::Open, reasons: vec![format!("to be judged by {person}")] },
+                Decision::Person(person) => Decided {
+                    outcome: Outcome::Open,
+                    reasons: vec![format!("to be judged by {person}")],
+                },
             };
         }
     }
@@ -97,9 +103,11 @@ fn by_limits(plan: &Plan, given: &Given<'_>, rule: Rule, about: &[usize]) -> Dec
     if !missing.is_empty() {
         return Decided::not_assessable(missing);
     }
-    let holding = quantities().filter(|quantity| quantity.holds == Some(true) && !without(quantity)).count();
+    let holding =
+        quantities().filter(|quantity| quantity.holds == Some(true) && !without(quantity)).count();
     let limits_holding: usize = quantities().map(limits_holding).sum();
-    let mut reasons: Vec<String> = about.iter().flat_map(|&at| given.fails[at].iter().cloned()).collect();
+    let mut reasons: Vec<String> =
+        about.iter().flat_map(|&at| given.fails[at].iter().cloned()).collect();
     let holds = match rule {
         Rule::EveryLimit => reasons.is_empty(),
         Rule::AtLeastQuantities(needed) => holding >= needed,
@@ -110,10 +118,18 @@ fn by_limits(plan: &Plan, given: &Given<'_>, rule: Rule, about: &[usize]) -> Dec
     }
     match rule {
         Rule::EveryLimit => {}
-        Rule::AtLeastQuantities(needed) => {
-            reasons.insert(0, format!("{} of {} meet their criteria; at least {needed} required", holding, count(about.len(), "quantity")))
-        }
-        Rule::AtLeastLimits(needed) => reasons.insert(0, format!("{} met; at least {needed} required", count(limits_holding, "limit"))),
+        Rule::AtLeastQuantities(needed) => reasons.insert(
+            0,
+            format!(
+                "{} of {} meet their criteria; at least {needed} required",
+                holding,
+                count(about.len(), "quantity")
+            ),
+        ),
+        Rule::AtLeastLimits(needed) => reasons.insert(
+            0,
+            format!("{} met; at least {needed} required", count(limits_holding, "limit")),
+        ),
     }
     Decided { outcome: Outcome::DoesNotHold, reasons }
 }
@@ -123,9 +139,13 @@ fn without_criterion(plan: &Plan, about: &[usize]) -> &'static str {
     let all = about.len() == plan.quantities.len();
     match (about.iter().all(|&at| plan.quantities[at].limits.is_empty()), all) {
         (true, true) => "the protocol states no acceptance criterion",
-        (false, true) => "no acceptance criterion of the protocol applies to this vehicle and its sections",
+        (false, true) => {
+            "no acceptance criterion of the protocol applies to this vehicle and its sections"
+        }
         (true, false) => "its quantities have no acceptance criterion",
-        (false, false) => "no acceptance criterion of its quantities applies to this vehicle and its sections",
+        (false, false) => {
+            "no acceptance criterion of its quantities applies to this vehicle and its sections"
+        }
     }
 }
 
@@ -133,8 +153,11 @@ fn without_criterion(plan: &Plan, about: &[usize]) -> &'static str {
 fn by_verdicts(plan: &Plan, over: &Over, decided: &[Decided]) -> Decided {
     let title = |at: usize| plan.verdicts[at].title.as_str();
     let undecided = over.verdicts().into_iter().filter(|&at| decided[at].outcome.holds().is_none());
-    let missing: Vec<String> =
-        undecided.flat_map(|at| decided[at].reasons.iter().map(move |reason| format!("{}: {reason}", title(at)))).collect();
+    let missing: Vec<String> = undecided
+        .flat_map(|at| {
+            decided[at].reasons.iter().map(move |reason| format!("{}: {reason}", title(at)))
+        })
+        .collect();
     if !missing.is_empty() {
         return Decided::not_assessable(missing);
     }
@@ -146,11 +169,16 @@ fn by_verdicts(plan: &Plan, over: &Over, decided: &[Decided]) -> Decided {
         other => vec![other],
     };
     let reason = |part: &Over| {
-        let found = |at: usize| format!("{}: {}", title(at), decided[at].outcome.word(&plan.verdicts[at].words));
+        let found = |at: usize| {
+            format!("{}: {}", title(at), decided[at].outcome.word(&plan.verdicts[at].words))
+        };
         let found: Vec<String> = part.verdicts().into_iter().map(found).collect();
         format!("{}; required: {}", found.join(", "), in_words(part, plan))
     };
-    Decided { outcome: Outcome::DoesNotHold, reasons: parts.into_iter().filter(|part| !holds(part, decided)).map(reason).collect() }
+    Decided {
+        outcome: Outcome::DoesNotHold,
+        reasons: parts.into_iter().filter(|part| !holds(part, decided)).map(reason).collect(),
+    }
 }
 
 /// Whether the condition holds, for verdicts that are all given.
@@ -179,7 +207,10 @@ fn in_words(over: &Over, plan: &Plan) -> String {
     match over {
         Over::Holds(at) => format!("{} holds", name(at)),
         Over::Same(one, other) => format!("{} is {}", name(one), name(other)),
-        Over::AtLeast(needed, of) => format!("at least {needed} of {} hold", of.iter().map(name).collect::<Vec<_>>().join(", ")),
+        Over::AtLeast(needed, of) => format!(
+            "at least {needed} of {} hold",
+            of.iter().map(name).collect::<Vec<_>>().join(", ")
+        ),
         Over::Not(inner) => match inner.as_ref() {
             Over::Holds(at) => format!("{} does not hold", name(at)),
             Over::Same(one, other) => format!("{} is not {}", name(one), name(other)),
@@ -190,13 +221,18 @@ fn in_words(over: &Over, plan: &Plan) -> String {
     }
 }
 
-/// Number of limits of a quantity that are met. A limit of several groups is met if all groups meet it, and counts once.
+/// Number of limits of a quantity that are met. A limit of several groups is met if all groups meet
+/// it, and counts once.
 fn limits_holding(quantity: &QuantityResult) -> usize {
     let mut limits: Vec<(&str, &str, usize, bool)> = Vec::new();
     for one in &quantity.statistics {
-        let zone = one.scope.split(", ").next().filter(|first| first.starts_with("zone ")).unwrap_or("");
+        let zone =
+            one.scope.split(", ").next().filter(|first| first.starts_with("zone ")).unwrap_or("");
         let holds = one.holds == Some(true);
-        match limits.iter_mut().find(|(name, of, line, _)| (*name, *of, *line) == (&one.name, zone, one.rule.line)) {
+        match limits
+            .iter_mut()
+            .find(|(name, of, line, _)| (*name, *of, *line) == (&one.name, zone, one.rule.line))
+        {
             Some((.., all)) => *all &= holds,
             None => limits.push((&one.name, zone, one.rule.line, holds)),
         }

@@ -20,10 +20,17 @@ pub struct Point {
     pub group: Vec<String>,
 }
 
-/// For each domain of the plan, the points of the application tables. Every cell that a domain needs must have a value.
-pub fn points(plan: &Plan, campaigns: Campaigns<'_>, facts: &Facts, problems: &mut Problems) -> Vec<Vec<Point>> {
+/// For each domain of the plan, the points of the application tables. Every cell that a domain
+/// needs must have a value.
+pub fn points(
+    plan: &Plan,
+    campaigns: Campaigns<'_>,
+    facts: &Facts,
+    problems: &mut Problems,
+) -> Vec<Vec<Point>> {
     let Some(first) = plan.domains.first() else { return Vec::new() };
-    let tables: Vec<(&Campaign, &Table)> = campaigns.iter().filter_map(|one| Some((one, one.application.as_ref()?))).collect();
+    let tables: Vec<(&Campaign, &Table)> =
+        campaigns.iter().filter_map(|one| Some((one, one.application.as_ref()?))).collect();
     if tables.is_empty() {
         problems.push(
             Problem::error("key-missing", format!("the campaign has no `application`, the wanted operation of domain `{}`", first.name))
@@ -36,13 +43,19 @@ pub fn points(plan: &Plan, campaigns: Campaigns<'_>, facts: &Facts, problems: &m
     let mut missing = false;
     for index in plan.domains.iter().flat_map(columns).collect::<std::collections::BTreeSet<_>>() {
         for (_, table) in &tables {
-            missing |= column_missing(&plan.columns[index], (table, "table of wanted operation"), problems);
+            missing |= column_missing(
+                &plan.columns[index],
+                (table, "table of wanted operation"),
+                problems,
+            );
         }
     }
     if missing {
         return Vec::new();
     }
-    let mut of = |domain| tables.iter().flat_map(|table| of_domain(plan, domain, *table, facts, problems)).collect();
+    let mut of = |domain| {
+        tables.iter().flat_map(|table| of_domain(plan, domain, *table, facts, problems)).collect()
+    };
     plan.domains.iter().map(&mut of).collect()
 }
 
@@ -58,11 +71,23 @@ pub(super) fn columns(domain: &Domain) -> Vec<usize> {
     found
 }
 
-fn of_domain(plan: &Plan, domain: &Domain, (campaign, table): (&Campaign, &Table), facts: &Facts, problems: &mut Problems) -> Vec<Point> {
+fn of_domain(
+    plan: &Plan,
+    domain: &Domain,
+    (campaign, table): (&Campaign, &Table),
+    facts: &Facts,
+    problems: &mut Problems,
+) -> Vec<Point> {
     let needed = columns(domain);
     let mut found = Vec::new();
     for (row, name) in table.names().enumerate() {
-        let cells = Row { table, row, campaign: &campaign.short_name.value, file: campaign.inside(&table.source.name), run: None };
+        let cells = Row {
+            table,
+            row,
+            campaign: &campaign.short_name.value,
+            file: campaign.inside(&table.source.name),
+            run: None,
+        };
         let mut refused = None;
         let mut value = |index: usize| {
             if !needed.contains(&index) {
@@ -70,13 +95,16 @@ fn of_domain(plan: &Plan, domain: &Domain, (campaign, table): (&Campaign, &Table
             }
             cells.cell(&plan.columns[index]).map_err(|fault| {
                 if fault.ill_formed && refused.is_none() {
-                    let cell = table.column(&plan.columns[index].key).and_then(|column| table.cell(row, column));
+                    let cell = table
+                        .column(&plan.columns[index].key)
+                        .and_then(|column| table.cell(row, column));
                     refused = Some(wrong(cell.unwrap_or(name), &fault.says));
                 }
                 fault.says
             })
         };
-        let columns: Vec<Result<Scalar, String>> = (0..plan.columns.len()).map(&mut value).collect();
+        let columns: Vec<Result<Scalar, String>> =
+            (0..plan.columns.len()).map(&mut value).collect();
         if let Some(problem) = refused {
             problems.push(problem.also(&domain.span, "the domain"));
             continue;
@@ -94,20 +122,38 @@ fn wrong(cell: &Cell, says: &str) -> Problem {
 }
 
 /// A point, which must be the same for every vehicle.
-fn point(domain: &Domain, name: &Cell, columns: &[Result<Scalar, String>], facts: &Facts) -> Result<Point, String> {
-    let mut of_vehicles = facts.vehicles.iter().map(|vehicle| of_vehicle(domain, name, columns, vehicle));
+fn point(
+    domain: &Domain,
+    name: &Cell,
+    columns: &[Result<Scalar, String>],
+    facts: &Facts,
+) -> Result<Point, String> {
+    let mut of_vehicles =
+        facts.vehicles.iter().map(|vehicle| of_vehicle(domain, name, columns, vehicle));
     let first = of_vehicles.next().ok_or("there is no vehicle")??;
     for other in of_vehicles {
         if other? != first {
-            return Err(format!("it depends on the vehicle, and there are {}", facts.vehicles.len()));
+            return Err(format!(
+                "it depends on the vehicle, and there are {}",
+                facts.vehicles.len()
+            ));
         }
     }
     Ok(first)
 }
 
-fn of_vehicle(domain: &Domain, name: &Cell, columns: &[Result<Scalar, String>], vehicle: &Vehicle) -> Result<Point, String> {
+fn of_vehicle(
+    domain: &Domain,
+    name: &Cell,
+    columns: &[Result<Scalar, String>],
+    vehicle: &Vehicle,
+) -> Result<Point, String> {
     let known = Known { columns: Some(columns), ..Known::vehicle(vehicle) };
-    let values = domain.over.iter().map(|coordinate| value(&coordinate.expr, &coordinate.name, &known)).collect::<Result<_, _>>()?;
+    let values = domain
+        .over
+        .iter()
+        .map(|coordinate| value(&coordinate.expr, &coordinate.name, &known))
+        .collect::<Result<_, _>>()?;
     let group = domain.each.iter().map(|index| word(&columns[*index])).collect::<Result<_, _>>()?;
     Ok(Point { name: name.value.clone(), values, group })
 }

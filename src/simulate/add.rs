@@ -9,7 +9,8 @@ use crate::problem::Problem;
 pub struct Plan {
     /// Parameters of the simulator, in its units.
     pub settings: Vec<(String, f64)>,
-    /// Before the measuring chain, in the order chosen: formulas of an effect, with the values of all its parameters.
+    /// Before the measuring chain, in the order chosen: formulas of an effect, with the values of
+    /// all its parameters.
     pub formulas: Vec<(Vec<Formula>, Vec<f64>)>,
     /// In the order of the measuring chain.
     pub operators: Vec<(Operator, f64, Vec<String>)>,
@@ -28,40 +29,57 @@ impl Plan {
     ///
     /// # Errors
     /// The catalogue does not define an effect for this simulator.
-    pub fn new(catalogue: &Catalogue, effects: &[Applied], section: &Section, simulator: Option<&str>) -> Result<Self, Problem> {
+    pub fn new(
+        catalogue: &Catalogue,
+        effects: &[Applied],
+        section: &Section,
+        simulator: Option<&str>,
+    ) -> Result<Self, Problem> {
         let mut plan = Self::default();
         for applied in effects {
-            let here = |confined: &crate::effects::Confined| section.fact(&confined.column).is_some_and(|value| confined.has(value));
+            let here = |confined: &crate::effects::Confined| {
+                section.fact(&confined.column).is_some_and(|value| confined.has(value))
+            };
             let Some(effect) = catalogue.effect(&applied.effect) else { continue };
             if !applied.confined.as_ref().is_none_or(here) {
                 continue;
             }
             if let Action::Formulas(formulas) = &effect.action {
                 let neutral = |one: &Parameter| one.neutral.unwrap_or(one.default);
-                let values: Vec<f64> =
-                    effect.parameters.iter().map(|one| applied.value(&one.name).unwrap_or_else(|| neutral(one))).collect();
-                if values.iter().zip(&effect.parameters).any(|(value, one)| *value != neutral(one)) {
+                let values: Vec<f64> = effect
+                    .parameters
+                    .iter()
+                    .map(|one| applied.value(&one.name).unwrap_or_else(|| neutral(one)))
+                    .collect();
+                if values.iter().zip(&effect.parameters).any(|(value, one)| *value != neutral(one))
+                {
                     plan.formulas.push((formulas.clone(), values));
                 }
                 continue;
             }
             for parameter in &effect.parameters {
                 let Some(value) = applied.value(&parameter.name) else { continue };
-                // Neutral values are set as well, since the vehicle file may differ. Operations with neutral values are skipped.
+                // Neutral values are set as well, since the vehicle file may differ. Operations
+                // with neutral values are skipped.
                 if parameter.neutral == Some(value) && effect.action != Action::Simulator {
                     continue;
                 }
                 match (&effect.action, simulator) {
                     (Action::Formulas(_), _) => {}
-                    (Action::Signals(operator, _), _) => plan.operators.push((*operator, value, applied.channels.clone())),
+                    (Action::Signals(operator, _), _) => {
+                        plan.operators.push((*operator, value, applied.channels.clone()))
+                    }
                     (Action::Simulator, None) => {
-                        let (key, factor) =
-                            parameter.model.as_ref().ok_or_else(|| unsaid(&effect.name, &parameter.name, "the built-in model"))?;
+                        let (key, factor) = parameter.model.as_ref().ok_or_else(|| {
+                            unsaid(&effect.name, &parameter.name, "the built-in model")
+                        })?;
                         plan.set(key, value * factor);
                     }
                     (Action::Simulator, Some(simulator)) => {
-                        let found = parameter.simulators.iter().find(|(name, ..)| name == simulator);
-                        let (_, key, factor) = found.ok_or_else(|| unsaid(&effect.name, &parameter.name, simulator))?;
+                        let found =
+                            parameter.simulators.iter().find(|(name, ..)| name == simulator);
+                        let (_, key, factor) = found
+                            .ok_or_else(|| unsaid(&effect.name, &parameter.name, simulator))?;
                         plan.set(key, value * factor);
                     }
                 }
@@ -79,7 +97,11 @@ impl Plan {
     /// Recorded minus true position, in the unit of the axis.
     #[must_use]
     pub fn shift(&self) -> f64 {
-        self.operators.iter().filter(|(operator, ..)| *operator == Operator::Shift).map(|(_, value, _)| value).sum()
+        self.operators
+            .iter()
+            .filter(|(operator, ..)| *operator == Operator::Shift)
+            .map(|(_, value, _)| value)
+            .sum()
     }
 
     /// Applies the operations of the measuring chain to the signals of a section.
@@ -87,15 +109,22 @@ impl Plan {
     /// # Errors
     /// An operation cannot be applied; the message names the section.
     pub fn operate(&self, signals: &mut Signals, section: &Section) -> Result<(), Problem> {
-        let seed = section.name().bytes().fold(0xCBF2_9CE4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3));
+        let seed = section.name().bytes().fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3)
+        });
         for (formulas, values) in &self.formulas {
-            signals
-                .compute(formulas, values)
-                .map_err(|says| Problem::error("operator", format!("section `{}`: {says}", section.name())).at(&section.cell.span))?;
+            signals.compute(formulas, values).map_err(|says| {
+                Problem::error("operator", format!("section `{}`: {says}", section.name()))
+                    .at(&section.cell.span)
+            })?;
         }
         for (operator, value, channels) in &self.operators {
             signals.apply(*operator, *value, channels, seed).map_err(|says| {
-                Problem::error("operator", format!("section `{}`: {}: {says}", section.name(), operator.name())).at(&section.cell.span)
+                Problem::error(
+                    "operator",
+                    format!("section `{}`: {}: {says}", section.name(), operator.name()),
+                )
+                .at(&section.cell.span)
             })?;
         }
         Ok(())
@@ -114,27 +143,38 @@ pub fn check_confined(effects: &[Applied], sections: &[Section]) -> Vec<Problem>
             if sections.iter().any(|section| section.fact(&confined.column) == Some(value)) {
                 continue;
             }
-            let says = format!("`{}` is confined to the {} `{value}`, but no section has this value", applied.effect, confined.column);
-            let mut known: Vec<&str> = sections.iter().filter_map(|section| section.fact(&confined.column)).collect();
+            let says = format!(
+                "`{}` is confined to the {} `{value}`, but no section has this value",
+                applied.effect, confined.column
+            );
+            let mut known: Vec<&str> =
+                sections.iter().filter_map(|section| section.fact(&confined.column)).collect();
             known.sort_unstable();
             known.dedup();
             problems.push(Problem::error("no-such-section", says).suggest(value, known));
         }
         if confined.values.is_empty() {
             let says = format!("`{}` is confined to no {}", applied.effect, confined.column);
-            problems.push(Problem::error("no-such-section", says).help("write `in zones 3, 4` or `in sections S01, S02`"));
+            problems.push(
+                Problem::error("no-such-section", says)
+                    .help("write `in zones 3, 4` or `in sections S01, S02`"),
+            );
         }
     }
     problems
 }
 
 fn unsaid(effect: &str, parameter: &str, simulator: &str) -> Problem {
-    Problem::error("not-simulated", format!("the catalogue does not define how {simulator} adds `{parameter}` of `{effect}`"))
-        .help("name the simulator's parameter under `simulators` or `model` of the effect's parameter")
+    Problem::error(
+        "not-simulated",
+        format!("the catalogue does not define how {simulator} adds `{parameter}` of `{effect}`"),
+    )
+    .help("name the simulator's parameter under `simulators` or `model` of the effect's parameter")
 }
 
-/// Simulates a section with effects. With `recorded`, a simulation from elsewhere, the effects are an increment: recorded + (simulator with
-/// effects - simulator without), so that differences between the two simulators cancel.
+/// Simulates a section with effects. With `recorded`, a simulation from elsewhere, the effects are
+/// an increment: recorded + (simulator with effects - simulator without), so that differences
+/// between the two simulators cancel.
 ///
 /// # Errors
 /// Of the simulator, of the catalogue (see [`Plan::new`]) and of operations.
@@ -146,10 +186,14 @@ pub fn simulate(
     recorded: Option<&Signals>,
 ) -> Result<Simulated, Problem> {
     let plan = Plan::new(catalogue, effects, section, simulator.catalogue_name())?;
-    let run = |settings: &[(String, f64)], shift: f64| simulator.run(&Task { section, settings, shift, inside_only: false });
+    let run = |settings: &[(String, f64)], shift: f64| {
+        simulator.run(&Task { section, settings, shift, inside_only: false })
+    };
     let mut made = match recorded {
         None => Simulated { signals: run(&plan.settings, plan.shift())?, runs: 1 },
-        Some(recorded) if plan.settings.is_empty() => Simulated { signals: recorded.clone(), runs: 0 },
+        Some(recorded) if plan.settings.is_empty() => {
+            Simulated { signals: recorded.clone(), runs: 0 }
+        }
         Some(recorded) => {
             let (with, without) = (run(&plan.settings, 0.0)?, run(&[], 0.0)?);
             Simulated { signals: incremented(recorded, &with, &without), runs: 2 }
@@ -159,13 +203,19 @@ pub fn simulate(
     Ok(made)
 }
 
-/// `recorded + (with - without)`, by position; channels that the simulator does not have are unchanged.
+/// `recorded + (with - without)`, by position; channels that the simulator does not have are
+/// unchanged.
 #[must_use]
 pub fn incremented(recorded: &Signals, with: &Signals, without: &Signals) -> Signals {
     let mut sum = recorded.clone();
     for channel in &mut sum.channels {
-        let (Some(with), Some(base)) = (with.channel(&channel.name), without.channel(&channel.name)) else { continue };
-        let difference: Vec<f64> = with.values.iter().zip(&base.values).map(|(with, base)| with - base).collect();
+        let (Some(with), Some(base)) =
+            (with.channel(&channel.name), without.channel(&channel.name))
+        else {
+            continue;
+        };
+        let difference: Vec<f64> =
+            with.values.iter().zip(&base.values).map(|(with, base)| with - base).collect();
         let mut at = 0;
         for (x, value) in recorded.axis.iter().zip(&mut channel.values) {
             *value += interpolated(&without.axis, &difference, *x, &mut at);

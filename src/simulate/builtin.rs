@@ -10,7 +10,8 @@ use crate::disk;
 use crate::effects::{Channel, Signals};
 use crate::model::integrate::Steps;
 use crate::model::{
-    self, CHANNELS, PARAMETERS, Parameter, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, VehicleFault, Window,
+    self, CHANNELS, PARAMETERS, Parameter, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable,
+    Vehicle, VehicleFault, Window,
 };
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Spanned};
@@ -42,7 +43,8 @@ pub struct Builtin<'a> {
 const MODEL: &str = "reference vehicle model";
 
 impl<'a> Builtin<'a> {
-    /// Whether a campaign is of a vehicle that the model can describe: its vehicle file has a parameter of the model.
+    /// Whether a campaign is of a vehicle that the model can describe: its vehicle file has a
+    /// parameter of the model.
     #[must_use]
     pub fn is_for(campaign: &Campaign) -> bool {
         PARAMETERS.iter().any(|parameter| campaign.vehicle.lookup(parameter.key).is_some())
@@ -52,18 +54,27 @@ impl<'a> Builtin<'a> {
     pub fn new(campaign: &'a Campaign, problems: &mut Problems) -> Option<Self> {
         let vehicle = vehicle(&campaign.vehicle, problems)?;
         if !campaign.has(RecordKind::Track) {
-            let says = "the campaign has no `track`, the folder of track files that the model needs";
+            let says =
+                "the campaign has no `track`, the folder of track files that the model needs";
             let problem = Problem::error("key-missing", says).at(&campaign.tree.span.part(0..0));
             problems.push(misspelt(problem, &campaign.tree, "track"));
             return None;
         }
         let place = |key: &str, default: &str| {
             let node = campaign.vehicle.lookup(key);
-            let written = node.and_then(|node| Some(Spanned::new(node.scalar_text()?.to_string(), node.span.clone())));
-            campaign.place(&written.unwrap_or_else(|| Spanned::new(default.to_string(), campaign.tree.span.part(0..0))))
+            let written = node.and_then(|node| {
+                Some(Spanned::new(node.scalar_text()?.to_string(), node.span.clone()))
+            });
+            campaign.place(&written.unwrap_or_else(|| {
+                Spanned::new(default.to_string(), campaign.tree.span.part(0..0))
+            }))
         };
-        let read = |key: &str, default: &str, needed: bool, problems: &mut Problems| match place(key, default) {
-            Ok(place) if needed || disk::may_be_file(&place.path) => profile(&place.path, &place.shown, problems),
+        let read = |key: &str, default: &str, needed: bool, problems: &mut Problems| match place(
+            key, default,
+        ) {
+            Ok(place) if needed || disk::may_be_file(&place.path) => {
+                profile(&place.path, &place.shown, problems)
+            }
             Ok(_) => None,
             Err(problem) => {
                 problems.push(problem);
@@ -79,7 +90,11 @@ impl<'a> Builtin<'a> {
     #[must_use]
     pub fn integrated(self, steps: Steps) -> Self {
         let step = 1.0 / steps.per_sample as f64;
-        Self { steps, name: format!("{MODEL}, {} with steps of {step} ms or less", steps.method.in_words()), ..self }
+        Self {
+            steps,
+            name: format!("{MODEL}, {} with steps of {step} ms or less", steps.method.in_words()),
+            ..self
+        }
     }
 
     /// The vehicle with some parameters set.
@@ -88,13 +103,19 @@ impl<'a> Builtin<'a> {
         for (key, value) in settings {
             vehicle.set(key, *value).map_err(|fault| match fault {
                 Some(fault) => inadmissible(&fault, &None),
-                None => Problem::error("unknown-parameter", format!("the model has no parameter `{key}`"))
-                    .suggest(key, PARAMETERS.iter().map(|parameter| parameter.key)),
+                None => Problem::error(
+                    "unknown-parameter",
+                    format!("the model has no parameter `{key}`"),
+                )
+                .suggest(key, PARAMETERS.iter().map(|parameter| parameter.key)),
             })?;
         }
         let profile = Profile::new(&self.new, self.worn.as_ref(), &vehicle).ok_or_else(|| {
-            Problem::error("profile", "a worn profile needs a second profile table over the same displacements")
-                .help("put `profile_worn.csv` into the folder of `profile.csv`")
+            Problem::error(
+                "profile",
+                "a worn profile needs a second profile table over the same displacements",
+            )
+            .help("put `profile_worn.csv` into the folder of `profile.csv`")
         })?;
         Ok((vehicle, profile))
     }
@@ -117,7 +138,11 @@ impl Simulator for Builtin<'_> {
     fn run(&self, task: &Task<'_>) -> Result<Signals, Problem> {
         let section = task.section;
         let Some(speed) = section.speed else {
-            return Err(Problem::error("speed-missing", format!("section `{}` has no speed", section.name())).at(&section.cell.span));
+            return Err(Problem::error(
+                "speed-missing",
+                format!("section `{}` has no speed", section.name()),
+            )
+            .at(&section.cell.span));
         };
         let (vehicle, profile) = self.with(task.settings)?;
         let track = track_of(self.campaign, &section.cell)?;
@@ -127,18 +152,30 @@ impl Simulator for Builtin<'_> {
         }
         let window = Window { from: around.from - task.shift, to: around.to - task.shift };
         let setup = Setup { vehicle: &vehicle, profile: &profile, track: &track, speed };
-        made(&setup, window, self.steps)
-            .map_err(|problem| Problem { says: format!("section `{}`: {}", section.name(), problem.says), ..problem })
+        made(&setup, window, self.steps).map_err(|problem| Problem {
+            says: format!("section `{}`: {}", section.name(), problem.says),
+            ..problem
+        })
     }
 }
 
 fn made(setup: &Setup<'_>, window: Window, steps: Steps) -> Result<Signals, Problem> {
-    let record = model::simulate_by(setup, window, steps).map_err(|failure| Problem::error("simulation-failed", failure.to_string()))?;
-    let channels = CHANNELS.iter().zip(record.channels).map(|((name, _), values)| Channel { name: (*name).to_string(), values });
-    Ok(Signals { axis: record.distance, over_time: false, rate: SAMPLING_RATE, channels: channels.collect() })
+    let record = model::simulate_by(setup, window, steps)
+        .map_err(|failure| Problem::error("simulation-failed", failure.to_string()))?;
+    let channels = CHANNELS
+        .iter()
+        .zip(record.channels)
+        .map(|((name, _), values)| Channel { name: (*name).to_string(), values });
+    Ok(Signals {
+        axis: record.distance,
+        over_time: false,
+        rate: SAMPLING_RATE,
+        channels: channels.collect(),
+    })
 }
 
-/// The vehicle of a vehicle file. Numbers may have a unit; otherwise that of the parameter is assumed.
+/// The vehicle of a vehicle file. Numbers may have a unit; otherwise that of the parameter is
+/// assumed.
 pub fn vehicle(tree: &Node, problems: &mut Problems) -> Option<Vehicle> {
     let before = problems.errors();
     let mut values: Vec<(&str, f64)> = Vec::new();
@@ -153,7 +190,8 @@ pub fn vehicle(tree: &Node, problems: &mut Problems) -> Option<Vehicle> {
             match stated(parameter, text) {
                 Ok(number) => values.push((parameter.key, number)),
                 Err(refused) => {
-                    let says = format!("`{}` ({}): {}", parameter.key, parameter.meaning, refused.says);
+                    let says =
+                        format!("`{}` ({}): {}", parameter.key, parameter.meaning, refused.says);
                     let problem = Problem::error("wrong-kind", says).at(&node.span);
                     problems.push(match refused.help {
                         Some(help) => problem.help(help),
@@ -166,19 +204,27 @@ pub fn vehicle(tree: &Node, problems: &mut Problems) -> Option<Vehicle> {
     if problems.errors() > before {
         return None;
     }
-    let number = |key: &str| values.iter().find(|(known, _)| *known == key).map(|(_, value)| *value);
+    let number =
+        |key: &str| values.iter().find(|(known, _)| *known == key).map(|(_, value)| *value);
     match Vehicle::from_values(number) {
         Ok(vehicle) => Some(vehicle),
         Err(faults) => {
             for fault in faults {
                 let key = match fault {
-                    VehicleFault::Missing(parameter) | VehicleFault::Inadmissible(parameter, _) => parameter.key,
+                    VehicleFault::Missing(parameter) | VehicleFault::Inadmissible(parameter, _) => {
+                        parameter.key
+                    }
                 };
-                let problem = inadmissible(&fault, &tree.lookup(key).map(|node| node.span.clone())).or_at(tree);
+                let problem = inadmissible(&fault, &tree.lookup(key).map(|node| node.span.clone()))
+                    .or_at(tree);
                 problems.push(match (&fault, tree.lookup(key)) {
                     (VehicleFault::Missing(parameter), Some(node)) => {
-                        let says =
-                            format!("`{key}` ({}) must be a number in {}, not {}", parameter.meaning, parameter.unit, node.kind_in_words());
+                        let says = format!(
+                            "`{key}` ({}) must be a number in {}, not {}",
+                            parameter.meaning,
+                            parameter.unit,
+                            node.kind_in_words()
+                        );
                         Problem::error("wrong-kind", says).at(&node.span)
                     }
                     (VehicleFault::Missing(_), None) => misspelt(problem, tree, key),
@@ -190,7 +236,8 @@ pub fn vehicle(tree: &Node, problems: &mut Problems) -> Option<Vehicle> {
     }
 }
 
-/// A number of a vehicle file in the unit of the parameter with this key; for an unknown key, without unit.
+/// A number of a vehicle file in the unit of the parameter with this key; for an unknown key,
+/// without unit.
 #[must_use]
 pub fn number_of(node: &Node, key: &str) -> Option<f64> {
     node.number().or_else(|| stated(model::parameter(key)?, node.scalar_text()?).ok())
@@ -206,11 +253,17 @@ fn stated(parameter: &Parameter, text: &str) -> Result<f64, Refused> {
 fn misspelt(problem: Problem, tree: &Node, key: &str) -> Problem {
     let (group, name) = key.rsplit_once('.').unwrap_or(("", key));
     let beside = if group.is_empty() { Some(tree) } else { tree.lookup(group) };
-    let whole = |name: &str| if group.is_empty() { name.to_string() } else { format!("{group}.{name}") };
-    let strangers = beside.map_or(&[][..], Node::entries).iter().filter(|(key, _)| model::parameter(&whole(&key.text)).is_none());
+    let whole =
+        |name: &str| if group.is_empty() { name.to_string() } else { format!("{group}.{name}") };
+    let strangers = beside
+        .map_or(&[][..], Node::entries)
+        .iter()
+        .filter(|(key, _)| model::parameter(&whole(&key.text)).is_none());
     let names: Vec<&str> = strangers.map(|(key, _)| key.text.as_str()).collect();
     match crate::problem::nearest(name, names).and_then(|near| beside?.entry(near)) {
-        Some((near, _)) => problem.at(&near.span).help(format!("is `{}` meant to be `{name}`?", near.text)),
+        Some((near, _)) => {
+            problem.at(&near.span).help(format!("is `{}` meant to be `{name}`?", near.text))
+        }
         None => problem,
     }
 }
@@ -229,10 +282,17 @@ fn inadmissible(fault: &VehicleFault, at: &Option<crate::source::Span>) -> Probl
     let problem = match fault {
         VehicleFault::Missing(parameter) => Problem::error(
             "key-missing",
-            format!("the vehicle has no number `{}` ({}, in {})", parameter.key, parameter.meaning, parameter.unit),
+            format!(
+                "the vehicle has no number `{}` ({}, in {})",
+                parameter.key, parameter.meaning, parameter.unit
+            ),
         ),
         VehicleFault::Inadmissible(parameter, value) => {
-            let says = format!("`{}` is {value}, which is not {}", parameter.key, parameter.admissible.in_words());
+            let says = format!(
+                "`{}` is {value}, which is not {}",
+                parameter.key,
+                parameter.admissible.in_words()
+            );
             Problem::error("range", says)
         }
     };
@@ -242,8 +302,8 @@ fn inadmissible(fault: &VehicleFault, at: &Option<crate::source::Span>) -> Probl
     }
 }
 
-/// Simulates a single vehicle over the whole of a track, without a campaign. `profile.csv` is in the folder of the vehicle file, unless
-/// that names another file.
+/// Simulates a single vehicle over the whole of a track, without a campaign. `profile.csv` is in
+/// the folder of the vehicle file, unless that names another file.
 ///
 /// # Errors
 /// All faults of the files, or the run diverges.
@@ -261,29 +321,44 @@ pub fn single(
         path.parent().unwrap_or(Path::new("")).join(name)
     };
     let vehicle = vehicle(tree, &mut problems);
-    let (new, worn) = (beside("profile.file", "profile.csv"), beside("profile.worn_file", "profile_worn.csv"));
+    let (new, worn) =
+        (beside("profile.file", "profile.csv"), beside("profile.worn_file", "profile_worn.csv"));
     let new = profile(&new, &new.display().to_string(), &mut problems);
-    let worn = disk::may_be_file(&worn).then(|| profile(&worn, &worn.display().to_string(), &mut problems)).flatten();
-    let track = read_track(|wanted| read_record(track_file, &track_file.display().to_string(), wanted));
-    let (Some(mut vehicle), Some(new), Ok(track)) = (vehicle, new, track.map_err(|problem| problems.push(problem))) else {
+    let worn = disk::may_be_file(&worn)
+        .then(|| profile(&worn, &worn.display().to_string(), &mut problems))
+        .flatten();
+    let track =
+        read_track(|wanted| read_record(track_file, &track_file.display().to_string(), wanted));
+    let (Some(mut vehicle), Some(new), Ok(track)) =
+        (vehicle, new, track.map_err(|problem| problems.push(problem)))
+    else {
         return Err(problems);
     };
     let all = |problem: Problem| Problems(vec![problem]);
     for (key, value) in settings {
         vehicle.set(key, *value).map_err(|fault| {
             all(fault.map_or_else(
-                || Problem::error("unknown-parameter", format!("the model has no parameter `{key}`")),
+                || {
+                    Problem::error(
+                        "unknown-parameter",
+                        format!("the model has no parameter `{key}`"),
+                    )
+                },
                 |fault| inadmissible(&fault, &None),
             ))
         })?;
     }
     let Some(profile) = Profile::new(&new, worn.as_ref(), &vehicle) else {
-        return Err(all(Problem::error("profile", "a worn profile needs a second profile table over the same displacements")));
+        return Err(all(Problem::error(
+            "profile",
+            "a worn profile needs a second profile table over the same displacements",
+        )));
     };
     let (start, end) = (track.distance[0], track.distance[track.distance.len() - 1]);
     let half = vehicle.half_bogie_spacing + vehicle.half_wheelbase;
     let window = Window { from: start - shift, to: end - half - shift };
-    made(&Setup { vehicle: &vehicle, profile: &profile, track: &track, speed }, window, steps).map_err(all)
+    made(&Setup { vehicle: &vehicle, profile: &profile, track: &track, speed }, window, steps)
+        .map_err(all)
 }
 
 fn track_of(campaign: &Campaign, section: &Cell) -> Result<TrackTable, Problem> {
@@ -292,7 +367,9 @@ fn track_of(campaign: &Campaign, section: &Cell) -> Result<TrackTable, Problem> 
 }
 
 /// Reads a track file. Irregularities in mm, the unit of the model.
-fn read_track(read: impl FnOnce(&[Wanted]) -> Result<Record, Vec<Problem>>) -> Result<TrackTable, Problem> {
+fn read_track(
+    read: impl FnOnce(&[Wanted]) -> Result<Record, Vec<Problem>>,
+) -> Result<TrackTable, Problem> {
     let length = Dimension::LENGTH;
     let wanted = [
         Wanted::new("distance", length),
@@ -342,27 +419,46 @@ fn profile(path: &Path, shown: &str, problems: &mut Problems) -> Option<ProfileT
     }
     Some(ProfileTable {
         displacement,
-        radius_deviation: [column("radius deviation right", 1e3), column("radius deviation left", 1e3)],
+        radius_deviation: [
+            column("radius deviation right", 1e3),
+            column("radius deviation left", 1e3),
+        ],
         contact_angle: [column("contact angle right", 1.0), column("contact angle left", 1.0)],
     })
 }
 
 fn numbers(record: &Record, name: &str, factor: f64) -> Vec<f64> {
-    record.column(name).map(|column| column.values.iter().map(|value| value * factor).collect()).unwrap_or_default()
+    record
+        .column(name)
+        .map(|column| column.values.iter().map(|value| value * factor).collect())
+        .unwrap_or_default()
 }
 
 /// A table needs at least two points in increasing order.
 fn increasing(record: &Record, name: &str, values: &[f64]) -> Result<(), Problem> {
-    let at = |row: usize| record.place(row, record.column(name)).unwrap_or_else(|| Source::new(record.shown.as_str(), "").whole());
+    let at = |row: usize| {
+        record
+            .place(row, record.column(name))
+            .unwrap_or_else(|| Source::new(record.shown.as_str(), "").whole())
+    };
     if values.len() < 2 {
-        return Err(Problem::error("too-short", format!("{} has {} rows; at least two are needed", record.shown, values.len())));
+        return Err(Problem::error(
+            "too-short",
+            format!("{} has {} rows; at least two are needed", record.shown, values.len()),
+        ));
     }
     match values.windows(2).position(|pair| pair[1] <= pair[0]) {
-        Some(row) => Err(Problem::error("not-increasing", format!("`{name}` does not increase here")).at(&at(row + 1))),
+        Some(row) => {
+            Err(Problem::error("not-increasing", format!("`{name}` does not increase here"))
+                .at(&at(row + 1)))
+        }
         None => Ok(()),
     }
 }
 
 fn first(problems: Vec<Problem>) -> Problem {
-    problems.into_iter().next().unwrap_or_else(|| Problem::error("unreadable", "the file cannot be read"))
+    problems
+        .into_iter()
+        .next()
+        .unwrap_or_else(|| Problem::error("unreadable", "the file cannot be read"))
 }

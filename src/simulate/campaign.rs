@@ -27,7 +27,11 @@ const AXIS: &str = "distance";
 ///
 /// # Errors
 /// As [`Campaign::read`]; the record has no `time`.
-pub fn recorded(campaign: &Campaign, kind: RecordKind, section: &Section) -> Result<(Signals, Units, ReadFile), Vec<Problem>> {
+pub fn recorded(
+    campaign: &Campaign,
+    kind: RecordKind,
+    section: &Section,
+) -> Result<(Signals, Units, ReadFile), Vec<Problem>> {
     let (record, file) = whole(campaign, kind, section)?;
     let (signals, units) = signals(&record)?;
     Ok((signals, units, file))
@@ -37,22 +41,40 @@ pub fn recorded(campaign: &Campaign, kind: RecordKind, section: &Section) -> Res
 ///
 /// # Errors
 /// As [`recorded`]; `section-reversed`, `outside-record`, `section-empty`.
-pub fn recorded_inside(campaign: &Campaign, kind: RecordKind, section: &Section) -> Result<(Signals, Units), Vec<Problem>> {
+pub fn recorded_inside(
+    campaign: &Campaign,
+    kind: RecordKind,
+    section: &Section,
+) -> Result<(Signals, Units), Vec<Problem>> {
     let (record, _) = whole(campaign, kind, section)?;
     let found = signals(&record)?;
-    let axis = record.column(AXIS).or_else(|| record.column(TIME)).filter(|_| section.start.is_finite() && section.end.is_finite());
+    let axis = record
+        .column(AXIS)
+        .or_else(|| record.column(TIME))
+        .filter(|_| section.start.is_finite() && section.end.is_finite());
     if let Some(axis) = axis {
-        let wanted = checks::Section { start: section.start, end: section.end, at: Some(section.cell.span.clone()) };
+        let wanted = checks::Section {
+            start: section.start,
+            end: section.end,
+            at: Some(section.cell.span.clone()),
+        };
         checks::check_section(&record, axis, &wanted).map_err(|problem| vec![problem])?;
     }
     Ok(found)
 }
 
-fn whole(campaign: &Campaign, kind: RecordKind, section: &Section) -> Result<(Record, ReadFile), Vec<Problem>> {
+fn whole(
+    campaign: &Campaign,
+    kind: RecordKind,
+    section: &Section,
+) -> Result<(Record, ReadFile), Vec<Problem>> {
     campaign.file_for_each_section().map_err(|problem| vec![problem])?;
-    let headings = campaign.record_source(kind, &section.cell).map_err(|problem| vec![problem])?.headings()?;
-    let wanted: Vec<Wanted> =
-        headings.iter().map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true }).collect();
+    let headings =
+        campaign.record_source(kind, &section.cell).map_err(|problem| vec![problem])?.headings()?;
+    let wanted: Vec<Wanted> = headings
+        .iter()
+        .map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true })
+        .collect();
     campaign.read(kind.into(), &section.cell, &wanted, None)
 }
 
@@ -62,42 +84,65 @@ fn whole(campaign: &Campaign, kind: RecordKind, section: &Section) -> Result<(Re
 /// Of reading; the record has no `time`.
 pub fn signals_of(source: &RecordSource) -> Result<(Signals, Units), Vec<Problem>> {
     let headings = source.headings()?;
-    let wanted: Vec<Wanted> =
-        headings.iter().map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true }).collect();
+    let wanted: Vec<Wanted> = headings
+        .iter()
+        .map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true })
+        .collect();
     signals(&source.read(&wanted)?)
 }
 
 fn signals(record: &Record) -> Result<(Signals, Units), Vec<Problem>> {
     let Some(time) = record.column(TIME) else {
-        let problem = Problem::error("missing-channel", format!("{} has no column `{TIME}`", record.shown));
+        let problem =
+            Problem::error("missing-channel", format!("{} has no column `{TIME}`", record.shown));
         return Err(vec![problem.suggest(TIME, record.channels.iter().map(String::as_str))]);
     };
-    let span = time.values.last().zip(time.values.first()).map_or(0.0, |(last, first)| last - first);
+    let span =
+        time.values.last().zip(time.values.first()).map_or(0.0, |(last, first)| last - first);
     if record.rows < 2 || span <= 0.0 {
-        return Err(vec![Problem::error("too-short", format!("{} has {} samples: too few", record.shown, record.rows))]);
+        return Err(vec![Problem::error(
+            "too-short",
+            format!("{} has {} samples: too few", record.shown, record.rows),
+        )]);
     }
     let over_time = record.column(AXIS).is_none();
     let axis = record.column(AXIS).unwrap_or(time);
     let mut units = Vec::new();
     let mut channels = Vec::new();
-    for column in record.columns.iter().filter(|column| column.name != TIME && column.name != AXIS) {
+    for column in record.columns.iter().filter(|column| column.name != TIME && column.name != AXIS)
+    {
         let values = column.values.iter().map(|value| column.unit.from_si(*value)).collect();
         channels.push(Channel { name: column.name.clone(), values });
         units.push((column.name.clone(), column.unit.clone()));
     }
-    Ok((Signals { axis: axis.values.clone(), over_time, rate: (record.rows - 1) as f64 / span, channels }, units))
+    Ok((
+        Signals {
+            axis: axis.values.clone(),
+            over_time,
+            rate: (record.rows - 1) as f64 / span,
+            channels,
+        },
+        units,
+    ))
 }
 
 /// Converts channels to other units; those for which `to` has none are unchanged.
 ///
 /// # Errors
 /// `unit-mismatch`: a channel has another dimension.
-pub fn in_units(signals: &mut Signals, units: &Units, to: &dyn Fn(&str) -> Option<Unit>) -> Result<(), Problem> {
+pub fn in_units(
+    signals: &mut Signals,
+    units: &Units,
+    to: &dyn Fn(&str) -> Option<Unit>,
+) -> Result<(), Problem> {
     for channel in &mut signals.channels {
         let from = units.iter().find(|(name, _)| *name == channel.name).map(|(_, unit)| unit);
         let (Some(from), Some(to)) = (from, to(&channel.name)) else { continue };
         if from.dimension != to.dimension {
-            let says = format!("the channel `{}` is in {from}, which cannot be converted to {to}", channel.name);
+            let says = format!(
+                "the channel `{}` is in {from}, which cannot be converted to {to}",
+                channel.name
+            );
             return Err(Problem::error("unit-mismatch", says));
         }
         if from.factor != to.factor {
@@ -111,18 +156,39 @@ pub fn in_units(signals: &mut Signals, units: &Units, to: &dyn Fn(&str) -> Optio
 ///
 /// # Errors
 /// A value is not finite, which is a fault of the simulator.
-pub fn frame(name: &str, signals: &Signals, units: &dyn Fn(&str) -> Unit) -> Result<Frame, Problem> {
+pub fn frame(
+    name: &str,
+    signals: &Signals,
+    units: &dyn Fn(&str) -> Unit,
+) -> Result<Frame, Problem> {
     let time = || (0..signals.axis.len()).map(|n| n as f64 / signals.rate).collect::<Vec<f64>>();
     let mut columns = match signals.over_time {
         true => vec![(format!("{TIME} [s]"), signals.axis.clone())],
-        false => vec![(format!("{TIME} [s]"), time()), (format!("{AXIS} [m]"), signals.axis.clone())],
+        false => {
+            vec![(format!("{TIME} [s]"), time()), (format!("{AXIS} [m]"), signals.axis.clone())]
+        }
     };
-    columns.extend(signals.channels.iter().map(|channel| (format!("{} [{}]", channel.name, units(&channel.name)), channel.values.clone())));
-    if let Some((column, _)) = columns.iter().find(|(_, values)| values.iter().any(|value| !value.is_finite())) {
-        return Err(Problem::error("not-finite", format!("`{column}` of `{name}` has a value that is not finite")));
+    columns.extend(signals.channels.iter().map(|channel| {
+        (format!("{} [{}]", channel.name, units(&channel.name)), channel.values.clone())
+    }));
+    if let Some((column, _)) =
+        columns.iter().find(|(_, values)| values.iter().any(|value| !value.is_finite()))
+    {
+        return Err(Problem::error(
+            "not-finite",
+            format!("`{column}` of `{name}` has a value that is not finite"),
+        ));
     }
-    let schema = Schema::new(columns.iter().map(|(name, _)| Field::new(name, DataType::Float64, false)).collect::<Vec<_>>());
-    let arrays: Vec<ArrayRef> = columns.into_iter().map(|(_, values)| Arc::new(Float64Array::from(values)) as ArrayRef).collect();
+    let schema = Schema::new(
+        columns
+            .iter()
+            .map(|(name, _)| Field::new(name, DataType::Float64, false))
+            .collect::<Vec<_>>(),
+    );
+    let arrays: Vec<ArrayRef> = columns
+        .into_iter()
+        .map(|(_, values)| Arc::new(Float64Array::from(values)) as ArrayRef)
+        .collect();
     let batch = RecordBatch::try_new(Arc::new(schema.clone()), arrays)
         .map_err(|error| Problem::error("record-invalid", format!("`{name}`: {error}")))?;
     Frame::new(name, &schema, vec![batch])
@@ -141,17 +207,29 @@ fn decimals_of(rate: f64) -> usize {
 /// Zeros after the decimal point of the largest value.
 fn leading_zeros(values: &[f64]) -> usize {
     let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-    if largest > 0.0 && largest < 0.1 { (-largest.log10()).floor().min(Digits::MOST as f64 / 2.0) as usize } else { 0 }
+    if largest > 0.0 && largest < 0.1 {
+        (-largest.log10()).floor().min(Digits::MOST as f64 / 2.0) as usize
+    } else {
+        0
+    }
 }
 
-/// A record as a file: time from 0 and distance, or the time alone if it is the axis; forces in kN to 0.01, accelerations in m/s^2 to
-/// 0.0001, all other channels to six decimals; a channel that stays below 0.1 with more, so that no digits are lost.
+/// A record as a file: time from 0 and distance, or the time alone if it is the axis; forces in kN
+/// to 0.01, accelerations in m/s^2 to 0.0001, all other channels to six decimals; a channel that
+/// stays below 0.1 with more, so that no digits are lost.
 ///
 /// # Errors
 /// A value is not finite, which is a fault of the simulator; detected before any file is written.
-pub fn record_file(format: Format, signals: &Signals, units: &dyn Fn(&str) -> Unit) -> Result<Vec<u8>, Problem> {
+pub fn record_file(
+    format: Format,
+    signals: &Signals,
+    units: &dyn Fn(&str) -> Unit,
+) -> Result<Vec<u8>, Problem> {
     let time: Vec<f64> = (0..signals.axis.len()).map(|n| n as f64 / signals.rate).collect();
-    let (seconds, metres) = (Unit::parse("s").unwrap_or_else(|_| Unit::one()), Unit::parse("m").unwrap_or_else(|_| Unit::one()));
+    let (seconds, metres) = (
+        Unit::parse("s").unwrap_or_else(|_| Unit::one()),
+        Unit::parse("m").unwrap_or_else(|_| Unit::one()),
+    );
     let units: Vec<Unit> = signals.channels.iter().map(|channel| units(&channel.name)).collect();
     let values: Vec<Vec<f64>> = signals
         .channels
@@ -160,9 +238,19 @@ pub fn record_file(format: Format, signals: &Signals, units: &dyn Fn(&str) -> Un
         .map(|(channel, unit)| channel.values.iter().map(|value| unit.to_si(*value)).collect())
         .collect();
     let mut columns = match signals.over_time {
-        true => vec![OutColumn { name: TIME, unit: &seconds, values: &signals.axis, decimals: 6.max(decimals_of(signals.rate)) }],
+        true => vec![OutColumn {
+            name: TIME,
+            unit: &seconds,
+            values: &signals.axis,
+            decimals: 6.max(decimals_of(signals.rate)),
+        }],
         false => vec![
-            OutColumn { name: TIME, unit: &seconds, values: &time, decimals: decimals_of(signals.rate) },
+            OutColumn {
+                name: TIME,
+                unit: &seconds,
+                values: &time,
+                decimals: decimals_of(signals.rate),
+            },
             OutColumn { name: AXIS, unit: &metres, values: &signals.axis, decimals: 3 },
         ],
     };
@@ -181,14 +269,24 @@ pub fn record_file(format: Format, signals: &Signals, units: &dyn Fn(&str) -> Un
 mod tests {
     use super::*;
 
-    /// Small signals keep their digits; the step of the time is exact at any rate that divides a power of ten.
+    /// Small signals keep their digits; the step of the time is exact at any rate that divides a
+    /// power of ten.
     #[test]
     fn decimals_follow_the_values() {
-        assert_eq!([0.0, 0.1, 25.0, 0.099, 0.01, 5e-3, 1.98e-8].map(|value| leading_zeros(&[0.0, -value])), [0, 0, 0, 1, 2, 2, 7]);
+        assert_eq!(
+            [0.0, 0.1, 25.0, 0.099, 0.01, 5e-3, 1.98e-8].map(|value| leading_zeros(&[0.0, -value])),
+            [0, 0, 0, 1, 2, 2, 7]
+        );
         assert_eq!([200.0, 1000.0, 400.0, 256.0, 300.0].map(decimals_of), [3, 3, 4, 8, 9]);
         let channel = Channel { name: "force".into(), values: vec![0.0, 1.986_693_31e-8, -4e-9] };
-        let signals = Signals { axis: vec![0.0, 0.0025, 0.005], rate: 400.0, over_time: true, channels: vec![channel] };
-        let written = record_file(Format::Csv, &signals, &|_| Unit::parse("N").expect("a unit")).expect("written");
+        let signals = Signals {
+            axis: vec![0.0, 0.0025, 0.005],
+            rate: 400.0,
+            over_time: true,
+            channels: vec![channel],
+        };
+        let written = record_file(Format::Csv, &signals, &|_| Unit::parse("N").expect("a unit"))
+            .expect("written");
         let text = String::from_utf8(written).expect("text");
         assert_eq!(text.lines().nth(2), Some("0.002500,0.0000000198669"), "{text}");
     }

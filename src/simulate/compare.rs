@@ -24,19 +24,28 @@ impl Deviation {
     }
 }
 
-/// The deviations of all common channels, in the order of the record. Both must be in the same units.
+/// The deviations of all common channels, in the order of the record. Both must be in the same
+/// units.
 ///
 /// # Errors
 /// `too-short`: fewer than two samples of the section are in both.
-pub fn deviations(made: &Signals, recorded: &Signals, section: &Section) -> Result<Vec<Deviation>, Problem> {
+pub fn deviations(
+    made: &Signals,
+    recorded: &Signals,
+    section: &Section,
+) -> Result<Vec<Deviation>, Problem> {
     let ends = |signals: &Signals| signals.axis.first().copied().zip(signals.axis.last().copied());
     let (from, to) = match (ends(made), ends(recorded)) {
         (Some(a), Some(b)) => (a.0.max(b.0).max(section.start), a.1.min(b.1).min(section.end)),
         _ => (0.0, -1.0),
     };
-    let inside: Vec<usize> = (0..recorded.axis.len()).filter(|at| (from..=to).contains(&recorded.axis[*at])).collect();
+    let inside: Vec<usize> =
+        (0..recorded.axis.len()).filter(|at| (from..=to).contains(&recorded.axis[*at])).collect();
     if inside.len() < 2 {
-        let says = format!("section `{}`: the records of the simulator and of the campaign do not overlap", section.name());
+        let says = format!(
+            "section `{}`: the records of the simulator and of the campaign do not overlap",
+            section.name()
+        );
         return Err(Problem::error("too-short", says).at(&section.cell.span));
     }
     let mut found = Vec::new();
@@ -45,19 +54,30 @@ pub fn deviations(made: &Signals, recorded: &Signals, section: &Section) -> Resu
         let mut at = 0;
         let (mut off, mut all) = (0.0, 0.0);
         for n in &inside {
-            let difference = interpolated(&made.axis, &mine.values, recorded.axis[*n], &mut at) - channel.values[*n];
+            let difference = interpolated(&made.axis, &mine.values, recorded.axis[*n], &mut at)
+                - channel.values[*n];
             off += difference * difference;
             all += channel.values[*n] * channel.values[*n];
         }
         let rms = |sum: f64| (sum / inside.len() as f64).sqrt();
-        found.push(Deviation { section: section.name().to_string(), channel: channel.name.clone(), rms: rms(off), of: rms(all) });
+        found.push(Deviation {
+            section: section.name().to_string(),
+            channel: channel.name.clone(),
+            rms: rms(off),
+            of: rms(all),
+        });
     }
     Ok(found)
 }
 
-/// A warning if a simulator without effects deviates from the campaign's simulation by more than the tolerance in any channel.
+/// A warning if a simulator without effects deviates from the campaign's simulation by more than
+/// the tolerance in any channel.
 #[must_use]
-pub fn baseline_warning(simulator: &dyn Simulator, tolerance: f64, deviations: &[Deviation]) -> Option<Problem> {
+pub fn baseline_warning(
+    simulator: &dyn Simulator,
+    tolerance: f64,
+    deviations: &[Deviation],
+) -> Option<Problem> {
     let beyond: Vec<&Deviation> = deviations.iter().filter(|one| one.share() > tolerance).collect();
     let worst = beyond.iter().max_by(|a, b| a.share().total_cmp(&b.share()))?;
     let says = format!(

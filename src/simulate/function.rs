@@ -47,7 +47,12 @@ impl Simulator for Function<'_> {
         let source = self.campaign.record_source(RecordKind::Simulation, &task.section.cell);
         let known = source.ok().and_then(|source| source.headings().ok()).unwrap_or_default();
         read_made(&made, &known, &[]).map(|(signals, _)| signals).map_err(|problem| {
-            let says = format!("section `{}`: the record of {}: {}", task.section.name(), self.name, problem.says);
+            let says = format!(
+                "section `{}`: the record of {}: {}",
+                task.section.name(),
+                self.name,
+                problem.says
+            );
             Problem { says, ..problem }
         })
     }

@@ -26,14 +26,25 @@ pub struct Made<'a> {
 }
 
 impl Made<'_> {
-    /// The origin of the new records; with `added`, including the origin of the campaign's own simulation.
+    /// The origin of the new records; with `added`, including the origin of the campaign's own
+    /// simulation.
     ///
     /// # Errors
     /// A file of the campaign cannot be read.
-    pub fn origin(&self, campaign: &Campaign, copied: &[(String, Vec<u8>)]) -> Result<Origin, Problem> {
-        let fingerprint = |(path, bytes): &(String, Vec<u8>)| OriginFile { path: path.clone(), sha256: sha256(bytes) };
-        let mut sources: Vec<OriginFile> =
-            campaign.files.iter().map(|file| OriginFile { path: file.path.clone(), sha256: file.sha256.clone() }).collect();
+    pub fn origin(
+        &self,
+        campaign: &Campaign,
+        copied: &[(String, Vec<u8>)],
+    ) -> Result<Origin, Problem> {
+        let fingerprint = |(path, bytes): &(String, Vec<u8>)| OriginFile {
+            path: path.clone(),
+            sha256: sha256(bytes),
+        };
+        let mut sources: Vec<OriginFile> = campaign
+            .files
+            .iter()
+            .map(|file| OriginFile { path: file.path.clone(), sha256: file.sha256.clone() })
+            .collect();
         for file in copied.iter().map(fingerprint) {
             if !sources.iter().any(|known| known.path == file.path) {
                 sources.push(file);
@@ -43,8 +54,9 @@ impl Made<'_> {
         for name in &campaign.names {
             if self.added {
                 let place = campaign.record_place(RecordKind::Simulation, name)?;
-                let bytes =
-                    disk::read(&place.path, LARGEST).map_err(|error| Problem::error("unreadable", format!("{}: {error}", place.shown)))?;
+                let bytes = disk::read(&place.path, LARGEST).map_err(|error| {
+                    Problem::error("unreadable", format!("{}: {error}", place.shown))
+                })?;
                 sources.push(OriginFile { path: place.inside, sha256: sha256(&bytes) });
             }
             if self.fitted {
@@ -55,10 +67,12 @@ impl Made<'_> {
         let mut effects = self.effects.clone();
         if let (Some(before), true) = (&campaign.origin, self.added) {
             effects = before.effects.iter().chain(&effects).cloned().collect();
-            let earlier: Vec<OriginFile> = before.fitted_to.iter().filter(|file| !fitted_to.contains(file)).cloned().collect();
+            let earlier: Vec<OriginFile> =
+                before.fitted_to.iter().filter(|file| !fitted_to.contains(file)).cloned().collect();
             fitted_to.extend(earlier);
         }
-        let first = campaign.origin.as_ref().map(|origin| &origin.campaign).filter(|name| !name.is_empty());
+        let first =
+            campaign.origin.as_ref().map(|origin| &origin.campaign).filter(|name| !name.is_empty());
         Ok(Origin {
             program: concat!("fishplate ", env!("CARGO_PKG_VERSION")).to_string(),
             command: self.command.to_string(),
@@ -83,14 +97,24 @@ fn effect(applied: &Applied, catalogue: &Catalogue) -> OriginEffect {
     // A parameter of a channel is named `gain.Y_3R` where the catalogue has `gain.<channel>`.
     let unit = |name: &str| {
         let parameters = known.into_iter().flat_map(|effect| &effect.parameters);
-        let head = |pattern: &str| pattern.split_once('<').is_some_and(|(head, _)| name.starts_with(head));
-        let found = parameters.into_iter().find(|parameter| parameter.name == name || head(&parameter.name));
+        let head =
+            |pattern: &str| pattern.split_once('<').is_some_and(|(head, _)| name.starts_with(head));
+        let found = parameters
+            .into_iter()
+            .find(|parameter| parameter.name == name || head(&parameter.name));
         found.map_or("-".to_string(), |parameter| parameter.unit.text.clone())
     };
     OriginEffect {
         effect: applied.effect.clone(),
-        parameters: applied.values.iter().map(|(name, value)| (name.clone(), *value, unit(name))).collect(),
+        parameters: applied
+            .values
+            .iter()
+            .map(|(name, value)| (name.clone(), *value, unit(name)))
+            .collect(),
         channels: applied.channels.clone(),
-        confined_to: applied.confined.as_ref().map(|place| format!("{} {}", place.column, place.values.join(", "))),
+        confined_to: applied
+            .confined
+            .as_ref()
+            .map(|place| format!("{} {}", place.column, place.values.join(", "))),
     }
 }

@@ -63,17 +63,27 @@ impl Section {
     /// A column in words, `radius 280 m`; nothing if its cell is empty.
     #[must_use]
     pub fn says(&self, column: &str) -> Option<String> {
-        let fact = self.facts.iter().find(|fact| fact.name == column).filter(|fact| !fact.text.is_empty())?;
+        let fact = self
+            .facts
+            .iter()
+            .find(|fact| fact.name == column)
+            .filter(|fact| !fact.text.is_empty())?;
         let unit = fact.unit.as_ref().map(Unit::suffix).unwrap_or_default();
         Some(format!("{column} {}{unit}", fact.text))
     }
 }
 
-/// The sections of a campaign in the order of its table; none if a cell cannot be read or `repeat of` is wrong.
+/// The sections of a campaign in the order of its table; none if a cell cannot be read or `repeat
+/// of` is wrong.
 pub fn sections(campaign: &Campaign, problems: &mut Problems) -> Option<Vec<Section>> {
     let Some(table) = &campaign.sections else {
-        let whole =
-            |cell: &Cell| Section { cell: cell.clone(), start: f64::NEG_INFINITY, end: f64::INFINITY, speed: None, facts: Vec::new() };
+        let whole = |cell: &Cell| Section {
+            cell: cell.clone(),
+            start: f64::NEG_INFINITY,
+            end: f64::INFINITY,
+            speed: None,
+            facts: Vec::new(),
+        };
         return Some(campaign.names.iter().map(whole).collect());
     };
     let mut faults = Problems::default();
@@ -85,10 +95,14 @@ pub fn sections(campaign: &Campaign, problems: &mut Problems) -> Option<Vec<Sect
     };
     // A number in an unknown unit would be taken as SI.
     let unit_of = |heading: &Heading| heading.unit.as_ref().map(|_| heading.unit(None)).transpose();
-    let units: Vec<Option<Unit>> =
-        table.columns.iter().map(|heading| unit_of(heading).map_err(|fault| faults.push(fault)).ok().flatten()).collect();
+    let units: Vec<Option<Unit>> = table
+        .columns
+        .iter()
+        .map(|heading| unit_of(heading).map_err(|fault| faults.push(fault)).ok().flatten())
+        .collect();
     let readable = !faults.any_error();
-    // An evaluation needs the sites of all sections: what is wrong with them is told before hours of simulation.
+    // An evaluation needs the sites of all sections: what is wrong with them is told before hours
+    // of simulation.
     sites(table, &mut faults);
     let mut found = Vec::new();
     for (row, cell) in campaign.names.iter().enumerate().filter(|_| readable) {
@@ -99,8 +113,16 @@ pub fn sections(campaign: &Campaign, problems: &mut Problems) -> Option<Vec<Sect
         };
         let facts = table.columns.iter().enumerate().map(fact).collect();
         match (number(&start), number(&end)) {
-            (Some(start), Some(end)) => found.push(Section { cell: cell.clone(), start, end, speed: number(&speed), facts }),
-            _ => faults.push(Problem::error("section", format!("section `{}` has no start or no end", cell.value)).at(&cell.span)),
+            (Some(start), Some(end)) => {
+                found.push(Section { cell: cell.clone(), start, end, speed: number(&speed), facts })
+            }
+            _ => faults.push(
+                Problem::error(
+                    "section",
+                    format!("section `{}` has no start or no end", cell.value),
+                )
+                .at(&cell.span),
+            ),
         }
     }
     let whole = !faults.any_error();
@@ -108,8 +130,16 @@ pub fn sections(campaign: &Campaign, problems: &mut Problems) -> Option<Vec<Sect
     whole.then_some(found)
 }
 
-fn column(table: &Table, name: &str, dimension: Option<Dimension>, problems: &mut Problems) -> Vec<Option<f64>> {
-    let numbers = table.need_column(name).map_err(|problem| vec![problem]).and_then(|at| table.numbers(at, dimension));
+fn column(
+    table: &Table,
+    name: &str,
+    dimension: Option<Dimension>,
+    problems: &mut Problems,
+) -> Vec<Option<f64>> {
+    let numbers = table
+        .need_column(name)
+        .map_err(|problem| vec![problem])
+        .and_then(|at| table.numbers(at, dimension));
     numbers.unwrap_or_else(|found| {
         found.into_iter().for_each(|problem| problems.push(problem));
         Vec::new()

@@ -77,7 +77,10 @@ mod tests {
         }
 
         fn run(&self, _: &Task<'_>) -> Result<Signals, Problem> {
-            Err(Problem::error("simulator-failed", format!("call {}", self.0.fetch_add(1, Ordering::Relaxed))))
+            Err(Problem::error(
+                "simulator-failed",
+                format!("call {}", self.0.fetch_add(1, Ordering::Relaxed)),
+            ))
         }
     }
 
@@ -89,8 +92,17 @@ mod tests {
         let section = Section::nowhere();
         for _ in 0..3 {
             let task = Task { section: &section, settings: &[], shift: 0.0, inside_only: false };
-            assert_eq!(strict.run(&task).map_err(|problem| problem.says).err().as_deref(), Some("call 0"));
+            assert_eq!(
+                strict.run(&task).map_err(|problem| problem.says).err().as_deref(),
+                Some("call 0")
+            );
         }
-        assert_eq!((strict.failed().map(|problem| problem.says).as_deref(), broken.0.load(Ordering::Relaxed)), (Some("call 0"), 1));
+        assert_eq!(
+            (
+                strict.failed().map(|problem| problem.says).as_deref(),
+                broken.0.load(Ordering::Relaxed)
+            ),
+            (Some("call 0"), 1)
+        );
     }
 }

@@ -33,14 +33,17 @@ pub fn with_records<'a>(
         let frame = frame(&name, signals, units).map_err(|problem| Problems(vec![problem]))?;
         memory.records.insert(name, Arc::new(frame));
     }
-    memory.texts.insert(CAMPAIGN_FILE.to_string(), text_of(campaign, &campaign.name, false).into_bytes());
+    memory
+        .texts
+        .insert(CAMPAIGN_FILE.to_string(), text_of(campaign, &campaign.name, false).into_bytes());
     let mut problems = Problems::default();
     campaign.replaced(memory, &mut problems).ok_or(problems)
 }
 
 /// `campaign.yaml` of a campaign with other simulated records.
 fn text_of(campaign: &Campaign, name: &str, origin: bool) -> String {
-    let entries = campaign.tree.entries().iter().filter(|(key, _)| !OWN.contains(&key.text.as_str()));
+    let entries =
+        campaign.tree.entries().iter().filter(|(key, _)| !OWN.contains(&key.text.as_str()));
     let mut lines: Vec<(&str, Entry<'_>)> = vec![("name", Entry::Text(name))];
     lines.extend(entries.map(|(key, node)| (key.text.as_str(), Entry::Node(node))));
     lines.push(("simulation", Entry::Text(FOLDER)));
@@ -51,7 +54,8 @@ fn text_of(campaign: &Campaign, name: &str, origin: bool) -> String {
     campaign_yaml(&lines)
 }
 
-/// Writes a copy of a campaign with other simulated records. All other files are copied, and an origin is added; none for temporary copies.
+/// Writes a copy of a campaign with other simulated records. All other files are copied, and an
+/// origin is added; none for temporary copies.
 ///
 /// # Errors
 /// Of reading the campaign, or of writing; no file is in its place before [`Outputs::commit`].

@@ -1,4 +1,5 @@
-//! Objects in a store: `s3://`, `az://`, `gs://`, `http://`, `https://`, `file://`. A part of an object is read by itself.
+//! Objects in a store: `s3://`, `az://`, `gs://`, `http://`, `https://`, `file://`. A part of an
+//! object is read by itself.
 //!
 //! | file | content |
 //! |---|---|
@@ -7,7 +8,8 @@
 //! | `allowed` | which URLs the user allows |
 //! | `none` | the same without this feature: no object is found |
 //!
-//! A campaign may come from anyone. No URL in it is opened unless the environment of the program allows it.
+//! A campaign may come from anyone. No URL in it is opened unless the environment of the program
+//! allows it.
 
 #[cfg(feature = "store")]
 mod allowed;
@@ -29,10 +31,13 @@ pub struct Refused {
     pub help: Option<String>,
 }
 
-/// Whether a text is the URL of an object. Other schemes are too; they are refused when they are opened.
+/// Whether a text is the URL of an object. Other schemes are too; they are refused when they are
+/// opened.
 pub fn is_url(text: &str) -> bool {
     text.split_once("://").is_some_and(|(scheme, _)| {
-        scheme.len() > 1 && scheme.starts_with(|c: char| c.is_ascii_alphabetic()) && scheme.chars().all(|c| c.is_ascii_alphanumeric())
+        scheme.len() > 1
+            && scheme.starts_with(|c: char| c.is_ascii_alphabetic())
+            && scheme.chars().all(|c| c.is_ascii_alphanumeric())
     })
 }
 

@@ -15,7 +15,9 @@ impl Object {
     /// # Errors
     /// `store-not-built`, always.
     pub fn find(url: &str) -> Result<Self, Refused> {
-        let says = format!("`{url}` is in a store, and this program was built without the feature `store`");
+        let says = format!(
+            "`{url}` is in a store, and this program was built without the feature `store`"
+        );
         let help = "build it with `cargo build --release --features store`, or copy the record to the campaign's folder".to_string();
         Err(Refused { code: "store-not-built", says, help: Some(help) })
     }

@@ -15,7 +15,8 @@ use object_store::http::HttpBuilder;
 use object_store::local::LocalFileSystem;
 use object_store::path::Path;
 use object_store::{
-    BackoffConfig, ClientOptions, GetOptions, ObjectStore, ObjectStoreExt, ObjectStoreScheme, RetryConfig, coalesce_ranges,
+    BackoffConfig, ClientOptions, GetOptions, ObjectStore, ObjectStoreExt, ObjectStoreScheme,
+    RetryConfig, coalesce_ranges,
 };
 use tokio::runtime::{Builder, Runtime};
 use url::Url;
@@ -23,9 +24,11 @@ use url::Url;
 use super::Refused;
 use super::allowed::{ALLOWED, check};
 
-/// Parts that lie closer together than this are read by one request. A request takes as long as some 100 kB do.
+/// Parts that lie closer together than this are read by one request. A request takes as long as
+/// some 100 kB do.
 const GAP: u64 = 128 << 10;
-/// How often a request is made again after a fault of the connection or the server, and for how long in all.
+/// How often a request is made again after a fault of the connection or the server, and for how
+/// long in all.
 const RETRIES: (usize, Duration) = (3, Duration::from_secs(60));
 /// How long a request may take.
 const REQUEST: Duration = Duration::from_secs(60);
@@ -57,14 +60,28 @@ impl Object {
     pub fn find(url: &str) -> Result<Self, Refused> {
         check(url, &std::env::var(ALLOWED).unwrap_or_default())?;
         let refused = |code, why: String| Refused { code, says: why, help: None };
-        let unreadable = |why: &dyn fmt::Display| refused("file-unreadable", format!("`{url}` cannot be read: {why}"));
+        let unreadable = |why: &dyn fmt::Display| {
+            refused("file-unreadable", format!("`{url}` cannot be read: {why}"))
+        };
         let (store, path) = opened(url).map_err(|error| unreadable(&reason(&error)))?;
-        let meta = runtime().map_err(|error| unreadable(&error))?.block_on(store.head(&path)).map_err(|error| match error {
-            object_store::Error::NotFound { .. } => refused("file-missing", format!("there is no object `{url}`")),
-            other => unreadable(&reason(&other)),
-        })?;
+        let meta = runtime()
+            .map_err(|error| unreadable(&error))?
+            .block_on(store.head(&path))
+            .map_err(|error| match error {
+                object_store::Error::NotFound { .. } => {
+                    refused("file-missing", format!("there is no object `{url}`"))
+                }
+                other => unreadable(&reason(&other)),
+            })?;
         let version = meta.e_tag.clone().unwrap_or_else(|| meta.last_modified.to_rfc3339());
-        Ok(Self(Arc::new(Found { url: url.to_string(), store, path, size: meta.size, tag: meta.e_tag, version })))
+        Ok(Self(Arc::new(Found {
+            url: url.to_string(),
+            store,
+            path,
+            size: meta.size,
+            tag: meta.e_tag,
+            version,
+        })))
     }
 
     pub fn url(&self) -> &str {
@@ -75,7 +92,8 @@ impl Object {
         self.0.size
     }
 
-    /// What differs when the object is written again: its tag, or without one the time of its last change.
+    /// What differs when the object is written again: its tag, or without one the time of its last
+    /// change.
     pub fn version(&self) -> &str {
         &self.0.version
     }
@@ -89,35 +107,67 @@ impl Object {
         let one = |range: Range<u64>| async move {
             let count = range.end - range.start;
             // An object that was replaced in between is refused by the store.
-            let options = GetOptions { if_match: found.tag.clone(), range: Some(range.into()), ..GetOptions::default() };
-            let got = found.store.get_opts(&found.path, options).await.map_err(|error| reason(&error))?;
+            let options = GetOptions {
+                if_match: found.tag.clone(),
+                range: Some(range.into()),
+                ..GetOptions::default()
+            };
+            let got =
+                found.store.get_opts(&found.path, options).await.map_err(|error| reason(&error))?;
             let bytes = got.bytes().await.map_err(|error| reason(&error))?;
             match bytes.len() as u64 {
                 read if read == count => Ok(bytes),
                 read => Err(format!("the store gave {read} bytes where {count} were asked for")),
             }
         };
-        let whole: Vec<Range<u64>> = ranges.iter().filter(|range| !range.is_empty()).cloned().collect();
-        let mut read = runtime().map_err(|error| error.to_string())?.block_on(coalesce_ranges(&whole, one, GAP))?.into_iter();
-        Ok(ranges.iter().map(|range| if range.is_empty() { Bytes::new() } else { read.next().unwrap_or_default() }).collect())
+        let whole: Vec<Range<u64>> =
+            ranges.iter().filter(|range| !range.is_empty()).cloned().collect();
+        let mut read = runtime()
+            .map_err(|error| error.to_string())?
+            .block_on(coalesce_ranges(&whole, one, GAP))?
+            .into_iter();
+        Ok(ranges
+            .iter()
+            .map(
+                |range| {
+                    if range.is_empty() { Bytes::new() } else { read.next().unwrap_or_default() }
+                },
+            )
+            .collect())
     }
 }
 
 /// The store of a URL, with credentials from the environment, and the path in it.
 fn opened(url: &str) -> Result<(Box<dyn ObjectStore>, Path), object_store::Error> {
-    let generic = |source: Box<dyn Error + Send + Sync>| object_store::Error::Generic { store: "URL", source };
+    let generic = |source: Box<dyn Error + Send + Sync>| object_store::Error::Generic {
+        store: "URL",
+        source,
+    };
     let parsed = Url::parse(url).map_err(|error| generic(Box::new(error)))?;
     let (scheme, path) = ObjectStoreScheme::parse(&parsed)?;
-    let options = ClientOptions::new().with_timeout(REQUEST).with_allow_http(parsed.scheme() == "http");
+    let options =
+        ClientOptions::new().with_timeout(REQUEST).with_allow_http(parsed.scheme() == "http");
     let backoff = BackoffConfig { max_backoff: Duration::from_secs(5), ..BackoffConfig::default() };
     let retry = RetryConfig { backoff, max_retries: RETRIES.0, retry_timeout: RETRIES.1 };
     let store: Box<dyn ObjectStore> = match scheme {
-        ObjectStoreScheme::AmazonS3 => Box::new(AmazonS3Builder::from_env().with_url(url).with_retry(retry).build()?),
-        ObjectStoreScheme::MicrosoftAzure => Box::new(MicrosoftAzureBuilder::from_env().with_url(url).with_retry(retry).build()?),
-        ObjectStoreScheme::GoogleCloudStorage => Box::new(GoogleCloudStorageBuilder::from_env().with_url(url).with_retry(retry).build()?),
+        ObjectStoreScheme::AmazonS3 => {
+            Box::new(AmazonS3Builder::from_env().with_url(url).with_retry(retry).build()?)
+        }
+        ObjectStoreScheme::MicrosoftAzure => {
+            Box::new(MicrosoftAzureBuilder::from_env().with_url(url).with_retry(retry).build()?)
+        }
+        ObjectStoreScheme::GoogleCloudStorage => {
+            Box::new(GoogleCloudStorageBuilder::from_env().with_url(url).with_retry(retry).build()?)
+        }
         ObjectStoreScheme::Http => {
             let host = &parsed[..url::Position::BeforePath];
-            Box::new(HttpBuilder::new().with_url(host).with_client_options(options).with_retry(retry).build()?)
+            Box::new(
+                HttpBuilder::new()
+                    .with_url(host)
+                    .with_client_options(options)
+                    .with_retry(retry)
+                    .build()?,
+            )
         }
         // A path may lead through symbolic links: the user allowed what it begins with.
         ObjectStoreScheme::Local => Box::new(LocalFileSystem::new()),
@@ -132,7 +182,8 @@ fn runtime() -> Result<&'static Runtime, io::Error> {
     if let Some(runtime) = RUNTIME.get() {
         return Ok(runtime);
     }
-    let made = Builder::new_multi_thread().worker_threads(1).thread_name("store").enable_all().build()?;
+    let made =
+        Builder::new_multi_thread().worker_threads(1).thread_name("store").enable_all().build()?;
     Ok(RUNTIME.get_or_init(|| made))
 }
 

@@ -6,7 +6,8 @@ pub struct Buckets {
     least: f64,
     greatest: f64,
     per_unit: f64,
-    /// Index of the first number of each bucket, with an empty bucket below all numbers and one above.
+    /// Index of the first number of each bucket, with an empty bucket below all numbers and one
+    /// above.
     first: Vec<u32>,
     places: Vec<u32>,
 }
@@ -16,13 +17,16 @@ impl Buckets {
     #[inline(always)]
     pub fn fill(&mut self, numbers: &[f64]) -> &[u32] {
         let ends = (f64::INFINITY, f64::NEG_INFINITY);
-        (self.least, self.greatest) = numbers.iter().fold(ends, |(least, greatest), x| (least.min(*x), greatest.max(*x)));
+        (self.least, self.greatest) =
+            numbers.iter().fold(ends, |(least, greatest), x| (least.min(*x), greatest.max(*x)));
         let (count, width) = (numbers.len(), self.greatest - self.least);
         // Slightly less than the range, so that the largest number is below the upper bucket.
-        self.per_unit = if width > 0.0 { (count as f64 * (1.0 - 1e-9) / width).min(f64::MAX) } else { 0.0 };
+        self.per_unit =
+            if width > 0.0 { (count as f64 * (1.0 - 1e-9) / width).min(f64::MAX) } else { 0.0 };
         self.places.clear();
         self.places.extend(numbers.iter().map(|x| ((x - self.least) * self.per_unit + 1.0) as u32));
-        // Counting sort: counts of the buckets, shifted by one; then their starts; then the position of the next number of each.
+        // Counting sort: counts of the buckets, shifted by one; then their starts; then the
+        // position of the next number of each.
         self.first.clear();
         self.first.resize(count + 3, 0);
         for bucket in &self.places {
@@ -51,7 +55,8 @@ impl Buckets {
         (((bound - self.least) * self.per_unit + 1.0) as usize).min(self.first.len() - 2)
     }
 
-    /// Range of positions of the numbers that may lie between two bounds: all before are below `low`, all after are above `high`.
+    /// Range of positions of the numbers that may lie between two bounds: all before are below
+    /// `low`, all after are above `high`.
     #[inline(always)]
     pub fn between(&self, low: f64, high: f64) -> (usize, usize) {
         let from = self.first[self.bucket(low)] as usize;

@@ -4,7 +4,8 @@ use crate::catalog::Statistic;
 use crate::result::usable_sections;
 use crate::run::pool::{Estimator, Pool, Pooled, PooledLimit, PooledMinimum, PooledQuantity, Rule};
 
-/// Tolerance for rounding where a value equals its limit, which counts as met. Relative to the limit.
+/// Tolerance for rounding where a value equals its limit, which counts as met. Relative to the
+/// limit.
 const EQUAL: f64 = 1e-12;
 
 /// Sections to select from, and the criteria for a selection.
@@ -96,12 +97,20 @@ impl Case {
         let Some(rule) = pool.rule else {
             return Err("the overall verdict is over other verdicts or judged by a person, so no selection of sections decides it".into());
         };
-        if !pool.quantities.is_empty() && pool.quantities.iter().all(|quantity| quantity.limits.is_empty()) {
-            return Err("no acceptance criterion applies, so no verdict depends on the sections".into());
+        if !pool.quantities.is_empty()
+            && pool.quantities.iter().all(|quantity| quantity.limits.is_empty())
+        {
+            return Err(
+                "no acceptance criterion applies, so no verdict depends on the sections".into()
+            );
         }
         let mut strata = Vec::new();
         let of_zone = |inside: &dyn Fn(Option<&str>) -> bool| {
-            let all = pool.sections.iter().enumerate().filter(|(_, section)| inside(section.zone.as_deref()));
+            let all = pool
+                .sections
+                .iter()
+                .enumerate()
+                .filter(|(_, section)| inside(section.zone.as_deref()));
             let (mut members, mut not_used) = (Vec::new(), Vec::new());
             for (at, section) in all {
                 if section.used {
@@ -125,15 +134,30 @@ impl Case {
         if strata.is_empty() {
             let (members, not_used) = of_zone(&|_| true);
             let wanted = take.unwrap_or(pool.minimum.max(1));
-            strata.push(Stratum { zone: "all".into(), title: "All sections".into(), take: wanted, members, not_used });
+            strata.push(Stratum {
+                zone: "all".into(),
+                title: "All sections".into(),
+                take: wanted,
+                members,
+                not_used,
+            });
         }
         for stratum in &strata {
             if stratum.members.len() < stratum.take {
-                let (has, needs) = (usable_sections(stratum.members.len(), stratum.members.len()), stratum.take);
-                let why: Vec<String> =
-                    stratum.not_used.iter().take(3).map(|(at, why)| format!("{} is not used: {why}", pool.sections[*at].name)).collect();
-                let why = if why.is_empty() { String::new() } else { format!(" ({})", why.join("; ")) };
-                return Err(format!("zone {} has {has}, and a selection takes {needs}{why}", stratum.zone));
+                let (has, needs) =
+                    (usable_sections(stratum.members.len(), stratum.members.len()), stratum.take);
+                let why: Vec<String> = stratum
+                    .not_used
+                    .iter()
+                    .take(3)
+                    .map(|(at, why)| format!("{} is not used: {why}", pool.sections[*at].name))
+                    .collect();
+                let why =
+                    if why.is_empty() { String::new() } else { format!(" ({})", why.join("; ")) };
+                return Err(format!(
+                    "zone {} has {has}, and a selection takes {needs}{why}",
+                    stratum.zone
+                ));
             }
         }
         let mut case = Self {
@@ -148,7 +172,9 @@ impl Case {
         for stratum in &case.strata {
             if stratum.members.len() < stratum.take {
                 let (zone, has, needs) = (&stratum.zone, stratum.members.len(), stratum.take);
-                return Err(format!("zone {zone} has {has} usable sites, and a selection takes {needs} (a repeat is no further section)"));
+                return Err(format!(
+                    "zone {zone} has {has} usable sites, and a selection takes {needs} (a repeat is no further section)"
+                ));
             }
         }
         Ok(case)
@@ -165,7 +191,8 @@ impl Case {
             quantity.signals[first] |= std::mem::take(&mut quantity.signals[repeat]);
             for minimum in &mut quantity.minimum_of_groups {
                 // A repeat has the signals of the section that it repeats.
-                minimum.pairs[first] = minimum.pairs[first].max(std::mem::take(&mut minimum.pairs[repeat]));
+                minimum.pairs[first] =
+                    minimum.pairs[first].max(std::mem::take(&mut minimum.pairs[repeat]));
             }
             for measure in &mut quantity.measures {
                 let values = std::mem::take(&mut measure.values[repeat]);
@@ -191,7 +218,9 @@ impl Case {
             stratum.members.retain(|section| theirs.contains(section));
             if stratum.members.len() < stratum.take {
                 let (zone, has, needs) = (&stratum.zone, stratum.members.len(), stratum.take);
-                return Err(format!("zone {zone} has {has} sections usable in both cases, and a selection takes {needs}"));
+                return Err(format!(
+                    "zone {zone} has {has} sections usable in both cases, and a selection takes {needs}"
+                ));
             }
         }
         Ok(case)
@@ -204,7 +233,10 @@ impl Case {
 
     /// Every limit with its quantity.
     pub fn measures(&self) -> impl Iterator<Item = (usize, &Measure)> {
-        self.quantities.iter().enumerate().flat_map(|(at, quantity)| quantity.measures.iter().map(move |measure| (at, measure)))
+        self.quantities
+            .iter()
+            .enumerate()
+            .flat_map(|(at, quantity)| quantity.measures.iter().map(move |measure| (at, measure)))
     }
 }
 
@@ -214,7 +246,9 @@ fn repeats(pool: &Pool) -> Vec<(usize, usize)> {
         let (a, b) = (&pool.sections[a], &pool.sections[b]);
         a.used && b.used && a.site == b.site && a.zone == b.zone
     };
-    (0..pool.sections.len()).filter_map(|at| Some(((0..at).find(|&first| alike(first, at))?, at))).collect()
+    (0..pool.sections.len())
+        .filter_map(|at| Some(((0..at).find(|&first| alike(first, at))?, at)))
+        .collect()
 }
 
 /// Binomial coefficient.
@@ -228,8 +262,16 @@ fn quantity(pooled: &PooledQuantity) -> Quantity {
         title: pooled.title.clone(),
         symbol: pooled.symbol.clone(),
         unit: pooled.unit.clone(),
-        values: pooled.values.iter().map(|values| values.iter().map(|(_, value)| *value).collect()).collect(),
-        signals: pooled.values.iter().map(|values| values.iter().fold(0, |all, (signal, _)| all | 1 << (signal % 128))).collect(),
+        values: pooled
+            .values
+            .iter()
+            .map(|values| values.iter().map(|(_, value)| *value).collect())
+            .collect(),
+        signals: pooled
+            .values
+            .iter()
+            .map(|values| values.iter().fold(0, |all, (signal, _)| all | 1 << (signal % 128)))
+            .collect(),
         minimum_signals: pooled.minimum_signals,
         minimum_pairs: pooled.minimum_pairs,
         minimum_of_groups: pooled.minimum_of_groups.clone(),
@@ -264,7 +306,8 @@ fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
         if bound > 0.0 { (1.0, 1.0 / bound) } else { (bound, 1.0) }
     };
     let room = EQUAL * bound.abs();
-    let (low, high) = if limit.at_least { (bound - room, f64::INFINITY) } else { (-bound - room, bound + room) };
+    let (low, high) =
+        if limit.at_least { (bound - room, f64::INFINITY) } else { (-bound - room, bound + room) };
     let of_section = |(at, values): (usize, &Vec<(usize, f64)>)| {
         if !limit.inside[at] {
             return Vec::new();
@@ -312,9 +355,12 @@ impl Measure {
             Kind::Largest => named("maximum", 0),
             Kind::Smallest => named("minimum", 0),
             Kind::LargestMagnitude => named("peak", 0),
-            Kind::Pooled(Statistic::Percentile(percent)) => {
-                crate::metrics::percentile::percentile(&values, percent, crate::metrics::percentile::Method::Linear).ok()
-            }
+            Kind::Pooled(Statistic::Percentile(percent)) => crate::metrics::percentile::percentile(
+                &values,
+                percent,
+                crate::metrics::percentile::Method::Linear,
+            )
+            .ok(),
             Kind::Pooled(Statistic::Named(entry)) => (entry.run)(&values, 0),
             Kind::Pooled(Statistic::Each) | Kind::Estimated => None,
         };

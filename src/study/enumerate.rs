@@ -10,7 +10,9 @@ use super::halves::Halves;
 use super::overall::{OverAll, over_all, too_few};
 use super::spread::Memory;
 use super::verdicts::Verdicts;
-use crate::result::study::{Importance, QuantitySpread, Share, Spread, StatisticSpread, WorstSelection};
+use crate::result::study::{
+    Importance, QuantitySpread, Share, Spread, StatisticSpread, WorstSelection,
+};
 use crate::run::pool::Rule;
 
 /// Results of an enumeration.
@@ -36,18 +38,33 @@ pub fn core(case: &Case, halves: &Halves) -> (Vec<Vec<OverAll>>, Verdicts) {
         .with_max_len(1)
         .map(|(number, quantity)| {
             let used = spare.lock().expect("no panic holds the lock").pop();
-            let (mut fails, mut memory) = used.unwrap_or_else(|| (Fails::new(rows, columns), Memory::default()));
+            let (mut fails, mut memory) =
+                used.unwrap_or_else(|| (Fails::new(rows, columns), Memory::default()));
             fails.clear();
             let mut undefined = None;
             let mut found = Vec::new();
             for measure in &quantity.measures {
                 if matches!(case.rule, Rule::AtLeastLimits(_)) {
                     let mut of_limit = Fails::new(rows, columns);
-                    found.push(over_all(case, measure, halves, &mut of_limit, &mut undefined, &mut memory));
+                    found.push(over_all(
+                        case,
+                        measure,
+                        halves,
+                        &mut of_limit,
+                        &mut undefined,
+                        &mut memory,
+                    ));
                     verdicts.lock().expect("no panic holds the lock").limit(&of_limit);
                     fails.join_all(&of_limit);
                 } else {
-                    found.push(over_all(case, measure, halves, &mut fails, &mut undefined, &mut memory));
+                    found.push(over_all(
+                        case,
+                        measure,
+                        halves,
+                        &mut fails,
+                        &mut undefined,
+                        &mut memory,
+                    ));
                 }
             }
             if !quantity.measures.is_empty() {
@@ -56,7 +73,11 @@ pub fn core(case: &Case, halves: &Halves) -> (Vec<Vec<OverAll>>, Verdicts) {
             if let Some(undefined) = &undefined {
                 fails.join_all(undefined);
             }
-            verdicts.lock().expect("no panic holds the lock").quantity(number, &fails, undefined.as_ref());
+            verdicts.lock().expect("no panic holds the lock").quantity(
+                number,
+                &fails,
+                undefined.as_ref(),
+            );
             spare.lock().expect("no panic holds the lock").push((fails, memory));
             found
         })
@@ -72,7 +93,10 @@ pub fn fails(case: &Case, halves: &Halves) -> Fails {
 }
 
 fn apply(case: &Case, verdicts: &mut Verdicts) {
-    verdicts.apply(case.quantities.iter().filter(|quantity| !quantity.measures.is_empty()).count(), case.measures().count());
+    verdicts.apply(
+        case.quantities.iter().filter(|quantity| !quantity.measures.is_empty()).count(),
+        case.measures().count(),
+    );
 }
 
 /// Evaluates all selections of a case.
@@ -106,7 +130,11 @@ pub fn marked(case: &Case) -> (Counted, Fails) {
                 overall: measure.over(usable.iter().copied()),
             });
             if let (Some(((row, column), value)), true) = (over_all.worst, over_all.failing > 0) {
-                let sections = halves.rows.choice(row as usize).iter().chain(halves.columns.choice(column as usize));
+                let sections = halves
+                    .rows
+                    .choice(row as usize)
+                    .iter()
+                    .chain(halves.columns.choice(column as usize));
                 let mut sections: Vec<usize> = sections.map(|&at| at as usize).collect();
                 sections.sort_unstable();
                 worst.push(WorstSelection {
@@ -149,7 +177,9 @@ fn importance(case: &Case, halves: &Halves, fails: &Fails) -> Vec<Importance> {
     let validated: u64 = rows.iter().sum();
     let (all_rows, all_columns) = (rows.len() as u64, columns.len() as u64);
     let mut with = vec![(0_u64, 0_u64); case.sections.len()];
-    for (half, unmarked, others) in [(&halves.rows, &rows, all_columns), (&halves.columns, &columns, all_rows)] {
+    for (half, unmarked, others) in
+        [(&halves.rows, &rows, all_columns), (&halves.columns, &columns, all_rows)]
+    {
         for (choice, count) in half.choices().zip(unmarked) {
             for &at in choice {
                 with[at as usize].0 += others;
@@ -167,5 +197,8 @@ fn importance(case: &Case, halves: &Halves, fails: &Fails) -> Vec<Importance> {
             without: share(all_rows * all_columns - all, validated - good),
         }
     };
-    case.strata.iter().flat_map(|stratum| stratum.members.iter().map(|&at| of(&stratum.zone, at))).collect()
+    case.strata
+        .iter()
+        .flat_map(|stratum| stratum.members.iter().map(|&at| of(&stratum.zone, at)))
+        .collect()
 }

@@ -1,13 +1,15 @@
-//! Largest and smallest values over all selections, counted by binomial coefficients without forming selections.
+//! Largest and smallest values over all selections, counted by binomial coefficients without
+//! forming selections.
 
 use super::case::{Case, Kind, Measure, choose};
 use super::listed::{Listed, weighted};
 
-/// Order statistics of a largest value, a smallest value or a largest magnitude. `None` for other statistics, and where no selection has
-/// a value.
+/// Order statistics of a largest value, a smallest value or a largest magnitude. `None` for other
+/// statistics, and where no selection has a value.
 ///
-/// The largest value of a selection is at most a bound if that of each of its sections is. The number of such selections is the product,
-/// over the zones, of the choices among the sections within the bound.
+/// The largest value of a selection is at most a bound if that of each of its sections is. The
+/// number of such selections is the product, over the zones, of the choices among the sections
+/// within the bound.
 pub fn over_all(case: &Case, measure: &Measure) -> Option<Listed> {
     let (sign, magnitude) = match measure.kind {
         Kind::Largest => (1.0, false),
@@ -16,7 +18,9 @@ pub fn over_all(case: &Case, measure: &Measure) -> Option<Listed> {
         _ => return None,
     };
     let of_section = |at: usize| {
-        let values = measure.values[at].iter().map(|value| sign * measure.scale * if magnitude { value.abs() } else { *value });
+        let values = measure.values[at]
+            .iter()
+            .map(|value| sign * measure.scale * if magnitude { value.abs() } else { *value });
         values.reduce(f64::max).unwrap_or(f64::NEG_INFINITY)
     };
     let strata: Vec<(usize, Vec<f64>)> = case
@@ -35,7 +39,12 @@ pub fn over_all(case: &Case, measure: &Measure) -> Option<Listed> {
         };
         strata.iter().map(choices).product()
     };
-    let mut values: Vec<f64> = strata.iter().flat_map(|(_, values)| values).copied().filter(|value| value.is_finite()).collect();
+    let mut values: Vec<f64> = strata
+        .iter()
+        .flat_map(|(_, values)| values)
+        .copied()
+        .filter(|value| value.is_finite())
+        .collect();
     values.sort_unstable_by(f64::total_cmp);
     values.dedup();
     let mut before = upto(f64::NEG_INFINITY);

@@ -7,7 +7,8 @@ pub struct Fails {
     pub columns: usize,
     words: usize,
     bits: Vec<u64>,
-    /// For every `STEP`th position in the order of the columns, the set of all columns from there on.
+    /// For every `STEP`th position in the order of the columns, the set of all columns from there
+    /// on.
     from: Vec<u64>,
 }
 
@@ -32,7 +33,8 @@ impl Fails {
     /// As [`Self::one`] where it fails.
     #[inline(always)]
     pub fn set(&mut self, row: u32, column: u32, fails: bool) {
-        self.bits[row as usize * self.words + column as usize / 64] |= u64::from(fails) << (column % 64);
+        self.bits[row as usize * self.words + column as usize / 64] |=
+            u64::from(fails) << (column % 64);
     }
 
     /// Sets the order of columns for the following calls of `after` and `before`.
@@ -77,8 +79,11 @@ impl Fails {
         }
         if cut > 0 {
             let start = row as usize * self.words;
-            let (all, rest) = (&self.from[..self.words], &self.from[cut * self.words..(cut + 1) * self.words]);
-            for ((word, all), rest) in self.bits[start..start + self.words].iter_mut().zip(all).zip(rest) {
+            let (all, rest) =
+                (&self.from[..self.words], &self.from[cut * self.words..(cut + 1) * self.words]);
+            for ((word, all), rest) in
+                self.bits[start..start + self.words].iter_mut().zip(all).zip(rest)
+            {
                 *word |= all & !rest;
             }
         }
@@ -90,7 +95,8 @@ impl Fails {
 
     pub fn count(&self) -> u64 {
         // Uses the population-count instruction where the processor has one.
-        pulp::Arch::new().dispatch(|| self.bits.iter().map(|word| u64::from(word.count_ones())).sum())
+        pulp::Arch::new()
+            .dispatch(|| self.bits.iter().map(|word| u64::from(word.count_ones())).sum())
     }
 
     /// Takes the union with another set.

@@ -21,12 +21,14 @@ pub struct Marked<'a> {
     pub fails: Option<&'a Fails>,
 }
 
-/// Compares the verdicts on all selections common to both cases, or on random ones if there are too many.
+/// Compares the verdicts on all selections common to both cases, or on random ones if there are too
+/// many.
 ///
 /// # Errors
 /// A zone has fewer sections usable in both cases than a selection takes.
 pub fn flips(before: Marked<'_>, after: Marked<'_>, settings: &Settings) -> Result<Flips, String> {
-    let (one, two) = (before.case.with_sections_of(after.case)?, after.case.with_sections_of(before.case)?);
+    let (one, two) =
+        (before.case.with_sections_of(after.case)?, after.case.with_sections_of(before.case)?);
     let combinations = one.combinations();
     if !settings.evaluates_all(&one) || !settings.evaluates_all(&two) {
         return Ok(drawn(&one, &two, settings));
@@ -38,7 +40,12 @@ pub fn flips(before: Marked<'_>, after: Marked<'_>, settings: &Settings) -> Resu
     };
     let (one, two) = (own(before, &one), own(after, &two));
     let only = |these: &Fails, others: &Fails| {
-        these.words().iter().zip(others.words()).map(|(word, other)| u64::from((word & !other).count_ones())).sum::<u64>()
+        these
+            .words()
+            .iter()
+            .zip(others.words())
+            .map(|(word, other)| u64::from((word & !other).count_ones()))
+            .sum::<u64>()
     };
     let share = |count: u64| count as f64 / combinations;
     Ok(Flips {
@@ -61,7 +68,8 @@ fn drawn(one: &Case, two: &Case, settings: &Settings) -> Flips {
                 let mut random = Random::new(settings.seed, number as u64);
                 (0..BATCH).fold((0, 0), |(lost, gained), _| {
                     let selection = draw(one, &mut random);
-                    let (before, after) = (validated(one, &of_one, &selection), validated(two, &of_two, &selection));
+                    let (before, after) =
+                        (validated(one, &of_one, &selection), validated(two, &of_two, &selection));
                     (lost + u64::from(before && !after), gained + u64::from(!before && after))
                 })
             })
@@ -86,7 +94,10 @@ fn drawn(one: &Case, two: &Case, settings: &Settings) -> Flips {
 }
 
 fn sums_of(case: &Case) -> Vec<Vec<Sums<'_>>> {
-    case.quantities.iter().map(|quantity| quantity.measures.iter().map(Sums::of).collect()).collect()
+    case.quantities
+        .iter()
+        .map(|quantity| quantity.measures.iter().map(Sums::of).collect())
+        .collect()
 }
 
 fn validated(case: &Case, sums: &[Vec<Sums<'_>>], selection: &[usize]) -> bool {
@@ -94,7 +105,9 @@ fn validated(case: &Case, sums: &[Vec<Sums<'_>>], selection: &[usize]) -> bool {
     for (quantity, sums) in case.quantities.iter().zip(sums) {
         let before = tally;
         for sums in sums {
-            tally.limit(sums.over(selection.iter().copied()).map(|value| sums.measure().holds(value)));
+            tally.limit(
+                sums.over(selection.iter().copied()).map(|value| sums.measure().holds(value)),
+            );
         }
         tally.quantity(&before, sums.is_empty());
         tally.missing |= !sums.is_empty() && !quantity.enough(selection.iter().copied());

@@ -1,12 +1,13 @@
-//! Greedy search for a set of sections whose removal changes the verdict, for campaigns where not all sets can be tried. One section is
-//! removed at a time, always the one with the largest effect.
+//! Greedy search for a set of sections whose removal changes the verdict, for campaigns where not
+//! all sets can be tried. One section is removed at a time, always the one with the largest effect.
 
 use super::case::Case;
 use super::judged::{Sums, Tally};
 use crate::result::Verdict;
 
-/// A set whose removal changes the verdict and of which no section can be restored; not necessarily the smallest. Every zone keeps the
-/// number of sections that a selection takes. `None` if the search finds no such set.
+/// A set whose removal changes the verdict and of which no section can be restored; not necessarily
+/// the smallest. Every zone keeps the number of sections that a selection takes. `None` if the
+/// search finds no such set.
 pub fn set(case: &Case, verdict: Verdict) -> Option<Vec<usize>> {
     let search = Search::of(case, verdict);
     let found = match verdict {
@@ -32,13 +33,21 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     fn of(case: &'a Case, verdict: Verdict) -> Self {
-        let sums: Vec<Vec<Sums<'_>>> = case.quantities.iter().map(|quantity| quantity.measures.iter().map(Sums::of).collect()).collect();
+        let sums: Vec<Vec<Sums<'_>>> = case
+            .quantities
+            .iter()
+            .map(|quantity| quantity.measures.iter().map(Sums::of).collect())
+            .collect();
         let usable = case.usable();
-        let all = sums.iter().map(|sums| sums.iter().map(|sums| sums.add(usable.iter().copied())).collect()).collect();
+        let all = sums
+            .iter()
+            .map(|sums| sums.iter().map(|sums| sums.add(usable.iter().copied())).collect())
+            .collect();
         Self { case, verdict, sums, all, usable }
     }
 
-    /// The verdict without some sections, and the exceedance of each limit; negative where the limit is met.
+    /// The verdict without some sections, and the exceedance of each limit; negative where the
+    /// limit is met.
     fn without(&self, removed: &[usize]) -> (Verdict, Vec<f64>) {
         let kept = || self.usable.iter().copied().filter(|at| !removed.contains(at));
         let (mut tally, mut beyond) = (Tally::default(), Vec::new());
@@ -47,7 +56,9 @@ impl<'a> Search<'a> {
             for (sums, all) in sums.iter().zip(all) {
                 let (measure, value) = (sums.measure(), sums.without(*all, removed, kept()));
                 tally.limit(value.map(|value| measure.holds(value)));
-                beyond.push(value.map_or(0.0, |value| (measure.low - value).max(value - measure.high)));
+                beyond.push(
+                    value.map_or(0.0, |value| (measure.low - value).max(value - measure.high)),
+                );
             }
             tally.quantity(&before, sums.is_empty());
             tally.missing |= !sums.is_empty() && !quantity.enough(kept());
@@ -55,16 +66,21 @@ impl<'a> Search<'a> {
         (tally.verdict(self.case.rule), beyond)
     }
 
-    /// Removes the section with the lowest cost until the verdict changes or no section can be removed.
+    /// Removes the section with the lowest cost until the verdict changes or no section can be
+    /// removed.
     fn walk(&self, cost: impl Fn(&[f64]) -> f64) -> Option<Vec<usize>> {
-        let mut spare: Vec<usize> = self.case.strata.iter().map(|stratum| stratum.members.len() - stratum.take).collect();
+        let mut spare: Vec<usize> =
+            self.case.strata.iter().map(|stratum| stratum.members.len() - stratum.take).collect();
         let mut removed: Vec<usize> = Vec::new();
         loop {
             let mut best: Option<(f64, usize, usize, Verdict)> = None;
-            for (number, stratum) in self.case.strata.iter().enumerate().filter(|(number, _)| spare[*number] > 0) {
+            for (number, stratum) in
+                self.case.strata.iter().enumerate().filter(|(number, _)| spare[*number] > 0)
+            {
                 for &section in stratum.members.iter().filter(|at| !removed.contains(at)) {
                     let (verdict, beyond) = self.without(&[&removed[..], &[section]].concat());
-                    let cost = if verdict == self.verdict { cost(&beyond) } else { f64::NEG_INFINITY };
+                    let cost =
+                        if verdict == self.verdict { cost(&beyond) } else { f64::NEG_INFINITY };
                     if best.is_none_or(|(least, ..)| cost < least) {
                         best = Some((cost, number, section, verdict));
                     }

@@ -1,8 +1,10 @@
-//! Order statistics of means over all selections where even the half selections are too many to list.
+//! Order statistics of means over all selections where even the half selections are too many to
+//! list.
 //!
-//! The contribution of each section to the mean is rounded to a grid. The number of choices of a zone for each sum of contributions
-//! is counted by dynamic programming, and a convolution joins the zones. The rounding error of a selection is bounded by the remainders
-//! of its sections, so that every quartile lies between two bounds, which are reported.
+//! The contribution of each section to the mean is rounded to a grid. The number of choices of a
+//! zone for each sum of contributions is counted by dynamic programming, and a convolution joins
+//! the zones. The rounding error of a selection is bounded by the remainders of its sections, so
+//! that every quartile lies between two bounds, which are reported.
 
 use realfft::num_complex::Complex;
 
@@ -21,7 +23,8 @@ const UNSURE: f64 = 1e-9;
 /// A statistic that is a sum of contributions of the sections, or the root of one.
 #[derive(Debug)]
 pub struct Additive {
-    /// Per zone the number of sections taken, and the contribution of each section in increasing order.
+    /// Per zone the number of sections taken, and the contribution of each section in increasing
+    /// order.
     strata: Vec<(usize, Vec<(f64, usize)>)>,
     form: Form,
 }
@@ -48,10 +51,16 @@ impl Additive {
         }
         let part = |at: usize| {
             let values = measure.values[at].iter();
-            weight / pairs as f64 * if form == Form::Square { values.map(|value| value * value).sum::<f64>() } else { values.sum() }
+            weight / pairs as f64
+                * if form == Form::Square {
+                    values.map(|value| value * value).sum::<f64>()
+                } else {
+                    values.sum()
+                }
         };
         let strata = case.strata.iter().map(|stratum| {
-            let mut parts: Vec<(f64, usize)> = stratum.members.iter().map(|&at| (part(at), at)).collect();
+            let mut parts: Vec<(f64, usize)> =
+                stratum.members.iter().map(|&at| (part(at), at)).collect();
             parts.sort_by(|a, b| a.0.total_cmp(&b.0));
             (stratum.take, parts)
         });
@@ -61,22 +70,33 @@ impl Additive {
     /// The selections with the smallest and the largest value.
     pub fn ends(&self) -> (Vec<usize>, Vec<usize>) {
         let of = |greatest: bool| {
-            let mut sections: Vec<usize> =
-                self.strata.iter().flat_map(|(take, parts)| ends(parts, *take, greatest)).map(|(_, at)| *at).collect();
+            let mut sections: Vec<usize> = self
+                .strata
+                .iter()
+                .flat_map(|(take, parts)| ends(parts, *take, greatest))
+                .map(|(_, at)| *at)
+                .collect();
             sections.sort_unstable();
             sections
         };
         (of(false), of(true))
     }
 
-    /// Exact minimum and maximum, quartiles and outliers with bounds. `None` where the number of choices exceeds the floating-point range.
+    /// Exact minimum and maximum, quartiles and outliers with bounds. `None` where the number of
+    /// choices exceeds the floating-point range.
     pub fn spread(&self, combinations: f64) -> Option<Spread> {
         let sum_of = |greatest: bool| -> f64 {
-            self.strata.iter().map(|(take, parts)| ends(parts, *take, greatest).iter().map(|(part, _)| part).sum::<f64>()).sum()
+            self.strata
+                .iter()
+                .map(|(take, parts)| {
+                    ends(parts, *take, greatest).iter().map(|(part, _)| part).sum::<f64>()
+                })
+                .sum()
         };
         let (least, greatest) = (sum_of(false), sum_of(true));
         let counted = self.counted()?;
-        let (value, edges) = (|sum: f64| self.form.map(sum), |at: usize| counted.edges(at, least, greatest));
+        let (value, edges) =
+            (|sum: f64| self.form.map(sum), |at: usize| counted.edges(at, least, greatest));
         let mut upto = Vec::with_capacity(counted.shares.len());
         let mut sum = 0.0;
         for share in &counted.shares {
@@ -95,7 +115,8 @@ impl Additive {
             let middle = value(f64::midpoint(low, high));
             middle < q1 - reach || middle > q3 + reach
         });
-        let outliers = (combinations * beyond.map(|(_, share)| share.max(0.0)).sum::<f64>()).round() as u64;
+        let outliers =
+            (combinations * beyond.map(|(_, share)| share.max(0.0)).sum::<f64>()).round() as u64;
         let within = quartiles.iter().map(|(low, high)| 0.5 * (high - low)).fold(0.0, f64::max);
         Some(Spread {
             min: value(least),
@@ -113,7 +134,8 @@ impl Additive {
 
     fn counted(&self) -> Option<Counted> {
         let taken: usize = self.strata.iter().map(|(take, _)| take).sum();
-        let work: f64 = self.strata.iter().map(|(take, parts)| *take as f64 * parts.len() as f64).sum();
+        let work: f64 =
+            self.strata.iter().map(|(take, parts)| *take as f64 * parts.len() as f64).sum();
         let mut cells = CELLS.0;
         while cells > CELLS.1 && work * cells as f64 > WORK {
             cells /= 2;
@@ -121,16 +143,28 @@ impl Additive {
         if taken >= cells / 2 {
             return None;
         }
-        let span: f64 =
-            self.strata.iter().map(|(take, parts)| ends(parts, *take, true).iter().map(|(part, _)| part - parts[0].0).sum::<f64>()).sum();
+        let span: f64 = self
+            .strata
+            .iter()
+            .map(|(take, parts)| {
+                ends(parts, *take, true).iter().map(|(part, _)| part - parts[0].0).sum::<f64>()
+            })
+            .sum();
         // Rounding adds at most half a cell per section taken.
         let step = if span > 0.0 { span / (cells - taken - 1) as f64 } else { 1.0 };
         let forward = fourier::forward(cells);
-        let (mut all, mut first, mut rest) = (vec![Complex::new(1.0, 0.0); cells / 2 + 1], 0.0, (0.0, 0.0));
+        let (mut all, mut first, mut rest) =
+            (vec![Complex::new(1.0, 0.0); cells / 2 + 1], 0.0, (0.0, 0.0));
         for (take, parts) in &self.strata {
-            let places: Vec<usize> = parts.iter().map(|(part, _)| ((part - parts[0].0) / step).round() as usize).collect();
-            let mut rests: Vec<f64> =
-                parts.iter().zip(&places).map(|((part, _), place)| part - parts[0].0 - *place as f64 * step).collect();
+            let places: Vec<usize> = parts
+                .iter()
+                .map(|(part, _)| ((part - parts[0].0) / step).round() as usize)
+                .collect();
+            let mut rests: Vec<f64> = parts
+                .iter()
+                .zip(&places)
+                .map(|((part, _), place)| part - parts[0].0 - *place as f64 * step)
+                .collect();
             rests.sort_unstable_by(f64::total_cmp);
             first += *take as f64 * parts[0].0;
             rest.0 += rests[..*take].iter().sum::<f64>();
@@ -167,7 +201,10 @@ fn choices(places: &[usize], take: usize) -> Vec<f64> {
     for (known, place) in places.iter().enumerate() {
         for taken in (1..=take.min(known + 1)).rev() {
             let (before, now) = counts.split_at_mut(taken);
-            now[0][*place..].iter_mut().zip(&before[taken - 1]).for_each(|(now, before)| *now += before);
+            now[0][*place..]
+                .iter_mut()
+                .zip(&before[taken - 1])
+                .for_each(|(now, before)| *now += before);
         }
     }
     counts.swap_remove(take)
@@ -176,7 +213,8 @@ fn choices(places: &[usize], take: usize) -> Vec<f64> {
 /// Share of the selections in every cell.
 struct Counted {
     shares: Vec<f64>,
-    /// Sum at the first cell, distance of cells, and largest deviation of a selection below and above its cell.
+    /// Sum at the first cell, distance of cells, and largest deviation of a selection below and
+    /// above its cell.
     first: f64,
     step: f64,
     rest: (f64, f64),
@@ -186,7 +224,10 @@ impl Counted {
     /// Lowest and highest sum of the selections of a cell.
     fn edges(&self, at: usize, least: f64, greatest: f64) -> (f64, f64) {
         let middle = self.first + at as f64 * self.step;
-        ((middle + self.rest.0).clamp(least, greatest), (middle + self.rest.1).clamp(least, greatest))
+        (
+            (middle + self.rest.0).clamp(least, greatest),
+            (middle + self.rest.1).clamp(least, greatest),
+        )
     }
 }
 

@@ -1,7 +1,8 @@
 //! Values that are sums of few parts, by row, with the columns in approximate order of the values.
 //!
-//! The values are `p + q - c y` for every row `(p, c)` and every column `(q, y)` of a block. A variance has this form, with rows and
-//! columns the sums over two halves of a selection, and so has a mean (c = 0).
+//! The values are `p + q - c y` for every row `(p, c)` and every column `(q, y)` of a block. A
+//! variance has this form, with rows and columns the sums over two halves of a selection, and so
+//! has a mean (c = 0).
 
 use super::buckets::{Buckets, ordered};
 use super::fails::Fails;
@@ -61,7 +62,9 @@ pub fn groups(block: &Block, mut visit: impl FnMut(&Sorted<'_>)) {
         return;
     }
     let reach = columns.iter().fold(0.0_f64, |reach, column| reach.max(column.y.abs()));
-    let size = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0_f64, |size, value| size.max(value.abs()));
+    let size = |values: &mut dyn Iterator<Item = f64>| {
+        values.fold(0.0_f64, |size, value| size.max(value.abs()))
+    };
     // The last term is for values that are all zero.
     let room = 1e-14
         * (size(&mut rows.iter().map(|row| row.p))
@@ -71,7 +74,8 @@ pub fn groups(block: &Block, mut visit: impl FnMut(&Sorted<'_>)) {
     let slopes: Vec<f64> = rows.iter().map(|row| row.c).collect();
     let rows: Vec<Row> = ordered(&slopes).into_iter().map(|at| rows[at as usize]).collect();
     let flat = slopes.iter().all(|c| *c == slopes[0]);
-    // Small groups give a more accurate order, large groups need fewer sorts. The cost is least near the square root of the number of rows.
+    // Small groups give a more accurate order, large groups need fewer sorts. The cost is least
+    // near the square root of the number of rows.
     let group = if flat { rows.len() } else { (rows.len() as f64).sqrt().ceil() as usize };
     let mut buckets = Buckets::default();
     let n = columns.len();
@@ -104,7 +108,11 @@ impl Sorted<'_> {
     #[inline(always)]
     pub fn values(&self, row: &Row, from: usize, to: usize) -> impl Iterator<Item = (f64, u32)> {
         let row = *row;
-        self.q[from..to].iter().zip(&self.y[from..to]).zip(&self.at[from..to]).map(move |((q, y), at)| (value(&row, *q, *y), *at))
+        self.q[from..to]
+            .iter()
+            .zip(&self.y[from..to])
+            .zip(&self.at[from..to])
+            .map(move |((q, y), at)| (value(&row, *q, *y), *at))
     }
 
     /// Adds all values outside the limit to the set, and returns their number.

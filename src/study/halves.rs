@@ -1,6 +1,8 @@
-//! Selections as pairs of two halves: every choice of sections of some zones with every choice of the others.
+//! Selections as pairs of two halves: every choice of sections of some zones with every choice of
+//! the others.
 //!
-//! A sum over a selection is the sum of two numbers, one for each half. A selection therefore costs one addition.
+//! A sum over a selection is the sum of two numbers, one for each half. A selection therefore costs
+//! one addition.
 
 use super::case::{Case, Kind, Measure, choose};
 use super::groups::{Block, Column, Row};
@@ -25,7 +27,8 @@ pub struct Halves {
 }
 
 impl Halves {
-    /// Numbers of choices of both halves, balanced as evenly as the zones allow; the first is the larger.
+    /// Numbers of choices of both halves, balanced as evenly as the zones allow; the first is the
+    /// larger.
     pub fn sizes(case: &Case) -> (f64, f64) {
         let (rows, columns, _) = split(case);
         (rows, columns)
@@ -35,7 +38,9 @@ impl Halves {
         let (_, _, in_rows) = split(case);
         let half = |wanted: bool| {
             let mut half = Half { width: 0, sections: Vec::new(), count: 1, factors: Vec::new() };
-            for (stratum, _) in case.strata.iter().zip(&in_rows).filter(|(_, in_rows)| **in_rows == wanted) {
+            for (stratum, _) in
+                case.strata.iter().zip(&in_rows).filter(|(_, in_rows)| **in_rows == wanted)
+            {
                 half = half.with(&subsets(&stratum.members, stratum.take), stratum.take);
             }
             half
@@ -46,13 +51,17 @@ impl Halves {
 
 /// The strata of the rows: the split whose larger half is smallest, with the larger half as rows.
 fn split(case: &Case) -> (f64, f64, Vec<bool>) {
-    let sizes: Vec<f64> = case.strata.iter().map(|stratum| choose(stratum.members.len(), stratum.take)).collect();
+    let sizes: Vec<f64> =
+        case.strata.iter().map(|stratum| choose(stratum.members.len(), stratum.take)).collect();
     let all: f64 = sizes.iter().product();
     // Beyond 16 zones, the first 16 are split and the others are added to the columns.
     let shared = sizes.len().min(16);
-    let product = |mask: u32| (0..shared).filter(|at| mask >> at & 1 == 1).map(|at| sizes[at]).product::<f64>();
-    let best =
-        (0..1_u32 << shared).filter(|mask| product(*mask) * product(*mask) >= all).min_by(|a, b| product(*a).total_cmp(&product(*b)));
+    let product = |mask: u32| {
+        (0..shared).filter(|at| mask >> at & 1 == 1).map(|at| sizes[at]).product::<f64>()
+    };
+    let best = (0..1_u32 << shared)
+        .filter(|mask| product(*mask) * product(*mask) >= all)
+        .min_by(|a, b| product(*a).total_cmp(&product(*b)));
     let mask = best.unwrap_or((1 << shared) - 1);
     let rows = product(mask);
     (rows, all / rows, (0..sizes.len()).map(|at| at < shared && mask >> at & 1 == 1).collect())
@@ -68,7 +77,11 @@ pub fn subsets(members: &[usize], take: usize) -> Vec<Vec<u32>> {
     loop {
         found.push(chosen.iter().map(|&at| members[at] as u32).collect());
         // The last position that can still advance.
-        let Some(place) = (0..take).rev().find(|&place| chosen[place] < members.len() - take + place) else { return found };
+        let Some(place) =
+            (0..take).rev().find(|&place| chosen[place] < members.len() - take + place)
+        else {
+            return found;
+        };
         chosen[place] += 1;
         for next in place + 1..take {
             chosen[next] = chosen[next - 1] + 1;
@@ -94,11 +107,18 @@ impl Half {
         &self.sections[at * self.width..(at + 1) * self.width]
     }
 
-    /// Sums of every choice from those of sections: first within strata, then over all combinations.
+    /// Sums of every choice from those of sections: first within strata, then over all
+    /// combinations.
     fn sums(&self, of_section: &[Sums]) -> Vec<Sums> {
         self.factors.iter().fold(vec![Sums::default()], |all, choices| {
-            let more: Vec<Sums> =
-                choices.iter().map(|choice| choice.iter().fold(Sums::default(), |sums, at| sums.plus(&of_section[*at as usize]))).collect();
+            let more: Vec<Sums> = choices
+                .iter()
+                .map(|choice| {
+                    choice
+                        .iter()
+                        .fold(Sums::default(), |sums, at| sums.plus(&of_section[*at as usize]))
+                })
+                .collect();
             all.iter().flat_map(|sums| more.iter().map(|more| sums.plus(more))).collect()
         })
     }
@@ -165,14 +185,24 @@ impl Measure {
                 .values
                 .iter()
                 .map(|values| {
-                    let scaled = values.iter().map(|value| sign * self.scale * if magnitude { value.abs() } else { *value });
+                    let scaled = values.iter().map(|value| {
+                        sign * self.scale * if magnitude { value.abs() } else { *value }
+                    });
                     scaled.reduce(f64::max)
                 })
                 .collect();
             let of = |half: &Half| {
-                half.choices().map(|choice| choice.iter().filter_map(|&at| of_section[at as usize]).reduce(f64::max)).collect()
+                half.choices()
+                    .map(|choice| {
+                        choice.iter().filter_map(|&at| of_section[at as usize]).reduce(f64::max)
+                    })
+                    .collect()
             };
-            Parts::Extremes { rows: of(&halves.rows), columns: of(&halves.columns), negative: sign < 0.0 }
+            Parts::Extremes {
+                rows: of(&halves.rows),
+                columns: of(&halves.columns),
+                negative: sign < 0.0,
+            }
         };
         match self.kind {
             Kind::Mean | Kind::Deviation { .. } | Kind::RootMeanSquare => self.sums(halves),
@@ -195,7 +225,11 @@ impl Measure {
             .iter()
             .map(|values| {
                 let centred = values.iter().map(|value| value - center);
-                Sums { n: values.len(), x: centred.clone().sum(), xx: centred.map(|value| value * value).sum() }
+                Sums {
+                    n: values.len(),
+                    x: centred.clone().sum(),
+                    xx: centred.map(|value| value * value).sum(),
+                }
             })
             .collect();
         let (rows, columns) = (halves.rows.sums(&of_section), halves.columns.sums(&of_section));
@@ -207,14 +241,20 @@ impl Measure {
                 let n = (row_count + column_count) as f64;
                 let weights = match self.kind {
                     Kind::Mean if n > 0.0 => Weights { x: self.scale / n, ..Weights::default() },
-                    Kind::RootMeanSquare if n > 0.0 => Weights { xx: self.scale * self.scale / n, ..Weights::default() },
+                    Kind::RootMeanSquare if n > 0.0 => {
+                        Weights { xx: self.scale * self.scale / n, ..Weights::default() }
+                    }
                     Kind::Deviation { ddof } if n > ddof as f64 && n >= 1.0 => {
                         let xx = self.scale * self.scale / (n - ddof as f64);
                         Weights { x: 0.0, xx, product: xx / n }
                     }
                     _ => {
                         let of = |sums: &[Sums], count: usize| {
-                            sums.iter().enumerate().filter(|(_, sums)| sums.n == count).map(|(at, _)| at as u32).collect()
+                            sums.iter()
+                                .enumerate()
+                                .filter(|(_, sums)| sums.n == count)
+                                .map(|(at, _)| at as u32)
+                                .collect()
                         };
                         undefined.push((of(&rows, row_count), of(&columns, column_count)));
                         continue;
@@ -244,16 +284,28 @@ fn counts(sums: &[Sums]) -> Vec<usize> {
 }
 
 fn block(rows: (&[Sums], usize), columns: (&[Sums], usize), weights: Weights, shift: f64) -> Block {
-    let part = |sums: &Sums| weights.x * sums.x + weights.xx * sums.xx - weights.product * sums.x * sums.x;
+    let part =
+        |sums: &Sums| weights.x * sums.x + weights.xx * sums.xx - weights.product * sums.x * sums.x;
     let of = |(sums, count): (&[Sums], usize)| {
         let all = sums.iter().enumerate().filter(move |(_, sums)| sums.n == count);
         all.map(|(at, sums)| (at as u32, *sums)).collect::<Vec<_>>()
     };
     Block {
-        rows: of(rows).iter().map(|(at, sums)| Row { p: part(sums) + shift, c: 2.0 * weights.product * sums.x, at: *at }).collect(),
+        rows: of(rows)
+            .iter()
+            .map(|(at, sums)| Row {
+                p: part(sums) + shift,
+                c: 2.0 * weights.product * sums.x,
+                at: *at,
+            })
+            .collect(),
         columns: of(columns)
             .iter()
-            .map(|(at, sums)| Column { q: part(sums), y: if weights.product == 0.0 { 0.0 } else { sums.x }, at: *at })
+            .map(|(at, sums)| Column {
+                q: part(sums),
+                y: if weights.product == 0.0 { 0.0 } else { sums.x },
+                at: *at,
+            })
             .collect(),
     }
 }
@@ -268,6 +320,9 @@ mod tests {
         assert_eq!(subsets(&[1, 2], 0), [Vec::<u32>::new()]);
         assert_eq!(subsets(&[1], 2), Vec::<Vec<u32>>::new());
         assert_eq!(subsets(&(0..9).collect::<Vec<_>>(), 3).len(), 84);
-        assert_eq!([choose(9, 3), choose(40, 3), choose(5, 5), choose(5, 0)], [84.0, 9880.0, 1.0, 1.0]);
+        assert_eq!(
+            [choose(9, 3), choose(40, 3), choose(5, 5), choose(5, 0)],
+            [84.0, 9880.0, 1.0, 1.0]
+        );
     }
 }

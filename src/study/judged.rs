@@ -1,4 +1,5 @@
-//! Evaluation of one selection from its sections: the reference for the enumeration, and the method for single selections.
+//! Evaluation of one selection from its sections: the reference for the enumeration, and the method
+//! for single selections.
 
 use super::case::{Case, Kind, Measure};
 use crate::metrics::reduction::Measure as Scatter;
@@ -84,8 +85,11 @@ impl super::case::Quantity {
         if !self.minimum_of_groups.is_empty() {
             let sections: Vec<usize> = sections.collect();
             let of_groups = self.minimum_of_groups.iter();
-            let of_all = of_groups.map(|group| (group.needed, sections.iter().map(|&at| group.pairs[at]).sum::<usize>()));
-            return { of_all }.all(|(needed, pairs)| pairs >= needed) && self.enough_in_all(sections.iter().copied());
+            let of_all = of_groups.map(|group| {
+                (group.needed, sections.iter().map(|&at| group.pairs[at]).sum::<usize>())
+            });
+            return { of_all }.all(|(needed, pairs)| pairs >= needed)
+                && self.enough_in_all(sections.iter().copied());
         }
         self.enough_in_all(sections)
     }
@@ -96,7 +100,8 @@ impl super::case::Quantity {
         for at in sections {
             pairs += self.values[at].len();
             signals |= self.signals[at];
-            if pairs >= self.minimum_pairs && signals.count_ones() as usize >= self.minimum_signals {
+            if pairs >= self.minimum_pairs && signals.count_ones() as usize >= self.minimum_signals
+            {
                 return true;
             }
         }
@@ -104,7 +109,8 @@ impl super::case::Quantity {
     }
 }
 
-/// Number of values, sum and sum of squares of every section, so that a statistic of several does not need their values.
+/// Number of values, sum and sum of squares of every section, so that a statistic of several does
+/// not need their values.
 #[derive(Clone, Debug)]
 pub struct Sums<'a> {
     measure: &'a Measure,
@@ -115,13 +121,21 @@ pub struct Sums<'a> {
 impl<'a> Sums<'a> {
     pub fn of(measure: &'a Measure) -> Self {
         let all: Vec<f64> = measure.values.iter().flatten().copied().collect();
-        let center = if measure.kind == Kind::RootMeanSquare { 0.0 } else { all.iter().sum::<f64>() / all.len().max(1) as f64 };
+        let center = if measure.kind == Kind::RootMeanSquare {
+            0.0
+        } else {
+            all.iter().sum::<f64>() / all.len().max(1) as f64
+        };
         let sections = measure
             .values
             .iter()
             .map(|values| {
                 let centred: Vec<f64> = values.iter().map(|value| value - center).collect();
-                (values.len() as f64, centred.iter().sum(), centred.iter().map(|value| value * value).sum())
+                (
+                    values.len() as f64,
+                    centred.iter().sum(),
+                    centred.iter().map(|value| value * value).sum(),
+                )
             })
             .collect();
         Self { measure, center, sections }
@@ -133,7 +147,12 @@ impl<'a> Sums<'a> {
     }
 
     /// As [`Self::over`], from the sums of all sections less those of some.
-    pub fn without(&self, all: (f64, f64, f64), removed: &[usize], kept: impl Iterator<Item = usize> + Clone) -> Option<f64> {
+    pub fn without(
+        &self,
+        all: (f64, f64, f64),
+        removed: &[usize],
+        kept: impl Iterator<Item = usize> + Clone,
+    ) -> Option<f64> {
         if self.pooled() {
             return self.measure.over(kept);
         }
@@ -157,7 +176,9 @@ impl<'a> Sums<'a> {
         let value = match self.measure.kind {
             Kind::Mean => self.center + x / n,
             Kind::RootMeanSquare => (xx / n).sqrt(),
-            Kind::Deviation { ddof } if n > ddof as f64 => ((xx - x * x / n).max(0.0) / (n - ddof as f64)).sqrt(),
+            Kind::Deviation { ddof } if n > ddof as f64 => {
+                ((xx - x * x / n).max(0.0) / (n - ddof as f64)).sqrt()
+            }
             _ => f64::NAN,
         };
         Some(value * self.measure.scale).filter(|value| value.is_finite())
@@ -170,7 +191,11 @@ impl<'a> Sums<'a> {
             Kind::RootMeanSquare => None,
             _ => return None,
         };
-        Some(Scatter { ddof, scale: self.measure.scale, sums: self.sections.iter().map(|(n, x, xx)| [*n, *x, *xx]).collect() })
+        Some(Scatter {
+            ddof,
+            scale: self.measure.scale,
+            sums: self.sections.iter().map(|(n, x, xx)| [*n, *x, *xx]).collect(),
+        })
     }
 
     pub fn measure(&self) -> &Measure {

@@ -1,4 +1,5 @@
-//! Order statistics that are computed for all selections even where there are too many to enumerate.
+//! Order statistics that are computed for all selections even where there are too many to
+//! enumerate.
 
 use rayon::prelude::*;
 
@@ -12,7 +13,8 @@ use crate::result::study::Spread;
 /// Largest number of choices of a half that is listed for an exact statistic.
 const MOST_LISTED: f64 = 2e6;
 
-/// For every limit its order statistics over all selections, where they can be computed without random selections.
+/// For every limit its order statistics over all selections, where they can be computed without
+/// random selections.
 pub fn known(case: &Case) -> Vec<Option<Spread>> {
     let (rows, columns) = Halves::sizes(case);
     let halves = (rows <= MOST_LISTED && columns <= MOST_LISTED).then(|| Halves::of(case));
@@ -21,12 +23,16 @@ pub fn known(case: &Case) -> Vec<Option<Spread>> {
     let of = |measure: &&Measure| match (measure.kind, &halves) {
         (Kind::Deviation { .. }, _) => None,
         (Kind::Pooled(_) | Kind::Estimated, _) => measure.listed_alone(case).map(Spread::from),
-        (Kind::Largest | Kind::Smallest | Kind::LargestMagnitude, _) => extremes::over_all(case, measure).map(Spread::from),
+        (Kind::Largest | Kind::Smallest | Kind::LargestMagnitude, _) => {
+            extremes::over_all(case, measure).map(Spread::from)
+        }
         (Kind::Mean | Kind::RootMeanSquare, Some(halves)) => match measure.parts(halves) {
             Parts::Sums { blocks, form, .. } => sums(&blocks, form).map(Spread::from),
             Parts::Extremes { .. } | Parts::Pooled => None,
         },
-        (Kind::Mean | Kind::RootMeanSquare, None) => Additive::of(case, measure)?.spread(combinations),
+        (Kind::Mean | Kind::RootMeanSquare, None) => {
+            Additive::of(case, measure)?.spread(combinations)
+        }
     };
     measures.par_iter().with_max_len(1).map(of).collect()
 }

@@ -1,4 +1,5 @@
-//! Order statistics where the values or their counts can be listed: single values, and sums by sorting.
+//! Order statistics where the values or their counts can be listed: single values, and sums by
+//! sorting.
 
 use super::groups::Block;
 use super::halves::Form;
@@ -26,7 +27,11 @@ pub fn weighted(list: &[(f64, f64)]) -> Option<Listed> {
     });
     let reach = 1.5 * (quartiles[2] - quartiles[0]);
     let (low, high) = (quartiles[0] - reach, quartiles[2] + reach);
-    let outliers = list.iter().filter(|(value, _)| *value < low || *value > high).map(|(_, times)| times).sum();
+    let outliers = list
+        .iter()
+        .filter(|(value, _)| *value < low || *value > high)
+        .map(|(_, times)| times)
+        .sum();
     Some(Listed { count, min: list[0].0, max: list[list.len() - 1].0, quartiles, outliers })
 }
 
@@ -42,7 +47,13 @@ pub struct Listed {
 
 impl From<Order> for Listed {
     fn from(order: Order) -> Self {
-        Self { count: order.count as f64, min: order.min, max: order.max, quartiles: order.quartiles, outliers: order.outliers as f64 }
+        Self {
+            count: order.count as f64,
+            min: order.min,
+            max: order.max,
+            quartiles: order.quartiles,
+            outliers: order.outliers as f64,
+        }
     }
 }
 
@@ -67,7 +78,8 @@ impl From<Listed> for Spread {
 /// Number of values kept around a rank.
 const KEPT: u64 = 1 << 17;
 
-/// Order statistics of sums of two numbers, by sorted rows and columns; counts are obtained by one pass along both.
+/// Order statistics of sums of two numbers, by sorted rows and columns; counts are obtained by one
+/// pass along both.
 pub fn sums(blocks: &[Block], form: Form) -> Option<Listed> {
     let sorted: Vec<(Vec<f64>, Vec<f64>)> = blocks
         .iter()
@@ -80,11 +92,14 @@ pub fn sums(blocks: &[Block], form: Form) -> Option<Listed> {
         })
         .filter(|(rows, columns)| !rows.is_empty() && !columns.is_empty())
         .collect();
-    let count: u64 = sorted.iter().map(|(rows, columns)| rows.len() as u64 * columns.len() as u64).sum();
+    let count: u64 =
+        sorted.iter().map(|(rows, columns)| rows.len() as u64 * columns.len() as u64).sum();
     if count == 0 {
         return None;
     }
-    let ends = |pick: fn(&[f64]) -> f64| sorted.iter().map(move |(rows, columns)| pick(rows) + pick(columns));
+    let ends = |pick: fn(&[f64]) -> f64| {
+        sorted.iter().map(move |(rows, columns)| pick(rows) + pick(columns))
+    };
     let min = ends(|values| values[0]).fold(f64::INFINITY, f64::min);
     let max = ends(|values| values[values.len() - 1]).fold(f64::NEG_INFINITY, f64::max);
     let ranked = |rank: u64| form.map(of_rank(&sorted, rank, (min, max)));
@@ -95,7 +110,13 @@ pub fn sums(blocks: &[Block], form: Form) -> Option<Listed> {
     let reach = 1.5 * (quartiles[2] - quartiles[0]);
     let (low, high) = form.bounds(quartiles[0] - reach, quartiles[2] + reach);
     let outliers = below(&sorted, low, false) + (count - below(&sorted, high, true));
-    Some(Listed { count: count as f64, min: form.map(min), max: form.map(max), quartiles, outliers: outliers as f64 })
+    Some(Listed {
+        count: count as f64,
+        min: form.map(min),
+        max: form.map(max),
+        quartiles,
+        outliers: outliers as f64,
+    })
 }
 
 /// Number of sums below a value, or up to it.
@@ -104,7 +125,10 @@ fn below(sorted: &[(Vec<f64>, Vec<f64>)], value: f64, or_equal: bool) -> u64 {
     for (rows, columns) in sorted {
         let mut place = columns.len();
         for row in rows {
-            while place > 0 && (row + columns[place - 1] > value || (!or_equal && row + columns[place - 1] == value)) {
+            while place > 0
+                && (row + columns[place - 1] > value
+                    || (!or_equal && row + columns[place - 1] == value))
+            {
                 place -= 1;
             }
             count += place as u64;
@@ -141,7 +165,9 @@ fn of_rank(sorted: &[(Vec<f64>, Vec<f64>)], rank: u64, (min, max): (f64, f64)) -
                 from -= 1;
             }
             // The positions only decrease; values above `low` are visited again.
-            kept.extend(columns[from..to].iter().map(|column| row + column).filter(|sum| *sum > low));
+            kept.extend(
+                columns[from..to].iter().map(|column| row + column).filter(|sum| *sum > low),
+            );
         }
     }
     *kept.select_nth_unstable_by((rank - under) as usize, f64::total_cmp).1
@@ -162,8 +188,11 @@ mod tests {
         let rows: Vec<f64> = (0..37).map(|_| next()).collect();
         let columns: Vec<f64> = (0..23).map(|_| next()).collect();
         let listed = |join: &dyn Fn(f64, f64) -> f64| {
-            let mut all: Vec<(f64, f64)> =
-                rows.iter().flat_map(|row| columns.iter().map(move |column| (*row, *column))).map(|(a, b)| (join(a, b), 1.0)).collect();
+            let mut all: Vec<(f64, f64)> = rows
+                .iter()
+                .flat_map(|row| columns.iter().map(move |column| (*row, *column)))
+                .map(|(a, b)| (join(a, b), 1.0))
+                .collect();
             all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
             weighted(&all).expect("values")
         };

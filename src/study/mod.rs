@@ -1,4 +1,5 @@
-//! Dependence of a verdict on the selection of sections. Selections are computed from sums of sections, without evaluating records again.
+//! Dependence of a verdict on the selection of sections. Selections are computed from sums of
+//! sections, without evaluating records again.
 //!
 //! | file | content |
 //! |---|---|
@@ -59,7 +60,8 @@ pub struct Settings {
     pub seed: u64,
 }
 
-/// Largest number of enumerated selections: a bit set of them takes 25 MB, and about eight are used.
+/// Largest number of enumerated selections: a bit set of them takes 25 MB, and about eight are
+/// used.
 pub const MOST: f64 = 2e8;
 
 impl Default for Settings {
@@ -71,7 +73,8 @@ impl Default for Settings {
 impl Settings {
     /// Whether every selection of a case is evaluated.
     fn evaluates_all(&self, case: &Case) -> bool {
-        case.combinations() <= self.most && case.measures().all(|(_, measure)| measure.is_countable(case))
+        case.combinations() <= self.most
+            && case.measures().all(|(_, measure)| measure.is_countable(case))
     }
 }
 
@@ -108,7 +111,8 @@ pub fn marked(case: &Case, settings: &Settings) -> (SelectionStudy, Option<Fails
     (found, fails)
 }
 
-/// Why no selection can be assessed: even the sections with the most pairs have fewer than a quantity needs.
+/// Why no selection can be assessed: even the sections with the most pairs have fewer than a
+/// quantity needs.
 fn lacking(case: &Case) -> Option<String> {
     let most = |pairs: &dyn Fn(usize) -> usize| -> usize {
         let of_stratum = |stratum: &case::Stratum| {
@@ -120,9 +124,17 @@ fn lacking(case: &Case) -> Option<String> {
     };
     let of_quantity = |quantity: &case::Quantity| {
         let in_all = (quantity.minimum_pairs, most(&|at| quantity.values[at].len()));
-        let of_groups = quantity.minimum_of_groups.iter().map(|group| (group.needed, most(&|at| group.pairs[at])));
-        let (needed, most) = std::iter::once(in_all).chain(of_groups).find(|(needed, most)| most < needed && *needed < usize::MAX)?;
-        Some(format!("No selection can be assessed: {} has at most {most} pairs, and {needed} are required.", quantity.symbol))
+        let of_groups = quantity
+            .minimum_of_groups
+            .iter()
+            .map(|group| (group.needed, most(&|at| group.pairs[at])));
+        let (needed, most) = std::iter::once(in_all)
+            .chain(of_groups)
+            .find(|(needed, most)| most < needed && *needed < usize::MAX)?;
+        Some(format!(
+            "No selection can be assessed: {} has at most {most} pairs, and {needed} are required.",
+            quantity.symbol
+        ))
     };
     case.quantities.iter().find_map(of_quantity)
 }

@@ -1,4 +1,5 @@
-//! One statistic over all selections: its order statistics, and the selections that do not meet its limit.
+//! One statistic over all selections: its order statistics, and the selections that do not meet its
+//! limit.
 
 use super::case::{Case, Measure, Quantity};
 use super::extremes;
@@ -17,7 +18,8 @@ pub struct OverAll {
     pub worst: Option<((u32, u32), f64)>,
 }
 
-/// Computes the order statistics, and marks the selections that do not meet the limit or have no value.
+/// Computes the order statistics, and marks the selections that do not meet the limit or have no
+/// value.
 pub fn over_all(
     case: &Case,
     measure: &Measure,
@@ -33,13 +35,16 @@ pub fn over_all(
         return with_worst(measure, found.listed(1.0), found.ends(), failing);
     }
     let mut without = |row: u32, column: u32| {
-        undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count)).one(row, column);
+        undefined
+            .get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count))
+            .one(row, column);
     };
     let mut failing = 0;
     let (listed, ends) = match parts {
         Parts::Sums { blocks, form, undefined: nowhere } => {
             for (rows, columns) in nowhere {
-                rows.iter().for_each(|&row| columns.iter().for_each(|&column| without(row, column)));
+                rows.iter()
+                    .for_each(|&row| columns.iter().for_each(|&column| without(row, column)));
             }
             let (low, high) = form.bounds(measure.low, measure.high);
             let mut limit = Limit { low, high, fails, count: 0 };
@@ -50,8 +55,10 @@ pub fn over_all(
         }
         Parts::Extremes { rows, columns, negative } => {
             let sign = if negative { -1.0 } else { 1.0 };
-            let within = |value: &Option<f64>| value.is_none_or(|value| measure.holds(sign * value));
-            // The larger of two exceeds an upper bound if either does, and is below a lower bound if both are.
+            let within =
+                |value: &Option<f64>| value.is_none_or(|value| measure.holds(sign * value));
+            // The larger of two exceeds an upper bound if either does, and is below a lower bound
+            // if both are.
             for (row, r) in rows.iter().enumerate() {
                 for (column, c) in columns.iter().enumerate() {
                     match (*r).into_iter().chain(*c).reduce(f64::max) {
@@ -82,8 +89,12 @@ fn with_worst(measure: &Measure, listed: Option<Listed>, ends: Ends, failing: u6
 /// Positions of the minimum and the maximum of the larger of two.
 fn extreme_ends(rows: &[Option<f64>], columns: &[Option<f64>], negative: bool) -> Ends {
     let by = |value: &Option<f64>| value.unwrap_or(f64::NEG_INFINITY);
-    let least = |values: &[Option<f64>]| (0..values.len()).min_by(|a, b| by(&values[*a]).total_cmp(&by(&values[*b])));
-    let most = |values: &[Option<f64>]| (0..values.len()).rev().max_by(|a, b| by(&values[*a]).total_cmp(&by(&values[*b])));
+    let least = |values: &[Option<f64>]| {
+        (0..values.len()).min_by(|a, b| by(&values[*a]).total_cmp(&by(&values[*b])))
+    };
+    let most = |values: &[Option<f64>]| {
+        (0..values.len()).rev().max_by(|a, b| by(&values[*a]).total_cmp(&by(&values[*b])))
+    };
     let at_least = (least(rows)? as u32, least(columns)? as u32);
     let at_most = (most(rows)? as u32, most(columns)? as u32);
     Some(if negative { (at_most, at_least) } else { (at_least, at_most) })
@@ -92,16 +103,22 @@ fn extreme_ends(rows: &[Option<f64>], columns: &[Option<f64>], negative: bool) -
 /// Marks selections with fewer signals or pairs than the protocol requires.
 pub fn too_few(quantity: &Quantity, halves: &Halves, undefined: &mut Option<Fails>) {
     for group in &quantity.minimum_of_groups {
-        let of =
-            |half: &Half| -> Vec<usize> { half.choices().map(|choice| choice.iter().map(|&at| group.pairs[at as usize]).sum()).collect() };
+        let of = |half: &Half| -> Vec<usize> {
+            half.choices()
+                .map(|choice| choice.iter().map(|&at| group.pairs[at as usize]).sum())
+                .collect()
+        };
         let (rows, columns) = (of(&halves.rows), of(&halves.columns));
         let least = |all: &[usize]| all.iter().min().copied().unwrap_or(0);
         if least(&rows) + least(&columns) >= group.needed {
             continue;
         }
-        let fails = undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count));
+        let fails =
+            undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count));
         for (row, pairs) in rows.iter().enumerate() {
-            for (column, _) in columns.iter().enumerate().filter(|(_, more)| pairs + **more < group.needed) {
+            for (column, _) in
+                columns.iter().enumerate().filter(|(_, more)| pairs + **more < group.needed)
+            {
                 fails.one(row as u32, column as u32);
             }
         }
@@ -110,23 +127,30 @@ pub fn too_few(quantity: &Quantity, halves: &Halves, undefined: &mut Option<Fail
         half.choices()
             .map(|choice| {
                 choice.iter().fold((0, 0), |(pairs, signals), &at| {
-                    (pairs + quantity.values[at as usize].len(), signals | quantity.signals[at as usize])
+                    (
+                        pairs + quantity.values[at as usize].len(),
+                        signals | quantity.signals[at as usize],
+                    )
                 })
             })
             .collect()
     };
     let (rows, columns) = (of(&halves.rows), of(&halves.columns));
     let least = |all: &[(usize, u128)]| all.iter().map(|(pairs, _)| *pairs).min().unwrap_or(0);
-    let common = |all: &[(usize, u128)]| all.iter().fold(u128::MAX, |common, (_, signals)| common & signals);
+    let common =
+        |all: &[(usize, u128)]| all.iter().fold(u128::MAX, |common, (_, signals)| common & signals);
     let enough = least(&rows) + least(&columns) >= quantity.minimum_pairs
         && (common(&rows) | common(&columns)).count_ones() as usize >= quantity.minimum_signals;
     if enough {
         return;
     }
-    let fails = undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count));
+    let fails =
+        undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count));
     for (row, (pairs, signals)) in rows.iter().enumerate() {
         for (column, (more, others)) in columns.iter().enumerate() {
-            if pairs + more < quantity.minimum_pairs || ((signals | others).count_ones() as usize) < quantity.minimum_signals {
+            if pairs + more < quantity.minimum_pairs
+                || ((signals | others).count_ones() as usize) < quantity.minimum_signals
+            {
                 fails.one(row as u32, column as u32);
             }
         }

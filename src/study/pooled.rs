@@ -1,5 +1,5 @@
-//! Statistics that are no sums: each selection is evaluated from its values, once for all selections that agree in the sections
-//! that the statistic needs.
+//! Statistics that are no sums: each selection is evaluated from its values, once for all
+//! selections that agree in the sections that the statistic needs.
 
 use std::collections::HashMap;
 
@@ -39,24 +39,34 @@ impl Measure {
             _ => MOST,
         };
         let (needed, _) = self.strata(case);
-        needed.iter().map(|stratum| choose(stratum.members.len(), stratum.take)).product::<f64>() <= most
+        needed.iter().map(|stratum| choose(stratum.members.len(), stratum.take)).product::<f64>()
+            <= most
     }
 
     /// The strata whose sections it needs, and the number of choices of the others.
     fn strata(&self, case: &Case) -> (Vec<Stratum>, f64) {
-        let (needed, others): (Vec<&Stratum>, Vec<&Stratum>) =
-            case.strata.iter().partition(|stratum| stratum.members.iter().any(|&section| self.needs(section)));
-        let times = others.iter().map(|stratum| choose(stratum.members.len(), stratum.take)).product();
+        let (needed, others): (Vec<&Stratum>, Vec<&Stratum>) = case
+            .strata
+            .iter()
+            .partition(|stratum| stratum.members.iter().any(|&section| self.needs(section)));
+        let times =
+            others.iter().map(|stratum| choose(stratum.members.len(), stratum.take)).product();
         (needed.into_iter().cloned().collect(), times)
     }
 
-    /// Its order statistics over all selections, however many there are, where few of them differ in what it needs.
+    /// Its order statistics over all selections, however many there are, where few of them differ
+    /// in what it needs.
     pub fn listed_alone(&self, case: &Case) -> Option<Listed> {
         if !self.is_countable(case) {
             return None;
         }
         let (strata, times) = self.strata(case);
-        let case = Case { strata, sections: case.sections.clone(), quantities: Vec::new(), rule: case.rule };
+        let case = Case {
+            strata,
+            sections: case.sections.clone(),
+            quantities: Vec::new(),
+            rule: case.rule,
+        };
         Pooled::over(self, &Halves::of(&case)).listed(times)
     }
 }
@@ -71,7 +81,8 @@ pub struct Pooled {
     values: Vec<Option<f64>>,
 }
 
-/// The choices of a half that differ in the sections that are needed, in the order of the first of each.
+/// The choices of a half that differ in the sections that are needed, in the order of the first of
+/// each.
 struct Choices {
     different: Vec<Vec<usize>>,
     /// Number of the first choice of each, and how many there are.
@@ -85,9 +96,11 @@ impl Choices {
     fn new(half: &Half, measure: &Measure, sections: usize) -> Self {
         let needed: Vec<bool> = (0..sections).map(|section| measure.needs(section)).collect();
         let mut known: HashMap<Vec<usize>, u32> = HashMap::new();
-        let mut found = Self { different: Vec::new(), first: Vec::new(), times: Vec::new(), of: Vec::new() };
+        let mut found =
+            Self { different: Vec::new(), first: Vec::new(), times: Vec::new(), of: Vec::new() };
         for (number, choice) in half.choices().enumerate() {
-            let choice: Vec<usize> = choice.iter().map(|&at| at as usize).filter(|&at| needed[at]).collect();
+            let choice: Vec<usize> =
+                choice.iter().map(|&at| at as usize).filter(|&at| needed[at]).collect();
             let at = *known.entry(choice).or_insert_with_key(|choice| {
                 found.different.push(choice.clone());
                 found.first.push(number as u32);
@@ -104,21 +117,31 @@ impl Choices {
 impl Pooled {
     pub fn over(measure: &Measure, halves: &Halves) -> Self {
         let sections = measure.values.len();
-        let (rows, columns) = (Choices::new(&halves.rows, measure, sections), Choices::new(&halves.columns, measure, sections));
-        let from_sums = measure.estimator.as_ref().and_then(|estimator| estimator.from_sums(sections));
+        let (rows, columns) = (
+            Choices::new(&halves.rows, measure, sections),
+            Choices::new(&halves.columns, measure, sections),
+        );
+        let from_sums =
+            measure.estimator.as_ref().and_then(|estimator| estimator.from_sums(sections));
         let values = match &from_sums {
             Some(from_sums) => {
-                let add = |choice: &Vec<usize>| choice.iter().fold(Sums::default(), |sums, &at| sums.plus(from_sums.sums[at]));
+                let add = |choice: &Vec<usize>| {
+                    choice.iter().fold(Sums::default(), |sums, &at| sums.plus(from_sums.sums[at]))
+                };
                 let of_columns: Vec<Sums> = columns.different.iter().map(add).collect();
                 let of_row = |row: &Vec<usize>| {
                     let row = add(row);
-                    of_columns.iter().map(|column| from_sums.over(row.plus(*column))).collect::<Vec<_>>()
+                    of_columns
+                        .iter()
+                        .map(|column| from_sums.over(row.plus(*column)))
+                        .collect::<Vec<_>>()
                 };
                 rows.different.par_iter().flat_map_iter(of_row).collect()
             }
             None => {
                 let of_row = |row: &Vec<usize>| {
-                    let over = |column: &Vec<usize>| measure.over(row.iter().chain(column).copied());
+                    let over =
+                        |column: &Vec<usize>| measure.over(row.iter().chain(column).copied());
                     columns.different.iter().map(over).collect::<Vec<_>>()
                 };
                 rows.different.par_iter().flat_map_iter(of_row).collect()
@@ -127,9 +150,17 @@ impl Pooled {
         Self { rows, columns, values }
     }
 
-    /// Marks the selections that do not meet the limit, and those without a value; returns the number of the former.
-    pub fn mark(&self, measure: &Measure, halves: &Halves, fails: &mut Fails, undefined: &mut Option<Fails>) -> u64 {
-        let holds: Vec<Option<bool>> = self.values.iter().map(|value| value.map(|value| measure.holds(value))).collect();
+    /// Marks the selections that do not meet the limit, and those without a value; returns the
+    /// number of the former.
+    pub fn mark(
+        &self,
+        measure: &Measure,
+        halves: &Halves,
+        fails: &mut Fails,
+        undefined: &mut Option<Fails>,
+    ) -> u64 {
+        let holds: Vec<Option<bool>> =
+            self.values.iter().map(|value| value.map(|value| measure.holds(value))).collect();
         let width = self.columns.different.len();
         let mut failing = 0;
         for (row, &of_row) in self.rows.of.iter().enumerate() {
@@ -144,9 +175,9 @@ impl Pooled {
                         fails.one(row as u32, column as u32);
                         failing += 1;
                     }
-                    None => {
-                        undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count)).one(row as u32, column as u32)
-                    }
+                    None => undefined
+                        .get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count))
+                        .one(row as u32, column as u32),
                 }
             }
         }
@@ -157,7 +188,9 @@ impl Pooled {
     pub fn ends(&self) -> Ends {
         let width = self.columns.different.len();
         let mut ends: Option<((f64, usize), (f64, usize))> = None;
-        for (at, value) in self.values.iter().enumerate().filter_map(|(at, value)| Some((at, (*value)?))) {
+        for (at, value) in
+            self.values.iter().enumerate().filter_map(|(at, value)| Some((at, (*value)?)))
+        {
             let (least, most) = ends.get_or_insert(((value, at), (value, at)));
             if value < least.0 {
                 *least = (value, at);
@@ -174,9 +207,14 @@ impl Pooled {
     /// Order statistics, where each selection stands for so many.
     pub fn listed(&self, times: f64) -> Option<Listed> {
         let width = self.columns.different.len();
-        let weight = |at: usize| times * self.rows.times[at / width] * self.columns.times[at % width];
-        let mut list: Vec<(f64, f64)> =
-            self.values.iter().enumerate().filter_map(|(at, value)| value.map(|value| (value, weight(at)))).collect();
+        let weight =
+            |at: usize| times * self.rows.times[at / width] * self.columns.times[at % width];
+        let mut list: Vec<(f64, f64)> = self
+            .values
+            .iter()
+            .enumerate()
+            .filter_map(|(at, value)| value.map(|value| (value, weight(at))))
+            .collect();
         list.par_sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         weighted(&list)
     }

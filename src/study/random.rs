@@ -2,7 +2,8 @@
 
 use super::case::Case;
 
-/// A stream of random numbers: SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
+/// A stream of random numbers: SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number
+/// generators", 2014).
 #[derive(Clone, Debug)]
 pub struct Random(u64);
 
@@ -23,7 +24,8 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A uniformly distributed number below `n` (Lemire's multiplication; its bias is below n / 2^64).
+    /// A uniformly distributed number below `n` (Lemire's multiplication; its bias is below n /
+    /// 2^64).
     pub fn below(&mut self, n: usize) -> usize {
         ((u128::from(self.number()) * n as u128) >> 64) as usize
     }

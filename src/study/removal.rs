@@ -12,18 +12,39 @@ const MOST_TRIED_POOLED: usize = 20_000;
 /// Number of sets for which the sections are stored.
 const KEPT: usize = 20;
 
-/// Tries sets of one section, of two, and so on. Every zone keeps the number of sections that a selection takes.
+/// Tries sets of one section, of two, and so on. Every zone keeps the number of sections that a
+/// selection takes.
 pub fn smallest(case: &Case, verdict: Verdict) -> Removal {
-    let sums: Vec<Vec<Sums<'_>>> = case.quantities.iter().map(|quantity| quantity.measures.iter().map(Sums::of).collect()).collect();
-    let slow = case.measures().any(|(_, measure)| !matches!(measure.kind, Kind::Mean | Kind::Deviation { .. } | Kind::RootMeanSquare));
-    let all_sums: Vec<Vec<(f64, f64, f64)>> =
-        sums.iter().map(|sums| sums.iter().map(|sums| sums.add(case.usable().into_iter())).collect()).collect();
+    let sums: Vec<Vec<Sums<'_>>> = case
+        .quantities
+        .iter()
+        .map(|quantity| quantity.measures.iter().map(Sums::of).collect())
+        .collect();
+    let slow = case.measures().any(|(_, measure)| {
+        !matches!(measure.kind, Kind::Mean | Kind::Deviation { .. } | Kind::RootMeanSquare)
+    });
+    let all_sums: Vec<Vec<(f64, f64, f64)>> = sums
+        .iter()
+        .map(|sums| sums.iter().map(|sums| sums.add(case.usable().into_iter())).collect())
+        .collect();
     let mut left = if slow { MOST_TRIED_POOLED } else { MOST_TRIED };
-    let members: Vec<(usize, usize)> =
-        case.strata.iter().enumerate().flat_map(|(stratum, of)| of.members.iter().map(move |&at| (stratum, at))).collect();
-    let spare: Vec<usize> = case.strata.iter().map(|stratum| stratum.members.len() - stratum.take).collect();
+    let members: Vec<(usize, usize)> = case
+        .strata
+        .iter()
+        .enumerate()
+        .flat_map(|(stratum, of)| of.members.iter().map(move |&at| (stratum, at)))
+        .collect();
+    let spare: Vec<usize> =
+        case.strata.iter().map(|stratum| stratum.members.len() - stratum.take).collect();
     let most: usize = spare.iter().sum();
-    let mut removal = Removal { verdict, sets: Vec::new(), count: 0, tried: 0, complete: most == 0, larger: None };
+    let mut removal = Removal {
+        verdict,
+        sets: Vec::new(),
+        count: 0,
+        tried: 0,
+        complete: most == 0,
+        larger: None,
+    };
     for size in 1..=most {
         let mut search = Search {
             case,
@@ -44,7 +65,8 @@ pub fn smallest(case: &Case, verdict: Verdict) -> Removal {
         removal.complete = size == most;
         if !search.found.is_empty() {
             removal.count = search.found.len();
-            let named = |set: &Vec<usize>| set.iter().map(|&at| case.sections[at].clone()).collect();
+            let named =
+                |set: &Vec<usize>| set.iter().map(|&at| case.sections[at].clone()).collect();
             removal.sets = search.found.iter().take(KEPT).map(named).collect();
             break;
         }
@@ -103,12 +125,16 @@ impl Search<'_> {
     }
 
     fn judged(&self) -> Verdict {
-        let kept = || self.members.iter().map(|(_, at)| *at).filter(|at| !self.removed.contains(at));
+        let kept =
+            || self.members.iter().map(|(_, at)| *at).filter(|at| !self.removed.contains(at));
         let mut tally = Tally::default();
         for ((quantity, sums), all) in self.case.quantities.iter().zip(self.sums).zip(self.all) {
             let before = tally;
             for (sums, all) in sums.iter().zip(all) {
-                tally.limit(sums.without(*all, &self.removed, kept()).map(|value| sums.measure().holds(value)));
+                tally.limit(
+                    sums.without(*all, &self.removed, kept())
+                        .map(|value| sums.measure().holds(value)),
+                );
             }
             tally.quantity(&before, sums.is_empty());
             tally.missing |= !sums.is_empty() && !quantity.enough(kept());

@@ -1,5 +1,5 @@
-//! Random selections, where there are too many to evaluate all: the share with an interval, drawn until it is narrow enough. Statistics
-//! that can be computed for all selections are exact.
+//! Random selections, where there are too many to evaluate all: the share with an interval, drawn
+//! until it is narrow enough. Statistics that can be computed for all selections are exact.
 
 use rayon::prelude::*;
 
@@ -13,7 +13,9 @@ use super::quartiles::estimated;
 use super::random::{Random, draw};
 use crate::metrics::interval::wilson;
 use crate::result::Verdict;
-use crate::result::study::{Importance, QuantitySpread, Share, Spread, StatisticSpread, WorstSelection};
+use crate::result::study::{
+    Importance, QuantitySpread, Share, Spread, StatisticSpread, WorstSelection,
+};
 
 /// Selections of a batch, and batches drawn between checks of the width.
 pub(super) const BATCH: usize = 4096;
@@ -27,7 +29,8 @@ struct Drawn {
     validated: u64,
     /// Per section: selections with it, and validated ones.
     with: Vec<(u64, u64)>,
-    /// Per quantity and per limit: selections that do not meet it; per quantity: those in which it alone fails.
+    /// Per quantity and per limit: selections that do not meet it; per quantity: those in which it
+    /// alone fails.
     quantities: Vec<(u64, u64)>,
     limits: Vec<u64>,
     /// Values of each limit, and the worst with its selection.
@@ -101,7 +104,9 @@ impl Drawn {
     fn join(&mut self, other: Self) {
         self.validated += other.validated;
         let pairs = |mine: &mut Vec<(u64, u64)>, others: Vec<(u64, u64)>| {
-            mine.iter_mut().zip(others).for_each(|(mine, other)| *mine = (mine.0 + other.0, mine.1 + other.1));
+            mine.iter_mut()
+                .zip(others)
+                .for_each(|(mine, other)| *mine = (mine.0 + other.0, mine.1 + other.1));
         };
         pairs(&mut self.with, other.with);
         pairs(&mut self.quantities, other.quantities);
@@ -111,7 +116,8 @@ impl Drawn {
             mine.extend(other.into_iter().take(room));
         }
         for (mine, other) in self.worst.iter_mut().zip(other.worst) {
-            if other.as_ref().is_some_and(|(new, _)| mine.as_ref().is_none_or(|(old, _)| new > old)) {
+            if other.as_ref().is_some_and(|(new, _)| mine.as_ref().is_none_or(|(old, _)| new > old))
+            {
                 *mine = other;
             }
         }
@@ -120,12 +126,18 @@ impl Drawn {
 
 /// Draws selections until the interval has the required width.
 pub fn some(case: &Case, settings: &Settings) -> Counted {
-    let sums_of: Vec<Vec<Sums<'_>>> = case.quantities.iter().map(|quantity| quantity.measures.iter().map(Sums::of).collect()).collect();
+    let sums_of: Vec<Vec<Sums<'_>>> = case
+        .quantities
+        .iter()
+        .map(|quantity| quantity.measures.iter().map(Sums::of).collect())
+        .collect();
     let mut drawn = Drawn::none(case);
     let mut batches = 0;
     let interval = loop {
-        let round: Vec<Drawn> =
-            (batches..batches + ROUND).into_par_iter().map(|number| Drawn::batch(case, &sums_of, settings.seed, number)).collect();
+        let round: Vec<Drawn> = (batches..batches + ROUND)
+            .into_par_iter()
+            .map(|number| Drawn::batch(case, &sums_of, settings.seed, number))
+            .collect();
         round.into_iter().for_each(|batch| drawn.join(batch));
         batches += ROUND;
         let interval = wilson(drawn.validated, (batches * BATCH) as u64);
@@ -154,7 +166,10 @@ pub fn some(case: &Case, settings: &Settings) -> Counted {
                 failing: share_of(drawn.limits[limit]),
                 overall: measure.over(usable.iter().copied()),
             });
-            let drawn_worst = drawn.worst[limit].as_ref().filter(|_| drawn.limits[limit] > 0).map(|(_, selection)| selection.clone());
+            let drawn_worst = drawn.worst[limit]
+                .as_ref()
+                .filter(|_| drawn.limits[limit] > 0)
+                .map(|(_, selection)| selection.clone());
             if let Some(selection) = worst_known(case, measure).or(drawn_worst) {
                 worst.push(WorstSelection {
                     quantity: quantity.id.clone(),
@@ -177,7 +192,8 @@ pub fn some(case: &Case, settings: &Settings) -> Counted {
             statistics,
         });
     }
-    let share = |(selections, good): (u64, u64)| (selections > 0).then(|| good as f64 / selections as f64);
+    let share =
+        |(selections, good): (u64, u64)| (selections > 0).then(|| good as f64 / selections as f64);
     let of = |zone: &str, at: usize| Importance {
         section: case.sections[at].clone(),
         zone: zone.to_owned(),
@@ -194,7 +210,11 @@ pub fn some(case: &Case, settings: &Settings) -> Counted {
             seed: Some(settings.seed),
         },
         quantities,
-        sections: case.strata.iter().flat_map(|stratum| stratum.members.iter().map(|&at| of(&stratum.zone, at))).collect(),
+        sections: case
+            .strata
+            .iter()
+            .flat_map(|stratum| stratum.members.iter().map(|&at| of(&stratum.zone, at)))
+            .collect(),
         worst,
         methods: methods(all, interval, &known, settings),
     }
@@ -209,12 +229,21 @@ fn worst_known(case: &Case, measure: &Measure) -> Option<Vec<usize>> {
     (!measure.holds(worst.0)).then_some(worst.1)
 }
 
-fn methods(all: u64, interval: (f64, f64), known: &[Option<Spread>], settings: &Settings) -> Vec<String> {
+fn methods(
+    all: u64,
+    interval: (f64, f64),
+    known: &[Option<Spread>],
+    settings: &Settings,
+) -> Vec<String> {
     let (width, wanted) = (interval.1 - interval.0, settings.width);
     let ended = if width <= wanted {
-        format!("until the 95 % interval of the share (Wilson) was no wider than {wanted}: it is {width:.5} wide")
+        format!(
+            "until the 95 % interval of the share (Wilson) was no wider than {wanted}: it is {width:.5} wide"
+        )
     } else {
-        format!("which is the maximum; the 95 % interval of the share (Wilson) is {width:.5} wide, more than the required {wanted}")
+        format!(
+            "which is the maximum; the 95 % interval of the share (Wilson) is {width:.5} wide, more than the required {wanted}"
+        )
     };
     let mut methods = vec![format!(
         "There are too many selections to evaluate all: {all} were drawn at random with equal probability (seed {}), {ended}.",
@@ -227,6 +256,9 @@ fn methods(all: u64, interval: (f64, f64), known: &[Option<Spread>], settings: &
             KEPT.min(all as usize)
         ));
     }
-    methods.push("Shares of selections in which a criterion is not met refer to the drawn selections.".into());
+    methods.push(
+        "Shares of selections in which a criterion is not met refer to the drawn selections."
+            .into(),
+    );
     methods
 }

@@ -1,7 +1,8 @@
 //! Exact order statistics of a large set of values, storing only candidates for the required ranks.
 //!
-//! An evenly distributed sample estimates the quartiles. One pass over all rows counts the values below these estimates and stores those
-//! near them. If a quartile is not among the stored values, the pass is repeated with wider windows, so that the result is always exact.
+//! An evenly distributed sample estimates the quartiles. One pass over all rows counts the values
+//! below these estimates and stores those near them. If a quartile is not among the stored values,
+//! the pass is repeated with wider windows, so that the result is always exact.
 
 use super::fails::Fails;
 use super::groups::{Block, Row, Sorted, groups};
@@ -51,28 +52,43 @@ pub fn ranks(count: u64) -> [(u64, f64); 3] {
     })
 }
 
-/// Half the width of a window, as a share of the values, for sums of two and of more parts. Determined by trial, since the error of the
-/// sample has no simple law; a pass that misses is repeated.
+/// Half the width of a window, as a share of the values, for sums of two and of more parts.
+/// Determined by trial, since the error of the sample has no simple law; a pass that misses is
+/// repeated.
 const MARGIN: (f64, f64) = (0.0008, 0.0045);
 /// Sample size for which the margins hold: six times the square root of 13.8 million.
 const MARGIN_FOR: f64 = 18_600.0;
 
-/// Order statistics of all values of some blocks, mapped by their form. Values outside the limit are marked in the same pass.
+/// Order statistics of all values of some blocks, mapped by their form. Values outside the limit
+/// are marked in the same pass.
 ///
-/// The result is the same on every processor: vector instructions give the same sums, and no operations are fused.
-pub fn order(blocks: &[Block], form: Form, limit: Option<&mut Limit<'_>>, memory: &mut Memory) -> Option<Order> {
+/// The result is the same on every processor: vector instructions give the same sums, and no
+/// operations are fused.
+pub fn order(
+    blocks: &[Block],
+    form: Form,
+    limit: Option<&mut Limit<'_>>,
+    memory: &mut Memory,
+) -> Option<Order> {
     pulp::Arch::new().dispatch(|| swept(blocks, form, limit, memory))
 }
 
 #[inline(always)]
-fn swept(blocks: &[Block], form: Form, mut limit: Option<&mut Limit<'_>>, memory: &mut Memory) -> Option<Order> {
-    let count: u64 = blocks.iter().map(|block| block.rows.len() as u64 * block.columns.len() as u64).sum();
+fn swept(
+    blocks: &[Block],
+    form: Form,
+    mut limit: Option<&mut Limit<'_>>,
+    memory: &mut Memory,
+) -> Option<Order> {
+    let count: u64 =
+        blocks.iter().map(|block| block.rows.len() as u64 * block.columns.len() as u64).sum();
     if count == 0 {
         return None;
     }
     let mut sample = sample(blocks, count);
     let flat = blocks.iter().all(|block| block.rows.iter().all(|row| row.c == 0.0));
-    let mut margin = if flat { MARGIN.0 } else { MARGIN.1 } * (MARGIN_FOR / sample.len() as f64).powf(0.6);
+    let mut margin =
+        if flat { MARGIN.0 } else { MARGIN.1 } * (MARGIN_FOR / sample.len() as f64).powf(0.6);
     loop {
         let mut sweep = Sweep::new(&mut sample, margin, form, memory);
         for block in blocks {
@@ -103,19 +119,38 @@ struct Sweep {
 impl Sweep {
     fn new(sample: &mut [f64], margin: f64, form: Form, memory: &mut Memory) -> Self {
         let mut windows = std::mem::take(&mut memory.kept).map(Window::with);
-        let at = places(sample, [0.25 - margin, 0.25 + margin, 0.5 - margin, 0.5 + margin, 0.75 - margin, 0.75 + margin]);
+        let at = places(
+            sample,
+            [
+                0.25 - margin,
+                0.25 + margin,
+                0.5 - margin,
+                0.5 + margin,
+                0.75 - margin,
+                0.75 + margin,
+            ],
+        );
         for (window, bounds) in windows.iter_mut().zip(at.chunks_exact(2)) {
             (window.low, window.high) = (bounds[0], bounds[1]);
         }
         // Possible ends of the whiskers, from the bounds of the quartiles.
-        let (q1, q3) = ((form.map(windows[0].low), form.map(windows[0].high)), (form.map(windows[2].low), form.map(windows[2].high)));
+        let (q1, q3) = (
+            (form.map(windows[0].low), form.map(windows[0].high)),
+            (form.map(windows[2].low), form.map(windows[2].high)),
+        );
         let fence = |low: f64, high: f64| {
             let room = 1e-9 * (low.abs() + high.abs());
             let (low, high) = form.bounds(low - room, high + room);
-            if low.is_nan() || high.is_nan() { (f64::NEG_INFINITY, f64::INFINITY) } else { (low, high) }
+            if low.is_nan() || high.is_nan() {
+                (f64::NEG_INFINITY, f64::INFINITY)
+            } else {
+                (low, high)
+            }
         };
-        (windows[3].low, windows[3].high) = fence(q1.0 - 1.5 * (q3.1 - q1.0), q1.1 - 1.5 * (q3.0 - q1.1));
-        (windows[4].low, windows[4].high) = fence(q3.0 + 1.5 * (q3.0 - q1.1), q3.1 + 1.5 * (q3.1 - q1.0));
+        (windows[3].low, windows[3].high) =
+            fence(q1.0 - 1.5 * (q3.1 - q1.0), q1.1 - 1.5 * (q3.0 - q1.1));
+        (windows[4].low, windows[4].high) =
+            fence(q3.0 + 1.5 * (q3.0 - q1.1), q3.1 + 1.5 * (q3.1 - q1.0));
         Self { windows, min: (f64::INFINITY, (0, 0)), max: (f64::NEG_INFINITY, (0, 0)) }
     }
 
@@ -124,7 +159,8 @@ impl Sweep {
         let slack = sorted.slack(row);
         self.extremes(sorted, row, slack);
         for window in &mut self.windows {
-            let (from, to) = sorted.keys.between(window.low - row.p - slack, window.high - row.p + slack);
+            let (from, to) =
+                sorted.keys.between(window.low - row.p - slack, window.high - row.p + slack);
             window.below += from as u64;
             window.look(row, &sorted.q[from..to], &sorted.y[from..to]);
         }
@@ -143,7 +179,8 @@ impl Sweep {
             }
         }
         if row.p + sorted.keys.greatest() + slack >= self.max.0 {
-            let (from, _) = sorted.keys.between(sorted.keys.greatest() - 2.0 * slack, f64::INFINITY);
+            let (from, _) =
+                sorted.keys.between(sorted.keys.greatest() - 2.0 * slack, f64::INFINITY);
             for (value, at) in sorted.values(row, from, sorted.at.len()) {
                 let found = (value, (row.at, at));
                 if found.0 > self.max.0 || (found.0 == self.max.0 && found.1 < self.max.1) {
@@ -157,7 +194,9 @@ impl Sweep {
     #[inline(always)]
     fn finish(&mut self, count: u64, form: Form) -> Option<Order> {
         let mut quartiles = [0.0; 3];
-        for ((quartile, window), (rank, rest)) in quartiles.iter_mut().zip(&mut self.windows).zip(ranks(count)) {
+        for ((quartile, window), (rank, rest)) in
+            quartiles.iter_mut().zip(&mut self.windows).zip(ranks(count))
+        {
             let next = if rest > 0.0 { rank + 1 } else { rank };
             let (value, next) = window.ranked(rank, next)?;
             let (value, next) = (form.map(value), form.map(next));

@@ -10,7 +10,8 @@ const CHUNK: usize = 512;
 
 /// Bit sets of all selections, collected quantity by quantity.
 ///
-/// The number of the first quantity that fails is stored in binary, one bit set per binary digit: four sets for twelve quantities.
+/// The number of the first quantity that fails is stored in binary, one bit set per binary digit:
+/// four sets for twelve quantities.
 #[derive(Debug)]
 pub struct Verdicts {
     rule: Rule,
@@ -58,19 +59,30 @@ impl Verdicts {
             fails.tally(&mut self.counts);
         }
         let digits = self.first.iter_mut().enumerate().filter(|(at, _)| number >> at & 1 == 1);
-        let mut digits: Vec<_> = digits.map(|(_, digit)| digit.words_mut().chunks_mut(CHUNK)).collect();
-        let (any, twice) = (self.any.words_mut().chunks_mut(CHUNK), self.twice.words_mut().chunks_mut(CHUNK));
+        let mut digits: Vec<_> =
+            digits.map(|(_, digit)| digit.words_mut().chunks_mut(CHUNK)).collect();
+        let (any, twice) =
+            (self.any.words_mut().chunks_mut(CHUNK), self.twice.words_mut().chunks_mut(CHUNK));
         for ((fails, any), twice) in fails.words().chunks(CHUNK).zip(any).zip(twice) {
             for digit in digits.iter_mut().filter_map(Iterator::next) {
-                digit.iter_mut().zip(fails).zip(&*any).for_each(|((digit, fails), any)| *digit |= fails & !any);
+                digit
+                    .iter_mut()
+                    .zip(fails)
+                    .zip(&*any)
+                    .for_each(|((digit, fails), any)| *digit |= fails & !any);
             }
-            twice.iter_mut().zip(fails).zip(&*any).for_each(|((twice, fails), any)| *twice |= fails & any);
+            twice
+                .iter_mut()
+                .zip(fails)
+                .zip(&*any)
+                .for_each(|((twice, fails), any)| *twice |= fails & any);
             any.iter_mut().zip(fails).for_each(|(any, fails)| *any |= fails);
         }
         self.failing[number] = fails.count();
     }
 
-    /// For each quantity, the number of selections in which only it fails; to be called before `apply`.
+    /// For each quantity, the number of selections in which only it fails; to be called before
+    /// `apply`.
     pub fn alone(&self) -> Vec<u64> {
         let of = |number: usize| {
             let word = |at: usize| {

@@ -1,4 +1,5 @@
-//! Values near a required order statistic: those inside the window are stored, those below it counted.
+//! Values near a required order statistic: those inside the window are stored, those below it
+//! counted.
 
 use super::groups::{Row, value};
 
@@ -50,16 +51,19 @@ impl Window {
         self.at_high += at_high;
     }
 
-    /// The values of a rank and of the next, if they are in the window. The window is empty afterwards.
+    /// The values of a rank and of the next, if they are in the window. The window is empty
+    /// afterwards.
     #[inline(always)]
     pub fn ranked(&mut self, rank: u64, next: u64) -> Option<(f64, f64)> {
         // With equal bounds, ties would be counted twice.
         let at_high = if self.low == self.high { 0 } else { self.at_high };
-        let (upto_low, upto_kept) = (self.below + self.at_low, self.below + self.at_low + self.length as u64);
+        let (upto_low, upto_kept) =
+            (self.below + self.at_low, self.below + self.at_low + self.length as u64);
         if rank < self.below || next >= upto_kept + at_high {
             return None;
         }
-        let kept = |rank: u64| (upto_low..upto_kept).contains(&rank).then(|| (rank - upto_low) as usize);
+        let kept =
+            |rank: u64| (upto_low..upto_kept).contains(&rank).then(|| (rank - upto_low) as usize);
         let numbers = &mut self.kept[..self.length];
         let found = match (kept(rank), kept(next)) {
             (None, None) => [None, None],
@@ -68,7 +72,9 @@ impl Window {
             (None, Some(next)) => [None, Some(two(numbers, next, next, self.low, self.high)[0])],
         };
         self.length = 0;
-        let of = |rank: u64, found: Option<f64>| found.unwrap_or(if rank < upto_low { self.low } else { self.high });
+        let of = |rank: u64, found: Option<f64>| {
+            found.unwrap_or(if rank < upto_low { self.low } else { self.high })
+        };
         Some((of(rank, found[0]), of(next, found[1])))
     }
 
@@ -128,8 +134,11 @@ mod tests {
 
     #[test]
     fn ranks_are_those_of_sorted_numbers() {
-        for (count, bounds) in [(9, (-1.0, 1.0)), (30_000, (-1.0, 1.0)), (30_000, (f64::NEG_INFINITY, f64::INFINITY))] {
-            let numbers: Vec<f64> = (0..count).map(|k| ((k * 7919) % 30_011) as f64 / 30_011.0 - 0.5).collect();
+        for (count, bounds) in
+            [(9, (-1.0, 1.0)), (30_000, (-1.0, 1.0)), (30_000, (f64::NEG_INFINITY, f64::INFINITY))]
+        {
+            let numbers: Vec<f64> =
+                (0..count).map(|k| ((k * 7919) % 30_011) as f64 / 30_011.0 - 0.5).collect();
             let mut sorted = numbers.clone();
             sorted.sort_unstable_by(f64::total_cmp);
             for rank in [0, count / 3, count - 2] {

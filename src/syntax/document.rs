@@ -1,4 +1,5 @@
-//! A protocol as written: blocks with fields, places and comments. The tree is the same for the text form and for YAML.
+//! A protocol as written: blocks with fields, places and comments. The tree is the same for the
+//! text form and for YAML.
 //!
 //! The meaning of fields is not known here. [`super::keys`] lists the blocks and fields.
 
@@ -10,7 +11,8 @@ use crate::source::{Source, Span};
 #[derive(Clone, Debug)]
 pub struct Document {
     pub source: Arc<Source>,
-    /// Comment lines at the top of the file that a blank line separates from what follows, without the `#`.
+    /// Comment lines at the top of the file that a blank line separates from what follows, without
+    /// the `#`.
     pub leading: Vec<String>,
     pub blocks: Vec<Block>,
     /// Comment lines after the last block, without the `#`.
@@ -37,7 +39,8 @@ pub struct Field {
     pub comments: Comments,
 }
 
-/// Comments that move with a block or field when the text is formatted, each without its `#` and leading blank.
+/// Comments that move with a block or field when the text is formatted, each without its `#` and
+/// leading blank.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Comments {
     pub before: Vec<String>,
@@ -51,7 +54,8 @@ pub struct Comments {
 pub struct Text {
     pub text: String,
     pub span: Span,
-    /// Whether byte `n` of `text` is byte `n` of `span`. It is not where YAML or quotes contain escapes or folded lines.
+    /// Whether byte `n` of `text` is byte `n` of `span`. It is not where YAML or quotes contain
+    /// escapes or folded lines.
     pub exact: bool,
 }
 
@@ -77,7 +81,10 @@ impl PartialEq for Field {
 
 impl PartialEq for Block {
     fn eq(&self, other: &Self) -> bool {
-        self.kind == other.kind && self.name == other.name && self.title == other.title && self.fields == other.fields
+        self.kind == other.kind
+            && self.name == other.name
+            && self.title == other.title
+            && self.fields == other.fields
     }
 }
 

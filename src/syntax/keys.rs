@@ -1,4 +1,5 @@
-//! The blocks and fields of a protocol: one table for both forms, the JSON Schema and the language reference.
+//! The blocks and fields of a protocol: one table for both forms, the JSON Schema and the language
+//! reference.
 
 mod fields;
 mod kinds;
@@ -40,7 +41,8 @@ pub struct Kind {
     /// Key in YAML: `quantities`.
     pub group: &'static str,
     pub named: bool,
-    /// Whether a protocol has at most one such block. In YAML, its fields are then directly below the group.
+    /// Whether a protocol has at most one such block. In YAML, its fields are then directly below
+    /// the group.
     pub single: bool,
     pub about: &'static str,
     pub keys: &'static [Key],

@@ -1,4 +1,5 @@
-//! Common layout of both printed forms: canonical order, blanks inside phrases, line breaks of long values.
+//! Common layout of both printed forms: canonical order, blanks inside phrases, line breaks of long
+//! values.
 
 use super::document::{Block, Document, Field};
 use super::keys::{self, KINDS, Kind, Sort};
@@ -6,14 +7,19 @@ use super::keys::{self, KINDS, Kind, Sort};
 /// Preferred largest width of a printed line, in columns.
 pub const WIDTH: usize = 110;
 
-/// The document with blocks in the order of [`KINDS`] and fields in the order of the keys of their kind. The sort is stable.
+/// The document with blocks in the order of [`KINDS`] and fields in the order of the keys of their
+/// kind. The sort is stable.
 pub fn in_order(document: &Document) -> Document {
     let mut document = document.clone();
     let place = |kind: &Kind| KINDS.iter().position(|known| known.group == kind.group);
-    document.blocks.sort_by_key(|block| keys::of_block(block).and_then(place).unwrap_or(usize::MAX));
+    document
+        .blocks
+        .sort_by_key(|block| keys::of_block(block).and_then(place).unwrap_or(usize::MAX));
     for block in &mut document.blocks {
         if let Some(kind) = keys::of_block(block) {
-            block.fields.sort_by_key(|field| rank(kind.keys.iter().map(|key| key.word), &field.key.text));
+            block
+                .fields
+                .sort_by_key(|field| rank(kind.keys.iter().map(|key| key.word), &field.key.text));
         }
     }
     document
@@ -33,7 +39,8 @@ pub fn is_bare(block: &Block) -> bool {
     block.fields.is_empty() && block.comments.after.is_empty()
 }
 
-/// Blanks between words. Any other one, such as a no-break space, is an error that a change of form must keep.
+/// Blanks between words. Any other one, such as a no-break space, is an error that a change of form
+/// must keep.
 fn is_blank(c: char) -> bool {
     matches!(c, ' ' | '\t' | '\r' | '\n')
 }
@@ -76,8 +83,9 @@ impl Quotes {
     }
 }
 
-/// Breaks a phrase with single blanks into lines of at most `width` characters where possible, after commas and before joining
-/// words. Cases that do not fit on one line have a line each. Joined by blanks, the lines give the phrase again.
+/// Breaks a phrase with single blanks into lines of at most `width` characters where possible,
+/// after commas and before joining words. Cases that do not fit on one line have a line each.
+/// Joined by blanks, the lines give the phrase again.
 pub fn wrap_phrase(phrase: &str, width: usize) -> Vec<String> {
     if columns(phrase) <= width {
         return vec![phrase.to_owned()];
@@ -173,7 +181,10 @@ pub fn wrap_prose(text: &str, width: usize) -> Vec<String> {
         match segments.last_mut() {
             // Two blanks in a row, or a line break next to a blank, are kept together.
             Some(last)
-                if word.is_empty() || word.starts_with(char::is_whitespace) || last.ends_with(char::is_whitespace) || last.is_empty() =>
+                if word.is_empty()
+                    || word.starts_with(char::is_whitespace)
+                    || last.ends_with(char::is_whitespace)
+                    || last.is_empty() =>
             {
                 last.push(' ');
                 last.push_str(word);
@@ -203,8 +214,8 @@ pub fn columns(text: &str) -> usize {
     text.chars().count()
 }
 
-/// A comment for its own line or the end of a line. Characters that YAML does not allow (YAML 1.2.2, section 5.1) are replaced in
-/// both forms.
+/// A comment for its own line or the end of a line. Characters that YAML does not allow (YAML
+/// 1.2.2, section 5.1) are replaced in both forms.
 pub fn comment(text: &str) -> String {
     let shown = |c: char| match c {
         '\n' | '\r' => ' ',
@@ -232,20 +243,40 @@ mod tests {
 
     #[test]
     fn a_long_phrase_breaks_at_commas_and_joining_words() {
-        let lines = wrap_phrase("low-pass 20 Hz, order 4 when a is \"x, y\" and b, otherwise none", 24);
-        assert_eq!(lines, ["low-pass 20 Hz, order 4", "when a is \"x, y\" and b,", "otherwise none"]);
+        let lines =
+            wrap_phrase("low-pass 20 Hz, order 4 when a is \"x, y\" and b, otherwise none", 24);
+        assert_eq!(
+            lines,
+            ["low-pass 20 Hz, order 4", "when a is \"x, y\" and b,", "otherwise none"]
+        );
     }
 
     #[test]
     fn cases_have_a_line_each() {
-        let lines = wrap_phrase("larger of a, b when c, d when (e, f) or g, otherwise larger of h, i", 30);
-        assert_eq!(lines, ["larger of a, b when c,", "d when (e, f) or g,", "otherwise larger of h, i"]);
+        let lines =
+            wrap_phrase("larger of a, b when c, d when (e, f) or g, otherwise larger of h, i", 30);
+        assert_eq!(
+            lines,
+            ["larger of a, b when c,", "d when (e, f) or g,", "otherwise larger of h, i"]
+        );
     }
 
     #[test]
     fn parentheses_stay_together_where_they_fit() {
-        let lines = wrap_phrase("a, b in (Y, side and wheel), (Q, (x, y)), (much, too, long, for, one, line)", 22);
-        assert_eq!(lines, ["a,", "b in (Y, side and wheel),", "(Q, (x, y)), (much,", "too, long, for, one,", "line)"]);
+        let lines = wrap_phrase(
+            "a, b in (Y, side and wheel), (Q, (x, y)), (much, too, long, for, one, line)",
+            22,
+        );
+        assert_eq!(
+            lines,
+            [
+                "a,",
+                "b in (Y, side and wheel),",
+                "(Q, (x, y)), (much,",
+                "too, long, for, one,",
+                "line)"
+            ]
+        );
     }
 
     #[test]

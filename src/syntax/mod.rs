@@ -1,4 +1,5 @@
-//! From text to [`document::Document`] and back: the text form and YAML are two forms of one language.
+//! From text to [`document::Document`] and back: the text form and YAML are two forms of one
+//! language.
 
 pub mod document;
 pub mod families;
@@ -33,11 +34,13 @@ pub use read_yaml::read_yaml;
 /// Whether a file name is that of a protocol in YAML.
 pub fn is_yaml(name: &str) -> bool {
     let extension = Path::new(name).extension().and_then(|extension| extension.to_str());
-    extension.is_some_and(|extension| extension.eq_ignore_ascii_case("yaml") || extension.eq_ignore_ascii_case("yml"))
+    extension.is_some_and(|extension| {
+        extension.eq_ignore_ascii_case("yaml") || extension.eq_ignore_ascii_case("yml")
+    })
 }
 
-/// Reads a protocol in the form given by its file name: YAML for `.yaml` and `.yml`, the text form otherwise. A document is always
-/// returned. If parts are missing, problems state which and why.
+/// Reads a protocol in the form given by its file name: YAML for `.yaml` and `.yml`, the text form
+/// otherwise. A document is always returned. If parts are missing, problems state which and why.
 pub fn read(source: &Arc<Source>, problems: &mut Problems) -> Document {
     if is_yaml(&source.name) { read_yaml(source, problems) } else { read_text(source, problems) }
 }

@@ -1,6 +1,7 @@
 //! The tree of a field's phrase, without its meaning: expressions, selections, chains, limits.
 //!
-//! Every node has its byte range in the field's text. [`super::document::Text::place`] turns it into a place in the file.
+//! Every node has its byte range in the field's text. [`super::document::Text::place`] turns it
+//! into a place in the file.
 
 use std::ops::Range;
 
@@ -96,7 +97,8 @@ pub enum Node {
     Cases(Vec<(Phrase, Phrase)>, Option<Box<Phrase>>),
 }
 
-/// A regression of the values of a group over data of their sections, and the point at which it is evaluated.
+/// A regression of the values of a group over data of their sections, and the point at which it is
+/// evaluated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
     /// `prediction`: a bound is that of a further value; otherwise that of the mean.
@@ -199,7 +201,8 @@ pub struct Scope {
     pub condition: Option<Phrase>,
 }
 
-/// `speed, curvature in 1/km for each state`: what spans a domain, and by what sections are told apart.
+/// `speed, curvature in 1/km for each state`: what spans a domain, and by what sections are told
+/// apart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Domain {
     /// Each with the text of its unit, if it has one.
@@ -230,39 +233,65 @@ pub enum OverVerdicts {
 }
 
 impl Phrase {
-    /// The phrase without places and spelling variants: equal for `0.40 m/s^2`, `0.4 m/s²` and `400 mm/s^2`.
+    /// The phrase without places and spelling variants: equal for `0.40 m/s^2`, `0.4 m/s²` and `400
+    /// mm/s^2`.
     pub fn meaning(&self) -> String {
         match &self.node {
             Node::Number { value, unit } => number(*value, unit.as_ref()),
             Node::Percentile(percent) => format!("p{percent}"),
             Node::Path(path) => path.clone(),
             Node::Quoted(name) => format!("\"{name}\""),
-            Node::Binary(operator, left, right) => format!("({operator:?} {} {})", left.meaning(), right.meaning()),
+            Node::Binary(operator, left, right) => {
+                format!("({operator:?} {} {})", left.meaning(), right.meaning())
+            }
             Node::Negative(inner) => format!("(neg {})", inner.meaning()),
             Node::Not(inner) => format!("(not {})", inner.meaning()),
             Node::Magnitude(inner) => format!("|{}|", inner.meaning()),
             Node::Power(inner, exponent) => format!("{}^{exponent}", inner.meaning()),
-            Node::Call(name, arguments) => format!("{}({})", name.node, joined(arguments, " ", Phrase::meaning)),
-            Node::Near { value, target, tolerance, by_factor } => {
-                format!("{} near {} within {by_factor} {}", value.meaning(), target.meaning(), tolerance.meaning())
+            Node::Call(name, arguments) => {
+                format!("{}({})", name.node, joined(arguments, " ", Phrase::meaning))
             }
-            Node::Reduced(reducer, signal) => format!("{} of {}", reducer.meaning(), signal.meaning()),
-            Node::PlaceOf(signal, words) => format!("{}@{}", signal.node, joined(words, ".", |word| word.node.clone())),
+            Node::Near { value, target, tolerance, by_factor } => {
+                format!(
+                    "{} near {} within {by_factor} {}",
+                    value.meaning(),
+                    target.meaning(),
+                    tolerance.meaning()
+                )
+            }
+            Node::Reduced(reducer, signal) => {
+                format!("{} of {}", reducer.meaning(), signal.meaning())
+            }
+            Node::PlaceOf(signal, words) => {
+                format!("{}@{}", signal.node, joined(words, ".", |word| word.node.clone()))
+            }
             Node::Over(value, signal) => format!("{} over {}", value.meaning(), signal.meaning()),
             Node::Through(inner, filter) => format!("{}>{}", inner.meaning(), filter.node),
             Node::Bound { upper, confidence, of, bootstrap } => {
-                let (end, by) = (if *upper { "upper" } else { "lower" }, if *bootstrap { " by bootstrap" } else { "" });
+                let (end, by) = (
+                    if *upper { "upper" } else { "lower" },
+                    if *bootstrap { " by bootstrap" } else { "" },
+                );
                 format!("{end} {confidence} of {}{by}", of.meaning())
             }
             Node::Share { of_sections, condition } => {
-                format!("share{} where {}", if *of_sections { " of sections" } else { "" }, condition.meaning())
+                format!(
+                    "share{} where {}",
+                    if *of_sections { " of sections" } else { "" },
+                    condition.meaning()
+                )
             }
             Node::Fit(fit) => fit.meaning(),
             Node::Weighted(of, by) => format!("{} weighted {}", of.meaning(), by.meaning()),
             Node::ForEach(of, keys) => format!("({} for each {})", of.meaning(), sorted(keys)),
             Node::Cases(arms, otherwise) => {
-                let arms = joined(arms, ", ", |(value, condition)| format!("{}?{}", value.meaning(), condition.meaning()));
-                format!("[{arms}; {}]", otherwise.as_ref().map_or(String::new(), |value| value.meaning()))
+                let arms = joined(arms, ", ", |(value, condition)| {
+                    format!("{}?{}", value.meaning(), condition.meaning())
+                });
+                format!(
+                    "[{arms}; {}]",
+                    otherwise.as_ref().map_or(String::new(), |value| value.meaning())
+                )
             }
         }
     }
@@ -271,11 +300,20 @@ impl Phrase {
 impl Limit {
     /// As [`Phrase::meaning`]; conditions and factors can be in any order.
     pub fn meaning(&self) -> String {
-        let mut factors: Vec<String> =
-            self.factors.iter().map(|(factor, condition)| format!("{}?{}", factor.meaning(), condition.meaning())).collect();
+        let mut factors: Vec<String> = self
+            .factors
+            .iter()
+            .map(|(factor, condition)| format!("{}?{}", factor.meaning(), condition.meaning()))
+            .collect();
         factors.sort();
         let only = self.only_when.as_ref().map_or(String::new(), Phrase::meaning);
-        format!("{} {} * [{}] only {only} {}", self.bounds(), self.bound.meaning(), factors.join(", "), self.scope.node.meaning())
+        format!(
+            "{} {} * [{}] only {only} {}",
+            self.bounds(),
+            self.bound.meaning(),
+            factors.join(", "),
+            self.scope.node.meaning()
+        )
     }
 
     /// The estimate and the direction of the limit: `std`, `p95 at least`.
@@ -287,8 +325,11 @@ impl Limit {
 impl Domain {
     /// As [`Phrase::meaning`].
     pub fn meaning(&self) -> String {
-        let unit = |unit: &Option<At<String>>| unit.as_ref().map_or(String::new(), |unit| format!(" in {}", unit.node));
-        let over = joined(&self.over, ", ", |(of, written)| format!("{}{}", of.meaning(), unit(written)));
+        let unit = |unit: &Option<At<String>>| {
+            unit.as_ref().map_or(String::new(), |unit| format!(" in {}", unit.node))
+        };
+        let over =
+            joined(&self.over, ", ", |(of, written)| format!("{}{}", of.meaning(), unit(written)));
         format!("{over} each {}", joined(&self.each, ", ", |key| key.node.clone()))
     }
 }
@@ -299,7 +340,11 @@ impl Verdict {
         match self {
             Self::EveryLimit => "every limit".into(),
             Self::AtLeast { count, of_limits } => {
-                format!("at least {} {}", count.meaning(), if *of_limits { "limits" } else { "quantities" })
+                format!(
+                    "at least {} {}",
+                    count.meaning(),
+                    if *of_limits { "limits" } else { "quantities" }
+                )
             }
             Self::Over(over) => over.meaning(),
         }
@@ -311,7 +356,11 @@ impl OverVerdicts {
         match self {
             Self::Holds(name) => name.node.clone(),
             Self::Same(a, b) => format!("({} is {})", a.node, b.node),
-            Self::AtLeast { count, of } => format!("(at least {} of {})", count.meaning(), joined(of, ", ", |name| name.node.clone())),
+            Self::AtLeast { count, of } => format!(
+                "(at least {} of {})",
+                count.meaning(),
+                joined(of, ", ", |name| name.node.clone())
+            ),
             Self::Not(inner) => format!("(not {})", inner.meaning()),
             Self::All(all) => format!("({})", joined(all, " and ", Self::meaning)),
             Self::Any(any) => format!("({})", joined(any, " or ", Self::meaning)),
@@ -346,8 +395,14 @@ impl Fit {
     fn meaning(&self) -> String {
         let all = |phrases: &[Phrase]| joined(phrases, ", ", Phrase::meaning);
         let kind = if self.prediction { "prediction" } else { "regression" };
-        let confidence = self.confidence.as_ref().map_or(String::new(), |share| format!(" confidence {}", share.node));
-        let (tails, end) = (if self.one_sided { "one" } else { "two" }, if self.lower { "lower" } else { "upper" });
+        let confidence = self
+            .confidence
+            .as_ref()
+            .map_or(String::new(), |share| format!(" confidence {}", share.node));
+        let (tails, end) = (
+            if self.one_sided { "one" } else { "two" },
+            if self.lower { "lower" } else { "upper" },
+        );
         format!("{kind} over {} at {}{confidence} {tails} {end}", all(&self.over), all(&self.at))
     }
 }
@@ -377,7 +432,9 @@ fn sorted(names: &[At<String>]) -> String {
 fn number(value: f64, unit: Option<&Unit>) -> String {
     let rounded: f64 = format!("{value:.11e}").parse().unwrap_or(value);
     match unit {
-        Some(unit) if unit.dimension != crate::units::Dimension::ONE => format!("{rounded}{{{}}}", unit.dimension),
+        Some(unit) if unit.dimension != crate::units::Dimension::ONE => {
+            format!("{rounded}{{{}}}", unit.dimension)
+        }
         _ => rounded.to_string(),
     }
 }

@@ -7,7 +7,8 @@ use super::rules::quoted;
 
 const INDENT: &str = "  ";
 
-/// Writes the canonical text. Reading it gives the same document in canonical order, and printing that gives the same text.
+/// Writes the canonical text. Reading it gives the same document in canonical order, and printing
+/// that gives the same text.
 pub fn print_text(document: &Document) -> String {
     let document = layout::in_order(document);
     let mut out = String::new();
@@ -20,7 +21,10 @@ pub fn print_text(document: &Document) -> String {
     let mut above: Option<&Block> = None;
     for block in &document.blocks {
         let together = above.is_some_and(|above| {
-            above.kind == block.kind && layout::is_bare(above) && layout::is_bare(block) && block.comments.before.is_empty()
+            above.kind == block.kind
+                && layout::is_bare(above)
+                && layout::is_bare(block)
+                && block.comments.before.is_empty()
         });
         if above.is_some() && !together {
             out.push('\n');
@@ -66,7 +70,10 @@ fn print_field(block: &Block, field: &Field, column: usize, out: &mut String) {
     let lines: Vec<String> = match layout::sort(keys::of_block(block), field) {
         Sort::Phrase => layout::wrap_phrase(&layout::phrase(&field.value.text), room),
         // Quotes take two columns. Escapes are rare and may exceed the width.
-        Sort::Text => layout::wrap_prose(&field.value.text, room.saturating_sub(2)).iter().map(|piece| quoted(piece)).collect(),
+        Sort::Text => layout::wrap_prose(&field.value.text, room.saturating_sub(2))
+            .iter()
+            .map(|piece| quoted(piece))
+            .collect(),
     };
     let mut head = format!("{:column$}", field.key.text);
     let mut beside = field.comments.beside.as_deref();

@@ -4,7 +4,8 @@ use super::document::{Block, Document, Field};
 use super::keys::{self, KINDS, Kind, Sort};
 use super::layout::{self, WIDTH, columns, comment};
 
-/// Writes the canonical YAML. Reading it gives the same document in canonical order, and printing that gives the same YAML.
+/// Writes the canonical YAML. Reading it gives the same document in canonical order, and printing
+/// that gives the same YAML.
 pub fn print_yaml(document: &Document) -> String {
     let document = layout::in_order(document);
     let mut out = Page { text: String::new() };
@@ -13,8 +14,11 @@ pub fn print_yaml(document: &Document) -> String {
         out.blank();
     }
     for kind in KINDS {
-        let blocks: Vec<&Block> =
-            document.blocks.iter().filter(|block| keys::of_block(block).is_some_and(|of| of.group == kind.group)).collect();
+        let blocks: Vec<&Block> = document
+            .blocks
+            .iter()
+            .filter(|block| keys::of_block(block).is_some_and(|of| of.group == kind.group))
+            .collect();
         if blocks.is_empty() {
             continue;
         }
@@ -25,7 +29,11 @@ pub fn print_yaml(document: &Document) -> String {
             out.line(0, &format!("{}:", kind.group), None);
             let mut above: Option<&Block> = None;
             for block in blocks {
-                if above.is_some_and(|above| !layout::is_bare(above) || !layout::is_bare(block) || !block.comments.before.is_empty()) {
+                if above.is_some_and(|above| {
+                    !layout::is_bare(above)
+                        || !layout::is_bare(block)
+                        || !block.comments.before.is_empty()
+                }) {
                     out.blank();
                 }
                 out.named(kind, block);
@@ -62,7 +70,11 @@ impl Page {
     fn named(&mut self, kind: &Kind, block: &Block) {
         self.comments(2, &block.comments.before);
         let empty = if block.title.is_none() && block.fields.is_empty() { " {}" } else { "" };
-        self.line(2, &format!("{}:{empty}", key(block.name_text())), block.comments.beside.as_deref());
+        self.line(
+            2,
+            &format!("{}:{empty}", key(block.name_text())),
+            block.comments.beside.as_deref(),
+        );
         self.body(4, kind, block);
     }
 
@@ -75,7 +87,13 @@ impl Page {
                 [field] => {
                     self.comments(indent, &field.comments.before);
                     let beside = field.comments.beside.as_deref();
-                    self.entry(indent, &field.key.text, layout::sort(Some(kind), field), &field.value.text, beside);
+                    self.entry(
+                        indent,
+                        &field.key.text,
+                        layout::sort(Some(kind), field),
+                        &field.value.text,
+                        beside,
+                    );
                 }
                 [first, ..] => {
                     self.line(indent, &format!("{}:", first.key.text), None);
@@ -89,7 +107,13 @@ impl Page {
 
     fn item(&mut self, indent: usize, kind: &Kind, field: &Field) {
         self.comments(indent, &field.comments.before);
-        self.value(indent, "-", layout::sort(Some(kind), field), &field.value.text, field.comments.beside.as_deref());
+        self.value(
+            indent,
+            "-",
+            layout::sort(Some(kind), field),
+            &field.value.text,
+            field.comments.beside.as_deref(),
+        );
     }
 
     fn entry(&mut self, indent: usize, key: &str, sort: Sort, text: &str, beside: Option<&str>) {
@@ -102,7 +126,11 @@ impl Page {
         let written = scalar(&text, sort);
         if indent + columns(head) + 1 + columns(&written) > WIDTH && folds(&text) {
             let room = WIDTH - indent - 2;
-            let lines = if sort == Sort::Phrase { layout::wrap_phrase(&text, room) } else { layout::wrap_prose(&text, room) };
+            let lines = if sort == Sort::Phrase {
+                layout::wrap_phrase(&text, room)
+            } else {
+                layout::wrap_prose(&text, room)
+            };
             if lines.len() > 1 {
                 self.line(indent, &format!("{head} >-"), beside);
                 lines.iter().for_each(|line| self.line(indent + 2, line, None));
@@ -134,14 +162,19 @@ impl Page {
     }
 }
 
-/// Whether a text can be written as a folded block scalar: no line breaks, no leading or trailing blanks, nothing to escape.
+/// Whether a text can be written as a folded block scalar: no line breaks, no leading or trailing
+/// blanks, nothing to escape.
 fn folds(text: &str) -> bool {
     text.trim() == text && text.chars().all(printable)
 }
 
 fn key(name: &str) -> String {
     // A YAML reader can change a number with a point or an exponent: 1.50 becomes 1.5.
-    if looks_typed(name) && !is_whole(name) { single_quoted(name) } else { scalar(name, Sort::Phrase) }
+    if looks_typed(name) && !is_whole(name) {
+        single_quoted(name)
+    } else {
+        scalar(name, Sort::Phrase)
+    }
 }
 
 /// The shortest form of a text that YAML 1.2 reads as this text.
@@ -165,7 +198,8 @@ fn is_plain(text: &str) -> bool {
     let second = chars.next();
     let starts = match first {
         '-' | '?' | ':' => second.is_some_and(|c| c != ' '),
-        ',' | '[' | ']' | '{' | '}' | '#' | '&' | '*' | '!' | '|' | '>' | '\'' | '"' | '%' | '@' | '`' => false,
+        ',' | '[' | ']' | '{' | '}' | '#' | '&' | '*' | '!' | '|' | '>' | '\'' | '"' | '%'
+        | '@' | '`' => false,
         _ => true,
     };
     starts
@@ -185,18 +219,24 @@ fn looks_typed(text: &str) -> bool {
         digits.starts_with(|c: char| c.is_ascii_digit() || c == '.')
             && text.chars().all(|c| c.is_ascii_hexdigit() || "xXoOinIN._+-:TtZz".contains(c))
     };
-    matches!(text.to_ascii_lowercase().as_str(), "" | "~" | "null" | "true" | "false" | "<<" | "=") || number()
+    matches!(text.to_ascii_lowercase().as_str(), "" | "~" | "null" | "true" | "false" | "<<" | "=")
+        || number()
 }
 
 fn is_whole(text: &str) -> bool {
-    text.bytes().all(|byte| byte.is_ascii_digit()) && (text == "0" || !text.starts_with('0')) && text.len() < 16
+    text.bytes().all(|byte| byte.is_ascii_digit())
+        && (text == "0" || !text.starts_with('0'))
+        && text.len() < 16
 }
 
 /// Decimal numbers such as `2` and `-1.50`.
 fn is_decimal(text: &str) -> bool {
     let text = text.strip_prefix('-').unwrap_or(text);
     let (whole, fraction) = text.split_once('.').unwrap_or((text, "0"));
-    is_whole(whole) && !whole.is_empty() && !fraction.is_empty() && fraction.bytes().all(|byte| byte.is_ascii_digit())
+    is_whole(whole)
+        && !whole.is_empty()
+        && !fraction.is_empty()
+        && fraction.bytes().all(|byte| byte.is_ascii_digit())
 }
 
 fn single_quoted(text: &str) -> String {
@@ -287,7 +327,8 @@ mod tests {
         ];
         for text in texts {
             let written = format!("key: {}\n", scalar(text, Sort::Text));
-            let read: serde_yaml::Value = serde_yaml::from_str(&written).unwrap_or_else(|error| panic!("{written}: {error}"));
+            let read: serde_yaml::Value =
+                serde_yaml::from_str(&written).unwrap_or_else(|error| panic!("{written}: {error}"));
             assert_eq!(read["key"].as_str(), Some(text), "{written}");
         }
     }
@@ -298,6 +339,9 @@ mod tests {
             assert_eq!(scalar(text, Sort::Phrase), text);
         }
         assert_eq!(scalar("1e3", Sort::Phrase), "'1e3'");
-        assert_eq!((key("1"), key("1.5"), key("null")), ("1".into(), "'1.5'".into(), "'null'".into()));
+        assert_eq!(
+            (key("1"), key("1.5"), key("null")),
+            ("1".into(), "'1.5'".into(), "'null'".into())
+        );
     }
 }

@@ -1,5 +1,5 @@
-//! Reads the text form. Blocks are found by indentation, then each header and field is parsed separately, so that an error in one
-//! line hides no other.
+//! Reads the text form. Blocks are found by indentation, then each header and field is parsed
+//! separately, so that an error in one line hides no other.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -12,8 +12,8 @@ use super::split::{Item, RawBlock, split};
 use crate::problem::{Problem, Problems};
 use crate::source::Source;
 
-/// Reads the text form. Unknown or duplicate blocks and fields are left out after a problem. One with a slightly misspelt word is
-/// read as the similar one.
+/// Reads the text form. Unknown or duplicate blocks and fields are left out after a problem. One
+/// with a slightly misspelt word is read as the similar one.
 pub fn read_text(source: &Arc<Source>, problems: &mut Problems) -> Document {
     let earlier = problems.0.len();
     let parts = split(source, problems);
@@ -23,11 +23,18 @@ pub fn read_text(source: &Arc<Source>, problems: &mut Problems) -> Document {
     }
     let blocks = reader.finish();
     rules::in_reading_order(problems, earlier);
-    Document { source: Arc::clone(source), leading: parts.leading, blocks, trailing: parts.trailing }
+    Document {
+        source: Arc::clone(source),
+        leading: parts.leading,
+        blocks,
+        trailing: parts.trailing,
+    }
 }
 
 fn read_block(source: &Arc<Source>, raw: RawBlock, reader: &mut Reader<'_>) {
-    let place = |range: &Range<usize>, within: &Item| source.span(within.range.start + range.start..within.range.start + range.end);
+    let place = |range: &Range<usize>, within: &Item| {
+        source.span(within.range.start + range.start..within.range.start + range.end)
+    };
     let text = raw.header.text(source);
     let (header, fault) = lines::header(&text);
     let fault = fault.filter(|_| !raw.header.unclosed);
@@ -40,14 +47,23 @@ fn read_block(source: &Arc<Source>, raw: RawBlock, reader: &mut Reader<'_>) {
     let word = rules::exact(place(&header.kind, &raw.header));
     let Some(kind) = reader.kind(&word.text, &word.span) else { return };
     match fault {
-        // If the name continues with characters that a name cannot contain, the whole word is reported.
-        Some(fault) if header.name.as_ref().map_or(kind.named && header.title.is_none(), |name| name.end == fault.at.start) => {
+        // If the name continues with characters that a name cannot contain, the whole word is
+        // reported.
+        Some(fault)
+            if header.name.as_ref().map_or(kind.named && header.title.is_none(), |name| {
+                name.end == fault.at.start
+            }) =>
+        {
             header.name = Some(header.name.map_or(fault.at.start, |name| name.start)..fault.at.end);
         }
         Some(mut fault) => {
             let rest = text[fault.at.start..].trim();
             if fault.help.is_none() && header.title.is_none() && !rest.contains('"') {
-                fault.help = Some(format!("write the title in quotes: {} {}", &text[..fault.at.start].trim_end(), rules::quoted(rest)));
+                fault.help = Some(format!(
+                    "write the title in quotes: {} {}",
+                    &text[..fault.at.start].trim_end(),
+                    rules::quoted(rest)
+                ));
             }
             report(reader, source, raw.header.range.start, fault);
         }
@@ -72,7 +88,12 @@ fn read_block(source: &Arc<Source>, raw: RawBlock, reader: &mut Reader<'_>) {
     reader.block(kind, block);
 }
 
-fn read_field(source: &Arc<Source>, item: &Item, kind: &'static Kind, reader: &mut Reader<'_>) -> Option<(&'static Key, Field)> {
+fn read_field(
+    source: &Arc<Source>,
+    item: &Item,
+    kind: &'static Kind,
+    reader: &mut Reader<'_>,
+) -> Option<(&'static Key, Field)> {
     let text = item.text(source);
     let start = item.range.start;
     let places = match lines::words(&text) {
@@ -95,16 +116,26 @@ fn read_field(source: &Arc<Source>, item: &Item, kind: &'static Kind, reader: &m
     value += blanks(&text[value..]);
     if text[value..].starts_with([':', '=']) {
         reader.problems.push(
-            Problem::error("unexpected-text", format!("`{}` must be followed directly by its value", &text[head.clone()]))
-                .at(&source.span(start + value..start + value + 1)),
+            Problem::error(
+                "unexpected-text",
+                format!("`{}` must be followed directly by its value", &text[head.clone()]),
+            )
+            .at(&source.span(start + value..start + value + 1)),
         );
         value += 1;
         value += blanks(&text[value..]);
     }
-    let key_text =
-        Text { text: key.word.to_owned(), exact: key.word == &text[head.clone()], span: source.span(start + head.start..start + head.end) };
+    let key_text = Text {
+        text: key.word.to_owned(),
+        exact: key.word == &text[head.clone()],
+        span: source.span(start + head.start..start + head.end),
+    };
     let value = match key.sort {
-        Sort::Phrase => Text { text: text[value..].to_owned(), span: source.span(start + value..item.range.end), exact: true },
+        Sort::Phrase => Text {
+            text: text[value..].to_owned(),
+            span: source.span(start + value..item.range.end),
+            exact: true,
+        },
         Sort::Text => read_prose(value, &text, item, source, key, reader),
     };
     Some((key, Field { key: key_text, value, comments: item.comments.clone() }))
@@ -115,7 +146,14 @@ fn blanks(text: &str) -> usize {
 }
 
 /// The value of a text field: quoted pieces in a row.
-fn read_prose(from: usize, text: &str, item: &Item, source: &Arc<Source>, key: &Key, reader: &mut Reader<'_>) -> Text {
+fn read_prose(
+    from: usize,
+    text: &str,
+    item: &Item,
+    source: &Arc<Source>,
+    key: &Key,
+    reader: &mut Reader<'_>,
+) -> Text {
     let rest = &text[from..];
     let at = source.span(item.range.start + from..item.range.end);
     let bare = |text: &str| Text { text: text.to_owned(), span: at.clone(), exact: true };
@@ -123,7 +161,13 @@ fn read_prose(from: usize, text: &str, item: &Item, source: &Arc<Source>, key: &
         return bare("");
     }
     if !rest.starts_with('"') {
-        let help = || format!("{} {}", key.word, rules::quoted(&rest.split_whitespace().collect::<Vec<_>>().join(" ")));
+        let help = || {
+            format!(
+                "{} {}",
+                key.word,
+                rules::quoted(&rest.split_whitespace().collect::<Vec<_>>().join(" "))
+            )
+        };
         reader.problems.push(
             Problem::error("missing-quotes", format!("the text of `{}` has no quotes", key.word))
                 .at(&at)
@@ -133,7 +177,8 @@ fn read_prose(from: usize, text: &str, item: &Item, source: &Arc<Source>, key: &
     }
     match lines::prose(rest) {
         Ok(pieces) => {
-            let pieces: Vec<Range<usize>> = pieces.into_iter().map(|piece| from + piece.start..from + piece.end).collect();
+            let pieces: Vec<Range<usize>> =
+                pieces.into_iter().map(|piece| from + piece.start..from + piece.end).collect();
             unquote(&pieces, text, item, source, reader)
         }
         Err(fault) => {
@@ -146,7 +191,13 @@ fn read_prose(from: usize, text: &str, item: &Item, source: &Arc<Source>, key: &
 }
 
 /// The text without quotes and escapes; pieces are joined by a blank.
-fn unquote(pieces: &[Range<usize>], text: &str, item: &Item, source: &Arc<Source>, reader: &mut Reader<'_>) -> Text {
+fn unquote(
+    pieces: &[Range<usize>],
+    text: &str,
+    item: &Item,
+    source: &Arc<Source>,
+    reader: &mut Reader<'_>,
+) -> Text {
     let start = item.range.start;
     let mut out = String::new();
     let mut plain = pieces.len() == 1;
@@ -169,9 +220,12 @@ fn unquote(pieces: &[Range<usize>], text: &str, item: &Item, source: &Arc<Source
                     let c = other.map(|(_, c)| c);
                     let from = start + inner.start + at;
                     reader.problems.push(
-                        Problem::error("unknown-escape", "in quotes, a backslash must be followed by `\"`, `\\` or `n`")
-                            .at(&source.span(from..from + 1 + c.map_or(0, char::len_utf8)))
-                            .help("write a backslash as \\\\"),
+                        Problem::error(
+                            "unknown-escape",
+                            "in quotes, a backslash must be followed by `\"`, `\\` or `n`",
+                        )
+                        .at(&source.span(from..from + 1 + c.map_or(0, char::len_utf8)))
+                        .help("write a backslash as \\\\"),
                     );
                     out.push('\\');
                     out.extend(c);
@@ -181,13 +235,17 @@ fn unquote(pieces: &[Range<usize>], text: &str, item: &Item, source: &Arc<Source
     }
     let whole = match pieces {
         [one] if plain => one.start + 1..one.end - 1,
-        _ => pieces.first().map_or(0, |piece| piece.start)..pieces.last().map_or(0, |piece| piece.end),
+        _ => {
+            pieces.first().map_or(0, |piece| piece.start)
+                ..pieces.last().map_or(0, |piece| piece.end)
+        }
     };
     Text { text: out, span: source.span(start + whole.start..start + whole.end), exact: plain }
 }
 
 fn report(reader: &mut Reader<'_>, source: &Arc<Source>, offset: usize, fault: Fault) {
-    let mut problem = Problem::error("unexpected-text", fault.says).at(&source.span(offset + fault.at.start..offset + fault.at.end));
+    let mut problem = Problem::error("unexpected-text", fault.says)
+        .at(&source.span(offset + fault.at.start..offset + fault.at.end));
     problem.help = fault.help;
     reader.problems.push(problem);
 }

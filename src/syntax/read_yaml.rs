@@ -15,10 +15,18 @@ use crate::yaml::{self, Node, Value};
 /// Reads the YAML form, with the same problems as [`super::read_text`] reports for the text form.
 pub fn read_yaml(source: &Arc<Source>, problems: &mut Problems) -> Document {
     let earlier = problems.0.len();
-    let mut document = Document { source: Arc::clone(source), leading: Vec::new(), blocks: Vec::new(), trailing: Vec::new() };
+    let mut document = Document {
+        source: Arc::clone(source),
+        leading: Vec::new(),
+        blocks: Vec::new(),
+        trailing: Vec::new(),
+    };
     if let Some(root) = yaml::load_as_written(source, problems) {
-        let mut reader = YamlReader { remarks: Remarks::new(source), reader: Reader::new(Form::Yaml, problems) };
-        document.leading = reader.remarks.leading(root.entries().first().map_or(root.span.start, |(key, _)| key.span.start));
+        let mut reader =
+            YamlReader { remarks: Remarks::new(source), reader: Reader::new(Form::Yaml, problems) };
+        document.leading = reader
+            .remarks
+            .leading(root.entries().first().map_or(root.span.start, |(key, _)| key.span.start));
         reader.read_root(&root);
         document.trailing = reader.remarks.rest();
         document.blocks = reader.reader.finish();
@@ -34,17 +42,25 @@ struct YamlReader<'a> {
 
 impl YamlReader<'_> {
     fn read_root(&mut self, root: &Node) {
-        if root.value == Value::Null || !self.is_map(root, "a protocol must be a map with the keys `protocol`, `quantities` and so on") {
+        if root.value == Value::Null
+            || !self.is_map(
+                root,
+                "a protocol must be a map with the keys `protocol`, `quantities` and so on",
+            )
+        {
             return;
         }
         let mut groups = root.entries().iter().peekable();
         while let Some((key, node)) = groups.next() {
             let end = groups.peek().map_or(usize::MAX, |(next, _)| next.span.start);
             self.remarks.pass(key.span.start);
-            let margin = nesting::block_at_margin(&key.text, node).filter(|_| rules::meant_kind(Form::Yaml, &key.text).is_none());
+            let margin = nesting::block_at_margin(&key.text, node)
+                .filter(|_| rules::meant_kind(Form::Yaml, &key.text).is_none());
             if let Some(help) = margin {
                 let says = format!("`{}` is not a block of a protocol", key.text);
-                self.reader.problems.push(Problem::error("unknown-block", says).at(&key.span).help(help));
+                self.reader
+                    .problems
+                    .push(Problem::error("unknown-block", says).at(&key.span).help(help));
                 self.remarks.pass(end);
                 continue;
             }
@@ -52,7 +68,11 @@ impl YamlReader<'_> {
                 self.remarks.pass(end);
                 continue;
             };
-            let word = Text { text: kind.word.to_owned(), span: key.span.clone(), exact: key.text == kind.word };
+            let word = Text {
+                text: kind.word.to_owned(),
+                span: key.span.clone(),
+                exact: key.text == kind.word,
+            };
             if kind.single {
                 self.read_block(kind, word, None, node, end);
             } else {
@@ -65,7 +85,11 @@ impl YamlReader<'_> {
     /// Blocks of one kind, by name.
     fn read_group(&mut self, kind: &'static Kind, word: &Text, node: &Node, end: usize) {
         if node.value == Value::Null {
-            self.wrong_shape(&word.span, format!("`{}` is empty", kind.group), "write blocks by their names below it, or remove the line");
+            self.wrong_shape(
+                &word.span,
+                format!("`{}` is empty", kind.group),
+                "write blocks by their names below it, or remove the line",
+            );
             return;
         }
         if !self.is_map(node, &format!("`{}` must be a map from names to fields", kind.group)) {
@@ -76,7 +100,11 @@ impl YamlReader<'_> {
             let end = blocks.peek().map_or(end, |(next, _)| next.span.start);
             self.remarks.pass(key.span.start);
             if let Some(help) = nesting::too_deep(&key.text, node) {
-                self.wrong_shape(&key.span, format!("`{}` is written among the names of `{}`", key.text, kind.group), &help);
+                self.wrong_shape(
+                    &key.span,
+                    format!("`{}` is written among the names of `{}`", key.text, kind.group),
+                    &help,
+                );
                 self.remarks.pass(end);
                 continue;
             }
@@ -85,33 +113,64 @@ impl YamlReader<'_> {
         }
     }
 
-    fn read_block(&mut self, kind: &'static Kind, word: Text, name: Option<Text>, node: &Node, end: usize) {
+    fn read_block(
+        &mut self,
+        kind: &'static Kind,
+        word: Text,
+        name: Option<Text>,
+        node: &Node,
+        end: usize,
+    ) {
         let head = name.as_ref().map_or(&word.span, |name| &name.span).clone();
-        let comments = Comments { before: self.remarks.above(), beside: self.remarks.beside(head.end), after: Vec::new() };
+        let comments = Comments {
+            before: self.remarks.above(),
+            beside: self.remarks.beside(head.end),
+            after: Vec::new(),
+        };
         let nameless = name.as_ref().is_some_and(|name| name.text.trim().is_empty());
         let kind_place = if nameless { Text { span: head.clone(), ..word } } else { word };
-        let mut block = Block { kind: kind_place, name: name.filter(|_| !nameless), title: None, fields: Vec::new(), comments };
-        let what =
-            if kind.single { format!("`{}` is a map of fields", kind.group) } else { format!("a `{}` must be a map of fields", kind.word) };
+        let mut block = Block {
+            kind: kind_place,
+            name: name.filter(|_| !nameless),
+            title: None,
+            fields: Vec::new(),
+            comments,
+        };
+        let what = if kind.single {
+            format!("`{}` is a map of fields", kind.group)
+        } else {
+            format!("a `{}` must be a map of fields", kind.word)
+        };
         if node.value != Value::Null && !matches!(node.value, Value::Map(_)) {
-            let help = block.name.as_ref().and_then(|name| nesting::field_among_names(kind, &name.text)).unwrap_or_default();
+            let help = block
+                .name
+                .as_ref()
+                .and_then(|name| nesting::field_among_names(kind, &name.text))
+                .unwrap_or_default();
             self.wrong_shape(&node.span, format!("{what}, not {}", node.kind_in_words()), &help);
             self.remarks.pass(end);
             return;
         }
         if node.value == Value::Null && kind.single {
-            self.wrong_shape(&head, format!("`{}` is empty", kind.group), "write fields below it, or remove the line");
+            self.wrong_shape(
+                &head,
+                format!("`{}` is empty", kind.group),
+                "write fields below it, or remove the line",
+            );
         }
         for (key, node) in node.entries() {
             self.remarks.pass(key.span.start);
-            let key_text = Text { text: key.text.clone(), span: key.span.clone(), exact: key.exact };
+            let key_text =
+                Text { text: key.text.clone(), span: key.span.clone(), exact: key.exact };
             match key.text.as_str() {
                 "title" => {
-                    let title = self.plain(&key_text, node, block.title.as_ref(), &mut block.comments);
+                    let title =
+                        self.plain(&key_text, node, block.title.as_ref(), &mut block.comments);
                     block.title = block.title.or(title);
                 }
                 "name" if kind.single && kind.named => {
-                    let name = self.plain(&key_text, node, block.name.as_ref(), &mut block.comments);
+                    let name =
+                        self.plain(&key_text, node, block.name.as_ref(), &mut block.comments);
                     block.name = block.name.or(name);
                 }
                 _ => self.read_field(kind, key_text, node, &mut block),
@@ -122,18 +181,32 @@ impl YamlReader<'_> {
     }
 
     /// A text that is not a field: a name or title. Its comments belong to the block.
-    fn plain(&mut self, key: &Text, node: &Node, first: Option<&Text>, comments: &mut Comments) -> Option<Text> {
+    fn plain(
+        &mut self,
+        key: &Text,
+        node: &Node,
+        first: Option<&Text>,
+        comments: &mut Comments,
+    ) -> Option<Text> {
         comments.before.extend(self.remarks.above());
         if let Some(beside) = self.remarks.beside(node.span.end) {
             comments.before.extend(comments.beside.replace(beside));
         }
         if let Some(first) = first {
             let says = format!("a block can have only one `{}`", key.text);
-            self.reader.problems.push(Problem::error("duplicate-field", says).at(&key.span).also(&first.span, "the first"));
+            self.reader.problems.push(
+                Problem::error("duplicate-field", says)
+                    .at(&key.span)
+                    .also(&first.span, "the first"),
+            );
         } else if node.is_scalar() {
             return Some(text(node));
         } else {
-            self.wrong_shape(&node.span, format!("the {} is {}", key.text, node.kind_in_words()), "expected one text");
+            self.wrong_shape(
+                &node.span,
+                format!("the {} is {}", key.text, node.kind_in_words()),
+                "expected one text",
+            );
         }
         None
     }
@@ -143,16 +216,30 @@ impl YamlReader<'_> {
         let known = rules::key(kind, &words).filter(|(_, count)| *count == words.len());
         if known.is_none() {
             let beside = block.name.as_ref().map(|name| name.text.as_str());
-            let nested = nesting::too_deep(&key.text, node).or_else(|| nesting::block_among_fields(kind, &key.text, node, beside));
+            let nested = nesting::too_deep(&key.text, node)
+                .or_else(|| nesting::block_among_fields(kind, &key.text, node, beside));
             if let Some(help) = nested {
                 let says = format!("a `{}` has no field `{}`", kind.word, key.text);
-                self.reader.problems.push(Problem::error("unknown-field", says).at(&key.span).help(help));
+                self.reader
+                    .problems
+                    .push(Problem::error("unknown-field", says).at(&key.span).help(help));
                 return;
             }
         }
-        let Some((known, _)) = known.or_else(|| self.reader.unknown_field(kind, &words, &key.span)) else { return };
-        let key = Text { exact: key.exact && key.text == known.word, text: known.word.to_owned(), span: key.span };
-        let above = Comments { before: self.remarks.above(), beside: self.remarks.beside(key.span.end), after: Vec::new() };
+        let Some((known, _)) = known.or_else(|| self.reader.unknown_field(kind, &words, &key.span))
+        else {
+            return;
+        };
+        let key = Text {
+            exact: key.exact && key.text == known.word,
+            text: known.word.to_owned(),
+            span: key.span,
+        };
+        let above = Comments {
+            before: self.remarks.above(),
+            beside: self.remarks.beside(key.span.end),
+            after: Vec::new(),
+        };
         match &node.value {
             Value::List(items) if known.many && !items.is_empty() => {
                 let mut above = Some(above);
@@ -164,19 +251,36 @@ impl YamlReader<'_> {
                     self.read_value(kind, known, &key, item, comments, block);
                 }
             }
-            Value::List(_) if known.many => self.reader.field(kind, known, block, Field { key, value: nothing(node), comments: above }),
+            Value::List(_) if known.many => self.reader.field(
+                kind,
+                known,
+                block,
+                Field { key, value: nothing(node), comments: above },
+            ),
             _ => self.read_value(kind, known, &key, node, above, block),
         }
     }
 
-    fn read_value(&mut self, kind: &'static Kind, known: &'static Key, key: &Text, node: &Node, above: Comments, block: &mut Block) {
+    fn read_value(
+        &mut self,
+        kind: &'static Kind,
+        known: &'static Key,
+        key: &Text,
+        node: &Node,
+        above: Comments,
+        block: &mut Block,
+    ) {
         if !node.is_scalar() {
             let help = match known.sort {
                 Sort::Phrase => format!("for example: {}: {}", known.word, known.example),
                 Sort::Text => "expected one text".to_owned(),
             };
             let help = nesting::field_below_field(kind, known.word, node).unwrap_or(help);
-            self.wrong_shape(&node.span, format!("`{}` is {}", known.word, node.kind_in_words()), &help);
+            self.wrong_shape(
+                &node.span,
+                format!("`{}` is {}", known.word, node.kind_in_words()),
+                &help,
+            );
             return;
         }
         let value = text(node);
@@ -191,10 +295,14 @@ impl YamlReader<'_> {
         self.reader.field(kind, known, block, Field { key: key.clone(), value, comments });
     }
 
-    /// Checks that a phrase is also one in the text form: quotes are closed, and `#` outside them would begin a comment.
+    /// Checks that a phrase is also one in the text form: quotes are closed, and `#` outside them
+    /// would begin a comment.
     fn check_phrase(&mut self, phrase: &Text) {
         if phrase.text.starts_with([':', '=']) {
-            self.reader.problems.push(Problem::error("unexpected-text", "a phrase cannot begin with this sign").at(&phrase.place(0..1)));
+            self.reader.problems.push(
+                Problem::error("unexpected-text", "a phrase cannot begin with this sign")
+                    .at(&phrase.place(0..1)),
+            );
         }
         let mut quotes = Quotes::default();
         let mut opened = 0;
@@ -213,7 +321,9 @@ impl YamlReader<'_> {
             }
         }
         if quotes.inside {
-            self.reader.problems.push(rules::unterminated(&phrase.place(opened..phrase.text.len())));
+            self.reader
+                .problems
+                .push(rules::unterminated(&phrase.place(opened..phrase.text.len())));
         }
     }
 
@@ -234,7 +344,11 @@ impl YamlReader<'_> {
 
 /// A scalar as written; empty for null.
 fn text(node: &Node) -> Text {
-    if node.value == Value::Null { nothing(node) } else { Text { text: node.raw.clone(), span: node.span.clone(), exact: node.exact } }
+    if node.value == Value::Null {
+        nothing(node)
+    } else {
+        Text { text: node.raw.clone(), span: node.span.clone(), exact: node.exact }
+    }
 }
 
 fn nothing(node: &Node) -> Text {

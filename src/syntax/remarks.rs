@@ -17,7 +17,11 @@ pub struct Remarks {
 
 impl Remarks {
     pub fn new(source: &Arc<Source>) -> Self {
-        Self { source: Arc::clone(source), ahead: yaml::remarks(source).into_iter().peekable(), waiting: Vec::new() }
+        Self {
+            source: Arc::clone(source),
+            ahead: yaml::remarks(source).into_iter().peekable(),
+            waiting: Vec::new(),
+        }
     }
 
     /// Comments at the top that a blank line separates from the first key.
@@ -28,7 +32,12 @@ impl Remarks {
             let next = self.ahead.peek().map_or(first, |next| next.span.start.min(first));
             let between = self.source.text.get(remark.span.end..next).unwrap_or("");
             let lines: Vec<&str> = between.split('\n').collect();
-            if lines.get(1..lines.len().saturating_sub(1)).unwrap_or(&[]).iter().any(|line| line.trim().is_empty()) {
+            if lines
+                .get(1..lines.len().saturating_sub(1))
+                .unwrap_or(&[])
+                .iter()
+                .any(|line| line.trim().is_empty())
+            {
                 leading.append(&mut self.waiting);
             }
         }
@@ -42,8 +51,8 @@ impl Remarks {
         }
     }
 
-    /// As [`Self::pass`], for a list item. Returns the comment on the line directly above the start of its text, which is next to
-    /// the `- >` of a folded text.
+    /// As [`Self::pass`], for a list item. Returns the comment on the line directly above the start
+    /// of its text, which is next to the `- >` of a folded text.
     pub fn pass_to_item(&mut self, to: usize) -> Option<String> {
         let mut beside = None;
         while let Some(remark) = self.ahead.next_if(|remark| remark.span.start < to) {
@@ -75,7 +84,10 @@ impl Remarks {
         if text.get(..end)?.trim_end_matches(' ').ends_with('\n') {
             return None;
         }
-        let on_line = |remark: &Remark| remark.beside && text.get(end..remark.span.start).is_some_and(|between| !between.contains('\n'));
+        let on_line = |remark: &Remark| {
+            remark.beside
+                && text.get(end..remark.span.start).is_some_and(|between| !between.contains('\n'))
+        };
         self.ahead.next_if(on_line).map(|remark| remark.text)
     }
 
@@ -83,10 +95,12 @@ impl Remarks {
     pub fn deeper(&mut self, head: &Span, end: usize) -> Vec<String> {
         let mut deeper = Vec::new();
         let source = Arc::clone(&self.source);
-        let column = |at: usize| source.text[..at].bytes().rev().take_while(|byte| *byte != b'\n').count();
+        let column =
+            |at: usize| source.text[..at].bytes().rev().take_while(|byte| *byte != b'\n').count();
         let least = column(head.start);
-        while let Some(remark) = self.ahead.next_if(|remark| !remark.beside && remark.span.start < end && column(remark.span.start) > least)
-        {
+        while let Some(remark) = self.ahead.next_if(|remark| {
+            !remark.beside && remark.span.start < end && column(remark.span.start) > least
+        }) {
             deeper.push(remark.text);
         }
         deeper

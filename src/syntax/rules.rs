@@ -63,15 +63,19 @@ impl<'a> Reader<'a> {
             return Some(kind);
         }
         let owners = owners(&[word]);
-        let problem = Problem::error("unknown-block", format!("`{word}` is not a block of a protocol")).at(at);
+        let problem =
+            Problem::error("unknown-block", format!("`{word}` is not a block of a protocol"))
+                .at(at);
         self.problems.push(match (near, owners.is_empty()) {
             (Some(near), _) => problem.help(format!("did you mean `{}`?", spelt(near))),
-            (None, false) if self.form == Form::Lines => {
-                problem.help(format!("`{word}` is a field of {}; fields are indented below their block", listed(&owners)))
-            }
-            (None, false) => {
-                problem.help(format!("`{word}` is a field of {}; fields are indented below the name of their block", listed(&owners)))
-            }
+            (None, false) if self.form == Form::Lines => problem.help(format!(
+                "`{word}` is a field of {}; fields are indented below their block",
+                listed(&owners)
+            )),
+            (None, false) => problem.help(format!(
+                "`{word}` is a field of {}; fields are indented below the name of their block",
+                listed(&owners)
+            )),
             (None, true) => {
                 let mut known: Vec<&str> = KINDS.iter().map(spelt).collect();
                 known.dedup();
@@ -81,34 +85,63 @@ impl<'a> Reader<'a> {
         near
     }
 
-    /// Reports words that begin no field of the kind. Returns the field that is most likely meant, with its number of words.
-    pub fn unknown_field(&mut self, kind: &'static Kind, words: &[&str], at: &Span) -> Option<(&'static Key, usize)> {
-        let other =
-            (1..=words.len().min(LONGEST)).rev().map(|count| (owners(&words[..count]), count)).find(|(owners, _)| !owners.is_empty());
-        // `minimum signal` is a misspelling of `minimum signals` rather than the `minimum` of another kind.
-        let near = near_key(kind, words).filter(|(_, count)| other.as_ref().is_none_or(|(_, other)| count > other));
+    /// Reports words that begin no field of the kind. Returns the field that is most likely meant,
+    /// with its number of words.
+    pub fn unknown_field(
+        &mut self,
+        kind: &'static Kind,
+        words: &[&str],
+        at: &Span,
+    ) -> Option<(&'static Key, usize)> {
+        let other = (1..=words.len().min(LONGEST))
+            .rev()
+            .map(|count| (owners(&words[..count]), count))
+            .find(|(owners, _)| !owners.is_empty());
+        // `minimum signal` is a misspelling of `minimum signals` rather than the `minimum` of
+        // another kind.
+        let near = near_key(kind, words)
+            .filter(|(_, count)| other.as_ref().is_none_or(|(_, other)| count > other));
         // In YAML, a key is compared as a whole.
         let near = near.filter(|(_, count)| self.form == Form::Lines || *count == words.len());
-        // `minimum total length` in a zone, which has `minimum length`, is not the `minimum` of `sections`.
-        let begins = |key: &Key| words.len() > 1 && key.word.split(' ').count() > 1 && key.word.split(' ').next() == words.first().copied();
-        let other = other.filter(|(_, count)| *count > 1 || !kind.keys.iter().any(begins)).map(|(owners, _)| owners).unwrap_or_default();
+        // `minimum total length` in a zone, which has `minimum length`, is not the `minimum` of
+        // `sections`.
+        let begins = |key: &Key| {
+            words.len() > 1
+                && key.word.split(' ').count() > 1
+                && key.word.split(' ').next() == words.first().copied()
+        };
+        let other = other
+            .filter(|(_, count)| *count > 1 || !kind.keys.iter().any(begins))
+            .map(|(owners, _)| owners)
+            .unwrap_or_default();
         let count = near.map_or(1, |(_, count)| count);
         // A field of the block with the same word that has a name, or has none.
         let twin = kind.with_name(!kind.named);
-        let of_twin = (1..=words.len().min(LONGEST)).rev().find(|&count| twin.key(&words[..count].join(" ")).is_some());
+        let of_twin = (1..=words.len().min(LONGEST))
+            .rev()
+            .find(|&count| twin.key(&words[..count].join(" ")).is_some());
         let count = of_twin.unwrap_or(count);
-        let written = if self.form == Form::Yaml { words.join(" ") } else { words[..count.min(words.len())].join(" ") };
+        let written = if self.form == Form::Yaml {
+            words.join(" ")
+        } else {
+            words[..count.min(words.len())].join(" ")
+        };
         let block = match (of_twin, kind.named) {
             (None, _) => format!("`{}`", kind.word),
             (Some(_), true) => format!("`{}` with a name", kind.word),
             (Some(_), false) => format!("`{}` without a name", kind.word),
         };
-        let problem = Problem::error("unknown-field", format!("a {block} has no field `{written}`")).at(at);
+        let problem =
+            Problem::error("unknown-field", format!("a {block} has no field `{written}`")).at(at);
         if of_twin.is_some() {
             self.problems.push(problem.help(match (kind.named, self.form) {
-                (true, Form::Lines) => format!("it is a field of the `{}` without a name", kind.word),
+                (true, Form::Lines) => {
+                    format!("it is a field of the `{}` without a name", kind.word)
+                }
                 (true, Form::Yaml) => format!("it is a field of `{}`", twin.group),
-                (false, Form::Lines) => format!("it is a field of a `{0}` with a name: `{0} some_name`", kind.word),
+                (false, Form::Lines) => {
+                    format!("it is a field of a `{0}` with a name: `{0} some_name`", kind.word)
+                }
                 (false, Form::Yaml) => format!("it is a field of `{}`, below a name", twin.group),
             }));
             return None;
@@ -124,7 +157,10 @@ impl<'a> Reader<'a> {
         } else if !other.is_empty() {
             problem.help(format!("it is a field of {}", listed(&other)))
         } else {
-            problem.help(format!("known here: {}", kind.keys.iter().map(|key| key.word).collect::<Vec<_>>().join(", ")))
+            problem.help(format!(
+                "known here: {}",
+                kind.keys.iter().map(|key| key.word).collect::<Vec<_>>().join(", ")
+            ))
         });
         near
     }
@@ -136,18 +172,25 @@ impl<'a> Reader<'a> {
                 (super::keys::Sort::Text, Form::Lines) => quoted(key.example),
                 _ => key.example.to_owned(),
             };
-            self.problems.push(Problem::error("missing-value", format!("`{}` has no value", key.word)).at(&field.key.span).help(format!(
-                "for example: {}{} {example}",
-                key.word,
-                if self.form == Form::Yaml { ":" } else { "" }
-            )));
+            self.problems.push(
+                Problem::error("missing-value", format!("`{}` has no value", key.word))
+                    .at(&field.key.span)
+                    .help(format!(
+                        "for example: {}{} {example}",
+                        key.word,
+                        if self.form == Form::Yaml { ":" } else { "" }
+                    )),
+            );
             return;
         }
         if let Some(first) = block.field(key.word).filter(|_| !key.many) {
             self.problems.push(
-                Problem::error("duplicate-field", format!("a `{}` can have only one `{}`", kind.word, key.word))
-                    .at(&field.key.span)
-                    .also(&first.key.span, "the first"),
+                Problem::error(
+                    "duplicate-field",
+                    format!("a `{}` can have only one `{}`", kind.word, key.word),
+                )
+                .at(&field.key.span)
+                .also(&first.key.span, "the first"),
             );
             return;
         }
@@ -158,11 +201,15 @@ impl<'a> Reader<'a> {
     pub fn block(&mut self, kind: &'static Kind, block: Block) {
         match &block.name {
             None if kind.named => self.problems.push(
-                Problem::error("missing-name", format!("this `{}` has no name", kind.word)).at(&block.kind.span).help(match self.form {
-                    Form::Lines => format!("write a name after the word: {} some_name", kind.word),
-                    Form::Yaml if kind.single => "add an entry `name`".to_owned(),
-                    Form::Yaml => "write its name as the key above its fields".to_owned(),
-                }),
+                Problem::error("missing-name", format!("this `{}` has no name", kind.word))
+                    .at(&block.kind.span)
+                    .help(match self.form {
+                        Form::Lines => {
+                            format!("write a name after the word: {} some_name", kind.word)
+                        }
+                        Form::Yaml if kind.single => "add an entry `name`".to_owned(),
+                        Form::Yaml => "write its name as the key above its fields".to_owned(),
+                    }),
             ),
             Some(name) if !kind.named => self.problems.push(
                 Problem::error("unexpected-name", format!("a `{}` block has no name", kind.word))
@@ -170,16 +217,20 @@ impl<'a> Reader<'a> {
                     .help(format!("there is one `{}` block in a protocol", kind.word)),
             ),
             Some(name) if kind.has_families() && lines::is_family_name(&name.text) => {}
-            Some(name) if !lines::is_name(&name.text) => self.problems.push(match lines::is_family_name(&name.text) {
-                true => {
-                    bad_name(&name.text, &name.span).help(format!("a `{}` cannot be a family: write its name without braces", kind.word))
-                }
-                false => bad_name(&name.text, &name.span),
-            }),
+            Some(name) if !lines::is_name(&name.text) => {
+                self.problems.push(match lines::is_family_name(&name.text) {
+                    true => bad_name(&name.text, &name.span).help(format!(
+                        "a `{}` cannot be a family: write its name without braces",
+                        kind.word
+                    )),
+                    false => bad_name(&name.text, &name.span),
+                })
+            }
             _ => {}
         }
         if let Some(title) = block.title.as_ref().filter(|title| title.text.trim().is_empty()) {
-            self.problems.push(Problem::error("missing-value", "the title is empty").at(&title.span));
+            self.problems
+                .push(Problem::error("missing-value", "the title is empty").at(&title.span));
         }
         // A block without its required name is not compared with others.
         if !kind.named || kind.single || block.name.is_some() {
@@ -191,7 +242,8 @@ impl<'a> Reader<'a> {
                     format!("there are two blocks `{} {name}`", kind.word)
                 };
                 let code = if kind.single { "duplicate-block" } else { "duplicate-name" };
-                self.problems.push(Problem::error(code, says).at(block.span()).also(first, "the first"));
+                self.problems
+                    .push(Problem::error(code, says).at(block.span()).also(first, "the first"));
                 return;
             }
             self.seen.insert((kind.word, name), block.span().clone());
@@ -201,7 +253,9 @@ impl<'a> Reader<'a> {
 }
 
 pub fn unterminated(at: &Span) -> Problem {
-    Problem::error("unterminated-quote", "a quote is not closed on its line").at(at).help("write a quote inside a text as \\\"")
+    Problem::error("unterminated-quote", "a quote is not closed on its line")
+        .at(at)
+        .help("write a quote inside a text as \\\"")
 }
 
 pub fn bad_name(name: &str, at: &Span) -> Problem {
@@ -216,25 +270,34 @@ pub fn bad_name(name: &str, at: &Span) -> Problem {
 
 /// The longest key that the first words form, and its number of words.
 pub fn key(kind: &'static Kind, words: &[&str]) -> Option<(&'static Key, usize)> {
-    (1..=words.len().min(LONGEST)).rev().find_map(|count| kind.key(&words[..count].join(" ")).map(|key| (key, count)))
+    (1..=words.len().min(LONGEST))
+        .rev()
+        .find_map(|count| kind.key(&words[..count].join(" ")).map(|key| (key, count)))
 }
 
 fn near_key(kind: &'static Kind, words: &[&str]) -> Option<(&'static Key, usize)> {
     (1..=words.len().min(LONGEST)).rev().find_map(|count| {
-        let like = kind.keys.iter().map(|key| key.word).filter(|word| word.split(' ').count() == count);
-        near(&words[..count].join(" "), like).and_then(|near| kind.key(near)).map(|key| (key, count))
+        let like =
+            kind.keys.iter().map(|key| key.word).filter(|word| word.split(' ').count() == count);
+        near(&words[..count].join(" "), like)
+            .and_then(|near| kind.key(near))
+            .map(|key| (key, count))
     })
 }
 
 /// The most similar candidate, if at most a third of the letters differ.
 fn near<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    nearest(word, candidates).filter(|near| 3 * strsim::damerau_levenshtein(word, near) <= word.chars().count().max(near.chars().count()))
+    nearest(word, candidates).filter(|near| {
+        3 * strsim::damerau_levenshtein(word, near)
+            <= word.chars().count().max(near.chars().count())
+    })
 }
 
 /// The kinds that have a field with these words.
 fn owners(words: &[&str]) -> Vec<&'static str> {
     let word = words.join(" ");
-    let mut owners: Vec<&str> = KINDS.iter().filter(|kind| kind.key(&word).is_some()).map(|kind| kind.word).collect();
+    let mut owners: Vec<&str> =
+        KINDS.iter().filter(|kind| kind.key(&word).is_some()).map(|kind| kind.word).collect();
     owners.dedup();
     owners
 }
@@ -271,13 +334,24 @@ mod tests {
 
     #[test]
     fn no_key_is_longer_than_is_looked_for() {
-        assert!(KINDS.iter().flat_map(|kind| kind.keys).all(|key| key.word.split(' ').count() <= LONGEST));
+        assert!(
+            KINDS
+                .iter()
+                .flat_map(|kind| kind.keys)
+                .all(|key| key.word.split(' ').count() <= LONGEST)
+        );
     }
 
     #[test]
     fn the_longest_key_wins() {
         let zone = super::super::keys::kind("zone").expect("a kind");
-        assert_eq!(key(zone, &["minimum", "sections", "of"]).map(|(key, count)| (key.word, count)), Some(("minimum sections", 2)));
-        assert_eq!(near_key(zone, &["minimun", "length"]).map(|(key, count)| (key.word, count)), Some(("minimum length", 2)));
+        assert_eq!(
+            key(zone, &["minimum", "sections", "of"]).map(|(key, count)| (key.word, count)),
+            Some(("minimum sections", 2))
+        );
+        assert_eq!(
+            near_key(zone, &["minimun", "length"]).map(|(key, count)| (key.word, count)),
+            Some(("minimum length", 2))
+        );
     }
 }

@@ -6,7 +6,8 @@ use super::keys::{KINDS, Key, Kind, Sort};
 
 /// The schema (draft 2020-12), generated from [`KINDS`].
 pub fn json_schema() -> Value {
-    let groups: Map<String, Value> = KINDS.iter().map(|kind| (kind.group.to_owned(), group(kind))).collect();
+    let groups: Map<String, Value> =
+        KINDS.iter().map(|kind| (kind.group.to_owned(), group(kind))).collect();
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Fishplate protocol",
@@ -51,7 +52,10 @@ fn group(kind: &Kind) -> Value {
 /// The fields of one block; a block without fields can be empty.
 fn block(kind: &Kind) -> Map<String, Value> {
     let mut fields = Map::new();
-    fields.insert("title".into(), json!({ "$ref": "#/$defs/text", "description": "The title in reports." }));
+    fields.insert(
+        "title".into(),
+        json!({ "$ref": "#/$defs/text", "description": "The title in reports." }),
+    );
     fields.extend(kind.keys.iter().map(|key| (key.word.to_owned(), field(key))));
     let mut block = Map::new();
     block.insert("description".into(), json!(kind.about));
@@ -70,7 +74,8 @@ fn field(key: &Key) -> Value {
     field.insert("description".into(), json!(key.about));
     field.insert("examples".into(), json!([key.example]));
     if key.many {
-        field.insert("anyOf".into(), json!([one, { "type": "array", "items": one, "minItems": 1 }]));
+        field
+            .insert("anyOf".into(), json!([one, { "type": "array", "items": one, "minItems": 1 }]));
     } else if let Value::Object(one) = one {
         field.extend(one);
     }

@@ -45,7 +45,14 @@ pub struct Parts {
 }
 
 pub fn split(source: &Arc<Source>, problems: &mut Problems) -> Parts {
-    let mut splitter = Splitter { source, problems, leading: Vec::new(), blocks: Vec::new(), comments: Vec::new(), tabs: Vec::new() };
+    let mut splitter = Splitter {
+        source,
+        problems,
+        leading: Vec::new(),
+        blocks: Vec::new(),
+        comments: Vec::new(),
+        tabs: Vec::new(),
+    };
     let mut start = if source.text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
     for text in source.text[start..].split_inclusive('\n') {
         splitter.line(start, text.trim_end_matches(['\n', '\r']));
@@ -99,7 +106,10 @@ impl Splitter<'_> {
         let word_at = rest.body.start..rest.body.start + word.len();
         let kind = keys::kind(word);
         let above = self.blocks.last().and_then(|block| block.column);
-        if indent == 0 && kind.is_none() && self.blocks.last().is_some_and(|block| block.may_hold(word)) {
+        if indent == 0
+            && kind.is_none()
+            && self.blocks.last().is_some_and(|block| block.may_hold(word))
+        {
             self.problem(
                 "indentation",
                 &format!("`{word}` is a field but is not indented"),
@@ -111,7 +121,9 @@ impl Splitter<'_> {
             self.begin(rules::meant_kind(Form::Lines, word), rest);
         } else if above.is_some_and(|column| indent > column) {
             self.carry_on(rest);
-        } else if kind.is_some() && self.blocks.last().is_none_or(|block| block.kind.is_some() && !block.may_hold(word)) {
+        } else if kind.is_some()
+            && self.blocks.last().is_none_or(|block| block.kind.is_some() && !block.may_hold(word))
+        {
             self.problem(
                 "indentation",
                 &format!("`{word}` begins a block and is indented"),
@@ -121,8 +133,16 @@ impl Splitter<'_> {
             self.begin(kind, rest);
         } else {
             if let Some(column) = above.filter(|column| *column != indent) {
-                let help = format!("align the fields of a block; here they begin in column {}", column + 1);
-                self.problem("indentation", "the field is not aligned with those above", word_at, &help);
+                let help = format!(
+                    "align the fields of a block; here they begin in column {}",
+                    column + 1
+                );
+                self.problem(
+                    "indentation",
+                    "the field is not aligned with those above",
+                    word_at,
+                    &help,
+                );
             }
             self.add(indent, rest);
         }
@@ -131,7 +151,13 @@ impl Splitter<'_> {
     fn begin(&mut self, kind: Option<&'static Kind>, line: Rest) {
         self.close();
         let header = Item::new(line, self.waiting());
-        self.blocks.push(RawBlock { header, fields: Vec::new(), after: Vec::new(), kind, column: None });
+        self.blocks.push(RawBlock {
+            header,
+            fields: Vec::new(),
+            after: Vec::new(),
+            kind,
+            column: None,
+        });
     }
 
     fn add(&mut self, indent: usize, line: Rest) {
@@ -150,10 +176,13 @@ impl Splitter<'_> {
         }
     }
 
-    /// Adds a continuation line to the last field. One comment can stay next to the field, others move above it.
+    /// Adds a continuation line to the last field. One comment can stay next to the field, others
+    /// move above it.
     fn carry_on(&mut self, line: Rest) {
         let before = self.waiting();
-        let Some(field) = self.blocks.last_mut().and_then(|block| block.fields.last_mut()) else { return };
+        let Some(field) = self.blocks.last_mut().and_then(|block| block.fields.last_mut()) else {
+            return;
+        };
         field.holes.push(field.range.end..line.body.start);
         field.range.end = line.body.end;
         field.unclosed |= line.unclosed;
@@ -187,7 +216,12 @@ impl Splitter<'_> {
                 0 => "a line is indented with a tab".to_owned(),
                 more => format!("lines are indented with tabs, this one and {more} more"),
             };
-            self.problem("tab-indentation", &says, first.clone(), "indent fields by two blanks, and continuation lines by more");
+            self.problem(
+                "tab-indentation",
+                &says,
+                first.clone(),
+                "indent fields by two blanks, and continuation lines by more",
+            );
         }
         self.close();
         let trailing = self.waiting();
@@ -198,8 +232,10 @@ impl Splitter<'_> {
 impl RawBlock {
     /// Whether a field of the block can begin with this word.
     fn may_hold(&self, word: &str) -> bool {
-        let holds = |kind: &Kind| kind.keys.iter().any(|key| key.word.split(' ').next() == Some(word));
-        self.kind.is_some_and(|kind| [true, false].into_iter().any(|named| holds(kind.with_name(named))))
+        let holds =
+            |kind: &Kind| kind.keys.iter().any(|key| key.word.split(' ').next() == Some(word));
+        self.kind
+            .is_some_and(|kind| [true, false].into_iter().any(|named| holds(kind.with_name(named))))
     }
 }
 
@@ -214,7 +250,10 @@ impl Item {
         let mut text = source.text[self.range.clone()].to_owned();
         for hole in &self.holes {
             let hole = hole.start - self.range.start..hole.end - self.range.start;
-            let blank: String = text[hole.clone()].bytes().map(|byte| if byte == b'\n' { '\n' } else { ' ' }).collect();
+            let blank: String = text[hole.clone()]
+                .bytes()
+                .map(|byte| if byte == b'\n' { '\n' } else { ' ' })
+                .collect();
             text.replace_range(hole, &blank);
         }
         text

@@ -3,10 +3,11 @@
 use std::fmt;
 use std::ops::{Div, Mul};
 
-/// Exponents of length, mass, time, temperature, electric current, and temperature in degrees Celsius. An angle is dimensionless.
+/// Exponents of length, mass, time, temperature, electric current, and temperature in degrees
+/// Celsius. An angle is dimensionless.
 ///
-/// Degrees Celsius count from another zero than kelvin. As a dimension of their own they cannot be mixed with kelvin by mistake, and a
-/// difference of two is right without an offset.
+/// Degrees Celsius count from another zero than kelvin. As a dimension of their own they cannot be
+/// mixed with kelvin by mistake, and a difference of two is right without an offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub struct Dimension(pub [i8; 6]);
 
@@ -67,7 +68,10 @@ impl Dimension {
 
     /// The square root, if all exponents are even.
     pub fn root(self) -> Option<Self> {
-        self.0.iter().all(|exponent| exponent % 2 == 0).then(|| Self(self.0.map(|exponent| exponent / 2)))
+        self.0
+            .iter()
+            .all(|exponent| exponent % 2 == 0)
+            .then(|| Self(self.0.map(|exponent| exponent / 2)))
     }
 
     /// "a force", "an acceleration", or the base units.
@@ -100,7 +104,11 @@ impl fmt::Display for Dimension {
             .iter()
             .zip(self.0)
             .filter(|(_, exponent)| *exponent != 0)
-            .map(|(name, exponent)| if exponent == 1 { (*name).to_string() } else { format!("{name}^{exponent}") })
+            .map(
+                |(name, exponent)| {
+                    if exponent == 1 { (*name).to_string() } else { format!("{name}^{exponent}") }
+                },
+            )
             .collect();
         f.write_str(if parts.is_empty() { "-".to_string() } else { parts.join(" ") }.as_str())
     }

@@ -1,6 +1,8 @@
-//! Units: a [`Dimension`] is the type of an expression; a [`Unit`] is for reading and printing numbers.
+//! Units: a [`Dimension`] is the type of an expression; a [`Unit`] is for reading and printing
+//! numbers.
 //!
-//! Inside the program all numbers are in SI base units; conversion takes place where text is read or printed.
+//! Inside the program all numbers are in SI base units; conversion takes place where text is read
+//! or printed.
 
 mod dimension;
 pub mod number;
@@ -37,7 +39,11 @@ impl Unit {
 
     /// The SI unit of a dimension.
     pub fn si(dimension: Dimension) -> Self {
-        if dimension == Dimension::ONE { Self::one() } else { Self { text: dimension.to_string(), factor: 1.0, dimension } }
+        if dimension == Dimension::ONE {
+            Self::one()
+        } else {
+            Self { text: dimension.to_string(), factor: 1.0, dimension }
+        }
     }
 
     pub fn to_si(&self, number: f64) -> f64 {

@@ -18,7 +18,8 @@ pub struct Refused {
     pub help: Option<String>,
 }
 
-/// Reads a finite number. A unit may follow, also in brackets; otherwise the expected unit is assumed.
+/// Reads a finite number. A unit may follow, also in brackets; otherwise the expected unit is
+/// assumed.
 ///
 /// # Errors
 /// Not a number, a decimal comma, an unknown unit, a unit of another dimension.
@@ -29,9 +30,10 @@ pub fn read(text: &str, expected: &Unit) -> Result<Read, Refused> {
     let number = text[..end].parse::<f64>().ok().filter(|number| number.is_finite());
     let Some(number) = number.filter(|_| !text[end..].starts_with([',', '.'])) else {
         return Err(match decimal_comma(text) {
-            Some(mended) => {
-                refused(format!("`{text}` has a decimal comma; numbers are written with a point"), Some(format!("write `{mended}`")))
-            }
+            Some(mended) => refused(
+                format!("`{text}` has a decimal comma; numbers are written with a point"),
+                Some(format!("write `{mended}`")),
+            ),
             None => refused(format!("`{text}` is not a number{}", place(expected)), None),
         });
     };
@@ -42,10 +44,18 @@ pub fn read(text: &str, expected: &Unit) -> Result<Read, Refused> {
     }
     let unit = Unit::parse(unit).map_err(|unknown| {
         let near = unknown.near.map(|near| format!("did you mean `{near}`?"));
-        refused(format!("`{}` is not a known unit", unknown.word), near.or_else(|| Some(format!("it is expected in {expected}"))))
+        refused(
+            format!("`{}` is not a known unit", unknown.word),
+            near.or_else(|| Some(format!("it is expected in {expected}"))),
+        )
     })?;
     if unit.dimension != expected.dimension {
-        let says = format!("`{text}` is {}, not {}{}", unit.dimension.in_words(), expected.dimension.in_words(), place(expected));
+        let says = format!(
+            "`{text}` is {}, not {}{}",
+            unit.dimension.in_words(),
+            expected.dimension.in_words(),
+            place(expected)
+        );
         return Err(refused(says, weight(number, &unit, expected)));
     }
     Ok(Read { si: unit.to_si(number), unit_stated: true })
@@ -56,11 +66,14 @@ fn place(expected: &Unit) -> String {
     if expected.text == "-" { String::new() } else { format!(" (in {expected})") }
 }
 
-/// Units of the given dimension in which a number lies in a range (in SI): candidates for a unit that was omitted.
+/// Units of the given dimension in which a number lies in a range (in SI): candidates for a unit
+/// that was omitted.
 #[must_use]
 pub fn units_within(number: f64, like: &Unit, range: (f64, f64)) -> Vec<&'static str> {
     let within = |factor: f64| (range.0..=range.1).contains(&(number * factor));
-    let alike = SYMBOLS.iter().filter(|known| known.dimension == like.dimension && known.factor != like.factor);
+    let alike = SYMBOLS
+        .iter()
+        .filter(|known| known.dimension == like.dimension && known.factor != like.factor);
     alike.filter(|known| within(known.factor)).map(|known| known.symbol).collect()
 }
 
@@ -77,7 +90,8 @@ fn weight(number: f64, unit: &Unit, expected: &Unit) -> Option<String> {
 /// End of the number at the start of a text: sign, digits with one point, exponent.
 fn number_end(text: &str) -> usize {
     let bytes = text.as_bytes();
-    let digits = |from: usize| bytes[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+    let digits =
+        |from: usize| bytes[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
     let sign = |at: usize| usize::from(matches!(bytes.get(at), Some(b'+' | b'-')));
     let mut end = sign(0);
     end += digits(end);
@@ -130,7 +144,11 @@ mod tests {
             ("nan", "`nan` is not a number (in kN)", None),
             ("1e999", "`1e999` is not a number (in kN)", None),
             ("5.4.5", "`5.4.5` is not a number (in kN)", None),
-            ("54,5 kN", "`54,5 kN` has a decimal comma; numbers are written with a point", Some("write `54.5 kN`")),
+            (
+                "54,5 kN",
+                "`54,5 kN` has a decimal comma; numbers are written with a point",
+                Some("write `54.5 kN`"),
+            ),
             ("54.5 kn", "`kn` is not a known unit", Some("did you mean `kN`?")),
             ("54.5 xyz", "`xyz` is not a known unit", Some("it is expected in kN")),
         ] {
@@ -144,7 +162,12 @@ mod tests {
         assert_eq!(of("abc", "-").expect_err("no number").says, "`abc` is not a number");
         let refused = of("5.56 t", "kN").expect_err("another dimension");
         assert!(refused.says.starts_with("`5.56 t` is "), "{}", refused.says);
-        assert_eq!(refused.help.as_deref(), Some("a mass of 5.56 t weighs 54.52497 kN; write the force with its unit if that is meant"));
+        assert_eq!(
+            refused.help.as_deref(),
+            Some(
+                "a mass of 5.56 t weighs 54.52497 kN; write the force with its unit if that is meant"
+            )
+        );
         assert_eq!(of("5 m", "kN").expect_err("another dimension").help, None);
     }
 

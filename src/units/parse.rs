@@ -1,4 +1,5 @@
-//! Reads compound units: products by space, `*` or `·`, one or more `/`, powers as `^2`, `²`, `^-1` or `m2`.
+//! Reads compound units: products by space, `*` or `·`, one or more `/`, powers as `^2`, `²`, `^-1`
+//! or `m2`.
 
 use super::{Dimension, SYMBOLS, Unit, UnknownUnit};
 
@@ -32,7 +33,8 @@ pub(super) fn unit(text: &str) -> Result<Unit, UnknownUnit> {
         let end = rest.find([' ', '*', '·', '/']).unwrap_or(rest.len());
         let word = &rest[..end];
         let (symbol, exponent) = power(word).ok_or_else(|| unknown(word))?;
-        let known = SYMBOLS.iter().find(|known| known.symbol == symbol).ok_or_else(|| unknown(symbol))?;
+        let known =
+            SYMBOLS.iter().find(|known| known.symbol == symbol).ok_or_else(|| unknown(symbol))?;
         let exponent = if below { -exponent } else { exponent };
         factor *= known.factor.powi(i32::from(exponent));
         dimension = dimension * known.dimension.power(exponent).ok_or_else(|| unknown(word))?;
@@ -47,8 +49,16 @@ pub(super) fn unit(text: &str) -> Result<Unit, UnknownUnit> {
 }
 
 fn crate_near(word: &str) -> Option<&'static str> {
-    let same = SYMBOLS.iter().find(|known| known.symbol.eq_ignore_ascii_case(word)).map(|known| known.symbol);
-    same.or_else(|| SYMBOLS.iter().map(|known| known.symbol).find(|known| known.len() > 1 && strsim::levenshtein(known, word) == 1))
+    let same = SYMBOLS
+        .iter()
+        .find(|known| known.symbol.eq_ignore_ascii_case(word))
+        .map(|known| known.symbol);
+    same.or_else(|| {
+        SYMBOLS
+            .iter()
+            .map(|known| known.symbol)
+            .find(|known| known.len() > 1 && strsim::levenshtein(known, word) == 1)
+    })
 }
 
 /// `s^2`, `s²`, `s2`, `m^-1` into symbol and exponent.
@@ -57,7 +67,10 @@ fn power(word: &str) -> Option<(&str, i8)> {
         return Some((word, 1));
     }
     if let Some((symbol, exponent)) = word.split_once('^') {
-        return Some((symbol, exponent.parse().ok().filter(|exponent: &i8| (-9..=9).contains(exponent))?));
+        return Some((
+            symbol,
+            exponent.parse().ok().filter(|exponent: &i8| (-9..=9).contains(exponent))?,
+        ));
     }
     for (mark, exponent) in [("⁻¹", -1), ("⁻²", -2), ("²", 2), ("³", 3)] {
         if let Some(symbol) = word.strip_suffix(mark) {
@@ -66,7 +79,10 @@ fn power(word: &str) -> Option<(&str, i8)> {
     }
     let digits = word.trim_end_matches(|c: char| c.is_ascii_digit());
     if digits.len() < word.len() && !digits.is_empty() {
-        return Some((digits, word[digits.len()..].parse().ok().filter(|exponent: &i8| (1..=9).contains(exponent))?));
+        return Some((
+            digits,
+            word[digits.len()..].parse().ok().filter(|exponent: &i8| (1..=9).contains(exponent))?,
+        ));
     }
     Some((word, 1))
 }

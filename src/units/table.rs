@@ -35,14 +35,16 @@ const CAPACITANCE: [i8; 6] = [-2, -1, 4, 0, 2, 0];
 const INDUCTANCE: [i8; 6] = [2, 1, -2, 0, -2, 0];
 const FLUX: [i8; 6] = [2, 1, -2, 0, -1, 0];
 const FLUX_DENSITY: [i8; 6] = [0, 1, -2, 0, -1, 0];
-/// A temperature in degrees Celsius has a zero of its own, and is therefore another dimension than one in kelvin.
+/// A temperature in degrees Celsius has a zero of its own, and is therefore another dimension than
+/// one in kelvin.
 const CELSIUS: [i8; 6] = [0, 0, 0, 0, 0, 1];
 const PI: f64 = std::f64::consts::PI;
 
-/// All symbols including their prefixes, so that none is composed. Refused are prefixes that make a symbol mean two things, or that
-/// differ from a common one by a capital letter only: `Mm`, `Ms`, `Mg` and `Gg` (mm, ms, mg); every prefix of `t`, `h`, `min`, `in`, `ft`,
-/// `mi`, `rev`, `deg`, `rpm` and `%` (`min` would be a thousandth of an inch, `ft` of a tonne); c, d, da and h but for the symbols below;
-/// and the prefixes beyond tera and pico.
+/// All symbols including their prefixes, so that none is composed. Refused are prefixes that make a
+/// symbol mean two things, or that differ from a common one by a capital letter only: `Mm`, `Ms`,
+/// `Mg` and `Gg` (mm, ms, mg); every prefix of `t`, `h`, `min`, `in`, `ft`, `mi`, `rev`, `deg`,
+/// `rpm` and `%` (`min` would be a thousandth of an inch, `ft` of a tonne); c, d, da and h but for
+/// the symbols below; and the prefixes beyond tera and pico.
 pub const SYMBOLS: &[Symbol] = &[
     unit("-", "plain number", 1.0, ONE),
     unit("1", "plain number", 1.0, ONE),

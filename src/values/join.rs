@@ -1,4 +1,5 @@
-//! Files of values of one campaign together: each section once, whatever the order and number of the files.
+//! Files of values of one campaign together: each section once, whatever the order and number of
+//! the files.
 
 use serde_json::Value;
 
@@ -39,7 +40,8 @@ pub fn join(files: Vec<File>, problems: &mut Problems) -> Option<Joined> {
     let mut traces = Vec::new();
     for mut file in std::iter::once(first).chain(files) {
         if let Some((_, shown)) = known.iter().find(|(hash, _)| *hash == file.hash) {
-            let says = format!("`{}` has the same values as `{shown}`, and is left out", file.shown);
+            let says =
+                format!("`{}` has the same values as `{shown}`, and is left out", file.shown);
             problems.push(Problem::warning("values-twice", says));
             continue;
         }
@@ -48,7 +50,9 @@ pub fn join(files: Vec<File>, problems: &mut Problems) -> Option<Joined> {
             problems.push(problem);
             continue;
         }
-        if let Err(why) = into_sections(&compiled.plan, head.basis.units(), &file.table, &mut file.sections) {
+        if let Err(why) =
+            into_sections(&compiled.plan, head.basis.units(), &file.table, &mut file.sections)
+        {
             problems.push(unreadable(&file.shown, &why));
             continue;
         }
@@ -63,9 +67,14 @@ pub fn join(files: Vec<File>, problems: &mut Problems) -> Option<Joined> {
                 Some(other) if same(&all[other].1, &values) => {}
                 Some(_) => {
                     let unit = &head.basis.units()[number];
-                    let says = format!("`{}` has other values of section {} than a file before it", file.shown, unit.name);
+                    let says = format!(
+                        "`{}` has other values of section {} than a file before it",
+                        file.shown, unit.name
+                    );
                     let problem = Problem::error("values-differ", says);
-                    problems.push(problem.help("a record was changed between two runs of `reduce`: make the values again"));
+                    problems.push(problem.help(
+                        "a record was changed between two runs of `reduce`: make the values again",
+                    ));
                 }
             }
         }
@@ -81,7 +90,12 @@ impl Joined {
     pub fn certification(self, settings: Settings) -> Result<Certification, Problems> {
         let Self { compiled, head, sections, traces } = self;
         let signals = Signals::Kept(&traces);
-        let outcome = run::judge(&compiled.plan, &compiled.graph, (&head.basis, sections), (settings, &signals))?;
+        let outcome = run::judge(
+            &compiled.plan,
+            &compiled.graph,
+            (&head.basis, sections),
+            (settings, &signals),
+        )?;
         Ok(Certification { found: head.found, ..certification(&compiled, &head.about, outcome) })
     }
 
@@ -104,17 +118,21 @@ fn unreadable(shown: &str, why: &str) -> Problem {
 }
 
 fn same(a: &SectionValues, b: &SectionValues) -> bool {
-    let marks = |of: &SectionValues| of.prints.iter().map(|print| print.marks.clone()).collect::<Vec<_>>();
+    let marks =
+        |of: &SectionValues| of.prints.iter().map(|print| print.marks.clone()).collect::<Vec<_>>();
     a.rows == b.rows && alike(a, b) && marks(a) == marks(b)
 }
 
 /// Why a file is not of the same campaign and protocol as the first one.
 fn differs((head, shown): (&Head, &str), file: &File) -> Option<Problem> {
     let (own, other) = (&file.head, &file.shown);
-    let name = |head: &Head| head.rules.files.first().map_or_else(String::new, |(name, _)| name.clone());
+    let name =
+        |head: &Head| head.rules.files.first().map_or_else(String::new, |(name, _)| name.clone());
     let says = if own.rules.files != head.rules.files {
         match (name(head), name(own)) {
-            (a, b) if a == b => format!("`{shown}` and `{other}` are of different texts of the protocol {a}"),
+            (a, b) if a == b => {
+                format!("`{shown}` and `{other}` are of different texts of the protocol {a}")
+            }
             (a, b) => format!("`{shown}` is of the protocol {a}, `{other}` of {b}"),
         }
     } else if own.rules.parameters != head.rules.parameters {
@@ -123,7 +141,12 @@ fn differs((head, shown): (&Head, &str), file: &File) -> Option<Problem> {
             || format!("`{shown}` and `{other}` are of different parameters"),
             |(a, b)| {
                 let set = |by: &crate::certify::Setting| format!("{} ({})", by.value, by.set_by);
-                format!("the parameter `{}` is {} in `{shown}`, {} in `{other}`", a.name, set(a), set(b))
+                format!(
+                    "the parameter `{}` is {} in `{shown}`, {} in `{other}`",
+                    a.name,
+                    set(a),
+                    set(b)
+                )
             },
         )
     } else if !head.about.names().eq(own.about.names()) {
@@ -131,12 +154,18 @@ fn differs((head, shown): (&Head, &str), file: &File) -> Option<Problem> {
         format!("`{shown}` is of the campaign {}, `{other}` of {}", names(head), names(own))
     } else if let Some(path) = changed_file(head, own) {
         format!("the campaign was changed between `{shown}` and `{other}`: {path} differs")
-    } else if !(alike(&head.basis, &own.basis) && alike(&head.about, &own.about) && alike(&head.found, &own.found)) {
-        format!("the records of the campaign were changed between `{shown}` and `{other}`: their sections or columns differ")
+    } else if !(alike(&head.basis, &own.basis)
+        && alike(&head.about, &own.about)
+        && alike(&head.found, &own.found))
+    {
+        format!(
+            "the records of the campaign were changed between `{shown}` and `{other}`: their sections or columns differ"
+        )
     } else {
         return None;
     };
-    let help = "all files must be of one campaign, protocol and set of parameters; make the values again";
+    let help =
+        "all files must be of one campaign, protocol and set of parameters; make the values again";
     Some(Problem::error("values-differ", says).help(help))
 }
 
@@ -147,7 +176,8 @@ fn alike<T: serde::Serialize>(a: &T, b: &T) -> bool {
     json(a) == json(b) || elsewhere(a) == elsewhere(b)
 }
 
-/// Without the folders in the names of the sources of places, which are objects as [`crate::source::Span`] is stored.
+/// Without the folders in the names of the sources of places, which are objects as
+/// [`crate::source::Span`] is stored.
 fn without_folders(mut of: Value) -> Value {
     match &mut of {
         Value::Array(all) => all.iter_mut().for_each(|each| *each = without_folders(each.take())),
@@ -155,9 +185,9 @@ fn without_folders(mut of: Value) -> Value {
             let is_place = all.contains_key("first_line");
             for (key, each) in all.iter_mut() {
                 *each = match each {
-                    Value::String(name) if is_place && key == "name" => {
-                        Value::String(name.rsplit(['/', '\\']).next().unwrap_or_default().to_string())
-                    }
+                    Value::String(name) if is_place && key == "name" => Value::String(
+                        name.rsplit(['/', '\\']).next().unwrap_or_default().to_string(),
+                    ),
                     _ => without_folders(each.take()),
                 };
             }
@@ -168,7 +198,12 @@ fn without_folders(mut of: Value) -> Value {
 }
 
 fn changed_file(head: &Head, own: &Head) -> Option<String> {
-    let hash = |head: &Head, path: &str| head.about.files().find(|file: &&FileHash| file.path == path).map(|file| file.sha256.clone());
+    let hash = |head: &Head, path: &str| {
+        head.about
+            .files()
+            .find(|file: &&FileHash| file.path == path)
+            .map(|file| file.sha256.clone())
+    };
     let all = head.about.files().chain(own.about.files());
     all.map(|file| file.path.clone()).find(|path| hash(head, path) != hash(own, path))
 }

@@ -1,4 +1,5 @@
-//! Files of values: what a part of a campaign came to, to be judged together with other parts, on another machine or later.
+//! Files of values: what a part of a campaign came to, to be judged together with other parts, on
+//! another machine or later.
 //!
 //! | file | content |
 //! |---|---|
@@ -26,7 +27,8 @@ pub use join::{Joined, join};
 pub use read::{File, open, read};
 pub use write::write;
 
-/// Version of the program, which writes files of values for itself only: other versions may compute other numbers.
+/// Version of the program, which writes files of values for itself only: other versions may compute
+/// other numbers.
 pub const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 /// The form of the files.
 pub const FORM: u32 = 2;
@@ -80,16 +82,26 @@ pub fn reduce<'a>(
     progress: Progress<'_>,
 ) -> Result<Values, Problems> {
     let campaigns = campaigns.into();
-    let reduced = run::reduce(&compiled.plan, &compiled.graph, campaigns, (part.shard, part.plots), progress)?;
+    let reduced = run::reduce(
+        &compiled.plan,
+        &compiled.graph,
+        campaigns,
+        (part.shard, part.plots),
+        progress,
+    )?;
     let about = About::of(&compiled.plan, campaigns, reduced.basis.vehicle(&compiled.plan));
     let label = |(number, _): &Numbered| {
         let Some(unit) = reduced.basis.units().get(*number) else { return Label::default() };
         let campaign = campaigns.get(unit.campaign);
-        let before: usize = campaigns.iter().take(unit.campaign).map(|campaign| campaign.vehicles.len()).sum();
+        let before: usize =
+            campaigns.iter().take(unit.campaign).map(|campaign| campaign.vehicles.len()).sum();
         Label {
             campaign: campaign.short_name.value.clone(),
             run: campaign.run_of(&unit.cell).map(|run| run.name.value.clone()),
-            state: unit.vehicle.checked_sub(before).and_then(|number| campaign.vehicles.get(number)?.state.clone()),
+            state: unit
+                .vehicle
+                .checked_sub(before)
+                .and_then(|number| campaign.vehicles.get(number)?.state.clone()),
         }
     };
     Ok(Values {

@@ -1,4 +1,5 @@
-//! The table of values as columns: those that a reader needs, and beside them the exact numbers in SI, from which sections are judged.
+//! The table of values as columns: those that a reader needs, and beside them the exact numbers in
+//! SI, from which sections are judged.
 
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
@@ -24,7 +25,8 @@ const SIMULATED_SI: &str = "simulated_si";
 const MEASURED_SI: &str = "measured_si";
 const VALUE_SI: &str = "value_si";
 /// Columns that rows are made of again.
-pub const OWN: [&str; 9] = [QUANTITY, SECTION, SIGNAL, RECORD, SAMPLES, WHICH, SIMULATED_SI, MEASURED_SI, VALUE_SI];
+pub const OWN: [&str; 9] =
+    [QUANTITY, SECTION, SIGNAL, RECORD, SAMPLES, WHICH, SIMULATED_SI, MEASURED_SI, VALUE_SI];
 
 /// A row with all it belongs to.
 struct Placed<'a> {
@@ -54,7 +56,11 @@ pub fn table(plan: &Plan, values: &Values) -> Result<RecordBatch, ArrowError> {
     all.text(QUANTITY, |row| Some(&row.quantity.id));
     all.text(SECTION, |row| Some(&row.unit.name));
     all.text(SIGNAL, |row| Some(&row.quantity.positions[row.row.position].name));
-    let places = plan.quantities.iter().flat_map(|quantity| &quantity.positions).flat_map(|position| &position.places);
+    let places = plan
+        .quantities
+        .iter()
+        .flat_map(|quantity| &quantity.positions)
+        .flat_map(|position| &position.places);
     for place in places.map(|(place, _)| place).collect::<BTreeSet<_>>() {
         all.text(place, |row| {
             let places = &row.quantity.positions[row.row.position].places;
@@ -67,10 +73,14 @@ pub fn table(plan: &Plan, values: &Values) -> Result<RecordBatch, ArrowError> {
     all.text("state", |row| row.label.state.as_deref());
     for (index, datum) in plan.columns.iter().enumerate() {
         match &datum.kind {
-            DatumKind::Number(unit) => all.number(&format!("{} [{}]", datum.key, unit.text), |row| match &row.unit.columns[index] {
-                Ok(Scalar::Number(number)) => Some(unit.from_si(*number)),
-                _ => None,
-            }),
+            DatumKind::Number(unit) => {
+                all.number(&format!("{} [{}]", datum.key, unit.text), |row| {
+                    match &row.unit.columns[index] {
+                        Ok(Scalar::Number(number)) => Some(unit.from_si(*number)),
+                        _ => None,
+                    }
+                })
+            }
             _ => all.text(&datum.key, |row| match &row.unit.columns[index] {
                 Ok(Scalar::Word(word)) => Some(word.as_str()),
                 Ok(Scalar::Flag(true)) => Some("true"),
@@ -85,7 +95,10 @@ pub fn table(plan: &Plan, values: &Values) -> Result<RecordBatch, ArrowError> {
     all.number("value", |row| Some(shown(row, row.row.value)));
     all.text("unit", |row| Some(&row.quantity.unit.text));
     all.count(SAMPLES, |row| row.row.samples);
-    all.add("source_sha256", Arc::new(sources(&rows).into_iter().map(Some).collect::<StringArray>()));
+    all.add(
+        "source_sha256",
+        Arc::new(sources(&rows).into_iter().map(Some).collect::<StringArray>()),
+    );
     all.count(WHICH, |row| row.row.which);
     all.number(SIMULATED_SI, |row| row.row.simulated);
     all.number(MEASURED_SI, |row| row.row.measured);
@@ -99,15 +112,25 @@ fn sources(rows: &[Placed<'_>]) -> Vec<Arc<str>> {
     for (at, row) in rows.iter().enumerate() {
         // Most rows are of the same records as the one before.
         let before = at.checked_sub(1).map(|before| &rows[before]);
-        if before.is_some_and(|before| std::ptr::eq(before.values, row.values) && before.row.record == row.row.record) {
+        if before.is_some_and(|before| {
+            std::ptr::eq(before.values, row.values) && before.row.record == row.row.record
+        }) {
             all.push(Arc::clone(&all[at - 1]));
             continue;
         }
         let took = |file: &&FileHash| {
             let record = file.record.as_ref();
-            record.is_some_and(|of| of.kind != "track" && took_part(row.row.record.as_deref(), of.kind == "simulation", of.name.as_deref()))
+            record.is_some_and(|of| {
+                of.kind != "track"
+                    && took_part(
+                        row.row.record.as_deref(),
+                        of.kind == "simulation",
+                        of.name.as_deref(),
+                    )
+            })
         };
-        let hashes: Vec<&str> = row.values.files.iter().filter(took).map(|file| file.sha256.as_str()).collect();
+        let hashes: Vec<&str> =
+            row.values.files.iter().filter(took).map(|file| file.sha256.as_str()).collect();
         all.push(hashes.join(" ").into());
     }
     all
@@ -121,7 +144,8 @@ struct Columns<'a> {
 impl<'a> Columns<'a> {
     /// A place or a datum may have the name of another column, which then has it.
     fn add(&mut self, name: &str, cells: ArrayRef) {
-        let reserved = OWN.contains(&name) || name == "value" || name == "simulated" || name == "measured";
+        let reserved =
+            OWN.contains(&name) || name == "value" || name == "simulated" || name == "measured";
         match self.found.iter().position(|(known, _)| known == name) {
             Some(at) if reserved => self.found[at].1 = cells,
             Some(_) => {}
@@ -138,13 +162,20 @@ impl<'a> Columns<'a> {
     }
 
     fn count(&mut self, name: &str, of: impl Fn(&Placed<'_>) -> usize) {
-        self.add(name, Arc::new(UInt64Array::from_iter_values(self.rows.iter().map(|row| of(row) as u64))));
+        self.add(
+            name,
+            Arc::new(UInt64Array::from_iter_values(self.rows.iter().map(|row| of(row) as u64))),
+        );
     }
 
     fn batch(self) -> Result<RecordBatch, ArrowError> {
-        let field = |(name, cells): &(String, ArrayRef)| Field::new(name, cells.data_type().clone(), true);
+        let field =
+            |(name, cells): &(String, ArrayRef)| Field::new(name, cells.data_type().clone(), true);
         let schema = Schema::new(self.found.iter().map(field).collect::<Vec<_>>());
-        RecordBatch::try_new(Arc::new(schema), self.found.into_iter().map(|(_, cells)| cells).collect())
+        RecordBatch::try_new(
+            Arc::new(schema),
+            self.found.into_iter().map(|(_, cells)| cells).collect(),
+        )
     }
 }
 
@@ -152,12 +183,20 @@ impl<'a> Columns<'a> {
 ///
 /// # Errors
 /// A row is not one of the protocol and of these sections, in words.
-pub fn into_sections(plan: &Plan, units: &[Unit], table: &[RecordBatch], sections: &mut [(usize, SectionValues)]) -> Result<(), String> {
+pub fn into_sections(
+    plan: &Plan,
+    units: &[Unit],
+    table: &[RecordBatch],
+    sections: &mut [(usize, SectionValues)],
+) -> Result<(), String> {
     for (_, of_section) in sections.iter_mut() {
         of_section.rows = vec![Vec::new(); plan.quantities.len()];
     }
-    let named = |(at, (number, _)): (usize, &(usize, SectionValues))| Some((units.get(*number)?.name.as_str(), at));
-    let places: HashMap<&str, usize> = sections.iter().enumerate().rev().filter_map(named).collect();
+    let named = |(at, (number, _)): (usize, &(usize, SectionValues))| {
+        Some((units.get(*number)?.name.as_str(), at))
+    };
+    let places: HashMap<&str, usize> =
+        sections.iter().enumerate().rev().filter_map(named).collect();
     let mut before = 0;
     for batch in table {
         add(plan, &places, (before, batch), sections)?;
@@ -178,31 +217,51 @@ fn add(
         found.ok_or_else(|| format!("it has no column `{name}` of texts"))
     };
     let numbers = |name: &str| {
-        let found = table.column_by_name(name).and_then(|column| column.as_primitive_opt::<Float64Type>());
+        let found =
+            table.column_by_name(name).and_then(|column| column.as_primitive_opt::<Float64Type>());
         found.ok_or_else(|| format!("it has no column `{name}` of numbers"))
     };
     let counts = |name: &str| {
-        let found = table.column_by_name(name).and_then(|column| column.as_primitive_opt::<UInt64Type>());
+        let found =
+            table.column_by_name(name).and_then(|column| column.as_primitive_opt::<UInt64Type>());
         found.ok_or_else(|| format!("it has no column `{name}` of counts"))
     };
-    let (quantities, names, signals, records) = (texts(QUANTITY)?, texts(SECTION)?, texts(SIGNAL)?, texts(RECORD)?);
-    let (simulated, measured, values) = (numbers(SIMULATED_SI)?, numbers(MEASURED_SI)?, numbers(VALUE_SI)?);
+    let (quantities, names, signals, records) =
+        (texts(QUANTITY)?, texts(SECTION)?, texts(SIGNAL)?, texts(RECORD)?);
+    let (simulated, measured, values) =
+        (numbers(SIMULATED_SI)?, numbers(MEASURED_SI)?, numbers(VALUE_SI)?);
     let (samples, which) = (counts(SAMPLES)?, counts(WHICH)?);
     for row in 0..table.num_rows() {
         let number = |numbers: &Float64Array| numbers.is_valid(row).then(|| numbers.value(row));
         let count = |counts: &UInt64Array| if counts.is_valid(row) { counts.value(row) } else { 0 };
-        let [quantity, name, signal] = [quantities, names, signals].map(|texts| if texts.is_valid(row) { texts.value(row) } else { "" });
-        let wrong = || format!("row {}: the protocol has no value of `{quantity}` at `{signal}`", before + row + 1);
-        let index = plan.quantities.iter().position(|known| known.id == quantity).ok_or_else(wrong)?;
+        let [quantity, name, signal] = [quantities, names, signals]
+            .map(|texts| if texts.is_valid(row) { texts.value(row) } else { "" });
+        let wrong = || {
+            format!(
+                "row {}: the protocol has no value of `{quantity}` at `{signal}`",
+                before + row + 1
+            )
+        };
+        let index =
+            plan.quantities.iter().position(|known| known.id == quantity).ok_or_else(wrong)?;
         let known = &plan.quantities[index];
-        let position = known.positions.iter().position(|position| position.name == signal).ok_or_else(wrong)?;
+        let position = known
+            .positions
+            .iter()
+            .position(|position| position.name == signal)
+            .ok_or_else(wrong)?;
         let which = usize::try_from(count(which)).map_err(|_| wrong())?;
-        let several = if let Evaluation::Values { values, .. } = known.evaluation.as_ref() { values.len() } else { 1 };
+        let several = if let Evaluation::Values { values, .. } = known.evaluation.as_ref() {
+            values.len()
+        } else {
+            1
+        };
         let value = number(values).ok_or_else(wrong)?;
         if which >= several {
             return Err(wrong());
         }
-        let none = || format!("row {}: the section `{name}` is not one of this part", before + row + 1);
+        let none =
+            || format!("row {}: the section `{name}` is not one of this part", before + row + 1);
         let place = *places.get(name).ok_or_else(none)?;
         sections[place].1.rows[index].push(Row {
             position,

@@ -27,16 +27,21 @@ const LEVEL: i32 = 3;
 /// # Errors
 /// `write-failed`.
 pub fn write(plan: &Plan, values: &Values) -> Result<Vec<u8>, Problem> {
-    let failed = |error: &dyn std::fmt::Display| Problem::error("write-failed", format!("values cannot be written as Parquet: {error}"));
+    let failed = |error: &dyn std::fmt::Display| {
+        Problem::error("write-failed", format!("values cannot be written as Parquet: {error}"))
+    };
     let table = table(plan, values).map_err(|error| failed(&error))?;
     let properties = WriterProperties::builder()
         // Without a version, so that a new one of the library does not change the bytes.
         .set_created_by("fishplate".to_string())
-        .set_compression(Compression::ZSTD(ZstdLevel::try_new(LEVEL).map_err(|error| failed(&error))?))
+        .set_compression(Compression::ZSTD(
+            ZstdLevel::try_new(LEVEL).map_err(|error| failed(&error))?,
+        ))
         .set_statistics_enabled(EnabledStatistics::Chunk)
         .build();
     let mut bytes = Vec::new();
-    let mut writer = ArrowWriter::try_new(&mut bytes, table.schema(), Some(properties)).map_err(|error| failed(&error))?;
+    let mut writer = ArrowWriter::try_new(&mut bytes, table.schema(), Some(properties))
+        .map_err(|error| failed(&error))?;
     writer.write(&table).map_err(|error| failed(&error))?;
     for (key, value) in metadata(values).map_err(|error| failed(&error))? {
         writer.append_key_value_metadata(KeyValue::new(key.to_string(), value));

@@ -1,6 +1,7 @@
 //! From parser events to the tree.
 //!
-//! The events are those of the parser of `serde-saphyr`: serde would hide quotes, aliases and all problems after the first.
+//! The events are those of the parser of `serde-saphyr`: serde would hide quotes, aliases and all
+//! problems after the first.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -13,27 +14,36 @@ use super::{Key, Node, Value, scalar};
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Span};
 
-/// Limit of nodes: aliases can expand a small file to a very large tree. Real protocols and vehicles are far below it.
+/// Limit of nodes: aliases can expand a small file to a very large tree. Real protocols and
+/// vehicles are far below it.
 const NODES: usize = 100_000;
 const DEPTH: usize = 64;
 
 /// The single document of a YAML text; an empty text is [`Value::Null`].
 ///
-/// Repeated keys, tags and numbers that are not finite are also problems, and all are reported. Reading stops at a syntax error.
+/// Repeated keys, tags and numbers that are not finite are also problems, and all are reported.
+/// Reading stops at a syntax error.
 pub fn load(source: &Arc<Source>, problems: &mut Problems) -> Option<Node> {
     let before = problems.errors();
     read(source, problems, false).filter(|_| problems.errors() == before)
 }
 
-/// As [`load`], but the tree is returned in spite of all problems except a syntax error, and repeated keys are kept without a problem, for
-/// readers that interpret them.
+/// As [`load`], but the tree is returned in spite of all problems except a syntax error, and
+/// repeated keys are kept without a problem, for readers that interpret them.
 pub fn load_as_written(source: &Arc<Source>, problems: &mut Problems) -> Option<Node> {
     read(source, problems, true)
 }
 
 fn read(source: &Arc<Source>, problems: &mut Problems, repeats: bool) -> Option<Node> {
-    let mut loader =
-        Loader { source, events: Parser::new_from_str(&source.text), anchors: HashMap::new(), nodes: 0, depth: 0, repeats, problems };
+    let mut loader = Loader {
+        source,
+        events: Parser::new_from_str(&source.text),
+        anchors: HashMap::new(),
+        nodes: 0,
+        depth: 0,
+        repeats,
+        problems,
+    };
     match loader.document() {
         Ok(node) => Some(node),
         Err(problem) => {
@@ -62,8 +72,13 @@ pub fn remarks(source: &Arc<Source>) -> Vec<Remark> {
             let Event::Comment(text, _) = event else { return None };
             let span = source.span(bytes(&place)?);
             let line = source.text[..span.start].rfind('\n').map_or(0, |at| at + 1);
-            let beside = !source.text[line..span.start].trim_start_matches('\u{feff}').trim().is_empty();
-            Some(Remark { text: text.strip_prefix(' ').unwrap_or(&text).trim_end().to_string(), span, beside })
+            let beside =
+                !source.text[line..span.start].trim_start_matches('\u{feff}').trim().is_empty();
+            Some(Remark {
+                text: text.strip_prefix(' ').unwrap_or(&text).trim_end().to_string(),
+                span,
+                beside,
+            })
         })
         .collect()
 }
@@ -74,7 +89,8 @@ type Fault = Box<Problem>;
 struct Loader<'a> {
     source: &'a Arc<Source>,
     events: Parser<'a, yaml::StrInput<'a>>,
-    /// Complete anchored values with their number of nodes; an incomplete one is not included, so that a value cannot contain itself.
+    /// Complete anchored values with their number of nodes; an incomplete one is not included, so
+    /// that a value cannot contain itself.
     anchors: HashMap<usize, (Node, usize)>,
     nodes: usize,
     depth: usize,
@@ -91,13 +107,21 @@ impl<'a> Loader<'a> {
                 Event::StreamStart | Event::DocumentEnd => {}
                 Event::StreamEnd => break,
                 Event::DocumentStart(..) if root.is_some() => {
-                    return Err(Box::new(syntax("a second YAML document begins here", &span).help("a file must contain one document")));
+                    return Err(Box::new(
+                        syntax("a second YAML document begins here", &span)
+                            .help("a file must contain one document"),
+                    ));
                 }
                 Event::DocumentStart(..) => {}
                 event => root = Some(self.node(event, span)?),
             }
         }
-        Ok(root.unwrap_or_else(|| Node { value: Value::Null, span: self.source.whole(), raw: String::new(), exact: false }))
+        Ok(root.unwrap_or_else(|| Node {
+            value: Value::Null,
+            span: self.source.whole(),
+            raw: String::new(),
+            exact: false,
+        }))
     }
 
     /// The next event that is not a comment.
@@ -106,7 +130,9 @@ impl<'a> Loader<'a> {
             match self.events.next_event() {
                 None => return Ok(None),
                 Some(Ok((Event::Comment(..), _))) => {}
-                Some(Ok((event, place))) => return Ok(Some((event, self.source.span(bytes(&place).unwrap_or(0..0))))),
+                Some(Ok((event, place))) => {
+                    return Ok(Some((event, self.source.span(bytes(&place).unwrap_or(0..0)))));
+                }
                 Some(Err(error)) => return Err(Box::new(self.scan_error(&error))),
             }
         }
@@ -114,7 +140,10 @@ impl<'a> Loader<'a> {
 
     fn inside(&mut self) -> Result<(Event<'a>, Span), Fault> {
         self.next()?.ok_or_else(|| {
-            Box::new(syntax("the text ends inside a value", &self.source.span(self.source.text.len()..self.source.text.len())))
+            Box::new(syntax(
+                "the text ends inside a value",
+                &self.source.span(self.source.text.len()..self.source.text.len()),
+            ))
         })
     }
 
@@ -122,10 +151,15 @@ impl<'a> Loader<'a> {
         self.count(1, &span)?;
         let before = self.nodes;
         let (anchor, node) = match event {
-            Event::Scalar(text, style, anchor, tag) => (anchor, self.scalar(text, style, tag.as_deref(), span)),
+            Event::Scalar(text, style, anchor, tag) => {
+                (anchor, self.scalar(text, style, tag.as_deref(), span))
+            }
             Event::Alias(anchor) => {
                 let Some((node, size)) = self.anchors.get(&anchor).cloned() else {
-                    return Err(Box::new(syntax("this alias is inside the value it refers to", &span)));
+                    return Err(Box::new(syntax(
+                        "this alias is inside the value it refers to",
+                        &span,
+                    )));
                 };
                 self.count(size, &span)?;
                 return Ok(node);
@@ -150,7 +184,11 @@ impl<'a> Loader<'a> {
         self.nodes += nodes;
         if self.nodes > NODES {
             return Err(Box::new(
-                Problem::error("yaml-too-large", format!("with its aliases written out, the file has more than {NODES} values")).at(span),
+                Problem::error(
+                    "yaml-too-large",
+                    format!("with its aliases written out, the file has more than {NODES} values"),
+                )
+                .at(span),
             ));
         }
         Ok(())
@@ -159,7 +197,13 @@ impl<'a> Loader<'a> {
     fn deeper(&mut self, span: &Span) -> Result<(), Fault> {
         self.depth += 1;
         if self.depth > DEPTH {
-            return Err(Box::new(Problem::error("yaml-too-deep", format!("values are nested more than {DEPTH} deep")).at(span)));
+            return Err(Box::new(
+                Problem::error(
+                    "yaml-too-deep",
+                    format!("values are nested more than {DEPTH} deep"),
+                )
+                .at(span),
+            ));
         }
         Ok(())
     }
@@ -193,15 +237,24 @@ impl<'a> Loader<'a> {
                     let (text, span, exact) = written(text, style, span);
                     Key { text, span, exact }
                 }
-                _ => return Err(Box::new(Problem::error("yaml-key", "a key must be a single word or text").at(&span))),
+                _ => {
+                    return Err(Box::new(
+                        Problem::error("yaml-key", "a key must be a single word or text").at(&span),
+                    ));
+                }
             };
             let (event, span) = self.inside()?;
             let value = self.node(event, span)?;
-            if let Some(first) = places.get(&key.text).filter(|_| !self.repeats).and_then(|at| entries.get(*at)) {
+            if let Some(first) =
+                places.get(&key.text).filter(|_| !self.repeats).and_then(|at| entries.get(*at))
+            {
                 self.problems.push(
-                    Problem::error("duplicate-key", format!("the key `{}` is given twice", key.text))
-                        .at(&key.span)
-                        .also(&first.0.span, "first given here"),
+                    Problem::error(
+                        "duplicate-key",
+                        format!("the key `{}` is given twice", key.text),
+                    )
+                    .at(&key.span)
+                    .also(&first.0.span, "first given here"),
                 );
             } else {
                 places.insert(key.text.clone(), entries.len());
@@ -213,14 +266,23 @@ impl<'a> Loader<'a> {
         Ok(Node { value: Value::Map(entries), span, raw: String::new(), exact: false })
     }
 
-    fn scalar(&mut self, text: Cow<'a, str>, style: ScalarStyle, tag: Option<&yaml::Tag>, span: Span) -> Node {
+    fn scalar(
+        &mut self,
+        text: Cow<'a, str>,
+        style: ScalarStyle,
+        tag: Option<&yaml::Tag>,
+        span: Span,
+    ) -> Node {
         let as_text = self.tag(tag, &span) || style != ScalarStyle::Plain;
         let (raw, span, exact) = written(text, style, span);
         let value = if as_text {
             Value::Text(raw.clone())
         } else {
             scalar::resolve(&raw).unwrap_or_else(|number| {
-                let says = format!("`{raw}` is {}", if number.is_nan() { "no number" } else { "no finite number" });
+                let says = format!(
+                    "`{raw}` is {}",
+                    if number.is_nan() { "no number" } else { "no finite number" }
+                );
                 self.problems.push(Problem::error("not-finite", says).at(&span));
                 Value::Null
             })
@@ -234,18 +296,31 @@ impl<'a> Loader<'a> {
         if tag.is_yaml_core_schema_tag("str") || tag.original() == "!" {
             return true;
         }
-        self.problems.push(Problem::error("yaml-tag", format!("the tag `{}` has no meaning here", tag.original())).at(span));
+        self.problems.push(
+            Problem::error("yaml-tag", format!("the tag `{}` has no meaning here", tag.original()))
+                .at(span),
+        );
         false
     }
 
     fn scan_error(&self, error: &ScanError) -> Problem {
         let marker = error.marker();
-        let at = marker
-            .byte_offset()
-            .unwrap_or_else(|| self.source.text.char_indices().nth(marker.index()).map_or(self.source.text.len(), |(at, _)| at));
+        let at = marker.byte_offset().unwrap_or_else(|| {
+            self.source
+                .text
+                .char_indices()
+                .nth(marker.index())
+                .map_or(self.source.text.len(), |(at, _)| at)
+        });
         let tab = is_tab(error.kind());
         // The parser points to the value that contains the tab.
-        let at = self.source.text.get(at..).and_then(|rest| rest.find('\t')).filter(|_| tab).map_or(at, |tab| at + tab);
+        let at = self
+            .source
+            .text
+            .get(at..)
+            .and_then(|rest| rest.find('\t'))
+            .filter(|_| tab)
+            .map_or(at, |tab| at + tab);
         let span = self.source.span(at..at);
         let (says, help) = in_words(error.kind());
         let help = self.begins_deeper(error.kind(), at).or_else(|| help.map(str::to_string));
@@ -263,13 +338,15 @@ impl<'a> Loader<'a> {
 }
 
 impl Loader<'_> {
-    /// `key: value` below a key that has its value already, and deeper: to the parser it goes on that value.
+    /// `key: value` below a key that has its value already, and deeper: to the parser it goes on
+    /// that value.
     fn begins_deeper(&self, kind: &ErrorKind, at: usize) -> Option<String> {
         let text = self.source.text.get(..at)?;
         let indent = |line: &str| line.len() - line.trim_start_matches(' ').len();
         let mut lines = text.rsplit('\n');
         let this = lines.next()?;
-        let above = lines.find(|line| !line.trim().is_empty() && !line.trim_start().starts_with('#'))?;
+        let above =
+            lines.find(|line| !line.trim().is_empty() && !line.trim_start().starts_with('#'))?;
         let value = above.split_once(": ").is_some_and(|(_, value)| !value.trim().is_empty());
         let first = this.matches(": ").count() == 0;
         (matches!(kind, ErrorKind::MappingValueNotAllowed) && value && first && indent(this) > indent(above)).then(|| {
@@ -298,10 +375,13 @@ fn around(start: &Span, last: Option<&Span>, end: &Span) -> Span {
     if to.end < start.end { start.clone() } else { start.to(to) }
 }
 
-/// Text, span and exactness of a scalar; quotes are excluded if the bytes between them are the text.
+/// Text, span and exactness of a scalar; quotes are excluded if the bytes between them are the
+/// text.
 fn written(text: Cow<'_, str>, style: ScalarStyle, span: Span) -> (String, Span, bool) {
     let inner = match style {
-        ScalarStyle::SingleQuoted | ScalarStyle::DoubleQuoted => span.part(1..(span.end - span.start).saturating_sub(1)),
+        ScalarStyle::SingleQuoted | ScalarStyle::DoubleQuoted => {
+            span.part(1..(span.end - span.start).saturating_sub(1))
+        }
         _ => span.clone(),
     };
     let exact = inner.text() == text;
@@ -324,21 +404,28 @@ fn in_words(kind: &ErrorKind) -> (String, Option<&'static str>) {
     let (says, help) = match kind {
         kind if is_tab(kind) => ("the indentation contains a tab", Some("indent YAML with spaces")),
         ErrorKind::UnclosedQuotedScalar => ("this quote is not closed", None),
-        ErrorKind::MappingValueNotAllowed => {
-            ("a second `:` where a value is expected", Some("quote a value that contains `: `, and write each key on its own line"))
+        ErrorKind::MappingValueNotAllowed => (
+            "a second `:` where a value is expected",
+            Some("quote a value that contains `: `, and write each key on its own line"),
+        ),
+        ErrorKind::ExpectedBlockMappingKey
+        | ErrorKind::InvalidIndentation
+        | ErrorKind::SimpleKeyExpected => (
+            "a line `key: value` is expected here",
+            Some("the keys of one map begin in the same column, each followed by `: `"),
+        ),
+        ErrorKind::ExpectedBlockSequenceEntry => (
+            "an item beginning with `- ` is expected here",
+            Some("the items of one list begin in the same column"),
+        ),
+        ErrorKind::UnknownAnchor => {
+            ("this alias refers to no anchor above it", Some("quote a text that begins with `*`"))
         }
-        ErrorKind::ExpectedBlockMappingKey | ErrorKind::InvalidIndentation | ErrorKind::SimpleKeyExpected => {
-            ("a line `key: value` is expected here", Some("the keys of one map begin in the same column, each followed by `: `"))
-        }
-        ErrorKind::ExpectedBlockSequenceEntry => {
-            ("an item beginning with `- ` is expected here", Some("the items of one list begin in the same column"))
-        }
-        ErrorKind::UnknownAnchor => ("this alias refers to no anchor above it", Some("quote a text that begins with `*`")),
         ErrorKind::ExpectedFlowMappingSeparator => ("`,` or `}` is expected here", None),
         ErrorKind::ExpectedFlowSequenceSeparator => ("`,` or `]` is expected here", None),
-        ErrorKind::UnexpectedEofFlowSequence | ErrorKind::UnexpectedEofFlowMapping | ErrorKind::UnexpectedEofImplicitFlowMapping => {
-            ("the text ends inside brackets", None)
-        }
+        ErrorKind::UnexpectedEofFlowSequence
+        | ErrorKind::UnexpectedEofFlowMapping
+        | ErrorKind::UnexpectedEofImplicitFlowMapping => ("the text ends inside brackets", None),
         ErrorKind::UnexpectedCharacter { character: '@' | '`' | '%' } => {
             ("a value cannot begin with this character", Some("quote the value"))
         }

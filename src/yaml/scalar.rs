@@ -26,11 +26,14 @@ fn number(text: &str) -> Option<f64> {
     }
     let unsigned = text.strip_prefix(['-', '+']).unwrap_or(text);
     match unsigned {
-        ".inf" | ".Inf" | ".INF" => return Some(if text.starts_with('-') { f64::NEG_INFINITY } else { f64::INFINITY }),
+        ".inf" | ".Inf" | ".INF" => {
+            return Some(if text.starts_with('-') { f64::NEG_INFINITY } else { f64::INFINITY });
+        }
         ".nan" | ".NaN" | ".NAN" if unsigned == text => return Some(f64::NAN),
         _ => {}
     }
-    // Rust also reads `inf` and `nan`; YAML numbers start with a digit, or with a point and a digit.
+    // Rust also reads `inf` and `nan`; YAML numbers start with a digit, or with a point and a
+    // digit.
     let digits = unsigned.strip_prefix('.').unwrap_or(unsigned);
     digits.starts_with(|digit: char| digit.is_ascii_digit()).then(|| text.parse().ok()).flatten()
 }
@@ -41,7 +44,8 @@ mod tests {
 
     #[test]
     fn the_core_schema_and_nothing_more() {
-        // Examples of YAML 1.2.2, sections 10.3.2 and 10.3.3, and values that YAML 1.1 reads differently.
+        // Examples of YAML 1.2.2, sections 10.3.2 and 10.3.3, and values that YAML 1.1 reads
+        // differently.
         for (text, value) in [
             ("0", 0.0),
             ("0o7", 7.0),
@@ -56,9 +60,10 @@ mod tests {
         ] {
             assert_eq!(resolve(text), Ok(Value::Number(value)), "{text}");
         }
-        for text in
-            ["yes", "no", "on", "Off", "inf", "nan", "NaN", "1_000", "1:30", "5 kN", "1.2.3", "0o8", "0x", "+", ".", "e5", "-.nan", "0x-1"]
-        {
+        for text in [
+            "yes", "no", "on", "Off", "inf", "nan", "NaN", "1_000", "1:30", "5 kN", "1.2.3", "0o8",
+            "0x", "+", ".", "e5", "-.nan", "0x-1",
+        ] {
             assert_eq!(resolve(text), Ok(Value::Text(text.into())), "{text}");
         }
         for text in [".inf", "-.INF", "1e999", ".nan"] {

@@ -1,9 +1,9 @@
-//! A made-up assessment: one quantity of measured records, its values in two records by section and wheelset, an estimate and a prediction
-//! for each zone and wheelset, and a limit of every value.
+//! A made-up assessment: one quantity of measured records, its values in two records by section and
+//! wheelset, an estimate and a prediction for each zone and wheelset, and a limit of every value.
 
 use fishplate::result::{
-    Certification, Curve, PairValue, QuantityResult, RegressionAt, RegressionFigure, RegressionPoint, RulePlace, Sample, StatisticResult,
-    Verdict,
+    Certification, Curve, PairValue, QuantityResult, RegressionAt, RegressionFigure,
+    RegressionPoint, RulePlace, Sample, StatisticResult, Verdict,
 };
 
 use super::coach;
@@ -108,7 +108,10 @@ fn estimate(name: &str, zone: &str, wheelset: &str, values: &[PairValue]) -> Sta
     let open = name == "prediction" && scope == OPEN;
     let value = if name == "safety" && scope == FAILS { 50.0 } else { 30.0 };
     let own = format!("SigmaY_{wheelset}");
-    let points = values.iter().filter(|pair| pair.signal == own && pair.zone.as_deref() == Some(zone)).enumerate();
+    let points = values
+        .iter()
+        .filter(|pair| pair.signal == own && pair.zone.as_deref() == Some(zone))
+        .enumerate();
     let point = |(at, pair): (usize, &PairValue)| RegressionPoint {
         section: pair.section.clone(),
         zone: pair.zone.clone(),
@@ -155,6 +158,9 @@ fn estimate(name: &str, zone: &str, wheelset: &str, values: &[PairValue]) -> Sta
         factors: Vec::new(),
         limit_text: "10 kN + 2/3 * Q0".into(),
         reason: open.then(|| "`cant` does not vary".into()),
-        rule: RulePlace { file: "on-track.fp".into(), line: if name == "safety" { 27 } else { 28 } },
+        rule: RulePlace {
+            file: "on-track.fp".into(),
+            line: if name == "safety" { 27 } else { 28 },
+        },
     }
 }

@@ -1,12 +1,14 @@
-//! A made-up certification as rich as a real one: 12 quantities, 33 sections in 4 zones, one failing, one not assessable,
-//! names nobody would choose. The numbers come from a fixed recurrence and mean nothing.
+//! A made-up certification as rich as a real one: 12 quantities, 33 sections in 4 zones, one
+//! failing, one not assessable, names nobody would choose. The numbers come from a fixed recurrence
+//! and mean nothing.
 
 use fishplate::result::*;
 
 /// A name that would be markup in Typst, HTML or a template, if it were not treated as data.
 pub const HOSTILE: &str = "#panic(\"x\") *bold* $a_1$ <script>alert(1)</script> {{ 7 * 7 }} {% raw %} \\u{41} @ref `code` [x] // y";
 /// Unbroken, wider than any cell.
-pub const LONG: &str = "Versuchstraegerdrehgestellradsatzlagerfuehrungsquerbeschleunigungsaufnehmerkanalbezeichnung";
+pub const LONG: &str =
+    "Versuchstraegerdrehgestellradsatzlagerfuehrungsquerbeschleunigungsaufnehmerkanalbezeichnung";
 /// Signs no font of the report has, a change of writing direction, a control character.
 pub const STRANGE: &str = "中文 🚆 \u{202e}gnp.exe\u{0007} ᚠ שלום مرحبا e\u{301} \u{e000}\u{feff}";
 
@@ -15,7 +17,8 @@ struct Noise(u64);
 impl Noise {
     /// Uniform in -1..1.
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         ((self.0 >> 11) as f64 / (1_u64 << 53) as f64) * 2.0 - 1.0
     }
 }
@@ -60,7 +63,8 @@ const KINDS: &[Kind] = &[
 pub fn certification() -> Certification {
     let mut noise = Noise(7);
     let sections = sections(&mut noise);
-    let mut quantities: Vec<QuantityResult> = KINDS.iter().map(|kind| quantity(kind, &sections, &mut noise)).collect();
+    let mut quantities: Vec<QuantityResult> =
+        KINDS.iter().map(|kind| quantity(kind, &sections, &mut noise)).collect();
     make_unassessable(&mut quantities[9]);
     quantities.push(metric(&sections, &mut noise));
     let mut reasons: Vec<String> = quantities
@@ -74,7 +78,8 @@ pub fn certification() -> Certification {
                 .map(move |one| format!("{symbol}: {} beyond its limit", one.title))
         })
         .collect();
-    reasons.push(format!("z̈*rms is not assessable: channel {LONG} has samples that are no numbers"));
+    reasons
+        .push(format!("z̈*rms is not assessable: channel {LONG} has samples that are no numbers"));
     let traces = (0..6).map(|at| trace(at, &quantities[at], &mut noise)).collect();
     Certification {
         protocol: protocol(),
@@ -95,7 +100,8 @@ pub fn certification() -> Certification {
         traces,
         findings: Vec::new(),
         notes: vec![
-            "Section S07: 3.1 s of record before the section; the band-pass needs 5 s to settle.".into(),
+            "Section S07: 3.1 s of record before the section; the band-pass needs 5 s to settle."
+                .into(),
             format!("Column `{HOSTILE}` of sections.csv is not used."),
         ],
     }
@@ -114,7 +120,12 @@ fn report() -> Vec<ReportItem> {
         item(&["revision"], "Revision", Some("7.8.8"), Some("B")),
         item(&["customer"], "Customer", Some("7.8.2.1 e)"), Some(HOSTILE)),
         item(&["laboratory"], "Laboratory", Some("7.8.2.1 b)"), None),
-        item(&["test item", "vehicle number"], "Test item: vehicle number", Some("7.8.2.1 g)"), Some(LONG)),
+        item(
+            &["test item", "vehicle number"],
+            "Test item: vehicle number",
+            Some("7.8.2.1 g)"),
+            Some(LONG),
+        ),
         item(&["dates", "issue"], "Date of issue", Some("7.8.2.1 j)"), Some("2023-06-30")),
         item(&["model version"], "Model version", None, None),
     ]
@@ -131,7 +142,11 @@ fn application() -> Vec<DomainResult> {
         };
         vec![of("Speed", "km/h"), of(HOSTILE, "mm"), of("Curvature", "1/km")]
     };
-    let section = |section: &str, values: [f64; 3]| DomainSection { section: section.into(), values: values.to_vec(), corner: true };
+    let section = |section: &str, values: [f64; 3]| DomainSection {
+        section: section.into(),
+        values: values.to_vec(),
+        corner: true,
+    };
     let point = |point: &str, inside: Option<bool>, by: f64| WantedPoint {
         point: point.into(),
         values: vec![50.0 + by, 50.0, 20.0],
@@ -143,7 +158,10 @@ fn application() -> Vec<DomainResult> {
         nearest_section: inside.map(|_| "S01".into()),
         section_distance: inside.map(|_| 0.1),
     };
-    let one = |scope: &str, sections: Vec<DomainSection>, reason: Option<&str>, points: Vec<WantedPoint>| DomainResult {
+    let one = |scope: &str,
+               sections: Vec<DomainSection>,
+               reason: Option<&str>,
+               points: Vec<WantedPoint>| DomainResult {
         domain: "application".into(),
         title: "Application domain".into(),
         group: [("state".to_string(), scope.to_string())].into_iter().collect(),
@@ -159,10 +177,27 @@ fn application() -> Vec<DomainResult> {
         notes: vec![HOSTILE.into()],
         rule: RulePlace { file: "protocol.fp".into(), line: 7 },
     };
-    let corners = [[0.0, 0.0, 0.0], [100.0, 0.0, 0.0], [0.0, 100.0, 0.0], [0.0, 0.0, 100.0], [100.0, 100.0, 100.0]];
-    let sections = corners.into_iter().enumerate().map(|(at, values)| section(&format!("S{at:02}"), values)).collect();
-    let points = vec![point("inside", Some(true), 0.0), point(HOSTILE, Some(false), 30.0), point(LONG, Some(false), -1e-7)];
-    vec![one("tare", sections, None, points), one(HOSTILE, Vec::new(), Some("no section is used"), vec![point("none", None, 0.0)])]
+    let corners = [
+        [0.0, 0.0, 0.0],
+        [100.0, 0.0, 0.0],
+        [0.0, 100.0, 0.0],
+        [0.0, 0.0, 100.0],
+        [100.0, 100.0, 100.0],
+    ];
+    let sections = corners
+        .into_iter()
+        .enumerate()
+        .map(|(at, values)| section(&format!("S{at:02}"), values))
+        .collect();
+    let points = vec![
+        point("inside", Some(true), 0.0),
+        point(HOSTILE, Some(false), 30.0),
+        point(LONG, Some(false), -1e-7),
+    ];
+    vec![
+        one("tare", sections, None, points),
+        one(HOSTILE, Vec::new(), Some("no section is used"), vec![point("none", None, 0.0)]),
+    ]
 }
 
 /// A certification without anything in it.
@@ -217,7 +252,13 @@ pub fn empty() -> Certification {
 fn drawing(name: &str, width: u32, height: u32) -> String {
     let mut noise = Noise(name.len() as u64);
     let points: Vec<String> = (0..800)
-        .map(|x| format!("{:.2},{:.2}", 40.0 + f64::from(x) * f64::from(width - 60) / 800.0, f64::from(height) / 2.0 + 60.0 * noise.next()))
+        .map(|x| {
+            format!(
+                "{:.2},{:.2}",
+                40.0 + f64::from(x) * f64::from(width - 60) / 800.0,
+                f64::from(height) / 2.0 + 60.0 * noise.next()
+            )
+        })
         .collect();
     format!(
         r##"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="IBM Plex Sans" font-size="12"><rect x="40" y="10" width="{}" height="{}" fill="none" stroke="#888"/><polyline fill="none" stroke="#1f3a5f" stroke-width="0.7" points="{}"/><text x="50" y="30">{name}: 中 simulated [kN]</text></svg>"##,
@@ -246,7 +287,11 @@ fn sections(noise: &mut Noise) -> Vec<SectionResult> {
             SectionResult {
                 campaign: None,
                 vehicle: None,
-                section: if at == 12 { "S13_Brescia-Verona_up_line_2023-05-04_run07".into() } else { format!("S{:02}", at + 1) },
+                section: if at == 12 {
+                    "S13_Brescia-Verona_up_line_2023-05-04_run07".into()
+                } else {
+                    format!("S{:02}", at + 1)
+                },
                 site: String::new(),
                 zone: Some(zone.to_string()),
                 used,
@@ -298,7 +343,11 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
         for signal in kind.signals {
             let measured = kind.size
                 * (0.6 + 0.4 * noise.next())
-                * if kind.processing == "median" && section.section.len() % 2 == 1 { -1.0 } else { 1.0 };
+                * if kind.processing == "median" && section.section.len() % 2 == 1 {
+                    -1.0
+                } else {
+                    1.0
+                };
             let difference = kind.limit * wide * noise.next();
             values.push(PairValue {
                 campaign: None,
@@ -320,7 +369,8 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
     }
     let n = values.len() as f64;
     let mean = values.iter().map(|pair| pair.difference).sum::<f64>() / n;
-    let std = (values.iter().map(|pair| (pair.difference - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
+    let std = (values.iter().map(|pair| (pair.difference - mean).powi(2)).sum::<f64>() / (n - 1.0))
+        .sqrt();
     let statistic = |name: &str, title: &str, value: f64, limit: f64, text: &str| StatisticResult {
         group: Vec::new(),
         name: name.into(),
@@ -479,7 +529,10 @@ fn zones(sections: &[SectionResult]) -> Vec<ZoneResult> {
     .iter()
     .enumerate()
     .map(|(at, (title, condition))| {
-        let own: Vec<&SectionResult> = sections.iter().filter(|section| section.zone.as_deref() == Some(&(at + 1).to_string())).collect();
+        let own: Vec<&SectionResult> = sections
+            .iter()
+            .filter(|section| section.zone.as_deref() == Some(&(at + 1).to_string()))
+            .collect();
         let used = own.iter().filter(|section| section.used).count();
         ZoneResult {
             zone: (at + 1).to_string(),
@@ -520,8 +573,10 @@ fn domain() -> Vec<DomainRange> {
 
 fn trace(at: usize, quantity: &QuantityResult, noise: &mut Noise) -> Trace {
     let pair = quantity.values.get(at);
-    let curve =
-        |noise: &mut Noise| Curve { x: (0..500).map(|i| f64::from(i) * 0.5).collect(), y: (0..500).map(|_| noise.next()).collect() };
+    let curve = |noise: &mut Noise| Curve {
+        x: (0..500).map(|i| f64::from(i) * 0.5).collect(),
+        y: (0..500).map(|_| noise.next()).collect(),
+    };
     Trace {
         quantity: quantity.id.clone(),
         section: pair.map_or_else(String::new, |pair| pair.section.clone()),
@@ -549,11 +604,18 @@ fn campaign(sections: &[SectionResult]) -> CampaignInfo {
         unit_assumed: false,
         of: None,
     };
-    let hash = |at: usize| format!("{:064x}", (at as u128 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835));
+    let hash = |at: usize| {
+        format!("{:064x}", (at as u128 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835))
+    };
     let mut files: Vec<FileHash> = ["campaign.yaml", "vehicle.yaml", "sections.csv"]
         .iter()
         .enumerate()
-        .map(|(at, path)| FileHash { path: (*path).into(), sha256: hash(at), bytes: 2_311 + at as u64, record: None })
+        .map(|(at, path)| FileHash {
+            path: (*path).into(),
+            sha256: hash(at),
+            bytes: 2_311 + at as u64,
+            record: None,
+        })
         .collect();
     for (at, section) in sections.iter().enumerate() {
         for (side, folder) in ["simulation", "measurement"].iter().enumerate() {
@@ -598,20 +660,37 @@ fn protocol() -> ProtocolInfo {
             _ => format!("    limit std {line} kN    # comment {line}\n"),
         })
         .collect();
-    let file = |name: &str, text: String| ProtocolFile { name: name.into(), sha256: "ab".repeat(32), text };
+    let file = |name: &str, text: String| ProtocolFile {
+        name: name.into(),
+        sha256: "ab".repeat(32),
+        text,
+    };
     ProtocolInfo {
         name: "en14363-2016-annex-t-coach".into(),
         title: "EN 14363:2016, Annex T, with a tighter limit".into(),
         edition: Some("EN 14363:2016".into()),
         source: Some("Götz and Polach 2018, Table 1".into()),
-        scope: Some("Passenger coaches with bogies.\nForces measured by instrumented wheelsets.".into()),
+        scope: Some(
+            "Passenger coaches with bogies.\nForces measured by instrumented wheelsets.".into(),
+        ),
         notes: vec!["Standard deviation with n-1.".into()],
         sha256: "ab".repeat(32),
-        files: vec![file("coach.fp", text), file("protocols/en14363-2016-annex-t.fp", "protocol \"parent\"\n".into())],
+        files: vec![
+            file("coach.fp", text),
+            file("protocols/en14363-2016-annex-t.fp", "protocol \"parent\"\n".into()),
+        ],
         deviations: vec![
-            Deviation { rule: "quantity ay_max, limit std".into(), before: Some("0.40 m/s^2".into()), after: Some("0.35 m/s^2".into()) },
+            Deviation {
+                rule: "quantity ay_max, limit std".into(),
+                before: Some("0.40 m/s^2".into()),
+                after: Some("0.35 m/s^2".into()),
+            },
             Deviation { rule: "quantity bogie".into(), before: None, after: Some(HOSTILE.into()) },
-            Deviation { rule: "zone 4, minimum length".into(), before: Some("70 m".into()), after: None },
+            Deviation {
+                rule: "zone 4, minimum length".into(),
+                before: Some("70 m".into()),
+                after: None,
+            },
         ],
         parameters: vec![
             ParameterInfo {
@@ -645,10 +724,16 @@ fn protocol() -> ProtocolInfo {
                 source: Some("EN 14363, 7.4".into()),
             },
         ],
-        channels: vec![ChannelInfo { name: "Y".into(), title: "Guiding force".into(), unit: "kN".into(), note: HOSTILE.into() }],
+        channels: vec![ChannelInfo {
+            name: "Y".into(),
+            title: "Guiding force".into(),
+            unit: "kN".into(),
+            note: HOSTILE.into(),
+        }],
         graph_nodes: 96,
         graph_svg: drawing("graph", 1400, 600),
-        verdict_rule: "every statistic of every quantity holds, and every zone has at least 3 sections".into(),
+        verdict_rule:
+            "every statistic of every quantity holds, and every zone has at least 3 sections".into(),
         verdict_words: fishplate::result::VerdictWords::of(fishplate::result::Kind::Validation),
     }
 }

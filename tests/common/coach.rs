@@ -1,9 +1,11 @@
-//! A certification with everything a report must print: twelve quantities of which one fails and one cannot be assessed,
-//! 33 sections in four zones, and names that try to be markup. The numbers are made up.
+//! A certification with everything a report must print: twelve quantities of which one fails and
+//! one cannot be assessed, 33 sections in four zones, and names that try to be markup. The numbers
+//! are made up.
 
 use fishplate::result::{
-    CampaignInfo, Certification, CheckResult, Curve, DataItem, Deviation, DomainRange, FileHash, FilterInfo, PairValue, ParameterInfo,
-    ProtocolFile, ProtocolInfo, QuantityResult, RulePlace, Sample, SectionResult, StatisticResult, Trace, Verdict, ZoneResult,
+    CampaignInfo, Certification, CheckResult, Curve, DataItem, Deviation, DomainRange, FileHash,
+    FilterInfo, PairValue, ParameterInfo, ProtocolFile, ProtocolInfo, QuantityResult, RulePlace,
+    Sample, SectionResult, StatisticResult, Trace, Verdict, ZoneResult,
 };
 
 /// A vehicle's name that would run if it were taken for markup.
@@ -13,12 +15,14 @@ pub const EXPRESSION: &str = "{{ 7*7 }}{% raw %}#{7*7}";
 /// A section name that would close an attribute, an element and a script.
 pub const BREAKOUT: &str = "S\"><img src=x onerror=alert(2)></script><!--";
 
-/// Numbers in -1..1 from a linear congruential generator (Knuth's MMIX constants): the same on every machine.
+/// Numbers in -1..1 from a linear congruential generator (Knuth's MMIX constants): the same on
+/// every machine.
 struct Noise(u64);
 
 impl Noise {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
@@ -27,8 +31,19 @@ impl Noise {
     }
 }
 
-/// id, title, symbol, unit, signals, typical value, limit of the standard deviation, bias and scatter in parts of the limits
-type Made = (&'static str, &'static str, &'static str, &'static str, &'static [&'static str], f64, f64, f64, f64);
+/// id, title, symbol, unit, signals, typical value, limit of the standard deviation, bias and
+/// scatter in parts of the limits
+type Made = (
+    &'static str,
+    &'static str,
+    &'static str,
+    &'static str,
+    &'static [&'static str],
+    f64,
+    f64,
+    f64,
+    f64,
+);
 
 const WHEELS_Y: &[&str] = &["Y_1R", "Y_1L", "Y_3R", "Y_3L"];
 const WHEELS_Q: &[&str] = &["Q_1R", "Q_1L", "Q_3R", "Q_3L"];
@@ -41,22 +56,73 @@ const MADE: [Made; 12] = [
     ("Y_qst", "Quasi-static guiding force", "Y_qst", "kN", WHEELS_Y, 18.0, 5.0, 0.21, 0.43),
     ("Q_qst", "Quasi-static vertical wheel force", "Q_qst", "kN", WHEELS_Q, 55.0, 6.2, -0.35, 0.38),
     ("YQ_qst", "Quasi-static ratio Y/Q", "(Y/Q)_qst", "-", RATIOS, 0.25, 0.07, 0.12, 0.5),
-    ("SigmaY_qst", "Quasi-static sum of guiding forces", "ΣY_qst", "kN", SETS, 14.0, 6.0, -0.08, 0.35),
+    (
+        "SigmaY_qst",
+        "Quasi-static sum of guiding forces",
+        "ΣY_qst",
+        "kN",
+        SETS,
+        14.0,
+        6.0,
+        -0.08,
+        0.35,
+    ),
     ("Y_max", "Guiding force, maximum", "Y_max", "kN", WHEELS_Y, 34.0, 9.0, 0.4, 0.62),
     ("Q_max", "Vertical wheel force, maximum", "Q_max", "kN", WHEELS_Q, 82.0, 9.3, 0.33, 0.71),
     ("YQ_max", "Ratio Y/Q, maximum", "(Y/Q)_max", "-", RATIOS, 0.44, 0.1, 0.27, 0.58),
     ("SigmaY_max", "Sum of guiding forces, maximum", "ΣY_max", "kN", SETS, 28.0, 9.0, -0.41, 0.66),
-    ("ay_rms", "Car body lateral acceleration, rms", "ÿ*_rms", "m/s^2", LATERAL, 0.32, 0.15, -0.18, 0.29),
-    ("az_rms", "Car body vertical acceleration, rms", "z̈*_rms", "m/s^2", VERTICAL, 0.28, 0.15, 0.64, 0.52),
-    ("ay_max", "Car body lateral acceleration, maximum", "ÿ*_max", "m/s^2", LATERAL, 1.1, 0.4, -0.52, 1.24),
-    ("az_max", "Car body vertical acceleration, maximum", "z̈*_max", "m/s^2", VERTICAL, 1.3, 0.4, 0.0, 0.0),
+    (
+        "ay_rms",
+        "Car body lateral acceleration, rms",
+        "ÿ*_rms",
+        "m/s^2",
+        LATERAL,
+        0.32,
+        0.15,
+        -0.18,
+        0.29,
+    ),
+    (
+        "az_rms",
+        "Car body vertical acceleration, rms",
+        "z̈*_rms",
+        "m/s^2",
+        VERTICAL,
+        0.28,
+        0.15,
+        0.64,
+        0.52,
+    ),
+    (
+        "ay_max",
+        "Car body lateral acceleration, maximum",
+        "ÿ*_max",
+        "m/s^2",
+        LATERAL,
+        1.1,
+        0.4,
+        -0.52,
+        1.24,
+    ),
+    (
+        "az_max",
+        "Car body vertical acceleration, maximum",
+        "z̈*_max",
+        "m/s^2",
+        VERTICAL,
+        1.3,
+        0.4,
+        0.0,
+        0.0,
+    ),
 ];
 
 /// The whole certification.
 pub fn certification() -> Certification {
     let mut noise = Noise(20_160_301);
     let sections = sections(&mut noise);
-    let quantities: Vec<QuantityResult> = MADE.iter().map(|made| quantity(made, &sections, &mut noise)).collect();
+    let quantities: Vec<QuantityResult> =
+        MADE.iter().map(|made| quantity(made, &sections, &mut noise)).collect();
     Certification {
         protocol: protocol(),
         campaign: campaign(),
@@ -76,7 +142,9 @@ pub fn certification() -> Certification {
         application: Vec::new(),
         traces: traces(&mut noise),
         findings: Vec::new(),
-        notes: vec![format!("Section {BREAKOUT}: margin of 4.2 s before the section is short for a filter that reaches to 0.4 Hz")],
+        notes: vec![format!(
+            "Section {BREAKOUT}: margin of 4.2 s before the section is short for a filter that reaches to 0.4 Hz"
+        )],
         quantities,
         sections,
     }
@@ -89,8 +157,10 @@ pub fn empty() -> Certification {
     found.reasons = vec!["no section".into()];
     (found.quantities, found.sections, found.zones) = (Vec::new(), Vec::new(), Vec::new());
     (found.domain, found.traces, found.notes) = (Vec::new(), Vec::new(), Vec::new());
-    (found.campaign.vehicle, found.campaign.facts, found.campaign.files) = (Vec::new(), Vec::new(), Vec::new());
-    (found.protocol.files, found.protocol.deviations, found.protocol.parameters) = (Vec::new(), Vec::new(), Vec::new());
+    (found.campaign.vehicle, found.campaign.facts, found.campaign.files) =
+        (Vec::new(), Vec::new(), Vec::new());
+    (found.protocol.files, found.protocol.deviations, found.protocol.parameters) =
+        (Vec::new(), Vec::new(), Vec::new());
     (found.protocol.filters, found.protocol.graph_svg) = (Vec::new(), String::new());
     found
 }
@@ -117,11 +187,16 @@ fn sections(noise: &mut Noise) -> Vec<SectionResult> {
     for (zone, count) in counts {
         for nth in 0..count {
             let number = sections.len() + 1;
-            let length = [500.0, 250.0, 100.0, 70.0][zone as usize - 1] + (20.0 * (noise.next() + 1.0)).round();
+            let length = [500.0, 250.0, 100.0, 70.0][zone as usize - 1]
+                + (20.0 * (noise.next() + 1.0)).round();
             let start = 1000.0 * number as f64;
-            let radius = [0.0, 900.0, 480.0, 320.0][zone as usize - 1] + 60.0 * noise.next().round() + 10.0 * f64::from(nth as u32);
-            let speed = [160.0, 130.0, 100.0, 80.0][zone as usize - 1] + (8.0 * noise.next()).round();
-            let deficiency = [10.0, 110.0, 130.0, 140.0][zone as usize - 1] + (10.0 * noise.next()).round();
+            let radius = [0.0, 900.0, 480.0, 320.0][zone as usize - 1]
+                + 60.0 * noise.next().round()
+                + 10.0 * f64::from(nth as u32);
+            let speed =
+                [160.0, 130.0, 100.0, 80.0][zone as usize - 1] + (8.0 * noise.next()).round();
+            let deficiency =
+                [10.0, 110.0, 130.0, 140.0][zone as usize - 1] + (10.0 * noise.next()).round();
             let used = number != 20;
             let name = if number == 12 { BREAKOUT.to_owned() } else { format!("S{number:02}") };
             sections.push(SectionResult {
@@ -131,7 +206,9 @@ fn sections(noise: &mut Noise) -> Vec<SectionResult> {
                 site: String::new(),
                 zone: Some(zone.to_string()),
                 used,
-                reason: (!used).then(|| "record of the measurement has a gap of 0.31 s at 20041.5 m".to_owned()),
+                reason: (!used).then(|| {
+                    "record of the measurement has a gap of 0.31 s at 20041.5 m".to_owned()
+                }),
                 length,
                 start,
                 end: start + length,
@@ -139,17 +216,33 @@ fn sections(noise: &mut Noise) -> Vec<SectionResult> {
                 columns: vec![
                     item("speed", &speed.to_string(), Some("km/h")),
                     item("cant deficiency", &deficiency.to_string(), Some("mm")),
-                    item("radius", &if zone == 1 { String::new() } else { radius.to_string() }, Some("m")),
-                    item("direction", ["straight", "right", "left"][if zone == 1 { 0 } else { 1 + nth % 2 }], None),
+                    item(
+                        "radius",
+                        &if zone == 1 { String::new() } else { radius.to_string() },
+                        Some("m"),
+                    ),
+                    item(
+                        "direction",
+                        ["straight", "right", "left"][if zone == 1 { 0 } else { 1 + nth % 2 }],
+                        None,
+                    ),
                 ],
                 checks: vec![
                     check(
                         "length",
                         "Length",
                         Some(true),
-                        &format!("length {length} m, at least {} m", [500, 250, 100, 70][zone as usize - 1]),
+                        &format!(
+                            "length {length} m, at least {} m",
+                            [500, 250, 100, 70][zone as usize - 1]
+                        ),
                     ),
-                    check("complete", "Complete record", Some(used), if used { "no gap" } else { "gap of 0.31 s" }),
+                    check(
+                        "complete",
+                        "Complete record",
+                        Some(used),
+                        if used { "no gap" } else { "gap of 0.31 s" },
+                    ),
                     check(
                         "speed",
                         "Constant speed",
@@ -168,7 +261,14 @@ fn check(name: &str, title: &str, holds: Option<bool>, says: &str) -> CheckResul
 }
 
 fn item(name: &str, value: &str, unit: Option<&str>) -> DataItem {
-    DataItem { name: name.into(), value: value.into(), unit: unit.map(str::to_owned), used: true, unit_assumed: false, of: None }
+    DataItem {
+        name: name.into(),
+        value: value.into(),
+        unit: unit.map(str::to_owned),
+        used: true,
+        unit_assumed: false,
+        of: None,
+    }
 }
 
 fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
@@ -195,7 +295,8 @@ fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> Quant
         }
     }
     let statistics = if missing { Vec::new() } else { statistics(&values, unit, limit) };
-    let holds = (!missing).then(|| statistics.iter().all(|statistic| statistic.holds == Some(true)));
+    let holds =
+        (!missing).then(|| statistics.iter().all(|statistic| statistic.holds == Some(true)));
     QuantityResult {
         from: None,
         among: None,
@@ -208,7 +309,12 @@ fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> Quant
         symbol: symbol.into(),
         unit: unit.into(),
         of: signals.join(", "),
-        filter: if id.contains("ay") || id.contains("az") { "band-pass 0.4 to 10 Hz" } else { "low-pass 20 Hz" }.into(),
+        filter: if id.contains("ay") || id.contains("az") {
+            "band-pass 0.4 to 10 Hz"
+        } else {
+            "low-pass 20 Hz"
+        }
+        .into(),
         processing: "larger of |p0.15|, |p99.85|".into(),
         comparison: "simulated − measured".into(),
         clause: Some("T.3.2".into()),
@@ -227,33 +333,42 @@ fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> Quant
 fn statistics(values: &[PairValue], unit: &str, limit: f64) -> Vec<StatisticResult> {
     let n = values.len() as f64;
     let mean = values.iter().map(|pair| pair.difference).sum::<f64>() / n;
-    let std = (values.iter().map(|pair| (pair.difference - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
-    let one = |name: &str, title: &str, value: f64, limit: f64, half: f64, text: &str| StatisticResult {
-        group: Vec::new(),
-        name: name.into(),
-        title: title.into(),
-        scope: "all".into(),
-        count: values.len(),
-        n: values.len() / 2,
-        unit: unit.into(),
-        value: Some(value),
-        interval: Some((value - half, value + half)),
-        marginal: false,
-        limit: Some(limit),
-        normalised: Some(value.abs() / limit),
-        sample: Sample::default(),
-        regression: None,
-        divided_at: None,
-        outside: Vec::new(),
-        holds: Some(value.abs() <= limit),
-        factors: Vec::new(),
-        limit_text: text.into(),
-        reason: None,
-        rule: RulePlace { file: "annex-t.fp".into(), line: 345 },
-    };
+    let std = (values.iter().map(|pair| (pair.difference - mean).powi(2)).sum::<f64>() / (n - 1.0))
+        .sqrt();
+    let one =
+        |name: &str, title: &str, value: f64, limit: f64, half: f64, text: &str| StatisticResult {
+            group: Vec::new(),
+            name: name.into(),
+            title: title.into(),
+            scope: "all".into(),
+            count: values.len(),
+            n: values.len() / 2,
+            unit: unit.into(),
+            value: Some(value),
+            interval: Some((value - half, value + half)),
+            marginal: false,
+            limit: Some(limit),
+            normalised: Some(value.abs() / limit),
+            sample: Sample::default(),
+            regression: None,
+            divided_at: None,
+            outside: Vec::new(),
+            holds: Some(value.abs() <= limit),
+            factors: Vec::new(),
+            limit_text: text.into(),
+            reason: None,
+            rule: RulePlace { file: "annex-t.fp".into(), line: 345 },
+        };
     vec![
         one("mean", "mean", mean, 2.0 / 3.0 * limit, 2.0 * std / n.sqrt(), "2/3 of std"),
-        one("std", "standard deviation", std, limit, 1.4 * std / n.sqrt(), &format!("{limit} {unit}")),
+        one(
+            "std",
+            "standard deviation",
+            std,
+            limit,
+            1.4 * std / n.sqrt(),
+            &format!("{limit} {unit}"),
+        ),
     ]
 }
 
@@ -266,7 +381,8 @@ fn zones(sections: &[SectionResult]) -> Vec<ZoneResult> {
     ]
     .into_iter()
     .map(|(zone, title, condition)| {
-        let given: Vec<&SectionResult> = sections.iter().filter(|section| section.zone.as_deref() == Some(zone)).collect();
+        let given: Vec<&SectionResult> =
+            sections.iter().filter(|section| section.zone.as_deref() == Some(zone)).collect();
         let used = given.iter().filter(|section| section.used).count();
         ZoneResult {
             zone: zone.into(),
@@ -288,8 +404,12 @@ fn domain(sections: &[SectionResult]) -> Vec<DomainRange> {
         for scope in ["all", "1", "2", "3", "4"] {
             let values: Vec<f64> = sections
                 .iter()
-                .filter(|section| section.used && (scope == "all" || section.zone.as_deref() == Some(scope)))
-                .filter_map(|section| section.columns.iter().find(|column| column.name == name)?.value.parse().ok())
+                .filter(|section| {
+                    section.used && (scope == "all" || section.zone.as_deref() == Some(scope))
+                })
+                .filter_map(|section| {
+                    section.columns.iter().find(|column| column.name == name)?.value.parse().ok()
+                })
                 .collect();
             if values.is_empty() {
                 continue;
@@ -316,7 +436,9 @@ fn traces(noise: &mut Noise) -> Vec<Trace> {
     .map(|(quantity, section, zone, signal, why, unit)| {
         let (start, end) = (31_000.0, 31_085.0);
         let x: Vec<f64> = (0..700).map(|n| start - 30.0 + 145.0 * f64::from(n) / 699.0).collect();
-        let wave = |x: f64| (x / 4.0).sin() * 0.5 + (x / 11.0).cos() * 0.7 + if x > 31_020.0 { 0.9 } else { 0.2 };
+        let wave = |x: f64| {
+            (x / 4.0).sin() * 0.5 + (x / 11.0).cos() * 0.7 + if x > 31_020.0 { 0.9 } else { 0.2 }
+        };
         let measured = x.iter().map(|x| wave(*x) + 0.12 * noise.bell()).collect();
         let simulated = x.iter().map(|x| 0.9 * wave(*x - 0.8)).collect();
         Trace {
@@ -371,7 +493,10 @@ fn campaign() -> CampaignInfo {
             item("running_gear", "bogies", None),
             DataItem { used: false, ..item("owner", EXPRESSION, None) },
         ],
-        facts: vec![item("sampling_rate", "300", Some("Hz")), item("assumed_friction", "0.4", Some("-"))],
+        facts: vec![
+            item("sampling_rate", "300", Some("Hz")),
+            item("assumed_friction", "0.4", Some("-")),
+        ],
         report: Vec::new(),
     }
 }

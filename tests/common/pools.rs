@@ -29,12 +29,26 @@ pub fn limit(statistic: &str, bound: f64, ddof: usize, sections: usize) -> Poole
 pub fn sections(zones: &[usize]) -> Vec<Section> {
     let of = zones.iter().enumerate().flat_map(|(zone, count)| (0..*count).map(move |_| zone + 1));
     of.enumerate()
-        .map(|(at, zone)| Section { name: format!("S{:02}", at + 1), zone: Some(zone.to_string()), site: at, used: true, reason: None })
+        .map(|(at, zone)| Section {
+            name: format!("S{:02}", at + 1),
+            zone: Some(zone.to_string()),
+            site: at,
+            used: true,
+            reason: None,
+        })
         .collect()
 }
 
 pub fn zones(takes: &[usize]) -> Vec<Zone> {
-    takes.iter().enumerate().map(|(at, needed)| Zone { name: (at + 1).to_string(), title: String::new(), needed: *needed }).collect()
+    takes
+        .iter()
+        .enumerate()
+        .map(|(at, needed)| Zone {
+            name: (at + 1).to_string(),
+            title: String::new(),
+            needed: *needed,
+        })
+        .collect()
 }
 
 pub fn quantity(id: &str, values: Vec<Vec<f64>>, limits: Vec<PooledLimit>) -> PooledQuantity {
@@ -57,7 +71,9 @@ pub fn every(case: &Case) -> Vec<Vec<usize>> {
         let choices = subsets(&stratum.members, stratum.take);
         all.iter()
             .flat_map(|before| {
-                choices.iter().map(move |choice| before.iter().copied().chain(choice.iter().map(|&at| at as usize)).collect())
+                choices.iter().map(move |choice| {
+                    before.iter().copied().chain(choice.iter().map(|&at| at as usize)).collect()
+                })
             })
             .collect()
     })
@@ -74,7 +90,8 @@ pub fn sorted(mut values: Vec<f64>) -> Option<Spread> {
     };
     let (q1, q3) = (at(0.25), at(0.75));
     let reach = 1.5 * (q3 - q1);
-    let outliers = values.iter().filter(|value| **value < q1 - reach || **value > q3 + reach).count() as u64;
+    let outliers =
+        values.iter().filter(|value| **value < q1 - reach || **value > q3 + reach).count() as u64;
     Some(Spread {
         min: values[0],
         q1,

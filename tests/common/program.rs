@@ -54,14 +54,27 @@ pub fn certify(campaign: &Path, more: &[&str]) -> Certified {
     let found = Certified { ran, out };
     let left = files(found.out.path());
     let half = [".fishplate-new", ".fishplate-unfinished", ".tmp"].map(std::ffi::OsStr::new);
-    let below = |path: &PathBuf| path.strip_prefix(found.out.path()).map(Path::to_path_buf).unwrap_or_default();
-    let half_written =
-        |path: &PathBuf| below(path).iter().any(|part| half.contains(&part) || Path::new(part).extension() == Some("tmp".as_ref()));
+    let below = |path: &PathBuf| {
+        path.strip_prefix(found.out.path()).map(Path::to_path_buf).unwrap_or_default()
+    };
+    let half_written = |path: &PathBuf| {
+        below(path)
+            .iter()
+            .any(|part| half.contains(&part) || Path::new(part).extension() == Some("tmp".as_ref()))
+    };
     assert!(!left.iter().any(half_written), "half-written files: {left:?}");
     if found.ran.code >= 2 {
-        assert!(!found.out.path().join("new").exists(), "something was written: {left:?}\n{}", found.ran.stderr);
+        assert!(
+            !found.out.path().join("new").exists(),
+            "something was written: {left:?}\n{}",
+            found.ran.stderr
+        );
     } else {
-        assert!(left.iter().any(|path| path.ends_with("results.json")), "nothing was written: {}", found.ran.stderr);
+        assert!(
+            left.iter().any(|path| path.ends_with("results.json")),
+            "nothing was written: {}",
+            found.ran.stderr
+        );
     }
     found
 }
@@ -73,7 +86,8 @@ impl Certified {
 
     pub fn text(&self, name: &str) -> String {
         let path = self.folder().join(name);
-        std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}\n{}", path.display(), self.ran.stderr))
+        std::fs::read_to_string(&path)
+            .unwrap_or_else(|error| panic!("{}: {error}\n{}", path.display(), self.ran.stderr))
     }
 
     pub fn results(&self) -> Value {
@@ -84,7 +98,10 @@ impl Certified {
     pub fn reason(&self, section: &str) -> Option<String> {
         let results = self.results();
         let sections = results["sections"].as_array().expect("a list");
-        let found = sections.iter().find(|entry| entry["section"] == section).unwrap_or_else(|| panic!("no section {section}"));
+        let found = sections
+            .iter()
+            .find(|entry| entry["section"] == section)
+            .unwrap_or_else(|| panic!("no section {section}"));
         assert_eq!(found["used"].as_bool(), Some(found["reason"].is_null()), "{found}");
         found["reason"].as_str().map(str::to_string)
     }

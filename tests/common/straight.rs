@@ -1,6 +1,7 @@
 //! A small campaign of straight lines, whose every value follows by hand.
 //!
-//! A channel of section `s` is `offset + slope * (x - 30 m)`, in kN; simulation and measurement differ in the offset only.
+//! A channel of section `s` is `offset + slope * (x - 30 m)`, in kN; simulation and measurement
+//! differ in the offset only.
 
 use std::fmt::Write;
 use std::fs;
@@ -24,7 +25,16 @@ pub const START: f64 = 30.0;
 pub const END: f64 = 150.0;
 
 pub const SECTIONS: [Section; 4] = [
-    Section { name: "S1", zone: 1, direction: "straight", radius: "", deficiency: 0.0, speed: 72.0, right: (1.0, 0.5), left: (-2.0, 0.25) },
+    Section {
+        name: "S1",
+        zone: 1,
+        direction: "straight",
+        radius: "",
+        deficiency: 0.0,
+        speed: 72.0,
+        right: (1.0, 0.5),
+        left: (-2.0, 0.25),
+    },
     Section {
         name: "S2",
         zone: 2,
@@ -70,14 +80,22 @@ pub fn write_campaign(folder: &Path) {
     let mut table = "section,zone [-],start [m],end [m],radius [m],direction,cant [mm],cant deficiency [mm],speed [km/h]\n".to_string();
     for section in &SECTIONS {
         let Section { name, zone, direction, radius, deficiency, speed, .. } = section;
-        writeln!(table, "{name},{zone},{START},{END},{radius},{direction},0,{deficiency},{speed}").expect("a string");
+        writeln!(table, "{name},{zone},{START},{END},{radius},{direction},0,{deficiency},{speed}")
+            .expect("a string");
         for (kind, more) in [("measurement", 0.0), ("simulation", 1.0)] {
-            let mut record = "time [s],distance [m],Y_1R [kN],Y_1L [kN],Y_2R [kN],Y_2L [kN]\n".to_string();
+            let mut record =
+                "time [s],distance [m],Y_1R [kN],Y_1L [kN],Y_2R [kN],Y_2L [kN]\n".to_string();
             for sample in 0..=1800 {
                 let (time, x) = (f64::from(sample) * 0.005, f64::from(sample) * 0.1);
                 let rise = SLOPE * (x - START);
                 let value = |(offset, difference): (f64, f64)| offset + more * difference + rise;
-                writeln!(record, "{time},{x},{r},{l},{r},{l}", r = value(section.right), l = value(section.left)).expect("a string");
+                writeln!(
+                    record,
+                    "{time},{x},{r},{l},{r},{l}",
+                    r = value(section.right),
+                    l = value(section.left)
+                )
+                .expect("a string");
             }
             write(&format!("{kind}/{name}.csv"), record);
         }

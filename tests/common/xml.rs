@@ -24,17 +24,22 @@ impl<'a> Tag<'a> {
 
 /// All start tags in order.
 pub fn tags(text: &str) -> Vec<Tag<'_>> {
-    let pieces = text.split('<').skip(1).filter(|piece| piece.starts_with(|c: char| c.is_ascii_alphabetic()));
+    let pieces = text
+        .split('<')
+        .skip(1)
+        .filter(|piece| piece.starts_with(|c: char| c.is_ascii_alphabetic()));
     pieces
         .map(|piece| {
             let (inside, content) = piece.split_once('>').expect("a tag ends");
-            let name = inside.split(|c: char| c.is_whitespace() || c == '/').next().unwrap_or_default();
+            let name =
+                inside.split(|c: char| c.is_whitespace() || c == '/').next().unwrap_or_default();
             Tag { name, text: inside, content: content.trim() }
         })
         .collect()
 }
 
-/// Panics unless every element that is opened is closed in turn; `empty` are names that need no end.
+/// Panics unless every element that is opened is closed in turn; `empty` are names that need no
+/// end.
 pub fn balanced(text: &str, empty: &[&str]) {
     let mut open: Vec<&str> = Vec::new();
     for piece in text.split('<').skip(1).filter(|piece| !piece.starts_with('!')) {

@@ -1,6 +1,7 @@
 //! What must not change the answer, and what must change it in a known way.
 //!
-//! Eight sections of the example with a measurement that the model made on slippery rail, and a catalogue of a few effects.
+//! Eight sections of the example with a measurement that the model made on slippery rail, and a
+//! catalogue of a few effects.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -33,9 +34,24 @@ fn answer(campaign: &Path, catalogue: &str) -> Answer {
     let out = campaign.with_extension("few");
     let resume = folder().join("resume");
     let paths = [campaign, &out, &file, &resume].map(|path| path.to_str().unwrap().to_string());
-    let ran = fishplate(&["diagnose", &paths[0], "--out", &paths[1], "--effects", &paths[2], "--resume", &paths[3], "--quiet"]);
-    assert!(ran.status.code().is_some_and(|code| code <= 1), "{}", String::from_utf8_lossy(&ran.stderr));
-    let found: Value = serde_json::from_str(&fs::read_to_string(out.join("diagnosis.json")).unwrap()).unwrap();
+    let ran = fishplate(&[
+        "diagnose",
+        &paths[0],
+        "--out",
+        &paths[1],
+        "--effects",
+        &paths[2],
+        "--resume",
+        &paths[3],
+        "--quiet",
+    ]);
+    assert!(
+        ran.status.code().is_some_and(|code| code <= 1),
+        "{}",
+        String::from_utf8_lossy(&ran.stderr)
+    );
+    let found: Value =
+        serde_json::from_str(&fs::read_to_string(out.join("diagnosis.json")).unwrap()).unwrap();
     let effect = &found["causes"][0]["effects"][0];
     Answer {
         verdict: found["verdict"].as_str().unwrap().to_string(),
@@ -64,7 +80,9 @@ fn changed(name: &str, change: impl Fn(&str, &str) -> Option<String>) -> PathBuf
     let (from, to) = (&base().0, folder().join(name));
     copy(from, &to);
     for part in ["measurement", "simulation", "track", "."] {
-        for entry in fs::read_dir(to.join(part)).unwrap().flatten().filter(|entry| entry.path().is_file()) {
+        for entry in
+            fs::read_dir(to.join(part)).unwrap().flatten().filter(|entry| entry.path().is_file())
+        {
             let inside = format!("{part}/{}", entry.file_name().to_string_lossy());
             if let Some(text) = change(&inside, &fs::read_to_string(entry.path()).unwrap()) {
                 fs::write(entry.path(), text).unwrap();
@@ -79,15 +97,31 @@ fn cells(text: &str, cell: &dyn Fn(&str, &str) -> (String, String)) -> String {
     let mut rows = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let header = rows.next().unwrap();
     let mut lines = vec![header.iter().map(|name| cell(name, "0").0).collect::<Vec<_>>().join(",")];
-    lines.extend(rows.map(|row| row.iter().zip(&header).map(|(value, name)| cell(name, value).1).collect::<Vec<_>>().join(",")));
+    lines.extend(rows.map(|row| {
+        row.iter()
+            .zip(&header)
+            .map(|(value, name)| cell(name, value).1)
+            .collect::<Vec<_>>()
+            .join(",")
+    }));
     lines.join("\n") + "\n"
 }
 
 fn same(one: &Answer, tolerance: f64) {
     let other = &base().1;
     assert_eq!((&one.verdict, &one.name), (&other.verdict, &other.name));
-    assert!((one.friction / other.friction - 1.0).abs() < tolerance, "{} {}", one.friction, other.friction);
-    assert!((one.fraction_removed - other.fraction_removed).abs() < 2.0 * tolerance, "{} {}", one.fraction_removed, other.fraction_removed);
+    assert!(
+        (one.friction / other.friction - 1.0).abs() < tolerance,
+        "{} {}",
+        one.friction,
+        other.friction
+    );
+    assert!(
+        (one.fraction_removed - other.fraction_removed).abs() < 2.0 * tolerance,
+        "{} {}",
+        one.fraction_removed,
+        other.fraction_removed
+    );
 }
 
 /// The order of the rows decides where the draws of the bootstrap fall, nothing else.
@@ -107,16 +141,23 @@ fn the_order_of_the_sections_does_not_matter() {
 fn the_units_of_records_and_sections_do_not_matter() {
     let campaign = changed("slippery-units", |inside, text| {
         let newtons = |name: &str, value: &str| match name.strip_suffix("[kN]") {
-            Some(stem) => (format!("{stem}[N]"), format!("{:.1}", value.parse::<f64>().unwrap() * 1e3)),
+            Some(stem) => {
+                (format!("{stem}[N]"), format!("{:.1}", value.parse::<f64>().unwrap() * 1e3))
+            }
             None => (name.to_string(), value.to_string()),
         };
-        // Of the section table, too: what it says is used where the discrepancies allowed for grow with the curvature.
+        // Of the section table, too: what it says is used where the discrepancies allowed for grow
+        // with the curvature.
         let kilometres = |name: &str, value: &str| {
             let number = || value.parse::<f64>().unwrap();
             match name.split_once(" [m]") {
-                Some((stem @ ("radius" | "start"), _)) if !value.is_empty() => (format!("{stem} [km]"), format!("{:.6}", number() / 1e3)),
+                Some((stem @ ("radius" | "start"), _)) if !value.is_empty() => {
+                    (format!("{stem} [km]"), format!("{:.6}", number() / 1e3))
+                }
                 Some((stem @ ("radius" | "start"), _)) => (format!("{stem} [km]"), String::new()),
-                _ if name == "speed [km/h]" => ("speed [m/s]".to_string(), format!("{:.9}", number() / 3.6)),
+                _ if name == "speed [km/h]" => {
+                    ("speed [m/s]".to_string(), format!("{:.9}", number() / 3.6))
+                }
                 _ => (name.to_string(), value.to_string()),
             }
         };
@@ -142,23 +183,43 @@ fn repeated_sections_do_not_count_twice() {
     });
     for part in ["measurement", "simulation", "track"] {
         for name in &SECTIONS[4..] {
-            fs::copy(campaign.join(part).join(format!("{name}.csv")), campaign.join(part).join(format!("R{name}.csv"))).unwrap();
+            fs::copy(
+                campaign.join(part).join(format!("{name}.csv")),
+                campaign.join(part).join(format!("R{name}.csv")),
+            )
+            .unwrap();
         }
     }
     let twice = answer(&campaign, CATALOGUE);
     let once = &base().1;
     assert_eq!((&twice.verdict, &twice.name), (&once.verdict, &once.name));
-    assert!((twice.friction / once.friction - 1.0).abs() < 0.02, "{} {}", twice.friction, once.friction);
-    assert!((twice.evidence / once.evidence - 1.0).abs() < 0.1, "{} {}", twice.evidence, once.evidence);
+    assert!(
+        (twice.friction / once.friction - 1.0).abs() < 0.02,
+        "{} {}",
+        twice.friction,
+        once.friction
+    );
+    assert!(
+        (twice.evidence / once.evidence - 1.0).abs() < 0.1,
+        "{} {}",
+        twice.evidence,
+        once.evidence
+    );
 }
 
-/// Right for left, and every lateral quantity the other way round: the same cause, and the places on the other side.
+/// Right for left, and every lateral quantity the other way round: the same cause, and the places
+/// on the other side.
 #[test]
 fn a_mirrored_campaign_gives_the_mirrored_answer() {
-    let negative = |value: &str| value.strip_prefix('-').map_or_else(|| format!("-{value}"), str::to_string);
+    let negative =
+        |value: &str| value.strip_prefix('-').map_or_else(|| format!("-{value}"), str::to_string);
     let campaign = changed("slippery-mirrored", |inside, text| {
         if inside == "./sections.csv" {
-            return Some(text.replace(",right,", ",#,").replace(",left,", ",right,").replace(",#,", ",left,"));
+            return Some(
+                text.replace(",right,", ",#,")
+                    .replace(",left,", ",right,")
+                    .replace(",#,", ",left,"),
+            );
         }
         if inside.starts_with("track/") {
             let lateral = ["curvature", "cant", "alignment", "cross level"];
@@ -178,7 +239,10 @@ fn a_mirrored_campaign_gives_the_mirrored_answer() {
                     _ => channel.to_string(),
                 };
                 let turns = channel.starts_with('Y') || channel.starts_with("ay");
-                (format!("{other} [{unit}"), if turns { negative(value) } else { value.to_string() })
+                (
+                    format!("{other} [{unit}"),
+                    if turns { negative(value) } else { value.to_string() },
+                )
             };
             cells(text, &side)
         })
@@ -191,24 +255,45 @@ fn a_mirrored_campaign_gives_the_mirrored_answer() {
         _ => name.to_string(),
     };
     let signals = |place: &Value| {
-        let mut names: Vec<String> = place["signals"].as_array().unwrap().iter().map(|name| name.as_str().unwrap().to_string()).collect();
+        let mut names: Vec<String> = place["signals"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|name| name.as_str().unwrap().to_string())
+            .collect();
         names.sort();
         names
     };
     // Cell by cell: the order of those that hold nearly the same is chance.
     let number = |place: &Value, key: &str| place[key].as_f64().unwrap();
     for place in base().1.places.iter().take(10) {
-        let mut expected: Vec<String> = signals(place).iter().map(|name| other_side(name)).collect();
+        let mut expected: Vec<String> =
+            signals(place).iter().map(|name| other_side(name)).collect();
         expected.sort();
-        let there = mirrored.places.iter().find(|other| other["says"] == place["says"] && other["zones"] == place["zones"]);
+        let there = mirrored
+            .places
+            .iter()
+            .find(|other| other["says"] == place["says"] && other["zones"] == place["zones"]);
         let there = there.unwrap_or_else(|| panic!("{} is nowhere", place["says"]));
         assert_eq!(signals(there), expected);
-        // Branches of contact differ a little between left and right; with two sections to a cell its share does more.
-        for (key, room) in [("difference", 0.06), ("difference_rms", 0.06), ("share_of_gap", 0.15)] {
+        // Branches of contact differ a little between left and right; with two sections to a cell
+        // its share does more.
+        for (key, room) in [("difference", 0.06), ("difference_rms", 0.06), ("share_of_gap", 0.15)]
+        {
             let (here, there) = (number(place, key), number(there, key));
-            // A ratio is given to simulated over measured: room for its reciprocal grows with its square.
-            let room = if place["unit"] == "-" && key != "share_of_gap" { room * (1.0 + here.abs()).powi(2) } else { room };
-            assert!((here - there).abs() < room + 0.01 * here.abs(), "{} of {}: {here} and {there}", key, place["says"]);
+            // A ratio is given to simulated over measured: room for its reciprocal grows with its
+            // square.
+            let room = if place["unit"] == "-" && key != "share_of_gap" {
+                room * (1.0 + here.abs()).powi(2)
+            } else {
+                room
+            };
+            assert!(
+                (here - there).abs() < room + 0.01 * here.abs(),
+                "{} of {}: {here} and {there}",
+                key,
+                place["says"]
+            );
         }
     }
 }
@@ -225,8 +310,9 @@ fn an_irrelevant_effect_changes_nothing() {
     same(&answer(&campaign, &more), 1e-9);
 }
 
-/// A catalogue with the same effect under two names: no data can tell them apart, both are told as possible, and what would settle either
-/// of them. (One of them is simulated at its own size, the other interpolated: a little is between them.)
+/// A catalogue with the same effect under two names: no data can tell them apart, both are told as
+/// possible, and what would settle either of them. (One of them is simulated at its own size, the
+/// other interpolated: a little is between them.)
 #[test]
 fn one_effect_under_two_names_is_ambiguous() {
     let twin = format!(
@@ -239,14 +325,25 @@ fn one_effect_under_two_names_is_ambiguous() {
     assert_eq!(answer(&campaign, &twin).verdict, "ambiguous");
     let text = fs::read_to_string(campaign.with_extension("few").join("diagnosis.json")).unwrap();
     let found: Value = serde_json::from_str(&text).unwrap();
-    let possible = || found["causes"].as_array().unwrap().iter().filter(|cause| cause["in_ambiguity_set"] == true);
-    let mut names: Vec<&str> = possible().map(|cause| cause["effects"][0]["name"].as_str().unwrap()).collect();
+    let possible = || {
+        found["causes"].as_array().unwrap().iter().filter(|cause| cause["in_ambiguity_set"] == true)
+    };
+    let mut names: Vec<&str> =
+        possible().map(|cause| cause["effects"][0]["name"].as_str().unwrap()).collect();
     names.sort_unstable();
     assert_eq!(names, ["friction", "greased_rail"]);
-    let chances: Vec<f64> = possible().map(|cause| cause["probability"].as_f64().unwrap()).collect();
-    assert!(chances.iter().all(|chance| *chance > 0.2) && chances.iter().sum::<f64>() > 0.9, "{chances:?}");
+    let chances: Vec<f64> =
+        possible().map(|cause| cause["probability"].as_f64().unwrap()).collect();
+    assert!(
+        chances.iter().all(|chance| *chance > 0.2) && chances.iter().sum::<f64>() > 0.9,
+        "{chances:?}"
+    );
     let measure = found["discriminating_measurement"].as_str().unwrap();
-    for settles in ["tribometer measurements on the rail head", "a wipe of the rail head", "would then differ by"] {
+    for settles in [
+        "tribometer measurements on the rail head",
+        "a wipe of the rail head",
+        "would then differ by",
+    ] {
         assert!(measure.contains(settles), "{measure}");
     }
     // Neither is ruled out as the whole cause.

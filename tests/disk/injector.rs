@@ -54,7 +54,10 @@ impl Faults for Injector {
         }
         match self.mode {
             Mode::Once if now => return fails(ErrorKind::Other),
-            Mode::Full if after && matches!(call.op, Op::Create | Op::Write | Op::MakeFolder | Op::Scratch) => {
+            Mode::Full
+                if after
+                    && matches!(call.op, Op::Create | Op::Write | Op::MakeFolder | Op::Scratch) =>
+            {
                 return fails(ErrorKind::StorageFull);
             }
             Mode::Killed if now && call.op == Op::Write => {
@@ -71,7 +74,11 @@ impl Faults for Injector {
             (Op::Rename, Some(to)) => {
                 for path in &mut state.loose {
                     if let Ok(rest) = path.strip_prefix(call.path) {
-                        *path = if rest.as_os_str().is_empty() { to.to_path_buf() } else { to.join(rest) };
+                        *path = if rest.as_os_str().is_empty() {
+                            to.to_path_buf()
+                        } else {
+                            to.join(rest)
+                        };
                     }
                 }
             }
@@ -107,23 +114,41 @@ pub fn with_fault<T>(at: usize, mode: Mode, run: impl FnOnce() -> T) -> Run<T> {
             }
         }
     }
-    Run { gave, hit: state.hit, what: std::mem::take(&mut state.what), ops: std::mem::take(&mut state.ops) }
+    Run {
+        gave,
+        hit: state.hit,
+        what: std::mem::take(&mut state.what),
+        ops: std::mem::take(&mut state.ops),
+    }
 }
 
 /// Files below a folder with their bytes, by path; what is on its way to its place is left out.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     crate::program::files(folder)
         .iter()
-        .map(|path| (path.strip_prefix(folder).expect("below").to_string_lossy().into_owned(), path))
-        .filter(|(name, _)| !name.contains(".fishplate-new") && !name.contains(".fishplate-unfinished") && !name.ends_with(".tmp"))
+        .map(|path| {
+            (path.strip_prefix(folder).expect("below").to_string_lossy().into_owned(), path)
+        })
+        .filter(|(name, _)| {
+            !name.contains(".fishplate-new")
+                && !name.contains(".fishplate-unfinished")
+                && !name.ends_with(".tmp")
+        })
         .map(|(name, path)| (name, fs::read(path).expect("readable")))
         .collect()
 }
 
 /// Whether names show that something is on its way.
 pub fn leftovers(folder: &Path) -> Vec<PathBuf> {
-    let on_its_way =
-        |path: &&PathBuf| [".fishplate-new", ".fishplate-unfinished", ".tmp"].iter().any(|name| path.to_string_lossy().contains(name));
+    let on_its_way = |path: &&PathBuf| {
+        [".fishplate-new", ".fishplate-unfinished", ".tmp"]
+            .iter()
+            .any(|name| path.to_string_lossy().contains(name))
+    };
     let all = crate::program::files(folder);
-    all.iter().filter_map(|path| path.strip_prefix(folder).ok()).map(Path::to_path_buf).filter(|path| on_its_way(&path)).collect()
+    all.iter()
+        .filter_map(|path| path.strip_prefix(folder).ok())
+        .map(Path::to_path_buf)
+        .filter(|path| on_its_way(&path))
+        .collect()
 }

@@ -1,6 +1,6 @@
-//! Every operation on the disk fails once, or is the last one before the program ends: what is left is what was there
-//! before, whole, or what was asked for, whole; or it is told. In the manner of SQLite ("How SQLite Is Tested", 3.2 and
-//! 3.3: I/O error and crash testing).
+//! Every operation on the disk fails once, or is the last one before the program ends: what is left
+//! is what was there before, whole, or what was asked for, whole; or it is told. In the manner of
+//! SQLite ("How SQLite Is Tested", 3.2 and 3.3: I/O error and crash testing).
 
 #[path = "../common/campaign.rs"]
 mod campaign;
@@ -13,8 +13,8 @@ mod sets;
 
 use std::process::Command;
 
-/// Runs the rest of a test in a process of its own: a fault holds for the whole process, and messages of runs that are meant to fail
-/// need not be seen. In that process it is true.
+/// Runs the rest of a test in a process of its own: a fault holds for the whole process, and
+/// messages of runs that are meant to fail need not be seen. In that process it is true.
 fn alone(test: &str) -> bool {
     const SET: &str = "FISHPLATE_TEST_ALONE";
     if std::env::var_os(SET).is_some() {
@@ -32,7 +32,11 @@ fn alone(test: &str) -> bool {
         .expect("it starts");
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     let (said, told) = (text(&ran.stdout), text(&ran.stderr));
-    assert!(said.contains("1 passed") && ran.status.success(), "{said}\n{}", &told[told.len().saturating_sub(4000)..]);
+    assert!(
+        said.contains("1 passed") && ran.status.success(),
+        "{said}\n{}",
+        &told[told.len().saturating_sub(4000)..]
+    );
     told.lines().filter(|line| line.contains("points")).for_each(|line| eprintln!("{line}"));
     false
 }

@@ -11,8 +11,14 @@ use crate::injector::{MODES, Mode, files, leftovers, with_fault};
 
 type Files = BTreeMap<String, Vec<u8>>;
 
-const OLD: [(&str, &str); 4] = [("results.json", "old"), ("report.pdf", "old verdict"), ("tables/a.csv", "1"), ("only-old/x", "2")];
-const NEW: [(&str, &str); 3] = [("results.json", "new"), ("tables/a.csv", "3"), ("tables/b.csv", "4")];
+const OLD: [(&str, &str); 4] = [
+    ("results.json", "old"),
+    ("report.pdf", "old verdict"),
+    ("tables/a.csv", "1"),
+    ("only-old/x", "2"),
+];
+const NEW: [(&str, &str); 3] =
+    [("results.json", "new"), ("tables/a.csv", "3"), ("tables/b.csv", "4")];
 
 fn commit(folder: &Path, set: &[(&str, &str)]) -> std::io::Result<bool> {
     let mut outputs = Set::new(folder, SetKind::Report);
@@ -45,10 +51,24 @@ fn after(there: bool) -> Files {
 fn the_new_set_takes_the_place_of_the_old_one() {
     let new = after(true);
     let names: Vec<&str> = new.keys().map(String::as_str).collect();
-    assert_eq!(names, [".fishplate-report.sha256", "results.json", "tables/a.csv", "tables/b.csv", "tables/mine.csv"]);
+    assert_eq!(
+        names,
+        [
+            ".fishplate-report.sha256",
+            "results.json",
+            "tables/a.csv",
+            "tables/b.csv",
+            "tables/mine.csv"
+        ]
+    );
     let list = String::from_utf8_lossy(&new[".fishplate-report.sha256"]).into_owned();
     // SHA-256 of "new", as `sha256sum` prints it.
-    assert!(list.starts_with("11507a0e2f5e69d5dfa40a62a1bd7b6ee57e6bcd85c67c9b8431b36fff21c437  results.json\n"), "{list}");
+    assert!(
+        list.starts_with(
+            "11507a0e2f5e69d5dfa40a62a1bd7b6ee57e6bcd85c67c9b8431b36fff21c437  results.json\n"
+        ),
+        "{list}"
+    );
 }
 
 #[test]
@@ -59,7 +79,9 @@ fn a_set_of_another_kind_stays() {
     campaign.commit().expect("committed");
     commit(temp.path(), &OLD).expect("committed");
     commit(temp.path(), &NEW).expect("committed");
-    assert!(temp.path().join("campaign.yaml").is_file() && !temp.path().join("report.pdf").exists());
+    assert!(
+        temp.path().join("campaign.yaml").is_file() && !temp.path().join("report.pdf").exists()
+    );
 }
 
 /// The list lies where anybody may write.
@@ -73,7 +95,10 @@ fn a_list_cannot_remove_what_lies_elsewhere() {
     fs::create_dir(temp.path().join("elsewhere")).expect("made");
     fs::write(temp.path().join("elsewhere/x"), "1").expect("written");
     std::os::unix::fs::symlink(temp.path().join("elsewhere"), folder.join("link")).expect("linked");
-    let list = format!("x  ../precious\nx  link/x\nx  {}\nx  only-old/x\n", temp.path().join("precious").display());
+    let list = format!(
+        "x  ../precious\nx  link/x\nx  {}\nx  only-old/x\n",
+        temp.path().join("precious").display()
+    );
     fs::write(folder.join(".fishplate-report.sha256"), list).expect("written");
     commit(&folder, &NEW).expect("committed");
     assert!(temp.path().join("precious").is_file() && temp.path().join("elsewhere/x").is_file());
@@ -121,7 +146,11 @@ fn old_or_new_whole_at_every_operation() {
                 // Whatever is left, the next run is not hindered by it.
                 commit(&folder, &NEW).unwrap_or_else(|error| panic!("{what}: {error}"));
                 let mut next = new.clone();
-                next.extend(old.iter().filter(|(name, _)| name.ends_with("mine.csv")).map(|(name, bytes)| (name.clone(), bytes.clone())));
+                next.extend(
+                    old.iter()
+                        .filter(|(name, _)| name.ends_with("mine.csv"))
+                        .map(|(name, bytes)| (name.clone(), bytes.clone())),
+                );
                 assert_eq!(files(&folder), next, "{what}");
                 assert!(leftovers(&folder).is_empty(), "{what}");
             }
@@ -131,7 +160,8 @@ fn old_or_new_whole_at_every_operation() {
     assert!(points > 300);
 }
 
-/// After the program ended: all of one set, or a part of one set and none of the other, which the next run finishes.
+/// After the program ended: all of one set, or a part of one set and none of the other, which the
+/// next run finishes.
 fn mended(folder: &Path, found: &Files, old: &Files, new: &Files, what: &str) {
     if found == old || found == new {
         return;
@@ -140,7 +170,8 @@ fn mended(folder: &Path, found: &Files, old: &Files, new: &Files, what: &str) {
     assert!(within(old) || within(new), "mixed: {what}");
     if folder.join(".fishplate-unfinished").is_dir() {
         // Another set, so that it is seen which one the mending put there before.
-        let again = commit(folder, &[("other", "5")]).unwrap_or_else(|error| panic!("{what}: {error}"));
+        let again =
+            commit(folder, &[("other", "5")]).unwrap_or_else(|error| panic!("{what}: {error}"));
         assert!(again, "it is told: {what}");
         assert!(!folder.join("results.json").exists(), "{what}");
     } else {

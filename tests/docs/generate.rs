@@ -19,7 +19,12 @@ use serde_json::Value;
 /// The part of a name such as `block quantity` or `registry step`.
 pub fn part(name: &str) -> String {
     match name.split_once(' ').unwrap_or((name, "")) {
-        ("block", word) => block(KINDS.iter().find(|kind| part_of(kind) == word).unwrap_or_else(|| panic!("no block `{word}`"))),
+        ("block", word) => block(
+            KINDS
+                .iter()
+                .find(|kind| part_of(kind) == word)
+                .unwrap_or_else(|| panic!("no block `{word}`")),
+        ),
         ("blocks", "") => blocks(),
         ("registry", "step") => steps(),
         ("registry", kind) => registry(kind),
@@ -35,26 +40,38 @@ pub fn part(name: &str) -> String {
 
 /// Parts that some page must have, so that nothing new in the tables stays undescribed.
 pub fn wanted() -> Vec<String> {
-    let mut all: Vec<String> = KINDS.iter().map(|kind| format!("block {}", part_of(kind))).collect();
+    let mut all: Vec<String> =
+        KINDS.iter().map(|kind| format!("block {}", part_of(kind))).collect();
     for entry in catalog::entries() {
         let name = format!("registry {}", entry.kind);
         if !all.contains(&name) {
             all.push(name);
         }
     }
-    all.extend(["blocks", "units", "percentile rules", "protocols", "commands", "results.json"].map(str::to_string));
+    all.extend(
+        ["blocks", "units", "percentile rules", "protocols", "commands", "results.json"]
+            .map(str::to_string),
+    );
     all.extend(Acts::ALL.map(|acts| format!("effects {}", acts.in_words())));
     all
 }
 
 /// A block is called by its word; the second kind of a word by what it is in YAML.
 fn part_of(kind: &Kind) -> &'static str {
-    let first = KINDS.iter().find(|known| known.word == kind.word).is_some_and(|known| known.group == kind.group);
+    let first = KINDS
+        .iter()
+        .find(|known| known.word == kind.word)
+        .is_some_and(|known| known.group == kind.group);
     if first { kind.word } else { kind.group }
 }
 
 fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
-    let line = |cells: &[String]| format!("| {} |\n", cells.iter().map(|cell| cell.replace('|', "\\|")).collect::<Vec<_>>().join(" | "));
+    let line = |cells: &[String]| {
+        format!(
+            "| {} |\n",
+            cells.iter().map(|cell| cell.replace('|', "\\|")).collect::<Vec<_>>().join(" | ")
+        )
+    };
     let header: Vec<String> = header.iter().map(|cell| (*cell).to_string()).collect();
     let rule = format!("|{}\n", "---|".repeat(header.len()));
     let rows: String = rows.into_iter().map(|row| line(&row)).collect();
@@ -66,7 +83,9 @@ fn code(text: &str) -> String {
 }
 
 fn blocks() -> String {
-    let head = |kind: &Kind| if kind.named { format!("{} *name*", code(kind.word)) } else { code(kind.word) };
+    let head = |kind: &Kind| {
+        if kind.named { format!("{} *name*", code(kind.word)) } else { code(kind.word) }
+    };
     let count = |kind: &Kind| if kind.single { "one" } else { "any number" }.to_string();
     table(
         &["block", "in YAML", "how many", "what it is"],
@@ -76,9 +95,16 @@ fn blocks() -> String {
 
 fn block(kind: &Kind) -> String {
     let rows = kind.keys.iter().map(|key| {
-        let example =
-            if key.sort == Sort::Text { format!("{} \"{}\"", key.word, key.example) } else { format!("{} {}", key.word, key.example) };
-        let about = if key.many { format!("{} May be repeated.", key.about) } else { key.about.to_string() };
+        let example = if key.sort == Sort::Text {
+            format!("{} \"{}\"", key.word, key.example)
+        } else {
+            format!("{} {}", key.word, key.example)
+        };
+        let about = if key.many {
+            format!("{} May be repeated.", key.about)
+        } else {
+            key.about.to_string()
+        };
         vec![code(key.word), about, code(&example)]
     });
     format!("\n{}\n{}", kind.about, table(&["field", "what it says", "for example"], rows))
@@ -87,18 +113,30 @@ fn block(kind: &Kind) -> String {
 fn steps() -> String {
     let rows = STEPS.iter().map(|entry| {
         let numbers = entry.form.numbers.iter().map(|option| {
-            let unless = option.default.map_or_else(String::new, |default| format!(" (unless said: {default})"));
+            let unless = option
+                .default
+                .map_or_else(String::new, |default| format!(" (unless said: {default})"));
             format!("{}{unless}", code(&format!("{} …", option.name)))
         });
-        let choices = entry.form.choices.iter().map(|choice| choice.words.iter().map(|word| code(word)).collect::<Vec<_>>().join(" or "));
-        vec![code(&entry.form.in_words()), entry.about.to_string(), numbers.chain(choices).collect::<Vec<_>>().join("; ")]
+        let choices = entry.form.choices.iter().map(|choice| {
+            choice.words.iter().map(|word| code(word)).collect::<Vec<_>>().join(" or ")
+        });
+        vec![
+            code(&entry.form.in_words()),
+            entry.about.to_string(),
+            numbers.chain(choices).collect::<Vec<_>>().join("; "),
+        ]
     });
     let mut seen = Vec::new();
     let mut notes = String::new();
     for choice in STEPS.iter().flat_map(|entry| entry.form.choices) {
         if !seen.contains(&choice.words) {
             seen.push(choice.words);
-            notes += &format!("- {}: {}\n", choice.words.iter().map(|word| code(word)).collect::<Vec<_>>().join(", "), choice.about);
+            notes += &format!(
+                "- {}: {}\n",
+                choice.words.iter().map(|word| code(word)).collect::<Vec<_>>().join(", "),
+                choice.about
+            );
         }
     }
     format!(
@@ -108,13 +146,16 @@ fn steps() -> String {
 }
 
 fn registry(kind: &str) -> String {
-    let entries: Vec<_> = catalog::entries().into_iter().filter(|entry| entry.kind == kind).collect();
+    let entries: Vec<_> =
+        catalog::entries().into_iter().filter(|entry| entry.kind == kind).collect();
     assert!(!entries.is_empty(), "nothing in the registry is a {kind}");
     let sourced = entries.iter().any(|entry| entry.source.is_some());
     let directed = entries.iter().any(|entry| entry.best.is_some());
     let rows = entries.iter().map(|entry| {
-        let options: String = entry.options.iter().map(|option| format!(" Option: {option}.")).collect();
-        let mut row = vec![code(&entry.wording), code(entry.signature), format!("{}{options}", entry.about)];
+        let options: String =
+            entry.options.iter().map(|option| format!(" Option: {option}.")).collect();
+        let mut row =
+            vec![code(&entry.wording), code(entry.signature), format!("{}{options}", entry.about)];
         if directed {
             row.push(entry.best.clone().unwrap_or_else(|| "that of its values".into()));
         }
@@ -139,7 +180,8 @@ fn units() -> String {
     }
     let rows = dimensions.into_iter().map(|dimension| {
         let of = SYMBOLS.iter().filter(|symbol| symbol.dimension == dimension);
-        let symbols: Vec<String> = of.map(|symbol| format!("{} {}", code(symbol.symbol), symbol.name)).collect();
+        let symbols: Vec<String> =
+            of.map(|symbol| format!("{} {}", code(symbol.symbol), symbol.name)).collect();
         vec![dimension.in_words(), dimension.to_string(), symbols.join(", ")]
     });
     table(&["measures", "in SI base units", "symbols"], rows)
@@ -152,8 +194,13 @@ fn percentile_rules() -> String {
 
 fn protocols() -> String {
     let rows = SHIPPED.iter().map(|shipped| {
-        let document = read_text(&Source::new(shipped.name, shipped.text), &mut Problems::default());
-        let head = document.blocks.iter().find(|block| block.kind.text == "protocol").expect("a protocol says what it is");
+        let document =
+            read_text(&Source::new(shipped.name, shipped.text), &mut Problems::default());
+        let head = document
+            .blocks
+            .iter()
+            .find(|block| block.kind.text == "protocol")
+            .expect("a protocol says what it is");
         let title = head.title.as_ref().map_or(String::new(), |title| title.text.clone());
         vec![format!("[`{0}`](protocols/{0}.fp)", shipped.name), title]
     });
@@ -164,14 +211,28 @@ fn protocols() -> String {
 fn effects(acts: &str) -> String {
     let shipped = &CATALOGUES[0];
     let source = Source::new(shipped.name, shipped.text);
-    let catalogue = fishplate::effects::read(&source, &parent_catalogue, &model_parameters(), &mut Problems::default());
-    let parameter = |one: &Parameter| format!("{} {} to {}{}", code(&one.name), one.low, one.high, one.unit.suffix());
+    let catalogue = fishplate::effects::read(
+        &source,
+        &parent_catalogue,
+        &model_parameters(),
+        &mut Problems::default(),
+    );
+    let parameter = |one: &Parameter| {
+        format!("{} {} to {}{}", code(&one.name), one.low, one.high, one.unit.suffix())
+    };
     let row = |effect: &Effect| {
         let parameters: Vec<String> = effect.parameters.iter().map(parameter).collect();
-        vec![code(&effect.name), format!("{}: {}", effect.title, effect.means), parameters.join(", ")]
+        vec![
+            code(&effect.name),
+            format!("{}: {}", effect.title, effect.means),
+            parameters.join(", "),
+        ]
     };
     let found = catalogue.expect("right").effects;
-    table(&["effect", "what it is", "parameters"], found.iter().filter(|effect| effect.acts.in_words() == acts).map(row))
+    table(
+        &["effect", "what it is", "parameters"],
+        found.iter().filter(|effect| effect.acts.in_words() == acts).map(row),
+    )
 }
 
 fn commands() -> String {
@@ -192,10 +253,14 @@ fn commands() -> String {
             })
             .collect();
         let options = sub.get_opts().filter(|option| option.is_required_set()).map(|option| {
-            let name = option.get_value_names().and_then(|names| names.first()).map_or_else(String::new, ToString::to_string);
+            let name = option
+                .get_value_names()
+                .and_then(|names| names.first())
+                .map_or_else(String::new, ToString::to_string);
             format!("--{} {name}", option.get_long().unwrap_or_default())
         });
-        let words: Vec<String> = std::iter::once(sub.get_name().to_string()).chain(arguments).chain(options).collect();
+        let words: Vec<String> =
+            std::iter::once(sub.get_name().to_string()).chain(arguments).chain(options).collect();
         vec![code(&words.join(" ")), about]
     });
     table(&["command", "does"], rows)
@@ -261,7 +326,11 @@ fn keys(value: &Value, depth: usize, out: &mut String) {
         };
         let sort = if sort == "keys" { String::new() } else { sort.to_string() };
         let says = format!("{what} {sort}").trim().to_string();
-        let says = if says.is_empty() { String::new() } else { format!(": {}", says.trim_end_matches(" of")) };
+        let says = if says.is_empty() {
+            String::new()
+        } else {
+            format!(": {}", says.trim_end_matches(" of"))
+        };
         out.push_str(&format!("{}{key}{says}\n", "  ".repeat(depth)));
         if let Some(inner @ Value::Object(_)) = inner {
             keys(inner, depth + 1, out);

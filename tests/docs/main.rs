@@ -1,7 +1,8 @@
-//! The documentation says what is so: generated parts are current, protocols check, commands print what is shown, tests and
-//! links that are named exist.
+//! The documentation says what is so: generated parts are current, protocols check, commands print
+//! what is shown, tests and links that are named exist.
 //!
-//! `UPDATE_EXPECT=1 cargo test --release --test docs` rewrites the generated parts and the problems of what fails.
+//! `UPDATE_EXPECT=1 cargo test --release --test docs` rewrites the generated parts and the problems
+//! of what fails.
 //!
 //! Code blocks say by the words after the fence what they are:
 //!
@@ -47,7 +48,11 @@ fn made_parts_are_current() {
             fs::write(&page.path, anew).expect("a writable page");
         } else {
             let differs = page.text.lines().zip(anew.lines()).find(|(old, new)| old != new);
-            assert!(anew == page.text, "{}: run with UPDATE_EXPECT=1; first difference: {differs:#?}", page.name());
+            assert!(
+                anew == page.text,
+                "{}: run with UPDATE_EXPECT=1; first difference: {differs:#?}",
+                page.name()
+            );
         }
     }
     assert!(faults > 3, "{faults} faults are shown");
@@ -56,7 +61,8 @@ fn made_parts_are_current() {
 #[test]
 fn everything_in_the_tables_is_described() {
     let there: Vec<String> = pages().iter().flat_map(Page::generated).collect();
-    let missing: Vec<String> = generate::wanted().into_iter().filter(|part| !there.contains(part)).collect();
+    let missing: Vec<String> =
+        generate::wanted().into_iter().filter(|part| !there.contains(part)).collect();
     assert!(missing.is_empty(), "on no page: {missing:?}");
 }
 
@@ -89,7 +95,11 @@ fn protocols_check() {
     for page in pages() {
         for block in page.blocks().iter().filter(|block| is_fp(block)) {
             let at = format!("{}, line {}", page.name(), block.line);
-            let info: Vec<&str> = block.info[1..].iter().map(String::as_str).filter(|word| !word.starts_with("file=")).collect();
+            let info: Vec<&str> = block.info[1..]
+                .iter()
+                .map(String::as_str)
+                .filter(|word| !word.starts_with("file="))
+                .collect();
             let text = match info.as_slice() {
                 ["fails"] => continue,
                 ["from", path] => {
@@ -97,8 +107,14 @@ fn protocols_check() {
                     continue;
                 }
                 [] if is_protocol(&block.text) => block.text.clone(),
-                [] => format!("protocol snippet \"Snippet\"\n  extends {}\n\n{}", library::SHIPPED[0].name, block.text),
-                ["extends", name] => format!("protocol snippet \"Snippet\"\n  extends {name}\n\n{}", block.text),
+                [] => format!(
+                    "protocol snippet \"Snippet\"\n  extends {}\n\n{}",
+                    library::SHIPPED[0].name,
+                    block.text
+                ),
+                ["extends", name] => {
+                    format!("protocol snippet \"Snippet\"\n  extends {name}\n\n{}", block.text)
+                }
                 other => panic!("{at}: what is {other:?}?"),
             };
             let problems = problems_of("snippet.fp", &text);
@@ -112,8 +128,12 @@ fn protocols_check() {
 /// The steps of the guide, one after the other, are the file with which its commands run.
 #[test]
 fn the_guide_is_one_file() {
-    let guide = pages().into_iter().find(|page| page.name().ends_with("write-your-own.md")).expect("the guide");
-    let (whole, steps): (Vec<Block>, Vec<Block>) = guide.blocks().into_iter().filter(is_fp).partition(|block| file_of(block).is_some());
+    let guide = pages()
+        .into_iter()
+        .find(|page| page.name().ends_with("write-your-own.md"))
+        .expect("the guide");
+    let (whole, steps): (Vec<Block>, Vec<Block>) =
+        guide.blocks().into_iter().filter(is_fp).partition(|block| file_of(block).is_some());
     let steps: Vec<String> = steps.into_iter().map(|block| block.text).collect();
     assert_eq!((whole.len(), steps.len()), (1, 5));
     assert_eq!(whole[0].text, steps.join("\n"));
@@ -127,7 +147,8 @@ fn excerpt(at: &str, text: &str, path: &str) {
     }
 }
 
-/// Where commands of a page run: a folder with the examples and protocols of the repository and the files of the page.
+/// Where commands of a page run: a folder with the examples and protocols of the repository and the
+/// files of the page.
 fn workplace(page: &Page) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a temporary folder");
     fs::create_dir(folder.path().join("target")).expect("made");
@@ -158,8 +179,11 @@ fn copy(from: &Path, to: &Path) {
 fn commands_print_what_is_shown() {
     let mut count = 0;
     for page in pages() {
-        let blocks: Vec<Block> =
-            page.blocks().into_iter().filter(|block| block.info.first().is_some_and(|word| word == "console")).collect();
+        let blocks: Vec<Block> = page
+            .blocks()
+            .into_iter()
+            .filter(|block| block.info.first().is_some_and(|word| word == "console"))
+            .collect();
         if blocks.is_empty() {
             continue;
         }
@@ -179,7 +203,8 @@ fn console(page: &Page, block: &Block, folder: &Path) -> usize {
     for part in shown.split("\n$ ").skip(1) {
         let (line, expected) = part.split_once('\n').unwrap_or((part, ""));
         let at = format!("{}, line {}: {line}", page.name(), block.line);
-        let found = if line == "echo $?" { format!("{code}\n") } else { run(line, folder, &mut code, &at) };
+        let found =
+            if line == "echo $?" { format!("{code}\n") } else { run(line, folder, &mut code, &at) };
         assert!(code <= 2, "{at}: {found}");
         assert!(matches(&found, expected), "{at}\nprints:\n{found}\nshown:\n{expected}");
         count += 1;
@@ -202,7 +227,8 @@ fn words(line: &str) -> Vec<String> {
 /// Runs the program as a line of a shell would; what it prints, errors last.
 fn run(line: &str, folder: &Path, code: &mut i32, at: &str) -> String {
     let line = line.replace("cargo run --release -- ", "fishplate ");
-    let (line, to) = line.split_once(" > ").map_or((line.as_str(), None), |(line, to)| (line, Some(to)));
+    let (line, to) =
+        line.split_once(" > ").map_or((line.as_str(), None), |(line, to)| (line, Some(to)));
     let mut words = words(line).into_iter();
     assert_eq!(words.next().as_deref(), Some("fishplate"), "{at}: only the program itself is run");
     let mut command = Command::new(env!("CARGO_BIN_EXE_fishplate"));
@@ -210,7 +236,9 @@ fn run(line: &str, folder: &Path, code: &mut i32, at: &str) -> String {
     // A page may call the program by its name in a file of its own.
     let program = Path::new(env!("CARGO_BIN_EXE_fishplate")).parent().expect("a folder");
     let others = std::env::var_os("PATH").unwrap_or_default();
-    let path = std::env::join_paths(std::iter::once(program.to_path_buf()).chain(std::env::split_paths(&others)));
+    let path = std::env::join_paths(
+        std::iter::once(program.to_path_buf()).chain(std::env::split_paths(&others)),
+    );
     command.env("PATH", path.expect("folders without separators"));
     if line.contains(" certify ") && !line.contains("--only") {
         command.args(["--only", "results"]);
@@ -237,7 +265,9 @@ fn matches(found: &str, shown: &str) -> bool {
     let mut parts: Vec<&[&str]> = parts.collect();
     let Some(last) = parts.pop() else { return rest.is_empty() };
     for part in parts {
-        let Some(place) = (0..=rest.len()).find(|&place| rest[place..].starts_with(part)) else { return false };
+        let Some(place) = (0..=rest.len()).find(|&place| rest[place..].starts_with(part)) else {
+            return false;
+        };
         rest = &rest[place + part.len()..];
     }
     rest.ends_with(last)
@@ -245,8 +275,16 @@ fn matches(found: &str, shown: &str) -> bool {
 
 #[test]
 fn elisions_stand_for_any_lines() {
-    assert!(matches("a\nb\nc\nd\n", "a\n...\nd\n") && matches("a\nb\n", "a\nb\n") && matches("a\nb\n", "a\n...\n"));
-    assert!(!matches("a\nb\n", "a\n") && !matches("a\nb\nc\n", "...\nb\n") && matches("a\nb\nc\n", "...\nb\n...\n"));
+    assert!(
+        matches("a\nb\nc\nd\n", "a\n...\nd\n")
+            && matches("a\nb\n", "a\nb\n")
+            && matches("a\nb\n", "a\n...\n")
+    );
+    assert!(
+        !matches("a\nb\n", "a\n")
+            && !matches("a\nb\nc\n", "...\nb\n")
+            && matches("a\nb\nc\n", "...\nb\n...\n")
+    );
 }
 
 /// `tests/metrics/filter.rs::agrees_with_scipy` names a test.
@@ -254,9 +292,12 @@ fn elisions_stand_for_any_lines() {
 fn named_tests_exist() {
     let mut count = 0;
     for page in pages() {
-        for word in page.prose().split('`').filter(|word| word.contains(".rs::") && !word.contains(' ')) {
+        for word in
+            page.prose().split('`').filter(|word| word.contains(".rs::") && !word.contains(' '))
+        {
             let (file, test) = word.split_once("::").expect("a path and a name");
-            let text = fs::read_to_string(root().join(file)).unwrap_or_else(|_| panic!("{}: no file {file}", page.name()));
+            let text = fs::read_to_string(root().join(file))
+                .unwrap_or_else(|_| panic!("{}: no file {file}", page.name()));
             assert!(text.contains(&format!("fn {test}(")), "{}: no test {word}", page.name());
             count += 1;
         }
@@ -270,8 +311,10 @@ fn named_files_exist() {
     let mut count = 0;
     for page in pages() {
         let prose = page.prose();
-        let path =
-            |word: &&str| (word.ends_with(".rs") || word.ends_with(".pest") || word.ends_with('/')) && !word.contains([' ', ':', '*']);
+        let path = |word: &&str| {
+            (word.ends_with(".rs") || word.ends_with(".pest") || word.ends_with('/'))
+                && !word.contains([' ', ':', '*'])
+        };
         for word in prose.split('`').skip(1).step_by(2).filter(path) {
             let there = ["", "src"].iter().any(|folder| root().join(folder).join(word).exists());
             // A file named beside another of its folder stands without the folder.
@@ -290,8 +333,15 @@ fn links_lead_somewhere() {
             let (file, anchor) = link.split_once('#').unwrap_or((&link, ""));
             let path = if file.is_empty() { page.path.clone() } else { beside(&page.path, file) };
             assert!(path.exists(), "{}: {link}", page.name());
-            if let (false, Some(target)) = (anchor.is_empty(), pages.iter().find(|other| other.path == path)) {
-                assert!(target.anchors().iter().any(|known| known == anchor), "{}: {link}; there are {:?}", page.name(), target.anchors());
+            if let (false, Some(target)) =
+                (anchor.is_empty(), pages.iter().find(|other| other.path == path))
+            {
+                assert!(
+                    target.anchors().iter().any(|known| known == anchor),
+                    "{}: {link}; there are {:?}",
+                    page.name(),
+                    target.anchors()
+                );
             }
         }
     }
@@ -307,9 +357,15 @@ fn named_codes_exist() {
         let mut inside = false;
         for line in page.prose().lines() {
             inside = line.starts_with("| code |") || inside && line.starts_with('|');
-            if let (true, Some((codes, _))) = (inside, line.strip_prefix("| `").and_then(|rest| rest.split_once(" |"))) {
+            if let (true, Some((codes, _))) =
+                (inside, line.strip_prefix("| `").and_then(|rest| rest.split_once(" |")))
+            {
                 for code in codes.trim_end_matches('`').split("`, `") {
-                    assert!(sources.contains(&format!("\"{code}\"")), "{}: no problem has the code {code}", page.name());
+                    assert!(
+                        sources.contains(&format!("\"{code}\"")),
+                        "{}: no problem has the code {code}",
+                        page.name()
+                    );
                     count += 1;
                 }
             }

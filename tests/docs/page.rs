@@ -25,13 +25,18 @@ pub struct Block {
 
 /// The README and every page below `docs`.
 pub fn pages() -> Vec<Page> {
-    let mut paths: Vec<PathBuf> =
-        fs::read_dir(root().join("docs")).expect("a folder").map(|entry| entry.expect("readable").path()).collect();
+    let mut paths: Vec<PathBuf> = fs::read_dir(root().join("docs"))
+        .expect("a folder")
+        .map(|entry| entry.expect("readable").path())
+        .collect();
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "md"));
     paths.push(root().join("README.md"));
     paths.push(root().join("examples/README.md"));
     paths.sort();
-    paths.into_iter().map(|path| Page { text: fs::read_to_string(&path).expect("a readable page"), path }).collect()
+    paths
+        .into_iter()
+        .map(|path| Page { text: fs::read_to_string(&path).expect("a readable page"), path })
+        .collect()
 }
 
 impl Page {
@@ -48,7 +53,10 @@ impl Page {
             match (&mut open, fence) {
                 (None, Some(info)) => {
                     let info = info.split_whitespace().map(str::to_string).collect();
-                    open = Some((Block { info, text: String::new(), line: number + 1 }, line.len() - line.trim_start().len()));
+                    open = Some((
+                        Block { info, text: String::new(), line: number + 1 },
+                        line.len() - line.trim_start().len(),
+                    ));
                 }
                 (Some(_), Some("")) => blocks.extend(open.take().map(|(block, _)| block)),
                 (Some((block, indent)), _) => {
@@ -78,8 +86,12 @@ impl Page {
         let mut out = String::new();
         let mut rest = self.text.as_str();
         while let Some((before, after)) = rest.split_once("<!-- generated: ") {
-            let (name, after) = after.split_once(" -->\n").unwrap_or_else(|| panic!("{}: a mark does not end", self.name()));
-            let (_, after) = after.split_once("<!-- end -->").unwrap_or_else(|| panic!("{}: part `{name}` does not end", self.name()));
+            let (name, after) = after
+                .split_once(" -->\n")
+                .unwrap_or_else(|| panic!("{}: a mark does not end", self.name()));
+            let (_, after) = after
+                .split_once("<!-- end -->")
+                .unwrap_or_else(|| panic!("{}: part `{name}` does not end", self.name()));
             out += &format!("{before}<!-- generated: {name} -->\n{}<!-- end -->", part(name));
             rest = after;
         }
@@ -102,24 +114,44 @@ impl Page {
     }
 
     pub fn generated(&self) -> Vec<String> {
-        self.text.split("<!-- generated: ").skip(1).filter_map(|after| Some(after.split_once(" -->")?.0.to_string())).collect()
+        self.text
+            .split("<!-- generated: ")
+            .skip(1)
+            .filter_map(|after| Some(after.split_once(" -->")?.0.to_string()))
+            .collect()
     }
 
     /// Targets of links and images to files of the repository.
     pub fn links(&self) -> Vec<String> {
         let prose = self.prose();
-        let of_links = prose.split("](").skip(1).filter_map(|after| after.split_once(')')).map(|(target, _)| target);
-        let of_images = prose.split("src=\"").skip(1).filter_map(|after| after.split_once('"')).map(|(target, _)| target);
-        of_links.chain(of_images).filter(|target| !target.contains("://")).map(str::to_string).collect()
+        let of_links = prose
+            .split("](")
+            .skip(1)
+            .filter_map(|after| after.split_once(')'))
+            .map(|(target, _)| target);
+        let of_images = prose
+            .split("src=\"")
+            .skip(1)
+            .filter_map(|after| after.split_once('"'))
+            .map(|(target, _)| target);
+        of_links
+            .chain(of_images)
+            .filter(|target| !target.contains("://"))
+            .map(str::to_string)
+            .collect()
     }
 
     /// The anchors that headings have on the usual hosts.
     pub fn anchors(&self) -> Vec<String> {
         let headings = self.prose();
-        let headings = headings.lines().filter(|line| line.starts_with('#')).map(|line| line.trim_start_matches('#').trim().to_lowercase());
+        let headings = headings
+            .lines()
+            .filter(|line| line.starts_with('#'))
+            .map(|line| line.trim_start_matches('#').trim().to_lowercase());
         headings
             .map(|heading| {
-                let kept = heading.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+                let kept =
+                    heading.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
                 kept.map(|c| if c == ' ' { '-' } else { c }).collect()
             })
             .collect()

@@ -7,8 +7,8 @@ use super::{FILES, data, good};
 /// Gravity as in the unit `g` of accelerations.
 const G: f64 = 9.806_65;
 
-/// The channel of the original and the factor to its unit and sign; the forces of the left wheels are positive outward in the
-/// measurements.
+/// The channel of the original and the factor to its unit and sign; the forces of the left wheels
+/// are positive outward in the measurements.
 fn original(side: &str, channel: &Channel) -> Option<(String, f64)> {
     let name = channel.name.trim_start_matches("$R_");
     let parts: Vec<&str> = name.split(' ').collect();
@@ -34,7 +34,9 @@ fn original(side: &str, channel: &Channel) -> Option<(String, f64)> {
             "yss_plus_4" => ("ayb_II".into(), 1.0),
             name => {
                 let letters: Vec<char> = name.chars().collect();
-                let [force @ ('Y' | 'Q'), wheel @ ('1' | '2'), set] = letters[..] else { return None };
+                let [force @ ('Y' | 'Q'), wheel @ ('1' | '2'), set] = letters[..] else {
+                    return None;
+                };
                 (format!("{force}_{set}{}", if wheel == '1' { 'R' } else { 'L' }), 1.0)
             }
         },
@@ -49,14 +51,25 @@ fn original(side: &str, channel: &Channel) -> Option<(String, f64)> {
     Some((name, sign * factor))
 }
 
-/// Largest deviation of forces in kN, accelerations in m/s², times and distances, and the number of channels compared.
+/// Largest deviation of forces in kN, accelerations in m/s², times and distances, and the number of
+/// channels compared.
 fn deviations(file: &File, side: &str, original_file: &File) -> ([f64; 4], usize) {
     let mut largest = [0.0f64; 4];
     let mut count = 0;
-    for channel in file.tables.iter().filter(|table| table.name != "group 2").flat_map(|table| &table.channels) {
+    for channel in
+        file.tables.iter().filter(|table| table.name != "group 2").flat_map(|table| &table.channels)
+    {
         let Some((name, factor)) = original(side, channel) else { continue };
-        let wanted = original_file.tables[0].channels.iter().find(|channel| channel.name == name).expect("the original has it");
-        assert!(!channel.values.is_empty() && channel.values.len() <= wanted.values.len(), "{name}: {}", channel.values.len());
+        let wanted = original_file.tables[0]
+            .channels
+            .iter()
+            .find(|channel| channel.name == name)
+            .expect("the original has it");
+        assert!(
+            !channel.values.is_empty() && channel.values.len() <= wanted.values.len(),
+            "{name}: {}",
+            channel.values.len()
+        );
         let kind = match name.as_bytes()[0] {
             b'Y' | b'Q' => 0,
             b'a' => 1,
@@ -71,7 +84,8 @@ fn deviations(file: &File, side: &str, original_file: &File) -> ([f64; 4], usize
     (largest, count)
 }
 
-/// The forces are written with two decimals in kN, the accelerations with four; a single number has seven digits.
+/// The forces are written with two decimals in kN, the accelerations with four; a single number has
+/// seven digits.
 #[test]
 fn every_channel_is_that_of_the_original() {
     for (name, side) in FILES.into_iter().filter(|(name, _)| *name != "measurement.csv") {
@@ -82,7 +96,11 @@ fn every_channel_is_that_of_the_original() {
             "v73.mat" | "simpack.dat" => ([2e-14, 1e-15, 1e-12, 1e-12], 24),
             _ => ([0.0; 4], 24),
         };
-        let (found, count) = deviations(&good(name, &Options::default()), side, &good(&format!("{side}.csv"), &Options::default()));
+        let (found, count) = deviations(
+            &good(name, &Options::default()),
+            side,
+            &good(&format!("{side}.csv"), &Options::default()),
+        );
         for (found, limit) in found.into_iter().zip(limits) {
             assert!(found <= limit, "{name}: {found:?} is more than {limits:?}");
         }
@@ -93,16 +111,35 @@ fn every_channel_is_that_of_the_original() {
 #[test]
 fn groups_have_their_own_rates() {
     let file = good("groups.mf4", &Options::default());
-    let found: Vec<(&str, Option<i64>, usize)> =
-        file.tables.iter().map(|table| (table.name.as_str(), table.rate.map(|rate| rate.round() as i64), table.rows)).collect();
-    let comments: Vec<bool> =
-        file.tables.iter().map(|table| table.facts.iter().any(|(name, text)| name == "comment" && text.contains("Hz"))).collect();
+    let found: Vec<(&str, Option<i64>, usize)> = file
+        .tables
+        .iter()
+        .map(|table| (table.name.as_str(), table.rate.map(|rate| rate.round() as i64), table.rows))
+        .collect();
+    let comments: Vec<bool> = file
+        .tables
+        .iter()
+        .map(|table| {
+            table.facts.iter().any(|(name, text)| name == "comment" && text.contains("Hz"))
+        })
+        .collect();
     assert_eq!(found, [("group 1", Some(200), 200), ("group 2", Some(20), 20)]);
     assert_eq!(comments, [true, true]);
-    let speed = file.tables[1].channels.iter().find(|channel| channel.name == "v").expect("the speed");
+    let speed =
+        file.tables[1].channels.iter().find(|channel| channel.name == "v").expect("the speed");
     assert_eq!(speed.unit.as_deref(), Some("km/h"));
-    let rates = |name: &str| good(name, &Options::default()).tables[0].rate.map(|rate| (rate * 1e6).round() / 1e6);
-    for name in ["v5.mat", "group.tdms", "zstd.parquet", "book.xlsx", "windows.csv", "v73.mat", "simpack.dat"] {
+    let rates = |name: &str| {
+        good(name, &Options::default()).tables[0].rate.map(|rate| (rate * 1e6).round() / 1e6)
+    };
+    for name in [
+        "v5.mat",
+        "group.tdms",
+        "zstd.parquet",
+        "book.xlsx",
+        "windows.csv",
+        "v73.mat",
+        "simpack.dat",
+    ] {
         assert_eq!(rates(name), Some(200.0), "{name}");
     }
 }
@@ -111,13 +148,25 @@ fn groups_have_their_own_rates() {
 fn what_a_file_says_of_itself_is_kept() {
     let table = &good("v5.mat", &Options::default()).tables[0];
     assert_eq!(table.name, "S06");
-    assert!(table.facts.iter().any(|(name, value)| name == "x_start" && value.starts_with("109.")), "{:?}", table.facts);
+    assert!(
+        table.facts.iter().any(|(name, value)| name == "x_start" && value.starts_with("109.")),
+        "{:?}",
+        table.facts
+    );
     let facts = |name: &str| {
         let file = good(name, &Options::default());
-        file.facts.into_iter().chain(file.tables.into_iter().flat_map(|table| table.facts)).collect::<Vec<_>>()
+        file.facts
+            .into_iter()
+            .chain(file.tables.into_iter().flat_map(|table| table.facts))
+            .collect::<Vec<_>>()
     };
-    let has =
-        |name: &str, wanted: (&str, &str)| assert!(facts(name).contains(&(wanted.0.into(), wanted.1.into())), "{name}: {:?}", facts(name));
+    let has = |name: &str, wanted: (&str, &str)| {
+        assert!(
+            facts(name).contains(&(wanted.0.into(), wanted.1.into())),
+            "{name}: {:?}",
+            facts(name)
+        )
+    };
     has("zstd.parquet", ("section", "S06"));
     has("lz4.feather", ("section", "S06"));
     has("simpack.dat", ("Section", "S06"));
@@ -127,7 +176,8 @@ fn what_a_file_says_of_itself_is_kept() {
     has("windows.csv", ("encoding", "windows-1252"));
     has("windows.csv", ("separator", "`;`"));
     has("book.xlsx", ("sheet `Info`", "no rows of numbers"));
-    let sheets: Vec<String> = good("book.xlsx", &Options::default()).tables.into_iter().map(|table| table.name).collect();
+    let sheets: Vec<String> =
+        good("book.xlsx", &Options::default()).tables.into_iter().map(|table| table.name).collect();
     assert_eq!(sheets, ["S06"]);
 }
 
@@ -137,9 +187,16 @@ fn an_outline_has_the_same_channels() {
         let outline = outline(&data(name), name, &Options::default()).expect("an outline");
         let whole = good(name, &Options::default());
         let names = |file: &File| -> Vec<_> {
-            let channels =
-                |channels: &[Channel]| channels.iter().map(|channel| (channel.name.clone(), channel.unit.clone())).collect::<Vec<_>>();
-            file.tables.iter().map(|table| (table.name.clone(), table.rows, channels(&table.channels))).collect()
+            let channels = |channels: &[Channel]| {
+                channels
+                    .iter()
+                    .map(|channel| (channel.name.clone(), channel.unit.clone()))
+                    .collect::<Vec<_>>()
+            };
+            file.tables
+                .iter()
+                .map(|table| (table.name.clone(), table.rows, channels(&table.channels)))
+                .collect()
         };
         assert_eq!(names(&outline), names(&whole), "{name}");
     }

@@ -1,5 +1,5 @@
-//! Files that are cut off, mislabelled, empty, changed at random, or that declare or unpack to more than any memory: an error that says
-//! where, in bounded time and memory, never a panic.
+//! Files that are cut off, mislabelled, empty, changed at random, or that declare or unpack to more
+//! than any memory: an error that says where, in bounded time and memory, never a panic.
 
 use std::io::Write;
 use std::path::Path;
@@ -15,7 +15,8 @@ use super::{FILES, data, text};
 /// Longest time for a damaged file; an undamaged one takes some milliseconds.
 const LONGEST: Duration = Duration::from_secs(10);
 
-/// Files of three channels and eight rows: a change at random more often meets what is not a sample.
+/// Files of three channels and eight rows: a change at random more often meets what is not a
+/// sample.
 const SMALL: [&str; 11] = [
     "dz.mf4",
     "plain.mf4",
@@ -31,11 +32,16 @@ const SMALL: [&str; 11] = [
 ];
 
 fn small() -> impl Iterator<Item = (&'static str, Vec<u8>)> {
-    SMALL.into_iter().map(|name| (name, std::fs::read(data(&format!("small/{name}"))).expect("a file")))
+    SMALL
+        .into_iter()
+        .map(|name| (name, std::fs::read(data(&format!("small/{name}"))).expect("a file")))
 }
 
 fn binary() -> impl Iterator<Item = (&'static str, Vec<u8>)> {
-    let names = FILES.into_iter().map(|(name, _)| name).filter(|name| !name.ends_with("csv") && !name.ends_with("dat"));
+    let names = FILES
+        .into_iter()
+        .map(|(name, _)| name)
+        .filter(|name| !name.ends_with("csv") && !name.ends_with("dat"));
     names.map(|name| (name, std::fs::read(data(name)).expect("a file")))
 }
 
@@ -56,8 +62,14 @@ fn tried(path: &Path, name: &str, content: &[u8], what: &str) -> Option<&'static
         Err(problems) => {
             assert!(!problems.is_empty(), "{name}, {what}: refused without a word");
             let printed = Problems(problems.clone()).render(false);
-            assert!(problems[0].says.contains(name) || problems[0].at.is_some(), "{name}, {what}: {printed}");
-            assert!(!printed.contains(|c: char| c.is_control() && c != '\n'), "{name}, {what}: {printed:?}");
+            assert!(
+                problems[0].says.contains(name) || problems[0].at.is_some(),
+                "{name}, {what}: {printed}"
+            );
+            assert!(
+                !printed.contains(|c: char| c.is_control() && c != '\n'),
+                "{name}, {what}: {printed:?}"
+            );
             Some(problems[0].code)
         }
     }
@@ -82,14 +94,23 @@ fn a_file_that_is_cut_off_is_refused() {
         for part in 0..64 {
             let cut = &content[..content.len() * part / 64];
             let code = tried(&folder.file(name), name, cut, &format!("{part}/64"));
-            let expected = ["file-empty", "format-damaged", "format-mislabelled", "format-not-read"];
-            assert!(code.is_some_and(|code| expected.contains(&code)), "{name}, {part}/64: {code:?}");
+            let expected =
+                ["file-empty", "format-damaged", "format-mislabelled", "format-not-read"];
+            assert!(
+                code.is_some_and(|code| expected.contains(&code)),
+                "{name}, {part}/64: {code:?}"
+            );
         }
     }
     for name in ["windows.csv", "simpack.dat"] {
         let content = std::fs::read(data(name)).expect("a file");
         for part in 0..64 {
-            tried(&folder.file(name), name, &content[..content.len() * part / 64], &format!("{part}/64"));
+            tried(
+                &folder.file(name),
+                name,
+                &content[..content.len() * part / 64],
+                &format!("{part}/64"),
+            );
         }
     }
 }
@@ -104,11 +125,16 @@ fn a_wrong_label_is_told() {
             let said = Options { form: Some(form), ..Options::default() };
             match read(&path, "x", &said) {
                 Ok(file) => assert_eq!(file.format, form, "{name}"),
-                Err(problems) => assert_eq!(problems[0].code, "format-mislabelled", "{name} as {}", form.word()),
+                Err(problems) => {
+                    assert_eq!(problems[0].code, "format-mislabelled", "{name} as {}", form.word())
+                }
             }
         }
         assert_eq!(tried(&folder.file(name), name, b"", "empty"), Some("file-empty"));
-        assert_eq!(tried(&folder.file(name), name, b"t;y\n0;1\n1;2\n", "text"), Some("format-mislabelled"));
+        assert_eq!(
+            tried(&folder.file(name), name, b"t;y\n0;1\n1;2\n", "text"),
+            Some("format-mislabelled")
+        );
         assert!(tried(&folder.file(name), name, &[0; 4096], "zeros").is_some());
     }
 }
@@ -124,20 +150,25 @@ fn formats_that_are_not_read_name_an_export() {
         ("x.xlsb", b"PK\x03\x04\0\0\0xl/workbook.bin"),
         ("x.npz", b"PK\x03\x04\0\0\0arr_0.npy"),
         ("x.dat", b"DIAEXTENDED  {@:ENGLISH\n"),
-        ("x.tdm", b"<?xml version=\"1.0\"?>\n<usi:tdm xmlns:usi=\"http://www.ni.com/Schemas/USI/1_0\">"),
+        (
+            "x.tdm",
+            b"<?xml version=\"1.0\"?>\n<usi:tdm xmlns:usi=\"http://www.ni.com/Schemas/USI/1_0\">",
+        ),
         ("x.mat", b"\0\0\0\0\x03\0\0\0\x02\0\0\0\0\0\0\0\x02\0\0\0t\0"),
         ("x.feather", b"FEA1\0\0\0\0"),
         ("x.sbr", b"\x01\x02\x03\x04"),
         ("x.gz", b"\x1f\x8b\x08\0"),
         ("x.tdms_index", b"TDSh\x0e\0\0\0"),
     ] {
-        let problem: Problem = text(name, content, &Options::default()).expect_err("refused").remove(0);
+        let problem: Problem =
+            text(name, content, &Options::default()).expect_err("refused").remove(0);
         assert_eq!(problem.code, "format-not-read", "{name}: {}", problem.says);
         assert!(problem.help.is_some(), "{name}");
     }
 }
 
-/// Numbers that headers declare when they are damaged: every word of four bytes at both ends of each file is set to them.
+/// Numbers that headers declare when they are damaged: every word of four bytes at both ends of
+/// each file is set to them.
 const WORDS: [u32; 3] = [0x7fff_ffff, 0xffff_ffff, 0x0001_0000];
 /// Bytes at each end of a file that are tried: headers and footers.
 const ENDS: usize = 512;
@@ -151,7 +182,9 @@ fn damaged() {
     let folder = Folder::new();
     for (name, content) in small().chain(binary()) {
         let path = folder.file(name);
-        let places = (0..content.len() / 4).map(|word| word * 4).filter(|at| *at < ENDS || at + ENDS >= content.len());
+        let places = (0..content.len() / 4)
+            .map(|word| word * 4)
+            .filter(|at| *at < ENDS || at + ENDS >= content.len());
         for at in places {
             for word in WORDS {
                 let mut changed = content.clone();
@@ -164,7 +197,11 @@ fn damaged() {
             let mut changed = content.clone();
             for _ in 0..random.usize(1..12) {
                 let at = random.usize(..changed.len());
-                changed[at] = if random.bool() { random.u8(..) } else { [0, 1, 0x7f, 0x80, 0xff][random.usize(..5)] };
+                changed[at] = if random.bool() {
+                    random.u8(..)
+                } else {
+                    [0, 1, 0x7f, 0x80, 0xff][random.usize(..5)]
+                };
             }
             if random.u8(..8) == 0 {
                 let from = random.usize(..changed.len());
@@ -176,7 +213,8 @@ fn damaged() {
     }
 }
 
-/// Address space of the process that reads damaged files: the program, and what a file of this size may unpack to.
+/// Address space of the process that reads damaged files: the program, and what a file of this size
+/// may unpack to.
 #[cfg(target_os = "linux")]
 const MOST_MEMORY_KB: usize = 1 << 20;
 
@@ -185,11 +223,25 @@ const MOST_MEMORY_KB: usize = 1 << 20;
 #[test]
 fn damaged_files_are_read_in_bounded_memory() {
     let program = std::env::current_exe().expect("this program");
-    let limited = format!("ulimit -v {MOST_MEMORY_KB}; exec \"$0\" --exact damage::damaged --ignored --nocapture --test-threads 1");
-    let output = Command::new("sh").arg("-c").arg(limited).arg(program).env("RAYON_NUM_THREADS", "1").output().expect("run");
+    let limited = format!(
+        "ulimit -v {MOST_MEMORY_KB}; exec \"$0\" --exact damage::damaged --ignored --nocapture --test-threads 1"
+    );
+    let output = Command::new("sh")
+        .arg("-c")
+        .arg(limited)
+        .arg(program)
+        .env("RAYON_NUM_THREADS", "1")
+        .output()
+        .expect("run");
     let told = String::from_utf8_lossy(&output.stderr);
     let last: Vec<&str> = told.lines().rev().take(20).collect();
-    assert!(output.status.success(), "{:?}\n{}\n{}", output.status, last.join("\n"), String::from_utf8_lossy(&output.stdout));
+    assert!(
+        output.status.success(),
+        "{:?}\n{}\n{}",
+        output.status,
+        last.join("\n"),
+        String::from_utf8_lossy(&output.stdout)
+    );
 }
 
 /// Megabytes that a bomb unpacks to: more than what is accepted from a file of its size.
@@ -211,19 +263,30 @@ fn bombs_are_refused() {
     assert_eq!(tried(&folder.file("x.mat"), "x.mat", &mat, "bomb"), Some("too-many-values"));
 
     let mut book = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
-    let options = zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Deflated);
+    let options = zip::write::SimpleFileOptions::default()
+        .compression_method(zip::CompressionMethod::Deflated);
     book.start_file("xl/workbook.xml", options).expect("started");
     (0..BOMB).for_each(|_| book.write_all(&block).expect("written"));
     let book = book.finish().expect("finished").into_inner();
     assert_eq!(tried(&folder.file("x.xlsx"), "x.xlsx", &book, "bomb"), Some("too-many-values"));
 
     // Parquet: one value, repeated.
-    let schema = Arc::new(arrow_schema::Schema::new(vec![arrow_schema::Field::new("y", arrow_schema::DataType::Float64, false)]));
-    let column: arrow_array::ArrayRef = Arc::new(arrow_array::Float64Array::from(vec![1.0; 1 << 20]));
-    let batch = arrow_array::RecordBatch::try_new(Arc::clone(&schema), vec![column]).expect("a batch");
-    let mut writer = parquet::arrow::ArrowWriter::try_new(Vec::new(), schema, None).expect("a writer");
+    let schema = Arc::new(arrow_schema::Schema::new(vec![arrow_schema::Field::new(
+        "y",
+        arrow_schema::DataType::Float64,
+        false,
+    )]));
+    let column: arrow_array::ArrayRef =
+        Arc::new(arrow_array::Float64Array::from(vec![1.0; 1 << 20]));
+    let batch =
+        arrow_array::RecordBatch::try_new(Arc::clone(&schema), vec![column]).expect("a batch");
+    let mut writer =
+        parquet::arrow::ArrowWriter::try_new(Vec::new(), schema, None).expect("a writer");
     (0..BOMB / 8).for_each(|_| writer.write(&batch).expect("written"));
     let table = writer.into_inner().expect("finished");
     assert!(table.len() < 1 << 20);
-    assert_eq!(tried(&folder.file("x.parquet"), "x.parquet", &table, "bomb"), Some("too-many-values"));
+    assert_eq!(
+        tried(&folder.file("x.parquet"), "x.parquet", &table, "bomb"),
+        Some("too-many-values")
+    );
 }

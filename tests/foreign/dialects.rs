@@ -7,12 +7,20 @@ use super::text;
 
 /// Channels as `name [unit] values`.
 fn read(content: &[u8], options: &Options) -> Vec<String> {
-    let file = text("x.txt", content, options).unwrap_or_else(|problems| panic!("{}", Problems(problems).render(false)));
+    let file = text("x.txt", content, options)
+        .unwrap_or_else(|problems| panic!("{}", Problems(problems).render(false)));
     let table = &file.tables[0];
     table
         .channels
         .iter()
-        .map(|channel| format!("{} [{}] {:?}", channel.name, channel.unit.as_deref().unwrap_or(""), channel.values))
+        .map(|channel| {
+            format!(
+                "{} [{}] {:?}",
+                channel.name,
+                channel.unit.as_deref().unwrap_or(""),
+                channel.values
+            )
+        })
         .collect()
 }
 
@@ -55,10 +63,19 @@ fn dialects() {
 fn what_is_said_is_stronger_than_what_is_detected() {
     let said = Options { names_line: Some(1), units_line: Some(3), ..Options::default() };
     assert_eq!(read(b"t;y\nTime;Force\ns;kN\n0;1,5\n0,5;-2\n", &said), TWO);
-    let said = Options { header_lines: Some(2), separator: Some(Separator::Mark(';')), decimal: Some(','), ..Options::default() };
+    let said = Options {
+        header_lines: Some(2),
+        separator: Some(Separator::Mark(';')),
+        decimal: Some(','),
+        ..Options::default()
+    };
     assert_eq!(read(b"a;b\n1;2\n3;4\n", &said), ["a [] [3.0]", "b [] [4.0]"]);
-    let said = Options { comment: Some("REM".into()), form: Some(Format::Csv), ..Options::default() };
-    assert_eq!(read(b"REM x\nt;y\n0;1\nREM y\n1;2\n", &said), ["t [] [0.0, 1.0]", "y [] [1.0, 2.0]"]);
+    let said =
+        Options { comment: Some("REM".into()), form: Some(Format::Csv), ..Options::default() };
+    assert_eq!(
+        read(b"REM x\nt;y\n0;1\nREM y\n1;2\n", &said),
+        ["t [] [0.0, 1.0]", "y [] [1.0, 2.0]"]
+    );
     let said = Options { encoding: Some("windows-1250".into()), ..Options::default() };
     assert_eq!(read(b"t;\xe8\n0;1\n1;2\n", &said)[1], "č [] [1.0, 2.0]");
 }
@@ -99,7 +116,12 @@ fn faults_have_their_place() {
         (b"\n\n\n", "no-numbers", ""),
         (b"t;y\n0;1\n\x00\x01\x02", "format-unknown", ""),
     ] {
-        assert_eq!(refused(content, &none), (code.into(), place.into()), "{}", String::from_utf8_lossy(content));
+        assert_eq!(
+            refused(content, &none),
+            (code.into(), place.into()),
+            "{}",
+            String::from_utf8_lossy(content)
+        );
     }
     let said = Options { names_line: Some(9), ..Options::default() };
     assert_eq!(refused(b"t;y\n0;1\n1;2\n", &said).0, "no-numbers");
@@ -107,14 +129,24 @@ fn faults_have_their_place() {
     assert_eq!(refused(b"one\nt;y\n0;1\n1;2\n", &said).0, "header-line");
     let said = Options { decimal: Some(';'), ..Options::default() };
     assert_eq!(refused(b"t;y\n0;1\n", &said).0, "dialect");
-    assert_eq!(text("x.csv", b"", &none).map(|_| ()).map_err(|problems| problems[0].code), Err("file-empty"));
+    assert_eq!(
+        text("x.csv", b"", &none).map(|_| ()).map_err(|problems| problems[0].code),
+        Err("file-empty")
+    );
 }
 
 #[test]
 fn texts_and_empty_cells() {
-    let file = text("x.csv", b"t;note;y;z\n0;ok;;\n1;ok;2;\n2;;NaN;\n", &Options::default()).expect("read");
+    let file = text("x.csv", b"t;note;y;z\n0;ok;;\n1;ok;2;\n2;;NaN;\n", &Options::default())
+        .expect("read");
     let table = &file.tables[0];
-    assert_eq!(table.channels.iter().map(|channel| channel.name.as_str()).collect::<Vec<_>>(), ["t", "y"]);
+    assert_eq!(
+        table.channels.iter().map(|channel| channel.name.as_str()).collect::<Vec<_>>(),
+        ["t", "y"]
+    );
     assert!(table.channels[1].values[0].is_nan() && table.channels[1].values[2].is_nan());
-    assert_eq!(table.left_out.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["note", "z"]);
+    assert_eq!(
+        table.left_out.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
+        ["note", "z"]
+    );
 }

@@ -1,7 +1,9 @@
-//! Records of other systems: every channel of every format against the same record as CSV, and files that are damaged on purpose.
+//! Records of other systems: every channel of every format against the same record as CSV, and
+//! files that are damaged on purpose.
 //!
-//! `data` holds 200 rows of one section, written by the libraries that measuring systems and MATLAB users have: asammdf (MDF 4.10,
-//! compressed, two groups), SciPy (MAT v5), h5py (MAT v7.3), pyarrow, openpyxl, npTDMS.
+//! `data` holds 200 rows of one section, written by the libraries that measuring systems and MATLAB
+//! users have: asammdf (MDF 4.10, compressed, two groups), SciPy (MAT v5), h5py (MAT v7.3),
+//! pyarrow, openpyxl, npTDMS.
 
 mod channels;
 mod damage;
@@ -35,7 +37,8 @@ pub const FILES: [(&str, &str); 13] = [
 
 #[track_caller]
 pub fn good(name: &str, options: &Options) -> File {
-    read(&data(name), name, options).unwrap_or_else(|problems| panic!("{}", Problems(problems).render(false)))
+    read(&data(name), name, options)
+        .unwrap_or_else(|problems| panic!("{}", Problems(problems).render(false)))
 }
 
 /// Reads a text that is given.

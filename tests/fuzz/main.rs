@@ -1,5 +1,5 @@
-//! The promises that the fuzzer tries (`fuzz/src`), with its seeds and with every input that once broke one:
-//! `tests/cases/fuzz/TARGET/*`.
+//! The promises that the fuzzer tries (`fuzz/src`), with its seeds and with every input that once
+//! broke one: `tests/cases/fuzz/TARGET/*`.
 
 use std::fs;
 use std::path::Path;
@@ -22,7 +22,9 @@ fn seeds_keep_the_promises() {
     for (target, _) in targets::TARGETS {
         let own: Vec<_> = seeds.iter().filter(|(name, _)| *name == target).collect();
         assert!(!own.is_empty(), "{target} has no seed");
-        own.iter().step_by(own.len().div_ceil(MOST)).for_each(|(_, input)| targets::run(target, input));
+        own.iter()
+            .step_by(own.len().div_ceil(MOST))
+            .for_each(|(_, input)| targets::run(target, input));
     }
 }
 

@@ -16,9 +16,16 @@ fn run(words: &[&str]) -> (i32, String, String) {
 fn columns(path: &Path) -> Vec<(String, Vec<f64>)> {
     let text = fs::read_to_string(path).expect("a record");
     let mut lines = text.lines();
-    let names: Vec<String> = lines.next().expect("a header").split(',').map(str::to_string).collect();
-    let rows: Vec<Vec<f64>> = lines.map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect()).collect();
-    names.into_iter().enumerate().map(|(at, name)| (name, rows.iter().map(|row| row[at]).collect())).collect()
+    let names: Vec<String> =
+        lines.next().expect("a header").split(',').map(str::to_string).collect();
+    let rows: Vec<Vec<f64>> = lines
+        .map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect())
+        .collect();
+    names
+        .into_iter()
+        .enumerate()
+        .map(|(at, name)| (name, rows.iter().map(|row| row[at]).collect()))
+        .collect()
 }
 
 #[test]
@@ -38,19 +45,28 @@ fn the_example_is_imported_and_certified() {
         let at = lines[0].iter().position(|known| *known == name).expect("a channel");
         lines[2..].iter().map(|row| row[at].replace(',', ".").parse().expect("a number")).collect()
     };
-    for (name, from, sign) in
-        [("distance [m]", "Weg", 1.0), ("Y_1R [kN]", "ST1 Y re", 1.0), ("Y_1L [kN]", "ST1 Y li", -1.0), ("az_II [m/s^2]", "WK2 z..", 1.0)]
-    {
+    for (name, from, sign) in [
+        ("distance [m]", "Weg", 1.0),
+        ("Y_1R [kN]", "ST1 Y re", 1.0),
+        ("Y_1L [kN]", "ST1 Y li", -1.0),
+        ("az_II [m/s^2]", "WK2 z..", 1.0),
+    ] {
         let (_, values) = found.iter().find(|(known, _)| known == name).expect("a column");
         let wanted: Vec<f64> = source(from).iter().map(|value| sign * value + 0.0).collect();
         assert_eq!(*values, wanted, "{name}");
     }
     let report = out.path().join("report");
-    let (exit, printed, said) = run(&["certify", &shown, "--out", &report.display().to_string(), "--only", "html"]);
+    let (exit, printed, said) =
+        run(&["certify", &shown, "--out", &report.display().to_string(), "--only", "html"]);
     assert_eq!(exit, 1, "{printed}{said}");
     let html = fs::read_to_string(report.join("report.html")).expect("a report");
-    assert!(html.contains("How the records were made") && html.contains("Y_1L = -ST1 Y li"), "no account in the report");
-    let results: Value = serde_json::from_str(&fs::read_to_string(report.join("results.json")).expect("results")).expect("JSON");
+    assert!(
+        html.contains("How the records were made") && html.contains("Y_1L = -ST1 Y li"),
+        "no account in the report"
+    );
+    let results: Value =
+        serde_json::from_str(&fs::read_to_string(report.join("results.json")).expect("results"))
+            .expect("JSON");
     let made = &results["campaign"]["origin"]["imported"];
     assert_eq!(made[0]["side"], "measurement");
     assert_eq!(made[1]["records"][1]["file"], "simulation/S13.parquet");
@@ -60,7 +76,12 @@ fn the_example_is_imported_and_certified() {
 fn a_draft_is_a_mapping_with_open_places() {
     let out = tempfile::tempdir().expect("a folder");
     let path = out.path().join("draft.yaml").display().to_string();
-    let files = ["messung/Messung_S06.csv", "messung/Messung_S13.csv", "simulation/S06.parquet", "simulation/S13.parquet"];
+    let files = [
+        "messung/Messung_S06.csv",
+        "messung/Messung_S13.csv",
+        "simulation/S06.parquet",
+        "simulation/S13.parquet",
+    ];
     let files: Vec<String> = files.iter().map(|name| format!("examples/foreign/{name}")).collect();
     let mut words = vec!["import", "--draft", "--out", &path];
     words.extend(files.iter().map(String::as_str));
@@ -91,9 +112,11 @@ fn a_draft_of_files_without_units() {
     let out = tempfile::tempdir().expect("a folder");
     let mut files = Vec::new();
     for section in ["S06", "S13"] {
-        let bytes = fs::read(format!("examples/foreign/messung/Messung_{section}.csv")).expect("the source");
+        let bytes = fs::read(format!("examples/foreign/messung/Messung_{section}.csv"))
+            .expect("the source");
         let text: String = bytes.iter().map(|byte| char::from(*byte)).collect();
-        let lines: Vec<&str> = text.lines().enumerate().filter(|(at, _)| *at != 1).map(|(_, line)| line).collect();
+        let lines: Vec<&str> =
+            text.lines().enumerate().filter(|(at, _)| *at != 1).map(|(_, line)| line).collect();
         let path = out.path().join(format!("Messung_{section}.csv"));
         fs::write(&path, lines.join("\n")).expect("written");
         files.push(path.display().to_string());
@@ -112,7 +135,8 @@ fn a_draft_of_files_without_units() {
     ] {
         assert!(draft.contains(part), "no `{part}` in\n{draft}");
     }
-    let (exit, _, said) = run(&["import", &path, "--out", &out.path().join("campaign").display().to_string()]);
+    let (exit, _, said) =
+        run(&["import", &path, "--out", &out.path().join("campaign").display().to_string()]);
     assert!(exit == 2 && said.contains("open-place") && !said.contains("unit-missing"), "{said}");
 }
 
@@ -121,7 +145,9 @@ fn a_draft_of_files_without_units() {
 fn findings_have_the_consequence_of_the_evaluation() {
     let out = tempfile::tempdir().expect("a folder");
     let folder = fs::canonicalize("examples/foreign").expect("the example");
-    let mut text = fs::read_to_string("examples/foreign/mapping.yaml").expect("the example").replace("Q_1R: ST1 Q re", "Q_1R: -ST1 Q re");
+    let mut text = fs::read_to_string("examples/foreign/mapping.yaml")
+        .expect("the example")
+        .replace("Q_1R: ST1 Q re", "Q_1R: -ST1 Q re");
     for name in ["sections.csv", "vehicle.yaml", "messung/", "simulation/"] {
         text = text.replace(&format!(": {name}"), &format!(": {}/{name}", folder.display()));
     }
@@ -129,16 +155,21 @@ fn findings_have_the_consequence_of_the_evaluation() {
     fs::write(&path, text).expect("written");
     let campaign = out.path().join("campaign").display().to_string();
     let (exit, _, said) = run(&["import", &path.display().to_string(), "--out", &campaign]);
-    assert!(exit == 0 && said.contains("finding: Q_1R") && said.contains("section not used]"), "{said}");
+    assert!(
+        exit == 0 && said.contains("finding: Q_1R") && said.contains("section not used]"),
+        "{said}"
+    );
 }
 
 #[test]
 fn wrong_uses_are_refused() {
-    let (exit, _, said) = run(&["import", "examples/foreign/mapping.yaml", "--out", "examples/foreign"]);
+    let (exit, _, said) =
+        run(&["import", "examples/foreign/mapping.yaml", "--out", "examples/foreign"]);
     assert!(exit == 2 && said.contains("output-is-input"), "{said}");
     let (exit, _, said) = run(&["import", "a.yaml", "b.yaml", "--out", "target/never"]);
     assert!(exit == 2 && said.contains("several-mappings"), "{said}");
-    let (exit, _, said) = run(&["import", "examples/foreign/nothing.yaml", "--out", "target/never"]);
+    let (exit, _, said) =
+        run(&["import", "examples/foreign/nothing.yaml", "--out", "target/never"]);
     assert!(exit == 2 && said.contains("file-missing"), "{said}");
     assert!(!Path::new("target/never").exists());
 }

@@ -1,7 +1,7 @@
 //! The import: what a mapping does to records, and how its faults are told.
 //!
-//! `tests/cases/import/bad` holds mappings with a fault each, and the expected text beside them (`.out`); `UPDATE_EXPECT=1` rewrites
-//! it. Numbers are compared with closed forms.
+//! `tests/cases/import/bad` holds mappings with a fault each, and the expected text beside them
+//! (`.out`); `UPDATE_EXPECT=1` rewrites it. Numbers are compared with closed forms.
 
 mod early;
 mod example;
@@ -22,7 +22,8 @@ use fishplate::problem::Problems;
 use fishplate::run::needs::needs;
 use fishplate::source::Source;
 
-/// Relative, so that messages are the same on every machine; tests run in the folder of the package.
+/// Relative, so that messages are the same on every machine; tests run in the folder of the
+/// package.
 const CASES: &str = "tests/cases/import";
 
 /// Imports a mapping into a folder: its problems, and whether there is an error among them.
@@ -49,8 +50,10 @@ pub fn imported(text: &str, name: &str, folder: &Path, out: &Path) -> (Problems,
 #[test]
 fn faults_are_told_with_their_places() {
     let update = std::env::var_os("UPDATE_EXPECT").is_some();
-    let mut cases: Vec<PathBuf> =
-        fs::read_dir(Path::new(CASES).join("bad")).expect("cases").map(|entry| entry.expect("an entry").path()).collect();
+    let mut cases: Vec<PathBuf> = fs::read_dir(Path::new(CASES).join("bad"))
+        .expect("cases")
+        .map(|entry| entry.expect("an entry").path())
+        .collect();
     cases.retain(|path| path.extension().is_some_and(|ending| ending == "yaml"));
     cases.sort();
     assert!(cases.len() > 20, "{} cases", cases.len());
@@ -58,10 +61,18 @@ fn faults_are_told_with_their_places() {
     for case in &cases {
         let name = case.file_name().expect("a name").to_string_lossy().into_owned();
         let out = tempfile::tempdir().expect("a folder");
-        let (problems, done) = imported(&fs::read_to_string(case).expect("readable"), &name, Path::new(CASES), &out.path().join("c"));
+        let (problems, done) = imported(
+            &fs::read_to_string(case).expect("readable"),
+            &name,
+            Path::new(CASES),
+            &out.path().join("c"),
+        );
         assert!(!done && problems.any_error(), "{name} has no fault");
         assert!(
-            problems.0.iter().all(|problem| problem.at.is_some() || problem.code == "more-problems"),
+            problems
+                .0
+                .iter()
+                .all(|problem| problem.at.is_some() || problem.code == "more-problems"),
             "{name}: {}",
             problems.render(false)
         );

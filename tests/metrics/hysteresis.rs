@@ -6,13 +6,20 @@ use crate::{close, record};
 
 const THRESHOLD: f64 = 0.05;
 
-fn ellipse(cycles: usize, begin: f64, half_width: f64, half_height: f64, samples: usize) -> (Vec<f64>, Vec<f64>) {
+fn ellipse(
+    cycles: usize,
+    begin: f64,
+    half_width: f64,
+    half_height: f64,
+    samples: usize,
+) -> (Vec<f64>, Vec<f64>) {
     let angle = |k: usize| begin + TAU * cycles as f64 * k as f64 / samples as f64;
     // Run through clockwise: the output leads, as a force that is resisted.
     (0..=samples).map(|k| (half_width * angle(k).sin(), half_height * angle(k).cos())).unzip()
 }
 
-/// Straight flanks of slope 2, one above and one below the diagonal by `friction`; vertical at the ends.
+/// Straight flanks of slope 2, one above and one below the diagonal by `friction`; vertical at the
+/// ends.
 fn parallelogram(cycles: usize, friction: f64, per_flank: usize) -> (Vec<f64>, Vec<f64>) {
     let mut points = Vec::new();
     for _ in 0..cycles {
@@ -45,8 +52,9 @@ fn parallelograms() {
     }
 }
 
-/// Closed form: ellipses of heights 2 and 1.5 lie apart by 0.5 sqrt(1 - x^2), pi/4 of the maximum in the mean. The tolerance is the
-/// straight line's between samples near the ends, where an ellipse is steep.
+/// Closed form: ellipses of heights 2 and 1.5 lie apart by 0.5 sqrt(1 - x^2), pi/4 of the maximum
+/// in the mean. The tolerance is the straight line's between samples near the ends, where an
+/// ellipse is steep.
 #[test]
 fn ellipses_wherever_the_record_begins() {
     for begin in [0.0, 0.5 * PI, 2.5] {
@@ -74,14 +82,24 @@ fn direction_of_the_loop_gives_the_sign_of_the_area() {
 fn the_way_in_does_not_count() {
     let (x, y) = parallelogram(2, 0.3, 100);
     let way_in: Vec<f64> = (0..50).map(|k| f64::from(k) / 50.0 - 1e-9).collect();
-    let x: Vec<f64> = way_in.iter().copied().chain((0..=100).map(|k| 1.0 - f64::from(k) / 50.0)).chain(x).collect();
-    let y: Vec<f64> = vec![9.0; 50].into_iter().chain((0..=100).map(|k| 2.0 - f64::from(k) / 25.0 - 0.3)).chain(y).collect();
+    let x: Vec<f64> = way_in
+        .iter()
+        .copied()
+        .chain((0..=100).map(|k| 1.0 - f64::from(k) / 50.0))
+        .chain(x)
+        .collect();
+    let y: Vec<f64> = vec![9.0; 50]
+        .into_iter()
+        .chain((0..=100).map(|k| 2.0 - f64::from(k) / 25.0 - 0.3))
+        .chain(y)
+        .collect();
     let reference = parallelogram(1, 0.3, 80);
     let result = matching(Loop { x: &x, y: &y }, of(&reference), THRESHOLD).expect("comparable");
     assert!(result.maximum < 1e-8, "{}", result.maximum);
 }
 
-/// Noise on the input well below the threshold makes no turning points and moves the result by its own size.
+/// Noise on the input well below the threshold makes no turning points and moves the result by its
+/// own size.
 #[test]
 fn noise_on_the_input() {
     let (mut x, y) = parallelogram(2, 0.5, 500);
@@ -110,8 +128,12 @@ fn common_input_only() {
 fn a_share_of_no_range_is_none() {
     let simulated = parallelogram(1, 0.3, 50);
     let still = vec![0.0; simulated.0.len()];
-    let result = matching(of(&simulated), Loop { x: &simulated.0, y: &still }, THRESHOLD).expect("comparable");
-    assert_eq!((result.range, result.relative_maximum(), result.relative_mean()), (0.0, None, None));
+    let result = matching(of(&simulated), Loop { x: &simulated.0, y: &still }, THRESHOLD)
+        .expect("comparable");
+    assert_eq!(
+        (result.range, result.relative_maximum(), result.relative_mean()),
+        (0.0, None, None)
+    );
 }
 
 #[test]
@@ -123,7 +145,12 @@ fn refuses_with_the_reason() {
         let reason = matching(simulated, measured, threshold).expect_err("refused").reason;
         assert!(reason.contains(text), "{reason}");
     };
-    says(Loop { x: &ramp, y: &ramp }, of(&good), THRESHOLD, "the simulated loop has no falling branch");
+    says(
+        Loop { x: &ramp, y: &ramp },
+        of(&good),
+        THRESHOLD,
+        "the simulated loop has no falling branch",
+    );
     says(of(&good), Loop { x: &[], y: &[] }, THRESHOLD, "the measured loop has no rising branch");
     says(of(&good), Loop { x: &[1.0; 5], y: &[1.0; 5] }, THRESHOLD, "no rising branch");
     says(of(&good), Loop { x: &ramp, y: &[1.0] }, THRESHOLD, "50 inputs and 1 outputs");

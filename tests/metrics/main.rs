@@ -1,4 +1,5 @@
-//! The metrics against independent sources: SciPy and NumPy (`tests/cases/scipy`, `tests/cases/vectors`), closed forms.
+//! The metrics against independent sources: SciPy and NumPy (`tests/cases/scipy`,
+//! `tests/cases/vectors`), closed forms.
 
 mod cluster;
 mod filter;
@@ -39,7 +40,10 @@ pub fn numbers(value: &Value) -> Vec<f64> {
 /// Within a relative tolerance, or so near to zero that only rounding is compared.
 #[track_caller]
 pub fn close(actual: f64, expected: f64, relative: f64) {
-    assert!((actual - expected).abs() <= relative * expected.abs() + 1e-14, "{actual} is not {expected} to {relative}");
+    assert!(
+        (actual - expected).abs() <= relative * expected.abs() + 1e-14,
+        "{actual} is not {expected} to {relative}"
+    );
 }
 
 /// Largest difference as a fraction of a scale.
@@ -47,11 +51,16 @@ pub fn close(actual: f64, expected: f64, relative: f64) {
 pub fn all_close(actual: &[f64], expected: &[f64], scale: f64, relative: f64) {
     assert_eq!(actual.len(), expected.len());
     for (at, (a, e)) in actual.iter().zip(expected).enumerate() {
-        assert!((a - e).abs() <= relative * scale, "value {at}: {a} is not {e} to {relative} of {scale}");
+        assert!(
+            (a - e).abs() <= relative * scale,
+            "value {at}: {a} is not {e} to {relative} of {scale}"
+        );
     }
 }
 
 /// The record of `tests/cases/scipy/make.py`.
 pub fn record(samples: i64, offset: f64) -> Vec<f64> {
-    (0..samples).map(|k| ((k * k * 7919 + k * 104_729) % 65536) as f64 / 65536.0 - 0.5 + offset).collect()
+    (0..samples)
+        .map(|k| ((k * k * 7919 + k * 104_729) % 65536) as f64 / 65536.0 - 0.5 + offset)
+        .collect()
 }

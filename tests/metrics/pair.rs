@@ -39,14 +39,30 @@ const METRICS: [(Metric, &str); 21] = [
 fn compare(simulated: &[f64], measured: &[f64], expected: &Value, what: &str, relative: f64) {
     for (metric, place) in METRICS {
         if let Some(expected) = expected.pointer(place).and_then(Value::as_f64) {
-            let actual = metric(simulated, measured).unwrap_or_else(|undefined| panic!("{what} {place}: {undefined}"));
-            assert!((actual - expected).abs() <= relative * expected.abs() + 2e-15, "{what} {place}: {actual}, not {expected}");
+            let actual = metric(simulated, measured)
+                .unwrap_or_else(|undefined| panic!("{what} {place}: {undefined}"));
+            assert!(
+                (actual - expected).abs() <= relative * expected.abs() + 2e-15,
+                "{what} {place}: {actual}, not {expected}"
+            );
         }
     }
     let bogojevic_expected = &expected["bogojevic"];
-    close(bogojevic_variance_ratio(simulated, measured).expect("defined"), number(&bogojevic_expected["F"]), relative);
-    close(bogojevic_variance_probability(simulated, measured).expect("defined"), number(&bogojevic_expected["p_two_sided"]), 1e-9);
-    close(bogojevic(simulated, measured).expect("defined"), number(&bogojevic_expected["product"]), 1e-9);
+    close(
+        bogojevic_variance_ratio(simulated, measured).expect("defined"),
+        number(&bogojevic_expected["F"]),
+        relative,
+    );
+    close(
+        bogojevic_variance_probability(simulated, measured).expect("defined"),
+        number(&bogojevic_expected["p_two_sided"]),
+        1e-9,
+    );
+    close(
+        bogojevic(simulated, measured).expect("defined"),
+        number(&bogojevic_expected["product"]),
+        1e-9,
+    );
 }
 
 /// Four pairs, NumPy and SciPy.
@@ -59,7 +75,8 @@ fn pairs_agree_with_numpy() {
         expected["bogojevic"] = pair.expected["bogojevic"].clone();
         expected["area_metric_wasserstein"] = pair.expected["area_metric_wasserstein"].clone();
         compare(&simulated, &measured, &expected, name, 1e-10);
-        let theil = [theil_bias, theil_variance, theil_covariance].map(|share| share(&simulated, &measured).expect("defined"));
+        let theil = [theil_bias, theil_variance, theil_covariance]
+            .map(|share| share(&simulated, &measured).expect("defined"));
         close(theil.iter().sum(), 1.0, 1e-12);
     }
 }
@@ -67,7 +84,9 @@ fn pairs_agree_with_numpy() {
 /// A 3 Hz sine, 1001 samples at 1 kHz, and what becomes of it: mostly closed forms.
 #[test]
 fn edge_cases() {
-    let sine = |shift: f64| (0..1001).map(|k| (TAU * 3.0 * (f64::from(k) / 1000.0 - shift)).sin()).collect::<Vec<f64>>();
+    let sine = |shift: f64| {
+        (0..1001).map(|k| (TAU * 3.0 * (f64::from(k) / 1000.0 - shift)).sin()).collect::<Vec<f64>>()
+    };
     let measured = sine(0.0);
     let of = |f: fn(f64) -> f64| measured.iter().map(|&value| f(value)).collect::<Vec<f64>>();
     let cases = [
@@ -89,8 +108,13 @@ fn edge_cases() {
 #[test]
 fn area_of_unequal_counts() {
     let expected = &json("vectors/expected.json")["two_samples"];
-    let (simulated, measured) = (numbers(&expected["simulation"]), numbers(&expected["measurement"]));
-    close(area_between(&simulated, &measured).expect("defined"), number(&expected["wasserstein"]), 1e-12);
+    let (simulated, measured) =
+        (numbers(&expected["simulation"]), numbers(&expected["measurement"]));
+    close(
+        area_between(&simulated, &measured).expect("defined"),
+        number(&expected["wasserstein"]),
+        1e-12,
+    );
     // Of equal counts both forms are the same number.
     let (a, b) = (record(200, 0.0), record(400, 0.3)[200..].to_vec());
     close(area_between(&a, &b).expect("defined"), area_metric(&a, &b).expect("defined"), 1e-12);
@@ -118,8 +142,14 @@ fn relative_errors() {
     assert_eq!(root_mean_square_error(&simulated, &measured), Ok(1.0));
     assert_eq!(relative_to_range(&simulated, &measured), Ok(0.5));
     assert_eq!(rms_ratio(&simulated[..2], &measured), Ok(2.0));
-    assert!(relative_to_range(&simulated, &[1.0; 4]).is_err_and(|undefined| undefined.reason.contains("constant")));
-    assert!(rms_ratio(&simulated, &[0.0; 4]).is_err_and(|undefined| undefined.reason.contains("zero throughout")));
+    assert!(
+        relative_to_range(&simulated, &[1.0; 4])
+            .is_err_and(|undefined| undefined.reason.contains("constant"))
+    );
+    assert!(
+        rms_ratio(&simulated, &[0.0; 4])
+            .is_err_and(|undefined| undefined.reason.contains("zero throughout"))
+    );
 }
 
 #[test]
@@ -158,10 +188,15 @@ fn undefined_says_why() {
 fn a_small_angle_keeps_its_digits() {
     let measured = [1.0, 0.0];
     let simulated = [1.0, 1e-9];
-    close(sprague_geers_phase(&simulated, &measured).expect("defined") * std::f64::consts::PI * 1e9, 1.0, 1e-12);
+    close(
+        sprague_geers_phase(&simulated, &measured).expect("defined") * std::f64::consts::PI * 1e9,
+        1.0,
+        1e-12,
+    );
 }
 
-/// NumPy and SciPy, `tests/cases/vectors/make_distributions.py`: three sections, both sides at 20, 50 and 100 points.
+/// NumPy and SciPy, `tests/cases/vectors/make_distributions.py`: three sections, both sides at 20,
+/// 50 and 100 points.
 #[test]
 fn distributions_at_points() {
     for case in json("vectors/distributions.json").as_array().expect("a list") {
@@ -180,16 +215,24 @@ fn distributions_at_points() {
     }
 }
 
-/// Sides of different length: each variance has its own n. Of a distribution at points the number of samples hardly matters.
+/// Sides of different length: each variance has its own n. Of a distribution at points the number
+/// of samples hardly matters.
 #[test]
 fn distributions_of_unequal_counts() {
     let (s, m) = (record(400, 1.0), record(300, 1.1));
     // scipy.stats.f of the ratio with 399 and 299 degrees of freedom.
     let ratio = bogojevic_variance_ratio(&s, &m).expect("defined");
-    close(bogojevic_variance_probability(&s, &m).expect("defined"), f_two_sided(ratio, 399.0, 299.0), 1e-15);
+    close(
+        bogojevic_variance_probability(&s, &m).expect("defined"),
+        f_two_sided(ratio, 399.0, 299.0),
+        1e-15,
+    );
     assert!(f_two_sided(ratio, 399.0, 299.0) != f_two_sided(ratio, 299.0, 299.0));
     assert_eq!(quantiles(&[1.0, 3.0], 4).expect("points"), vec![1.25, 1.75, 2.25, 2.75]);
     assert_eq!(quantiles(&[], 4).expect_err("nothing").reason, "there are no values");
     assert!(quantiles(&[1.0], 0).is_err() && quantiles(&[f64::NAN], 2).is_err());
-    assert_eq!(bogojevic(&[], &m).expect_err("nothing").reason, "the simulated signal has no samples");
+    assert_eq!(
+        bogojevic(&[], &m).expect_err("nothing").reason,
+        "the simulated signal has no samples"
+    );
 }

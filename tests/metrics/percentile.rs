@@ -17,7 +17,11 @@ fn agrees_with_numpy() {
         for ((percent, expected), together) in percents.into_iter().zip(expected).zip(together) {
             let single = percentile(&values, percent, method).expect("values");
             assert_eq!(single.to_bits(), together.to_bits(), "{method:?} {percent}");
-            assert!((single - expected).abs() < 1e-15, "{method:?} of {} at {percent} %: {single}, not {expected}", values.len());
+            assert!(
+                (single - expected).abs() < 1e-15,
+                "{method:?} of {} at {percent} %: {single}, not {expected}",
+                values.len()
+            );
         }
     }
 }
@@ -29,8 +33,15 @@ fn small_sample() {
     let (values, percents) = (numbers(&expected["x"]), numbers(&expected["q"]));
     for method in Method::ALL {
         if let Some(theirs) = expected.get(method.name()) {
-            for (ours, theirs) in percentiles(&values, &percents, method).expect("values").into_iter().zip(numbers(theirs)) {
-                assert!((ours - theirs).abs() <= 1e-12 * theirs, "{method:?}: {ours}, not {theirs}");
+            for (ours, theirs) in percentiles(&values, &percents, method)
+                .expect("values")
+                .into_iter()
+                .zip(numbers(theirs))
+            {
+                assert!(
+                    (ours - theirs).abs() <= 1e-12 * theirs,
+                    "{method:?}: {ours}, not {theirs}"
+                );
             }
         }
     }
@@ -47,14 +58,21 @@ fn names_lead_back() {
 #[test]
 fn refuses_rather_than_guesses() {
     assert_eq!(percentile(&[], 50.0, Method::Linear), Err(PercentileError::Empty));
-    assert_eq!(percentile(&[1.0, f64::NAN], 50.0, Method::Linear), Err(PercentileError::NotFinite { index: 1 }));
-    assert_eq!(percentile(&[1.0], 100.1, Method::Linear), Err(PercentileError::Percent { percent: 100.1 }));
+    assert_eq!(
+        percentile(&[1.0, f64::NAN], 50.0, Method::Linear),
+        Err(PercentileError::NotFinite { index: 1 })
+    );
+    assert_eq!(
+        percentile(&[1.0], 100.1, Method::Linear),
+        Err(PercentileError::Percent { percent: 100.1 })
+    );
     assert!(percentiles(&[1.0], &[f64::NAN], Method::Linear).is_err());
     assert_eq!(percentiles(&[1.0], &[], Method::Linear), Ok(vec![]));
 }
 
 proptest! {
-    /// Definition: an order statistic is the value at its place in the sorted record, near an end, inside, and among equal values.
+    /// Definition: an order statistic is the value at its place in the sorted record, near an end,
+    /// inside, and among equal values.
     #[test]
     fn order_statistics(values in prop::collection::vec(prop_oneof![-1e3..1e3, Just(1.0), Just(0.0)], 1..700), percent in 0.0..=100.0, edge in 0.0..=1.0) {
         let mut sorted = values.clone();

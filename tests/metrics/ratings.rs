@@ -1,5 +1,5 @@
-//! Ratings of ISO/TS 18571 against `objective-rating-metrics` 1.3, and of CORA against code of our own
-//! (`tests/cases/vectors/make_ratings.py`).
+//! Ratings of ISO/TS 18571 against `objective-rating-metrics` 1.3, and of CORA against code of our
+//! own (`tests/cases/vectors/make_ratings.py`).
 
 use std::f64::consts::TAU;
 
@@ -24,7 +24,9 @@ const RATINGS: [(Metric, &str); 10] = [
 
 /// The sum of sines of `make_ratings.py`.
 fn wave(late: f64) -> Vec<f64> {
-    let at = |x: f64| (TAU * x / 190.0).sin() + 0.4 * (TAU * x / 47.0).cos() + 0.15 * (TAU * x / 13.0).sin();
+    let at = |x: f64| {
+        (TAU * x / 190.0).sin() + 0.4 * (TAU * x / 47.0).cos() + 0.15 * (TAU * x / 13.0).sin()
+    };
     (0..700).map(|k| at(f64::from(k) - late)).collect()
 }
 
@@ -47,7 +49,8 @@ fn ratings_agree_with_the_package() {
             }
         };
         for (metric, place) in RATINGS {
-            let found = metric(&simulated, &measured).unwrap_or_else(|undefined| panic!("{place}: {undefined}"));
+            let found = metric(&simulated, &measured)
+                .unwrap_or_else(|undefined| panic!("{place}: {undefined}"));
             close(found, number(case.pointer(place).expect(place)), 1e-9);
         }
     }

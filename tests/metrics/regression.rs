@@ -1,4 +1,5 @@
-//! Least squares: the data sets that NIST certifies, closed forms, and the samples of assessments (`tests/cases/vectors`).
+//! Least squares: the data sets that NIST certifies, closed forms, and the samples of assessments
+//! (`tests/cases/vectors`).
 
 use fishplate::metrics::{
     regression::{Kind, Regression, RegressionError, Side, Tails},
@@ -12,8 +13,8 @@ fn columns(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     (0..rows[0].len()).map(|of| rows.iter().map(|row| row[of]).collect()).collect()
 }
 
-/// NIST StRD, linear regression, "Norris": y, x. Certified values; solving the normal equations in exact fractions
-/// (Python's `fractions`) gives the same 15 digits.
+/// NIST StRD, linear regression, "Norris": y, x. Certified values; solving the normal equations in
+/// exact fractions (Python's `fractions`) gives the same 15 digits.
 #[test]
 fn norris_is_as_certified() {
     #[rustfmt::skip]
@@ -32,19 +33,29 @@ fn norris_is_as_certified() {
     assert_eq!(fit.degrees_of_freedom(), 34);
     // At x = 0 the fit is the intercept, and its standard error is certified.
     close(fit.at(&[0.0]).expect("a value"), -0.262_323_073_774_029, 1e-12);
-    close(fit.residual_standard_deviation() * fit.leverage(&[0.0]).expect("a value").sqrt(), 0.232_818_234_301_152, 1e-12);
+    close(
+        fit.residual_standard_deviation() * fit.leverage(&[0.0]).expect("a value").sqrt(),
+        0.232_818_234_301_152,
+        1e-12,
+    );
     // Closed form of the simple regression.
-    let (mean, deviation) = (statistics::mean(&x).expect("values"), |at: f64, mean: f64| (at - mean) * (at - mean));
+    let (mean, deviation) =
+        (statistics::mean(&x).expect("values"), |at: f64, mean: f64| (at - mean) * (at - mean));
     let squares: f64 = x.iter().map(|x| deviation(*x, mean)).sum();
     for at in [-50.0, 0.0, mean, 1234.5] {
-        close(fit.leverage(&[at]).expect("a value"), 1.0 / 36.0 + deviation(at, mean) / squares, 1e-13);
+        close(
+            fit.leverage(&[at]).expect("a value"),
+            1.0 / 36.0 + deviation(at, mean) / squares,
+            1e-13,
+        );
     }
     let line = statistics::regression(&x, &y).expect("a line");
     close(fit.coefficients()[1], line.slope, 1e-13);
 }
 
-/// NIST StRD, "Longley": total employment by deflator, GNP, unemployed, armed forces, population, year; highly collinear. Certified
-/// values; fit and leverage at the point by exact fractions, bounds with `scipy.stats.t.ppf(0.975, 9)` and `(0.99, 9)`.
+/// NIST StRD, "Longley": total employment by deflator, GNP, unemployed, armed forces, population,
+/// year; highly collinear. Certified values; fit and leverage at the point by exact fractions,
+/// bounds with `scipy.stats.t.ppf(0.975, 9)` and `(0.99, 9)`.
 #[test]
 fn longley_is_as_certified() {
     let rows: Vec<Vec<f64>> = [
@@ -87,20 +98,33 @@ fn longley_is_as_certified() {
     let point = [117.0, 560_000.0, 4000.0, 2900.0, 131_000.0, 1963.0];
     close(fit.at(&point).expect("a value"), 72_297.274_121_793_86, 1e-12);
     close(fit.leverage(&point).expect("a value"), 2.172_411_036_468_708, 1e-11);
-    close(fit.bound(&point, Kind::Prediction, Side::Upper, Tails::Two, 0.95).expect("a bound"), 73_525.588_407_188_61, 1e-12);
-    close(fit.bound(&point, Kind::Mean, Side::Lower, Tails::One, 0.99).expect("a bound"), 71_029.524_462_405_36, 1e-12);
+    close(
+        fit.bound(&point, Kind::Prediction, Side::Upper, Tails::Two, 0.95).expect("a bound"),
+        73_525.588_407_188_61,
+        1e-12,
+    );
+    close(
+        fit.bound(&point, Kind::Mean, Side::Lower, Tails::One, 0.99).expect("a bound"),
+        71_029.524_462_405_36,
+        1e-12,
+    );
 }
 
-/// NumPy and SciPy, `tests/cases/vectors/make_assessment.py`: two-dimensional and multiple estimates of assessments.
+/// NumPy and SciPy, `tests/cases/vectors/make_assessment.py`: two-dimensional and multiple
+/// estimates of assessments.
 #[test]
 fn estimates_of_assessments() {
     let (mut estimates, mut refused) = (0, 0);
     for campaign in json("vectors/assessment.json").as_array().expect("a list") {
-        let points: Vec<Vec<f64>> = campaign["points"].as_array().expect("points").iter().map(numbers).collect();
+        let points: Vec<Vec<f64>> =
+            campaign["points"].as_array().expect("points").iter().map(numbers).collect();
         for sample in campaign["samples"].as_array().expect("samples") {
-            // The two-dimensional one is over the cant deficiency alone, and asks for it where the others do.
+            // The two-dimensional one is over the cant deficiency alone, and asks for it where the
+            // others do.
             let two = numbers(&sample["multiple_zone"]["target"]);
-            for (method, all) in [("two_dimensional", false), ("multiple_zone", true), ("multiple_zones_2_4", true)] {
+            for (method, all) in
+                [("two_dimensional", false), ("multiple_zone", true), ("multiple_zones_2_4", true)]
+            {
                 let expected = &sample[method];
                 if expected.is_null() {
                     continue;
@@ -120,20 +144,33 @@ fn estimates_of_assessments() {
                     if theirs.contains("needed") {
                         assert_eq!(reason, theirs, "{of}");
                     } else {
-                        assert!(reason.contains("does not vary") || reason.contains("collinear"), "{of}: {reason}");
+                        assert!(
+                            reason.contains("does not vary") || reason.contains("collinear"),
+                            "{of}: {reason}"
+                        );
                     }
                     refused += 1;
                     continue;
                 };
                 let fit = fit.expect(&of);
-                for (found, theirs) in fit.coefficients().iter().zip(numbers(&expected["coefficients"])) {
-                    // A coefficient beside the largest part that any makes of a value: the values have 12 digits.
-                    assert!((found - theirs).abs() <= 1e-9 * theirs.abs().max(1e-3), "{of}: {found}, not {theirs}");
+                for (found, theirs) in
+                    fit.coefficients().iter().zip(numbers(&expected["coefficients"]))
+                {
+                    // A coefficient beside the largest part that any makes of a value: the values
+                    // have 12 digits.
+                    assert!(
+                        (found - theirs).abs() <= 1e-9 * theirs.abs().max(1e-3),
+                        "{of}: {found}, not {theirs}"
+                    );
                 }
-                // Where the fit is nearly exact, what is left of the 12 digits of the values is rounding.
+                // Where the fit is nearly exact, what is left of the 12 digits of the values is
+                // rounding.
                 let (left, theirs) = (fit.residual_standard_deviation(), number(&expected["s_e"]));
                 let largest = statistics::peak_magnitude(&numbers(&expected["y"])).expect("values");
-                assert!((left - theirs).abs() <= 1e-9 * theirs + 1e-12 * largest, "{of}: {left}, not {theirs}");
+                assert!(
+                    (left - theirs).abs() <= 1e-9 * theirs + 1e-12 * largest,
+                    "{of}: {left}, not {theirs}"
+                );
                 assert_eq!(fit.degrees_of_freedom() as f64, number(&expected["dof"]));
                 close(fit.leverage(&target).expect(&of), number(&expected["leverage"]), 1e-9);
                 close(fit.at(&target).expect(&of), number(&expected["fit"]), 1e-9);
@@ -146,9 +183,12 @@ fn estimates_of_assessments() {
                     }
                     _ => 0.95,
                 };
-                let t = student_quantile(0.5 + confidence / 2.0, fit.degrees_of_freedom() as f64).expect("a quantile");
+                let t = student_quantile(0.5 + confidence / 2.0, fit.degrees_of_freedom() as f64)
+                    .expect("a quantile");
                 close(t, number(&expected["t"]), 1e-11);
-                let bound = fit.bound(&target, Kind::Prediction, Side::Upper, Tails::Two, confidence).expect(&of);
+                let bound = fit
+                    .bound(&target, Kind::Prediction, Side::Upper, Tails::Two, confidence)
+                    .expect(&of);
                 close(bound, value, 1e-9);
                 estimates += 1;
             }
@@ -157,7 +197,8 @@ fn estimates_of_assessments() {
     assert!(estimates > 100 && refused > 20, "{estimates} estimates, {refused} refused");
 }
 
-/// Without regressors it is the mean of a sample: mean + t s sqrt(1 + 1/n), and mean + t s / sqrt(n).
+/// Without regressors it is the mean of a sample: mean + t s sqrt(1 + 1/n), and mean + t s /
+/// sqrt(n).
 #[test]
 fn without_regressors_it_is_the_mean() {
     let fit = Regression::fit(&[1.0, 2.0, 3.0, 4.0, 10.0], &[]).expect("a fit");
@@ -172,7 +213,8 @@ fn without_regressors_it_is_the_mean() {
     close(low, bound(Kind::Mean, Side::Lower), 1e-12);
 }
 
-/// A plane met exactly, far from the origin and in units of very different size: nothing is left, and no bound beyond the fit.
+/// A plane met exactly, far from the origin and in units of very different size: nothing is left,
+/// and no bound beyond the fit.
 #[test]
 fn a_plane_is_found_again() {
     let x: Vec<f64> = (0..12).map(|k| 1e6 + f64::from(k * k % 7)).collect();
@@ -183,7 +225,10 @@ fn a_plane_is_found_again() {
     close(fit.coefficients()[2], -5e6, 1e-10);
     assert!(fit.residual_standard_deviation() < 1e-8);
     let equal = Regression::fit(&[0.1; 5], &[vec![1.0, 2.0, 3.0, 4.0, 6.0]]).expect("a fit");
-    assert_eq!((equal.residual_standard_deviation(), equal.at(&[100.0])), (0.0, Ok(equal.coefficients()[0])));
+    assert_eq!(
+        (equal.residual_standard_deviation(), equal.at(&[100.0])),
+        (0.0, Ok(equal.coefficients()[0]))
+    );
 }
 
 #[test]
@@ -191,21 +236,38 @@ fn what_cannot_be_fitted_is_told() {
     let x = vec![1.0, 2.0, 3.0, 4.0];
     let twice: Vec<f64> = x.iter().map(|x| 2.0 * x + 1.0).collect();
     let y = [1.0, 3.0, 2.0, 5.0];
-    let says = |values: &[f64], regressors: &[Vec<f64>]| Regression::fit(values, regressors).expect_err("refused").to_string();
+    let says = |values: &[f64], regressors: &[Vec<f64>]| {
+        Regression::fit(values, regressors).expect_err("refused").to_string()
+    };
     assert_eq!(says(&y[..2], &[vec![1.0, 2.0]]), "2 values for 2 coefficients: at least 3 needed");
     assert_eq!(says(&[], &[]), "0 values for 1 coefficient: at least 2 needed");
     assert_eq!(says(&y, &[x.clone(), vec![1.0]]), "regressor 2 has 1 number for 4 values");
     assert_eq!(says(&y, &[vec![0.3; 4]]), "regressor 1 does not vary");
-    assert_eq!(says(&y, &[x.clone(), twice]), "the regressors are collinear: one of them depends linearly on the others");
+    assert_eq!(
+        says(&y, &[x.clone(), twice]),
+        "the regressors are collinear: one of them depends linearly on the others"
+    );
     // A hair's breadth of a column beside its size.
     let nearly: Vec<f64> = x.iter().map(|x| 1.0 + 1e-14 * x).collect();
     assert_eq!(Regression::fit(&y, &[nearly]).expect_err("refused"), RegressionError::Collinear);
     assert_eq!(says(&[1.0, f64::NAN, 2.0, 1.0], std::slice::from_ref(&x)), "value 2 is not finite");
-    assert_eq!(says(&y, &[vec![1.0, 2.0, f64::INFINITY, 3.0]]), "number 3 of regressor 1 is not finite");
-    assert_eq!(says(&[1e300, -1e300, 1e300, 3.0], std::slice::from_ref(&x)), "the sum of the squares overflows");
+    assert_eq!(
+        says(&y, &[vec![1.0, 2.0, f64::INFINITY, 3.0]]),
+        "number 3 of regressor 1 is not finite"
+    );
+    assert_eq!(
+        says(&[1e300, -1e300, 1e300, 3.0], std::slice::from_ref(&x)),
+        "the sum of the squares overflows"
+    );
     let fit = Regression::fit(&y, &[x]).expect("a fit");
-    assert_eq!(fit.at(&[]).expect_err("refused").to_string(), "the point has 0 numbers for 1 regressor");
-    assert_eq!(fit.leverage(&[f64::NAN]).expect_err("refused").to_string(), "number 1 of the point is not finite");
+    assert_eq!(
+        fit.at(&[]).expect_err("refused").to_string(),
+        "the point has 0 numbers for 1 regressor"
+    );
+    assert_eq!(
+        fit.leverage(&[f64::NAN]).expect_err("refused").to_string(),
+        "number 1 of the point is not finite"
+    );
     for confidence in [0.0, 1.0, -0.5, f64::NAN] {
         let bound = fit.bound(&[1.0], Kind::Mean, Side::Upper, Tails::Two, confidence);
         assert!(matches!(bound, Err(RegressionError::Confidence { .. })), "{confidence}");
@@ -234,7 +296,15 @@ fn quantiles_of_student() {
     for (p, degrees, expected) in scipy {
         close(student_quantile(p, degrees).expect("a quantile"), expected, 1e-10);
     }
-    for (p, degrees) in [(0.0, 3.0), (1.0, 3.0), (f64::NAN, 3.0), (0.9, 0.0), (0.9, -1.0), (0.9, f64::INFINITY), (0.9, f64::NAN)] {
+    for (p, degrees) in [
+        (0.0, 3.0),
+        (1.0, 3.0),
+        (f64::NAN, 3.0),
+        (0.9, 0.0),
+        (0.9, -1.0),
+        (0.9, f64::INFINITY),
+        (0.9, f64::NAN),
+    ] {
         assert_eq!(student_quantile(p, degrees), None, "{p} {degrees}");
     }
 }

@@ -30,10 +30,19 @@ fn points_in_any_order() {
 #[test]
 fn refuses_with_the_reason() {
     let axis = [0.0, 1.0, 2.0];
-    assert_eq!(interpolate(&axis, &axis, &[2.1]), Err(ResampleError::Outside { point: 2.1, first: 0.0, last: 2.0 }));
+    assert_eq!(
+        interpolate(&axis, &axis, &[2.1]),
+        Err(ResampleError::Outside { point: 2.1, first: 0.0, last: 2.0 })
+    );
     assert!(matches!(interpolate(&axis, &axis, &[f64::NAN]), Err(ResampleError::Outside { .. })));
-    assert_eq!(interpolate(&[0.0, 2.0, 2.0], &axis, &[1.0]), Err(ResampleError::Axis { sample: 2 }));
-    assert_eq!(interpolate(&axis, &[1.0], &[1.0]), Err(ResampleError::Lengths { axis: 3, signal: 1 }));
+    assert_eq!(
+        interpolate(&[0.0, 2.0, 2.0], &axis, &[1.0]),
+        Err(ResampleError::Axis { sample: 2 })
+    );
+    assert_eq!(
+        interpolate(&axis, &[1.0], &[1.0]),
+        Err(ResampleError::Lengths { axis: 3, signal: 1 })
+    );
     assert_eq!(resample(&[], &[], 1.0), Err(ResampleError::Empty));
     for step in [0.0, -1.0, f64::NAN, 1e-12] {
         assert!(matches!(uniform_grid(0.0, 1.0, step), Err(ResampleError::Grid { .. })), "{step}");

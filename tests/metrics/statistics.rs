@@ -12,7 +12,11 @@ fn a_deviation_that_overflows_is_not_defined() {
     for values in [[1e200, 0.0, 1.0], [1e155, -1e155, 1.0], [1e308, -1e308, 1e308]] {
         assert_eq!(standard_deviation(&values, Divisor::Sample), None, "{values:?}");
     }
-    close(standard_deviation(&[1e150, 2e150, 3e150], Divisor::Sample).expect("defined"), 1e150, 1e-15);
+    close(
+        standard_deviation(&[1e150, 2e150, 3e150], Divisor::Sample).expect("defined"),
+        1e150,
+        1e-15,
+    );
 }
 
 /// scipy.stats t and chi2, 2 to 100001 values.
@@ -22,10 +26,15 @@ fn intervals_agree_with_scipy() {
     for case in expected["intervals"].as_array().expect("a list") {
         let values = record(number(&case["n"]) as i64, 3.0);
         close(mean(&values).expect("defined"), number(&case["mean"]), 1e-14);
-        close(standard_deviation(&values, Divisor::Sample).expect("defined"), number(&case["std"]), 1e-13);
+        close(
+            standard_deviation(&values, Divisor::Sample).expect("defined"),
+            number(&case["std"]),
+            1e-13,
+        );
         let each: Vec<usize> = (0..values.len()).collect();
         let of_mean = mean_interval(&values, &each, CONFIDENCE).expect("defined");
-        let of_deviation = standard_deviation_interval(&values, &each, CONFIDENCE).expect("defined");
+        let of_deviation =
+            standard_deviation_interval(&values, &each, CONFIDENCE).expect("defined");
         for (interval, key) in [(of_mean, "mean_interval"), (of_deviation, "std_interval")] {
             let ends = numbers(&case[key]);
             close(interval.low, ends[0], 1e-9);
@@ -34,14 +43,16 @@ fn intervals_agree_with_scipy() {
     }
 }
 
-/// NumPy and SciPy, `tests/cases/sites/make.py`: differences of eight sites, four of them measured twice, several signals each.
+/// NumPy and SciPy, `tests/cases/sites/make.py`: differences of eight sites, four of them measured
+/// twice, several signals each.
 #[test]
 fn intervals_of_sites_agree_with_numpy() {
     for case in json("sites/intervals.json").as_array().expect("a list") {
         let (values, site) = (numbers(&case["difference"]), numbers(&case["site"]));
         let site: Vec<usize> = site.iter().map(|site| *site as usize).collect();
         let of_mean = mean_interval(&values, &site, CONFIDENCE).expect("defined");
-        let of_deviation = standard_deviation_interval(&values, &site, CONFIDENCE).expect("defined");
+        let of_deviation =
+            standard_deviation_interval(&values, &site, CONFIDENCE).expect("defined");
         for (interval, key) in [(of_mean, "mean_interval"), (of_deviation, "std_interval")] {
             let ends = numbers(&case[key]);
             close(interval.low, ends[0], 1e-9);
@@ -50,12 +61,14 @@ fn intervals_of_sites_agree_with_numpy() {
     }
 }
 
-/// A site measured again and again says no more of the others: the interval of the mean stays, but for rounding.
+/// A site measured again and again says no more of the others: the interval of the mean stays, but
+/// for rounding.
 #[test]
 fn repeats_do_not_narrow_an_interval() {
     let (values, site) = ([1.0, 2.0, 4.0, 4.5], [0, 1, 2, 3]);
     let (twice, of_twice) = ([values, values].concat(), [site, site].concat());
-    let (once, again) = (mean_interval(&values, &site, CONFIDENCE), mean_interval(&twice, &of_twice, CONFIDENCE));
+    let (once, again) =
+        (mean_interval(&values, &site, CONFIDENCE), mean_interval(&twice, &of_twice, CONFIDENCE));
     let (once, again) = (once.expect("defined"), again.expect("defined"));
     close(again.low, once.low, 1e-14);
     close(again.high, once.high, 1e-14);
@@ -123,7 +136,9 @@ fn none_where_not_defined() {
     assert_eq!(standard_deviation_interval(&[1.0, 2.0], &[3, 3], CONFIDENCE), None, "one site");
     assert_eq!(standard_deviation_interval(&[1.0, 2.0], &[0, 1], f64::NAN), None);
     for broken in [[1.0, f64::NAN], [f64::NAN, 1.0], [f64::INFINITY, 1.0]] {
-        for statistic in [mean, rms, median, minimum, maximum, peak_magnitude, range, interquartile_range] {
+        for statistic in
+            [mean, rms, median, minimum, maximum, peak_magnitude, range, interquartile_range]
+        {
             assert_eq!(statistic(&broken), None);
         }
         assert_eq!(standard_deviation(&broken, Divisor::Sample), None);
@@ -134,10 +149,18 @@ fn none_where_not_defined() {
 /// Wilson 1927; Newcombe 1998 (Statistics in Medicine 17:857), table I, method 3.
 #[test]
 fn wilson_intervals_as_published() {
-    for (good, all, low, high) in [(81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611), (1, 29, 0.0061, 0.1718)] {
+    for (good, all, low, high) in [
+        (81, 263, 0.2553, 0.3662),
+        (15, 148, 0.0624, 0.1605),
+        (0, 20, 0.0, 0.1611),
+        (1, 29, 0.0061, 0.1718),
+    ] {
         let found = wilson(good, all);
         // Four decimals are printed.
-        assert!((found.0 - low).abs() < 5e-5 && (found.1 - high).abs() < 5e-5, "{good} of {all}: {found:?}");
+        assert!(
+            (found.0 - low).abs() < 5e-5 && (found.1 - high).abs() < 5e-5,
+            "{good} of {all}: {found:?}"
+        );
         let other = wilson(all - good, all);
         close(other.0, 1.0 - found.1, 1e-12);
         close(other.1, 1.0 - found.0, 1e-12);

@@ -1,5 +1,6 @@
-//! The check values of the model's description: medians over 100 m of even track, from the independent code that made the
-//! simulation records of the campaigns. Within 0.02 kN and 0.001 m/s^2, as the description promises.
+//! The check values of the model's description: medians over 100 m of even track, from the
+//! independent code that made the simulation records of the campaigns. Within 0.02 kN and 0.001
+//! m/s^2, as the description promises.
 
 use fishplate::model::{Setup, Window, simulate};
 
@@ -77,7 +78,10 @@ pub fn medians(campaign: &str, radius: f64, cant: f64, speed: f64) -> Vec<f64> {
     let record = simulate(&setup, Window::around(EVALUATED.0, EVALUATED.1)).unwrap();
     let inside = |signal: &Vec<f64>| {
         let pairs = record.distance.iter().zip(signal);
-        pairs.filter(|(at, _)| (EVALUATED.0..=EVALUATED.1).contains(*at)).map(|(_, value)| *value).collect::<Vec<_>>()
+        pairs
+            .filter(|(at, _)| (EVALUATED.0..=EVALUATED.1).contains(*at))
+            .map(|(_, value)| *value)
+            .collect::<Vec<_>>()
     };
     record.channels.iter().map(|signal| median(&inside(signal))).collect()
 }
@@ -89,11 +93,20 @@ fn all_medians_of_coach_and_wagon() {
         let found = medians(case.vehicle, radius, cant, speed);
         for (i, expected) in case.y.iter().chain(&case.q).enumerate() {
             let difference = found[i] - expected;
-            assert!(difference.abs() <= 0.02, "{} R {radius} channel {i}: {} kN, not {expected}", case.vehicle, found[i]);
+            assert!(
+                difference.abs() <= 0.02,
+                "{} R {radius} channel {i}: {} kN, not {expected}",
+                case.vehicle,
+                found[i]
+            );
         }
         for (name, expected) in ["ay_I", "ay_II"].iter().zip(case.ay) {
             let found = found[channel(name)];
-            assert!((found - expected).abs() <= 0.001, "{} R {radius} {name}: {found} m/s^2, not {expected}", case.vehicle);
+            assert!(
+                (found - expected).abs() <= 0.001,
+                "{} R {radius} {name}: {found} m/s^2, not {expected}",
+                case.vehicle
+            );
         }
     }
 }

@@ -1,5 +1,6 @@
-//! Code to code: the simulated records of the example campaigns were made by an independent program after the same description,
-//! with another step (0.5 ms). `docs/verification.md` has the table over more campaigns.
+//! Code to code: the simulated records of the example campaigns were made by an independent program
+//! after the same description, with another step (0.5 ms). `docs/verification.md` has the table
+//! over more campaigns.
 
 use fishplate::model::CHANNELS;
 
@@ -7,10 +8,10 @@ use crate::common::{COACH, Section, WAGON, deviation, median, profile, sections,
 
 /// Compares all sections of a campaign; gives how many there are.
 ///
-/// Asked for: quasi-static values within 2 %, dynamic rms within 5 %, where the value is larger than 1 kN or 0.05 m/s^2. What
-/// holds is more: medians within 0.01 kN and 0.001 m/s^2 (0.002 on the bogies),
-/// every sample within 0.04 kN and 0.006 m/s^2 (rounding
-/// of the files and of the track they were made on), standard deviations within 1 %.
+/// Asked for: quasi-static values within 2 %, dynamic rms within 5 %, where the value is larger
+/// than 1 kN or 0.05 m/s^2. What holds is more: medians within 0.01 kN and 0.001 m/s^2 (0.002 on
+/// the bogies), every sample within 0.04 kN and 0.006 m/s^2 (rounding of the files and of the track
+/// they were made on), standard deviations within 1 %.
 fn agrees(campaign: &str) -> usize {
     let vehicle = vehicle(campaign, &[]);
     let profile = profile(campaign, &vehicle);
@@ -24,13 +25,22 @@ fn agrees(campaign: &str) -> usize {
             let theirs = section.inside(&record.distance, &section.recorded[1 + i]);
             let force = *unit == "kN";
             let what = format!("{campaign} {} {name}", section.name);
-            let (of_median, of_sample, matters) =
-                if force { (0.01, 0.04, 1.0) } else { (if name.starts_with("ayb") { 0.002 } else { 0.001 }, 0.006, 0.05) };
+            let (of_median, of_sample, matters) = if force {
+                (0.01, 0.04, 1.0)
+            } else {
+                (if name.starts_with("ayb") { 0.002 } else { 0.001 }, 0.006, 0.05)
+            };
             let (a, b) = (median(&ours), median(&theirs));
             assert!((a - b).abs() <= of_median, "{what}: median {a}, recorded {b}");
-            assert!(b.abs() < matters || (a / b - 1.0).abs() < 0.02, "{what}: median {a}, recorded {b}");
+            assert!(
+                b.abs() < matters || (a / b - 1.0).abs() < 0.02,
+                "{what}: median {a}, recorded {b}"
+            );
             let (a, b) = (deviation(&ours), deviation(&theirs));
-            assert!(b < matters || (a / b - 1.0).abs() < 0.01, "{what}: standard deviation {a}, recorded {b}");
+            assert!(
+                b < matters || (a / b - 1.0).abs() < 0.01,
+                "{what}: standard deviation {a}, recorded {b}"
+            );
             for (a, b) in ours.iter().zip(&theirs) {
                 assert!((a - b).abs() <= of_sample, "{what}: {a}, recorded {b}");
             }
@@ -43,7 +53,11 @@ fn agrees(campaign: &str) -> usize {
 fn same_samples(section: &Section, distance: &[f64]) {
     let recorded = &section.recorded[0];
     assert_eq!(recorded.len(), distance.len(), "{}", section.name);
-    assert!(recorded.iter().zip(distance).all(|(a, b)| (a - b).abs() <= 5.1e-4), "{}", section.name);
+    assert!(
+        recorded.iter().zip(distance).all(|(a, b)| (a - b).abs() <= 5.1e-4),
+        "{}",
+        section.name
+    );
 }
 
 #[test]

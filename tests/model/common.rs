@@ -6,7 +6,10 @@ use std::path::{Path, PathBuf};
 use fishplate::model::equations::Equations;
 use fishplate::model::integrate::{SAMPLE, run, steps_per_sample};
 use fishplate::model::state::State;
-use fishplate::model::{CHANNELS, Failure, Profile, ProfileTable, Record, Setup, Track, TrackTable, Vehicle, Window, simulate};
+use fishplate::model::{
+    CHANNELS, Failure, Profile, ProfileTable, Record, Setup, Track, TrackTable, Vehicle, Window,
+    simulate,
+};
 
 /// A campaign's folder below the repository.
 pub fn folder(path: &str) -> PathBuf {
@@ -35,7 +38,9 @@ pub fn vehicle(campaign: &str, set: &[(&str, f64)]) -> Vehicle {
             for (key, value) in entries {
                 flatten(&format!("{prefix}.{}", key.as_str().unwrap()), value, flat);
             }
-        } else if let Some(number) = value.as_f64().or_else(|| value.as_str()?.split(' ').next()?.parse().ok()) {
+        } else if let Some(number) =
+            value.as_f64().or_else(|| value.as_str()?.split(' ').next()?.parse().ok())
+        {
             // The unit behind a number is that of the model.
             flat.insert(prefix.trim_start_matches('.').to_owned(), number);
         }
@@ -53,14 +58,19 @@ pub fn vehicle(campaign: &str, set: &[(&str, f64)]) -> Vehicle {
 pub fn profile_table(campaign: &str) -> ProfileTable {
     let mut columns = columns(&folder(campaign).join("profile.csv")).into_iter();
     let mut next = || columns.next().unwrap();
-    ProfileTable { displacement: next(), radius_deviation: [next(), next()], contact_angle: [next(), next()] }
+    ProfileTable {
+        displacement: next(),
+        radius_deviation: [next(), next()],
+        contact_angle: [next(), next()],
+    }
 }
 
 pub fn profile(campaign: &str, vehicle: &Vehicle) -> Profile {
     Profile::new(&profile_table(campaign), None, vehicle).unwrap()
 }
 
-/// Wheels that are cones, over 20 mm to either side: the only profile whose motion has a closed form.
+/// Wheels that are cones, over 20 mm to either side: the only profile whose motion has a closed
+/// form.
 pub fn cones(conicity: f64, contact_angle: f64, vehicle: &Vehicle) -> Profile {
     let rise = 20.0 * conicity;
     let table = ProfileTable {
@@ -74,7 +84,15 @@ pub fn cones(conicity: f64, contact_angle: f64, vehicle: &Vehicle) -> Profile {
 pub fn track_table(path: &Path) -> TrackTable {
     let mut columns = columns(path).into_iter();
     let mut next = || columns.next().unwrap();
-    TrackTable { distance: next(), curvature: next(), cant: next(), alignment: next(), level: next(), cross_level: next(), gauge: next() }
+    TrackTable {
+        distance: next(),
+        curvature: next(),
+        cant: next(),
+        alignment: next(),
+        level: next(),
+        cross_level: next(),
+        gauge: next(),
+    }
 }
 
 /// An even track: points of distance in m, curvature in 1/m, cant in mm.
@@ -91,8 +109,8 @@ pub fn even(points: &[(f64, f64, f64)]) -> TrackTable {
     }
 }
 
-/// Straight run-in of 40 m, ramp of 80 m, 90 m to settle, 100 m to evaluate: the track of the check values. Radius in m, 0 for
-/// straight track; cant in mm, with the sign of the radius.
+/// Straight run-in of 40 m, ramp of 80 m, 90 m to settle, 100 m to evaluate: the track of the check
+/// values. Radius in m, 0 for straight track; cant in mm, with the sign of the radius.
 pub fn curve(radius: f64, cant: f64) -> TrackTable {
     let kappa = if radius == 0.0 { 0.0 } else { 1.0 / radius };
     let cant = cant * kappa.signum();
@@ -125,7 +143,10 @@ impl Section {
     /// The samples of a signal of `record` inside the section.
     pub fn inside(&self, distance: &[f64], signal: &[f64]) -> Vec<f64> {
         let pairs = distance.iter().zip(signal);
-        pairs.filter(|(at, _)| (self.start..=self.end).contains(*at)).map(|(_, value)| *value).collect()
+        pairs
+            .filter(|(at, _)| (self.start..=self.end).contains(*at))
+            .map(|(_, value)| *value)
+            .collect()
     }
 }
 
@@ -161,7 +182,11 @@ pub fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let middle = sorted.len() / 2;
-    if sorted.len() % 2 == 1 { sorted[middle] } else { f64::midpoint(sorted[middle - 1], sorted[middle]) }
+    if sorted.len() % 2 == 1 {
+        sorted[middle]
+    } else {
+        f64::midpoint(sorted[middle - 1], sorted[middle])
+    }
 }
 
 /// About the mean.
@@ -171,13 +196,21 @@ pub fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / n).sqrt()
 }
 
-/// The states of a free run on straight even track, one per sample of 1 ms, steps of 1 ms / `divided` (0: default).
-pub fn free_run(equations: &Equations<'_>, from: State, seconds: f64, divided: usize) -> Vec<State> {
+/// The states of a free run on straight even track, one per sample of 1 ms, steps of 1 ms /
+/// `divided` (0: default).
+pub fn free_run(
+    equations: &Equations<'_>,
+    from: State,
+    seconds: f64,
+    divided: usize,
+) -> Vec<State> {
     let table = even(&[(0.0, 0.0, 0.0), (1.0, 0.0, 0.0)]);
     let track = Track::new(&table, equations.vehicle);
     let samples = (seconds / SAMPLE).round() as usize + 1;
-    let divided = if divided == 0 { steps_per_sample(equations).expect("few steps") } else { divided };
+    let divided =
+        if divided == 0 { steps_per_sample(equations).expect("few steps") } else { divided };
     let mut states = Vec::with_capacity(samples);
-    run(equations, &track, from, 10.0, samples, divided, |_, state, _| states.push(*state)).unwrap();
+    run(equations, &track, from, 10.0, samples, divided, |_, state, _| states.push(*state))
+        .unwrap();
     states
 }

@@ -1,4 +1,5 @@
-//! Forces between wheel and rail against theory: Kalker's linear limit, Coulomb's limit, Klingel's wave, the flange.
+//! Forces between wheel and rail against theory: Kalker's linear limit, Coulomb's limit, Klingel's
+//! wave, the flange.
 
 use fishplate::model::equations::{Equations, Input};
 use fishplate::model::modes::Linear;
@@ -11,33 +12,41 @@ use crate::common::{COACH, cones, free_run, profile, vehicle};
 fn kalker(v: &Vehicle, load: f64) -> (f64, f64, f64) {
     let ab = v.ellipse_ab * (load / v.ellipse_reference_load).powf(2.0 / 3.0);
     let stiffness = v.kalker_scale * v.shear_modulus;
-    (stiffness * v.kalker_c11 * ab, stiffness * v.kalker_c22 * ab, stiffness * v.kalker_c23 * ab.powf(1.5))
+    (
+        stiffness * v.kalker_c11 * ab,
+        stiffness * v.kalker_c22 * ab,
+        stiffness * v.kalker_c23 * ab.powf(1.5),
+    )
 }
 
-/// For vanishing creepage the forces are Kalker's linear ones. Saturation takes r/3 of them, r = linear force / mu N: here at most
-/// 1e-4, and 1e-9 for the coefficients themselves.
+/// For vanishing creepage the forces are Kalker's linear ones. Saturation takes r/3 of them, r =
+/// linear force / mu N: here at most 1e-4, and 1e-9 for the coefficients themselves.
 #[test]
 fn small_creepages_give_kalkers_forces() {
     let v = vehicle(COACH, &[]);
     let contact = Contact::new(&v);
     for load in [2.0e4, 5.4e4, 1.2e5] {
         let (f11, f22, f23) = kalker(&v, load);
-        for (xi, eta, zeta) in [(1e-7, 0.0, 0.0), (0.0, -2e-7, 0.0), (0.0, 0.0, 1e-5), (1e-7, 1e-7, -1e-5)] {
+        for (xi, eta, zeta) in
+            [(1e-7, 0.0, 0.0), (0.0, -2e-7, 0.0), (0.0, 0.0, 1e-5), (1e-7, 1e-7, -1e-5)]
+        {
             let (fx, ft) = contact.creep(load, xi, eta, zeta);
             let (lx, lt) = (-f11 * xi, -f22 * eta - f23 * zeta);
             let r = lx.hypot(lt) / (v.friction * load);
             let share = 1.0 - r / 3.0 + r * r / 27.0;
             assert!(r < 3e-4, "{r}");
             assert!(
-                (fx - share * lx).abs() <= 1e-9 * lx.hypot(lt) && (ft - share * lt).abs() <= 1e-9 * lx.hypot(lt),
+                (fx - share * lx).abs() <= 1e-9 * lx.hypot(lt)
+                    && (ft - share * lt).abs() <= 1e-9 * lx.hypot(lt),
                 "{load} N: {fx} {ft}"
             );
         }
     }
 }
 
-/// Beyond r = 3 the force is mu N against the creep, whatever the creepage (Coulomb); it never exceeds mu N before; and the two
-/// branches of Shen, Hedrick and Elkins meet smoothly. Within 1e-12 of mu N.
+/// Beyond r = 3 the force is mu N against the creep, whatever the creepage (Coulomb); it never
+/// exceeds mu N before; and the two branches of Shen, Hedrick and Elkins meet smoothly. Within
+/// 1e-12 of mu N.
 #[test]
 fn large_creepages_give_coulombs_friction() {
     let v = vehicle(COACH, &[("friction", 0.42)]);
@@ -57,7 +66,11 @@ fn large_creepages_give_coulombs_friction() {
         assert!(-fx >= last - 1e-9 && -fx <= limit * (1.0 + 1e-12), "{fx}");
         last = -fx;
     }
-    let slope = |at: f64| (contact.creep(load, at * (1.0 + 1e-6), 0.0, 0.0).0 - contact.creep(load, at, 0.0, 0.0).0) / (1e-6 * at) / f11;
+    let slope = |at: f64| {
+        (contact.creep(load, at * (1.0 + 1e-6), 0.0, 0.0).0 - contact.creep(load, at, 0.0, 0.0).0)
+            / (1e-6 * at)
+            / f11
+    };
     assert!(slope(full * 0.99999).abs() < 1e-3 && slope(full * 1.00001).abs() < 1e-9);
 }
 
@@ -74,8 +87,9 @@ fn free_wheelsets() -> Vehicle {
     vehicle(COACH, &free)
 }
 
-/// Klingel (1883): a free wheelset on cones of conicity l runs in a wave of length 2 pi sqrt(b0 r0 / l). At 3 m/s, where inertia
-/// does not count, the time integration crosses the centre line at that distance, within 0.5 %.
+/// Klingel (1883): a free wheelset on cones of conicity l runs in a wave of length 2 pi sqrt(b0 r0
+/// / l). At 3 m/s, where inertia does not count, the time integration crosses the centre line at
+/// that distance, within 0.5 %.
 #[test]
 fn free_wheelsets_run_in_klingels_wave() {
     let v = free_wheelsets();
@@ -87,17 +101,23 @@ fn free_wheelsets_run_in_klingels_wave() {
         start.x[WHEELSET.y..WHEELSET.y + 4].fill(1e-4);
         let states = free_run(&equations, start, 12.0, 0);
         let y: Vec<f64> = states.iter().map(|state| state.x[WHEELSET.y]).collect();
-        let crossings: Vec<f64> =
-            (1..y.len()).filter(|n| y[n - 1] < 0.0 && y[*n] >= 0.0).map(|n| speed * 1e-3 * (n as f64 - y[n] / (y[n] - y[n - 1]))).collect();
+        let crossings: Vec<f64> = (1..y.len())
+            .filter(|n| y[n - 1] < 0.0 && y[*n] >= 0.0)
+            .map(|n| speed * 1e-3 * (n as f64 - y[n] / (y[n] - y[n - 1])))
+            .collect();
         assert!(crossings.len() > 1, "{conicity}: no wave");
         let length = (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f64;
-        let klingel = std::f64::consts::TAU * (v.half_contact_spacing * v.wheel_radius / conicity).sqrt();
-        assert!((length / klingel - 1.0).abs() < 0.005, "{conicity}: {length} m, Klingel {klingel} m");
+        let klingel =
+            std::f64::consts::TAU * (v.half_contact_spacing * v.wheel_radius / conicity).sqrt();
+        assert!(
+            (length / klingel - 1.0).abs() < 0.005,
+            "{conicity}: {length} m, Klingel {klingel} m"
+        );
     }
 }
 
-/// The same by eigenvalues, and on the table's own profile with its slope at the centre, 0.15: gravity then pushes the wheelset
-/// back, which hardly shortens the wave. Within 0.5 % and 3 %.
+/// The same by eigenvalues, and on the table's own profile with its slope at the centre, 0.15:
+/// gravity then pushes the wheelset back, which hardly shortens the wave. Within 0.5 % and 3 %.
 #[test]
 fn klingels_wave_by_eigenvalues() {
     let v = free_wheelsets();
@@ -112,17 +132,22 @@ fn klingels_wave_by_eigenvalues() {
             .iter()
             .filter(|mode| {
                 let shape = linear.shape(mode).unwrap();
-                let largest = (0..State::BODIES).max_by(|a, b| shape[*a].norm().total_cmp(&shape[*b].norm())).unwrap();
+                let largest = (0..State::BODIES)
+                    .max_by(|a, b| shape[*a].norm().total_cmp(&shape[*b].norm()))
+                    .unwrap();
                 mode.frequency() > 0.1 && (WHEELSET.y..WHEELSET.y + 4).contains(&largest)
             })
             .map(|mode| speed / mode.frequency())
             .collect();
-        assert!(!waves.is_empty() && waves.iter().all(|wave| (wave / klingel - 1.0).abs() < tolerance), "{waves:?}, Klingel {klingel}");
+        assert!(
+            !waves.is_empty() && waves.iter().all(|wave| (wave / klingel - 1.0).abs() < tolerance),
+            "{waves:?}, Klingel {klingel}"
+        );
     }
 }
 
-/// A wheelset pushed 10 mm to the right, hardly any friction: the right flange bears Q tan(gamma) and the stop, k (u - 9 mm), the
-/// left wheel Q tan(gamma) of its small angle. Within 1e-6.
+/// A wheelset pushed 10 mm to the right, hardly any friction: the right flange bears Q tan(gamma)
+/// and the stop, k (u - 9 mm), the left wheel Q tan(gamma) of its small angle. Within 1e-6.
 #[test]
 fn the_flange_bears_by_its_angle_and_its_stop() {
     let v = vehicle(COACH, &[("friction", 1e-9)]);

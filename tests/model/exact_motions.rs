@@ -8,11 +8,12 @@ use nalgebra::{Complex, Matrix3, SymmetricEigen, Vector3};
 
 use crate::common::{COACH, free_run, profile, vehicle};
 
-const UNDAMPED: [(&str, f64); 3] = [("primary.cz", 0.0), ("secondary.cz", 0.0), ("contact.vertical_damping", 0.0)];
+const UNDAMPED: [(&str, f64); 3] =
+    [("primary.cz", 0.0), ("secondary.cz", 0.0), ("contact.vertical_damping", 0.0)];
 const RIGID_TRACK: (&str, f64) = ("contact.vertical_stiffness", 1e11);
 
-/// Frequency in Hz of the mode whose largest displacement is at `largest` and whose entries there and at `with` have the same
-/// sign (`together`) or opposite signs.
+/// Frequency in Hz of the mode whose largest displacement is at `largest` and whose entries there
+/// and at `with` have the same sign (`together`) or opposite signs.
 fn frequency(vehicle: &Vehicle, largest: &[usize], with: usize, together: bool) -> f64 {
     let profile = profile(COACH, vehicle);
     let equations = Equations::new(vehicle, &profile, 40.0);
@@ -25,7 +26,9 @@ fn frequency(vehicle: &Vehicle, largest: &[usize], with: usize, together: bool) 
         .filter(|mode| {
             let shape = linear.shape(mode).unwrap();
             let at = largest[0];
-            let peak = (0..State::BODIES).max_by(|a, b| shape[*a].norm().total_cmp(&shape[*b].norm())).unwrap();
+            let peak = (0..State::BODIES)
+                .max_by(|a, b| shape[*a].norm().total_cmp(&shape[*b].norm()))
+                .unwrap();
             let share: Complex<f64> = shape[with] / shape[at];
             largest.contains(&peak) && share.norm() > 1e-2 && (share.re > 0.0) == together
         })
@@ -38,8 +41,9 @@ fn frequency(vehicle: &Vehicle, largest: &[usize], with: usize, together: bool) 
 const CAR_PITCH: usize = CAR + 3;
 const BOGIES: [usize; 2] = [BOGIE + Z, BOGIE + 5 + Z];
 
-/// Body bounce 1.074 Hz, pitch 1.299 Hz, bogie bounce 7.47 Hz: the published benchmark coach, on rigid track. Its primary spring
-/// is 1.22 MN/m per box; the coach of the campaigns, 1.20 MN/m, lies a little lower. Within half of the last digit.
+/// Body bounce 1.074 Hz, pitch 1.299 Hz, bogie bounce 7.47 Hz: the published benchmark coach, on
+/// rigid track. Its primary spring is 1.22 MN/m per box; the coach of the campaigns, 1.20 MN/m,
+/// lies a little lower. Within half of the last digit.
 #[test]
 fn vertical_modes_of_the_benchmark_coach() {
     let set = [UNDAMPED.as_slice(), &[RIGID_TRACK, ("primary.kz", 1.22e6)]].concat();
@@ -64,7 +68,8 @@ fn chain(v: &Vehicle) -> [f64; 2] {
     [sum / 2.0 - root, sum / 2.0 + root].map(|square| square.sqrt() / std::f64::consts::TAU)
 }
 
-/// The coach of the campaigns against the quadratic of two masses, within 1e-4: the linearisation itself.
+/// The coach of the campaigns against the quadratic of two masses, within 1e-4: the linearisation
+/// itself.
 #[test]
 fn bounce_of_two_masses() {
     let coach = vehicle(COACH, &[UNDAMPED.as_slice(), &[RIGID_TRACK]].concat());
@@ -75,8 +80,9 @@ fn bounce_of_two_masses() {
     assert!((bogie / high - 1.0).abs() < 1e-4, "{bogie} {high}");
 }
 
-/// Car body, bogies and wheelsets as a chain with dampers in proportion to the springs: each mode of the undamped chain decays
-/// by itself, x = exp(-d t) (cos w t + d/w sin w t). Body released 10 mm low; within 1e-8 m for 3 s (steps of 0.25 ms).
+/// Car body, bogies and wheelsets as a chain with dampers in proportion to the springs: each mode
+/// of the undamped chain decays by itself, x = exp(-d t) (cos w t + d/w sin w t). Body released 10
+/// mm low; within 1e-8 m for 3 s (steps of 0.25 ms).
 #[test]
 fn free_decay_of_the_vertical_chain() {
     const BETA: f64 = 0.01;
@@ -94,8 +100,19 @@ fn free_decay_of_the_vertical_chain() {
     let states = free_run(&equations, start, 3.0, 4);
 
     let masses = Vector3::new(coach.car_mass, 2.0 * coach.bogie_mass, 4.0 * coach.wheelset_mass);
-    let (upper, middle, lower) = (4.0 * coach.secondary_kz, 8.0 * coach.primary_kz, 8.0 * coach.contact_kc);
-    let springs = Matrix3::new(upper, -upper, 0.0, -upper, upper + middle, -middle, 0.0, -middle, middle + lower);
+    let (upper, middle, lower) =
+        (4.0 * coach.secondary_kz, 8.0 * coach.primary_kz, 8.0 * coach.contact_kc);
+    let springs = Matrix3::new(
+        upper,
+        -upper,
+        0.0,
+        -upper,
+        upper + middle,
+        -middle,
+        0.0,
+        -middle,
+        middle + lower,
+    );
     let root = masses.map(|mass| 1.0 / mass.sqrt());
     let scaled = Matrix3::from_diagonal(&root) * springs * Matrix3::from_diagonal(&root);
     let eigen = SymmetricEigen::new(scaled);
@@ -113,7 +130,11 @@ fn free_decay_of_the_vertical_chain() {
         let exact = root.component_mul(&(eigen.eigenvectors * modal));
         let found = [state.x[CAR + Z], state.x[BOGIE + Z], state.x[WHEELSET.z]];
         for (body, found) in found.into_iter().enumerate() {
-            assert!((found - exact[body]).abs() < 1e-8, "{t} s, body {body}: {found}, exact {}", exact[body]);
+            assert!(
+                (found - exact[body]).abs() < 1e-8,
+                "{t} s, body {body}: {found}, exact {}",
+                exact[body]
+            );
         }
     }
 }
@@ -138,8 +159,9 @@ fn energy(v: &Vehicle, state: &State) -> f64 {
     0.5 * twice
 }
 
-/// Without dampers the energy of bounce and pitch stays, to what the integrator loses of the 41 Hz mode: below 1e-4 in 5 s at
-/// 0.25 ms. With them it never grows from one sample to the next, and falls.
+/// Without dampers the energy of bounce and pitch stays, to what the integrator loses of the 41 Hz
+/// mode: below 1e-4 in 5 s at 0.25 ms. With them it never grows from one sample to the next, and
+/// falls.
 #[test]
 fn energy_is_kept_without_dampers_and_lost_with_them() {
     let mut start = State::default();
@@ -150,25 +172,32 @@ fn energy_is_kept_without_dampers_and_lost_with_them() {
     start.v[WHEELSET.z + 2] = 0.01;
     let coach = vehicle(COACH, &UNDAMPED);
     let wheels = profile(COACH, &coach);
-    let energies: Vec<f64> =
-        free_run(&Equations::new(&coach, &wheels, 40.0), start, 5.0, 4).iter().map(|state| energy(&coach, state)).collect();
+    let energies: Vec<f64> = free_run(&Equations::new(&coach, &wheels, 40.0), start, 5.0, 4)
+        .iter()
+        .map(|state| energy(&coach, state))
+        .collect();
     let worst = energies.iter().map(|e| (e / energies[0] - 1.0).abs()).fold(0.0, f64::max);
     assert!(energies[0] > 10.0 && worst < 1e-4, "{worst}");
 
     let coach = vehicle(COACH, &[]);
-    let damped: Vec<f64> =
-        free_run(&Equations::new(&coach, &wheels, 40.0), start, 5.0, 4).iter().map(|state| energy(&coach, state)).collect();
+    let damped: Vec<f64> = free_run(&Equations::new(&coach, &wheels, 40.0), start, 5.0, 4)
+        .iter()
+        .map(|state| energy(&coach, state))
+        .collect();
     assert!(damped.windows(2).all(|pair| pair[1] <= pair[0] * (1.0 + 1e-9) + 1e-12));
     assert!(damped[damped.len() - 1] < 1e-3 * damped[0]);
 }
 
-/// A Maxwell element beside the lateral springs of each bogie, H' = 2 r ky d' - H / T: at the rate 0.1 m/s of the body its force of 700 N
-/// changes by 2 r ky 0.1 - 700 / T. Both forces decelerate the body by 1400 N over its mass, in addition to springs and dampers. At rest only
-/// the relaxation is left, so that steady forces do not change.
+/// A Maxwell element beside the lateral springs of each bogie, H' = 2 r ky d' - H / T: at the rate
+/// 0.1 m/s of the body its force of 700 N changes by 2 r ky 0.1 - 700 / T. Both forces decelerate
+/// the body by 1400 N over its mass, in addition to springs and dampers. At rest only the
+/// relaxation is left, so that steady forces do not change.
 #[test]
 fn hysteresis_of_the_springs_is_a_maxwell_element() {
     use fishplate::model::equations::Input;
-    let with = |share: f64| vehicle(COACH, &[("secondary.hysteresis", share), ("secondary.hysteresis_time", 0.2)]);
+    let with = |share: f64| {
+        vehicle(COACH, &[("secondary.hysteresis", share), ("secondary.hysteresis_time", 0.2)])
+    };
     let rates = |vehicle: &Vehicle, speed: f64| {
         let profile = profile(COACH, vehicle);
         let equations = Equations::new(vehicle, &profile, 40.0);
@@ -181,7 +210,11 @@ fn hysteresis_of_the_springs_is_a_maxwell_element() {
     let (coach, without) = (with(0.9), with(0.0));
     let moving = rates(&coach, 0.1);
     let expected = 2.0 * 0.9 * coach.secondary_ky * 0.1 - 700.0 / 0.2;
-    assert!(moving.hysteresis.iter().all(|rate| (rate - expected).abs() < 1e-9 * expected.abs()), "{:?} for {expected}", moving.hysteresis);
+    assert!(
+        moving.hysteresis.iter().all(|rate| (rate - expected).abs() < 1e-9 * expected.abs()),
+        "{:?} for {expected}",
+        moving.hysteresis
+    );
     assert_eq!(rates(&coach, 0.0).hysteresis, [-700.0 / 0.2; 2]);
     let slower = rates(&without, 0.1).v[CAR] - moving.v[CAR];
     assert!((slower * coach.car_mass - 1400.0).abs() < 1e-6, "{slower}");

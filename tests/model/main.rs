@@ -1,7 +1,12 @@
-//! The reference vehicle model (`docs/model.md`) against motions, balances and records that are known from elsewhere. Each test
-//! says where its numbers come from and how close is close.
+//! The reference vehicle model (`docs/model.md`) against motions, balances and records that are
+//! known from elsewhere. Each test says where its numbers come from and how close is close.
 
-#![allow(clippy::unwrap_used, clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss
+)]
 
 mod balance;
 mod check_values;

@@ -8,8 +8,9 @@ fn negated(values: &[f64]) -> Vec<f64> {
     values.iter().map(|value| -value).collect()
 }
 
-/// The mirrored track gives the mirrored record: Y of the sides exchanged with the other sign, Q exchanged, lateral accelerations
-/// negated, vertical ones the same. The contact table is symmetric to its last digit; within 1e-6 kN and m/s^2.
+/// The mirrored track gives the mirrored record: Y of the sides exchanged with the other sign, Q
+/// exchanged, lateral accelerations negated, vertical ones the same. The contact table is symmetric
+/// to its last digit; within 1e-6 kN and m/s^2.
 #[test]
 fn mirrored_track_gives_the_mirrored_record() {
     let section = section(COACH, "S13");
@@ -48,10 +49,13 @@ fn runs_repeat_bit_for_bit() {
     let profile = profile(COACH, &vehicle);
     let alone = section.simulate(&vehicle, &profile).unwrap();
     let beside: Vec<_> = std::thread::scope(|scope| {
-        let runs: Vec<_> = (0..3).map(|_| scope.spawn(|| section.simulate(&vehicle, &profile).unwrap())).collect();
+        let runs: Vec<_> =
+            (0..3).map(|_| scope.spawn(|| section.simulate(&vehicle, &profile).unwrap())).collect();
         runs.into_iter().map(|run| run.join().unwrap()).collect()
     });
-    let bits = |record: &fishplate::model::Record| record.channels.iter().flatten().map(|value| value.to_bits()).collect::<Vec<_>>();
+    let bits = |record: &fishplate::model::Record| {
+        record.channels.iter().flatten().map(|value| value.to_bits()).collect::<Vec<_>>()
+    };
     assert!(beside.iter().all(|record| bits(record) == bits(&alone)));
     assert!(alone.channels.iter().flatten().all(|value| value.is_finite()));
 }

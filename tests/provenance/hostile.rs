@@ -1,4 +1,5 @@
-//! PDFs that are cut, damaged or made to harm: a clear error, bounded time and memory, never a panic.
+//! PDFs that are cut, damaged or made to harm: a clear error, bounded time and memory, never a
+//! panic.
 
 use std::fs;
 use std::io::Write;
@@ -24,7 +25,13 @@ fn pdf(objects: &[Vec<u8>], trailer: &str) -> Vec<u8> {
     for place in places {
         file.extend(format!("{place:010} 00000 n \n").into_bytes());
     }
-    file.extend(format!("trailer\n<</Size {} /Root 1 0 R {trailer}>>\nstartxref\n{table}\n%%EOF\n", objects.len() + 1).into_bytes());
+    file.extend(
+        format!(
+            "trailer\n<</Size {} /Root 1 0 R {trailer}>>\nstartxref\n{table}\n%%EOF\n",
+            objects.len() + 1
+        )
+        .into_bytes(),
+    );
     file
 }
 
@@ -57,7 +64,11 @@ fn refused(folder: &Path, bytes: &[u8]) -> String {
     let path = folder.join("hostile.pdf");
     fs::write(&path, bytes).expect("written");
     let problem = carried::open(&path).expect_err("not a report");
-    assert!(["pdf-unreadable", "no-results", "results-unreadable"].contains(&problem.code), "{}", problem.render(false));
+    assert!(
+        ["pdf-unreadable", "no-results", "results-unreadable"].contains(&problem.code),
+        "{}",
+        problem.render(false)
+    );
     problem.render(false)
 }
 
@@ -65,10 +76,18 @@ fn refused(folder: &Path, bytes: &[u8]) -> String {
 fn a_report_cut_anywhere_is_refused() {
     let whole = fs::read(written().pdf()).expect("readable");
     let folder = tempfile::tempdir().expect("a folder");
-    let ends = (0..60).map(|part| whole.len() * part / 60).chain(whole.len() - 60..whole.len() - 7).chain(0..40);
+    let ends = (0..60)
+        .map(|part| whole.len() * part / 60)
+        .chain(whole.len() - 60..whole.len() - 7)
+        .chain(0..40);
     for end in ends {
         let says = refused(folder.path(), &whole[..end.max(1)]);
-        assert!(says.contains("is not a PDF") || says.contains("cannot be read") || says.contains("has no attachment"), "{end}: {says}");
+        assert!(
+            says.contains("is not a PDF")
+                || says.contains("cannot be read")
+                || says.contains("has no attachment"),
+            "{end}: {says}"
+        );
     }
 }
 
@@ -80,11 +99,14 @@ fn a_damaged_report_never_panics() {
     let path = folder.path().join("damaged.pdf");
     let mut state = 1_u64;
     let mut next = |below: usize| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         usize::try_from(state >> 33).expect("small") % below
     };
-    let catalogue = whole.windows(13).rposition(|window| window == b"/Type/Catalog").expect("a catalogue");
-    let filespec = whole.windows(14).position(|window| window == b"/Type/Filespec").expect("a file");
+    let catalogue =
+        whole.windows(13).rposition(|window| window == b"/Type/Catalog").expect("a catalogue");
+    let filespec =
+        whole.windows(14).position(|window| window == b"/Type/Filespec").expect("a file");
     let (mut opened, mut not) = (0, 0);
     for _ in 0..300 {
         let mut bytes = whole.clone();
@@ -114,18 +136,61 @@ fn what_leads_in_circles_or_nowhere_is_refused() {
         ("no catalogue", pdf(&[b"null".to_vec()], ""), "its catalogue is missing"),
         ("encrypted", pdf(&[catalogue("")], "/Encrypt 1 0 R"), "is encrypted"),
         ("a table before itself", pdf(&[catalogue("")], "/Prev 0"), "cannot be read"),
-        ("a tree that is its own branch", pdf(&[catalogue(embedded), b"<</Kids[2 0 R 2 0 R]>>".to_vec()], ""), "too long"),
-        ("references in a circle", pdf(&[catalogue("/Names 2 0 R"), b"3 0 R".to_vec(), b"2 0 R".to_vec()], ""), "circle"),
-        ("a deep array", pdf(&[catalogue("/AF 2 0 R"), [b"[".repeat(100_000), b"]".repeat(100_000)].concat()], ""), "nested too deeply"),
-        ("a wide array", pdf(&[catalogue("/AF 2 0 R"), [b"[".to_vec(), b"0 ".repeat(3_000_000), b"]".to_vec()].concat()], ""), "too large"),
         (
-            "a name that is a long text",
-            pdf(&[catalogue("/AF 2 0 R"), [b"(".to_vec(), vec![b'x'; 20_000_000], b")".to_vec()].concat()], ""),
+            "a tree that is its own branch",
+            pdf(&[catalogue(embedded), b"<</Kids[2 0 R 2 0 R]>>".to_vec()], ""),
+            "too long",
+        ),
+        (
+            "references in a circle",
+            pdf(&[catalogue("/Names 2 0 R"), b"3 0 R".to_vec(), b"2 0 R".to_vec()], ""),
+            "circle",
+        ),
+        (
+            "a deep array",
+            pdf(
+                &[catalogue("/AF 2 0 R"), [b"[".repeat(100_000), b"]".repeat(100_000)].concat()],
+                "",
+            ),
+            "nested too deeply",
+        ),
+        (
+            "a wide array",
+            pdf(
+                &[
+                    catalogue("/AF 2 0 R"),
+                    [b"[".to_vec(), b"0 ".repeat(3_000_000), b"]".to_vec()].concat(),
+                ],
+                "",
+            ),
             "too large",
         ),
-        ("two filters", attached("results.json", "/Filter[/FlateDecode/FlateDecode]", b"x"), "uses a compression that is not supported"),
-        ("not packed", attached("results.json", "/Filter/FlateDecode", b"not packed"), "cannot be unpacked"),
-        ("no results", attached("results.json", "", b"{\"fishplate\": 1}"), "not a results file of `certify`"),
+        (
+            "a name that is a long text",
+            pdf(
+                &[
+                    catalogue("/AF 2 0 R"),
+                    [b"(".to_vec(), vec![b'x'; 20_000_000], b")".to_vec()].concat(),
+                ],
+                "",
+            ),
+            "too large",
+        ),
+        (
+            "two filters",
+            attached("results.json", "/Filter[/FlateDecode/FlateDecode]", b"x"),
+            "uses a compression that is not supported",
+        ),
+        (
+            "not packed",
+            attached("results.json", "/Filter/FlateDecode", b"not packed"),
+            "cannot be unpacked",
+        ),
+        (
+            "no results",
+            attached("results.json", "", b"{\"fishplate\": 1}"),
+            "not a results file of `certify`",
+        ),
         ("not UTF-8", attached("results.json", "", b"\xff\xfe{}"), "not UTF-8"),
     ] {
         let found = if name == "not UTF-8" {
@@ -163,7 +228,8 @@ fn what_leads_in_circles_or_nowhere_is_refused() {
     assert!(refused(folder.path(), &file).contains("circle"));
 }
 
-/// 12 MB that unpack to 12 GB, as an attachment and as a table of places, and a protocol of 1 GB, within 1.5 GB of address space.
+/// 12 MB that unpack to 12 GB, as an attachment and as a table of places, and a protocol of 1 GB,
+/// within 1.5 GB of address space.
 #[test]
 fn bombs_stay_packed() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -176,14 +242,30 @@ fn bombs_stay_packed() {
         let arguments = ["verify", &text(&path)];
         let found = if cfg!(unix) {
             let mut limited = std::process::Command::new("sh");
-            limited.args(["-c", "ulimit -v 1500000 && exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_fishplate")]).args(arguments);
+            limited
+                .args([
+                    "-c",
+                    "ulimit -v 1500000 && exec \"$0\" \"$@\"",
+                    env!("CARGO_BIN_EXE_fishplate"),
+                ])
+                .args(arguments);
             ran(&mut limited)
         } else {
             ran(program().args(arguments))
         };
-        assert!(found.code == 2 && found.stderr.contains(says), "{name}: {} {}{}", found.code, found.stdout, found.stderr);
+        assert!(
+            found.code == 2 && found.stderr.contains(says),
+            "{name}: {} {}{}",
+            found.code,
+            found.stdout,
+            found.stderr
+        );
     };
-    check("results.pdf", &attached("results.json", "/Filter/FlateDecode", &bomb), "too large after unpacking");
+    check(
+        "results.pdf",
+        &attached("results.json", "/Filter/FlateDecode", &bomb),
+        "too large after unpacking",
+    );
     let mut table = b"%PDF-1.7\n".to_vec();
     let place = table.len();
     table.extend(b"1 0 obj\n");
@@ -192,7 +274,9 @@ fn bombs_stay_packed() {
     check("table.pdf", &table, "too large after unpacking");
     // Results that are small and a protocol that is not.
     let results = fs::read(written().results()).expect("readable");
-    let file = |name: &str, data: usize| format!("<</Type/Filespec /F({name}) /UF({name}) /EF<</F {data} 0 R>>>>").into_bytes();
+    let file = |name: &str, data: usize| {
+        format!("<</Type/Filespec /F({name}) /UF({name}) /EF<</F {data} 0 R>>>>").into_bytes()
+    };
     let objects = [
         b"<</Type/Catalog /AF[2 0 R 3 0 R]>>".to_vec(),
         file("results.json", 4),
@@ -209,16 +293,24 @@ fn names_in_a_report_cannot_act_on_the_terminal() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("results.json");
     let before = fs::read_to_string(written().results()).expect("readable");
-    let name = serde_json::from_str::<serde_json::Value>(&before).expect("JSON")["campaign"]["name"].clone();
+    let name =
+        serde_json::from_str::<serde_json::Value>(&before).expect("JSON")["campaign"]["name"]
+            .clone();
     let name = name.as_str().expect("a name").to_string();
-    fs::write(&path, before.replace(&name, "\\u001b[2J\\u202eevil").replace("S05", "\\u001b[31mS")).expect("written");
+    fs::write(&path, before.replace(&name, "\\u001b[2J\\u202eevil").replace("S05", "\\u001b[31mS"))
+        .expect("written");
     for arguments in [["verify", &text(&path), ""], ["trace", &text(&path), "Y_max"]] {
-        let mut words: Vec<&str> = arguments.iter().copied().filter(|word| !word.is_empty()).collect();
+        let mut words: Vec<&str> =
+            arguments.iter().copied().filter(|word| !word.is_empty()).collect();
         if words[0] == "trace" {
             words.extend(["S06", "Y_1R"]);
         }
         let found = fishplate(&words);
         assert!(found.code <= 1, "{}", found.stderr);
-        assert!(!found.stdout.contains('\u{1b}') && !found.stdout.contains('\u{202e}'), "{}", found.stdout);
+        assert!(
+            !found.stdout.contains('\u{1b}') && !found.stdout.contains('\u{202e}'),
+            "{}",
+            found.stdout
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! Reports that are checked, traced and signed: what agrees, what every change shows, what hostile files do.
+//! Reports that are checked, traced and signed: what agrees, what every change shows, what hostile
+//! files do.
 
 #[path = "../common/campaign.rs"]
 mod campaign;
@@ -30,8 +31,8 @@ fn text(path: &Path) -> String {
     path.display().to_string()
 }
 
-/// A protocol of two files that have the same name, with a parameter set in the campaign and another on the command line, over a
-/// copy of an example; the report of all that, written once.
+/// A protocol of two files that have the same name, with a parameter set in the campaign and
+/// another on the command line, over a copy of an example; the report of all that, written once.
 struct Written {
     folder: TempDir,
 }
@@ -80,6 +81,9 @@ fn written() -> &'static Written {
 /// The line of a check and those of its details.
 #[track_caller]
 fn check<'a>(ran: &'a Ran, name: &str) -> &'a str {
-    let found = ran.stdout.lines().find(|line| line.get(13..).is_some_and(|rest| rest.starts_with(&format!("{name} "))));
+    let found = ran
+        .stdout
+        .lines()
+        .find(|line| line.get(13..).is_some_and(|rest| rest.starts_with(&format!("{name} "))));
     found.unwrap_or_else(|| panic!("no check `{name}`:\n{}{}", ran.stdout, ran.stderr))
 }

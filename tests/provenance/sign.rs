@@ -34,13 +34,18 @@ fn a_signed_report_verifies_and_a_changed_one_does_not() {
     let (secret, public) = (format!("{name}.key"), format!("{name}.pub"));
     let report = text(&folder.path().join("report.pdf"));
     let ran = fishplate(&["verify", &report, "--public-key", &public]);
-    assert!(ran.code == 1 && check(&ran, "signature").starts_with("DIFFERS"), "a signature was asked for: {}", ran.stdout);
+    assert!(
+        ran.code == 1 && check(&ran, "signature").starts_with("DIFFERS"),
+        "a signature was asked for: {}",
+        ran.stdout
+    );
     let ran = fishplate(&["sign", &report, "--key", &secret]);
     assert_eq!(ran.code, 0, "{}", ran.stderr);
     let ran = fishplate(&["verify", &report]);
     assert!(ran.code == 0 && check(&ran, "signature").contains("--public-key"), "{}", ran.stdout);
     // By file, by the key's own word, and for the folder.
-    let word = fs::read_to_string(&public).expect("readable").lines().nth(1).expect("a key").to_string();
+    let word =
+        fs::read_to_string(&public).expect("readable").lines().nth(1).expect("a key").to_string();
     let folder_name = text(folder.path());
     for (of, key) in [(&report, &public), (&report, &word), (&folder_name, &public)] {
         let ran = fishplate(&["verify", of, "--public-key", key]);
@@ -63,10 +68,19 @@ fn a_signed_report_verifies_and_a_changed_one_does_not() {
     fs::write(&report, &bytes).expect("written");
     let signature = format!("{report}.minisig");
     let before = fs::read_to_string(&signature).expect("readable");
-    for (from, to) in [("file:report", "file:another"), ("trusted comment: ", "trusted: "), ("RU", "RX"), ("=\n", "\n")] {
+    for (from, to) in [
+        ("file:report", "file:another"),
+        ("trusted comment: ", "trusted: "),
+        ("RU", "RX"),
+        ("=\n", "\n"),
+    ] {
         fs::write(&signature, before.replace(from, to)).expect("written");
         let ran = fishplate(&["verify", &report, "--public-key", &public]);
-        assert!(ran.code == 1 && check(&ran, "signature").starts_with("DIFFERS"), "{from}: {}", ran.stdout);
+        assert!(
+            ran.code == 1 && check(&ran, "signature").starts_with("DIFFERS"),
+            "{from}: {}",
+            ran.stdout
+        );
     }
     // Cut anywhere: never a panic, never valid.
     let key = public_key(&public).expect("a key");
@@ -83,17 +97,37 @@ fn certify_signs_what_it_writes() {
     let folder = tempfile::tempdir().expect("a folder");
     let name = keys(folder.path());
     let out = text(&folder.path().join("out"));
-    let ran =
-        fishplate(&["certify", &text(&example("coach-good")), "--out", &out, "--only", "results", "--sign", &format!("{name}.key"), "-q"]);
+    let ran = fishplate(&[
+        "certify",
+        &text(&example("coach-good")),
+        "--out",
+        &out,
+        "--only",
+        "results",
+        "--sign",
+        &format!("{name}.key"),
+        "-q",
+    ]);
     assert_eq!(ran.code, 0, "{}", ran.stderr);
     let statement = folder.path().join("out/statement.json");
     assert!(statement.with_file_name("statement.json.minisig").is_file());
-    assert!(!folder.path().join("out/results.json.minisig").exists(), "the statement names it with its hash");
-    let wrong = fishplate(&["certify", &text(&example("coach-good")), "--out", &out, "--sign", &format!("{name}.pub")]);
+    assert!(
+        !folder.path().join("out/results.json.minisig").exists(),
+        "the statement names it with its hash"
+    );
+    let wrong = fishplate(&[
+        "certify",
+        &text(&example("coach-good")),
+        "--out",
+        &out,
+        "--sign",
+        &format!("{name}.pub"),
+    ]);
     assert!(wrong.code == 2 && wrong.stderr.contains("key-unreadable"), "{}", wrong.stderr);
 }
 
-/// A signature that was made after a report goes with it, and stays where the report is written again as it was.
+/// A signature that was made after a report goes with it, and stays where the report is written
+/// again as it was.
 #[test]
 fn a_signature_of_an_earlier_report_goes_with_it() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -101,7 +135,21 @@ fn a_signature_of_an_earlier_report_goes_with_it() {
     let out = text(&folder.path().join("out"));
     let statement = folder.path().join("out/statement.json");
     let certified = |further: &[&str]| {
-        let ran = fishplate(&[&["certify", &text(&example("coach-good")), "--out", &out, "--only", "results", "-q"], further].concat());
+        let ran = fishplate(
+            &[
+                &[
+                    "certify",
+                    &text(&example("coach-good")),
+                    "--out",
+                    &out,
+                    "--only",
+                    "results",
+                    "-q",
+                ],
+                further,
+            ]
+            .concat(),
+        );
         assert!(ran.code < 2, "{}", ran.stderr);
     };
     certified(&[]);
@@ -118,9 +166,16 @@ fn a_signature_of_an_earlier_report_goes_with_it() {
     let found = checked(&statement, None, Some(&key)).expect("read");
     assert_eq!(
         (found.outcome, found.says.as_str()),
-        (Outcome::Differs, "the signature is not one of this file, but of an earlier report or another file")
+        (
+            Outcome::Differs,
+            "the signature is not one of this file, but of an earlier report or another file"
+        )
     );
-    assert!(found.details.len() == 1 && found.details[0].starts_with("signed: SHA-256 "), "{:?}", found.details);
+    assert!(
+        found.details.len() == 1 && found.details[0].starts_with("signed: SHA-256 "),
+        "{:?}",
+        found.details
+    );
 }
 
 #[test]
@@ -146,11 +201,13 @@ fn keys_are_protected_and_never_overwritten() {
     assert!(!folder.path().join("file.minisig").exists());
     let right = with_password(&["sign", &file, "--key", &secret], "correct horse");
     assert_eq!(right.code, 0, "{}", right.stderr);
-    let missing = with_password(&["sign", &file, &format!("{file}2"), "--key", &secret], "correct horse");
+    let missing =
+        with_password(&["sign", &file, &format!("{file}2"), "--key", &secret], "correct horse");
     assert!(missing.code == 2 && missing.stderr.contains("file-missing"), "{}", missing.stderr);
 }
 
-/// A signature that minisign made: the example of its public documentation (key, prehashed signature of the four bytes `test`).
+/// A signature that minisign made: the example of its public documentation (key, prehashed
+/// signature of the four bytes `test`).
 #[test]
 fn the_published_example_of_minisign_verifies() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -162,10 +219,15 @@ fn the_published_example_of_minisign_verifies() {
         trusted comment: timestamp:1556193335\tfile:test\n\
         y/rUw2y8/hOUYjZU71eHp/Wo1KZ40fGy2VJEDl34XMJM+TX48Ss/17u3IvIfbVR1FkZZSNCisQbuQY+bHwhEBg==\n";
     fs::write(&signature, published).expect("written");
-    let key = public_key("RWQf6LRCGA9i53mlYecO4IzT51TGPpvWucNSCh1CBM0QTaLn73Y7GFO3").expect("a key");
+    let key =
+        public_key("RWQf6LRCGA9i53mlYecO4IzT51TGPpvWucNSCh1CBM0QTaLn73Y7GFO3").expect("a key");
     let found = checked(&file, None, Some(&key)).expect("readable");
     assert_eq!(found.outcome, Outcome::Agrees, "{found:?}");
-    assert!(found.says.contains("E7620F1842B4E81F"), "the number that minisign prints: {}", found.says);
+    assert!(
+        found.says.contains("E7620F1842B4E81F"),
+        "the number that minisign prints: {}",
+        found.says
+    );
     fs::write(&file, "Test").expect("written");
     assert_eq!(checked(&file, None, Some(&key)).expect("readable").outcome, Outcome::Differs);
 }
@@ -179,33 +241,52 @@ fn minisign_and_fishplate_read_each_other() {
     fs::write(&file, "text\n").expect("written");
     let signed = fishplate(&["sign", &file, "--key", &format!("{name}.key")]);
     assert_eq!(signed.code, 0, "{}", signed.stderr);
-    let Ok(output) = Command::new("minisign").args(["-Vm", &file, "-p", &format!("{name}.pub")]).output() else {
+    let Ok(output) =
+        Command::new("minisign").args(["-Vm", &file, "-p", &format!("{name}.pub")]).output()
+    else {
         eprintln!("skipped: minisign is not installed");
         return;
     };
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(output.status.success() && said.contains("Trusted comment: file:file sha256:"), "{said}");
-    // A key of minisign's own, with a password, which it reads from its input where that is no terminal.
+    assert!(
+        output.status.success() && said.contains("Trusted comment: file:file sha256:"),
+        "{said}"
+    );
+    // A key of minisign's own, with a password, which it reads from its input where that is no
+    // terminal.
     let theirs = text(&folder.path().join("theirs"));
     let mut made = Command::new("minisign");
-    made.args(["-G", "-p", &format!("{theirs}.pub"), "-s", &format!("{theirs}.key")]).stdin(Stdio::piped()).stdout(Stdio::null());
+    made.args(["-G", "-p", &format!("{theirs}.pub"), "-s", &format!("{theirs}.key")])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null());
     let mut made = made.spawn().expect("minisign runs");
     made.stdin.take().expect("an input").write_all(b"secret\nsecret\n").expect("written");
     assert!(made.wait().expect("it ends").success());
     let signed = with_password(&["sign", &file, "--key", &format!("{theirs}.key")], "secret");
     assert_eq!(signed.code, 0, "{}", signed.stderr);
-    let output = Command::new("minisign").args(["-Vm", &file, "-p", &format!("{theirs}.pub")]).output().expect("minisign runs");
+    let output = Command::new("minisign")
+        .args(["-Vm", &file, "-p", &format!("{theirs}.pub")])
+        .output()
+        .expect("minisign runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let key = public_key(&format!("{theirs}.pub")).expect("a key");
-    assert_eq!(checked(Path::new(&file), None, Some(&key)).expect("readable").outcome, Outcome::Agrees);
+    assert_eq!(
+        checked(Path::new(&file), None, Some(&key)).expect("readable").outcome,
+        Outcome::Agrees
+    );
     // A signature that minisign made with it.
     std::fs::remove_file(format!("{file}.minisig")).expect("removed");
     let mut made = Command::new("minisign");
-    made.args(["-Sm", &file, "-s", &format!("{theirs}.key")]).stdin(Stdio::piped()).stdout(Stdio::null());
+    made.args(["-Sm", &file, "-s", &format!("{theirs}.key")])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null());
     let mut made = made.spawn().expect("minisign runs");
     made.stdin.take().expect("an input").write_all(b"secret\n").expect("written");
     assert!(made.wait().expect("it ends").success());
-    assert_eq!(checked(Path::new(&file), None, Some(&key)).expect("readable").outcome, Outcome::Agrees);
+    assert_eq!(
+        checked(Path::new(&file), None, Some(&key)).expect("readable").outcome,
+        Outcome::Agrees
+    );
 }
 
 /// Keys cut anywhere: an error, never a panic.
@@ -218,7 +299,11 @@ fn damaged_keys_are_refused() {
         let whole = fs::read_to_string(format!("{name}.{ending}")).expect("readable");
         for end in 1..whole.trim_end().len() {
             fs::write(&damaged, &whole[..end]).expect("written");
-            let found = if ending == "key" { secret_key(&damaged, Some(String::new())).err() } else { public_key(&text(&damaged)).err() };
+            let found = if ending == "key" {
+                secret_key(&damaged, Some(String::new())).err()
+            } else {
+                public_key(&text(&damaged)).err()
+            };
             let found = found.unwrap_or_else(|| panic!("{ending} cut at {end}"));
             assert_eq!(found.code, "key-unreadable", "{ending} cut at {end}");
         }

@@ -1,4 +1,5 @@
-//! The statement beside a report: its form, that it names every file with its hash, and that nothing in it depends on the machine.
+//! The statement beside a report: its form, that it names every file with its hash, and that
+//! nothing in it depends on the machine.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -11,7 +12,10 @@ use super::program::{files, fishplate};
 use super::{example, root, text, written};
 
 fn statement() -> Value {
-    serde_json::from_str(&fs::read_to_string(written().out().join("statement.json")).expect("readable")).expect("JSON")
+    serde_json::from_str(
+        &fs::read_to_string(written().out().join("statement.json")).expect("readable"),
+    )
+    .expect("JSON")
 }
 
 fn sha256(bytes: &[u8]) -> String {
@@ -20,15 +24,20 @@ fn sha256(bytes: &[u8]) -> String {
 
 #[test]
 fn it_has_the_published_form() {
-    let schema = fs::read_to_string(root().join("tests/cases/provenance/statement.schema.json")).expect("readable");
+    let schema = fs::read_to_string(root().join("tests/cases/provenance/statement.schema.json"))
+        .expect("readable");
     let schema: Value = serde_json::from_str(&schema).expect("JSON");
     let validator = jsonschema::validator_for(&schema).expect("a schema");
     let found = statement();
-    let errors: Vec<String> = validator.iter_errors(&found).map(|error| format!("{}: {error}", error.instance_path)).collect();
+    let errors: Vec<String> = validator
+        .iter_errors(&found)
+        .map(|error| format!("{}: {error}", error.instance_path))
+        .collect();
     assert!(errors.is_empty(), "{errors:#?}");
     // The schema does refuse.
     for change in [
-        (|all: &mut Value| all["_type"] = "https://in-toto.io/Statement/v0.1".into()) as fn(&mut Value),
+        (|all: &mut Value| all["_type"] = "https://in-toto.io/Statement/v0.1".into())
+            as fn(&mut Value),
         |all| drop(all["predicate"].as_object_mut().map(|map| map.remove("runDetails"))),
         |all| all["subject"][0]["digest"]["sha256"] = "12".into(),
         |all| all["predicate"]["runDetails"]["builder"]["id"] = "fishplate".into(),
@@ -39,8 +48,8 @@ fn it_has_the_published_form() {
     }
 }
 
-/// Where the Python package of the in-toto project is installed (`.ci/run` does so), its message types must read the statement: they
-/// refuse fields that are not in the published structure.
+/// Where the Python package of the in-toto project is installed (`.ci/run` does so), its message
+/// types must read the statement: they refuse fields that are not in the published structure.
 #[test]
 fn the_reference_implementation_reads_it() {
     let own = root().join("target/validators/bin/python");
@@ -58,10 +67,15 @@ message = json_format.Parse(text, statement_pb2.Statement())
 Statement.copy_from_pb(message).validate()
 json_format.Parse(json.dumps(json.loads(text)['predicate']), provenance_pb2.Provenance())
 print('read')";
-    let output = Command::new(python).args(["-c", script]).arg(written().out().join("statement.json")).output();
+    let output = Command::new(python)
+        .args(["-c", script])
+        .arg(written().out().join("statement.json"))
+        .output();
     match output {
         Ok(output) if output.status.success() => assert_eq!(output.stdout, b"read\n"),
-        Ok(output) if output.status.code() != Some(77) => panic!("{}", String::from_utf8_lossy(&output.stderr)),
+        Ok(output) if output.status.code() != Some(77) => {
+            panic!("{}", String::from_utf8_lossy(&output.stderr))
+        }
         _ => eprintln!("skipped: the Python package in-toto-attestation is not installed"),
     }
 }
@@ -73,7 +87,11 @@ fn it_names_every_file_with_its_hash() {
     let mut named = BTreeSet::new();
     for subject in found["subject"].as_array().expect("a list") {
         let name = subject["name"].as_str().expect("a name");
-        assert_eq!(subject["digest"]["sha256"], sha256(&fs::read(out.join(name)).expect("readable")), "{name}");
+        assert_eq!(
+            subject["digest"]["sha256"],
+            sha256(&fs::read(out.join(name)).expect("readable")),
+            "{name}"
+        );
         named.insert(out.join(name));
     }
     let there: BTreeSet<_> = files(&out)
@@ -86,19 +104,33 @@ fn it_names_every_file_with_its_hash() {
         .collect();
     assert_eq!(named, there);
     let campaign = written().campaign();
-    let dependencies = found["predicate"]["buildDefinition"]["resolvedDependencies"].as_array().expect("a list");
+    let dependencies =
+        found["predicate"]["buildDefinition"]["resolvedDependencies"].as_array().expect("a list");
     let mut read = 0;
     for dependency in dependencies {
         let name = dependency["name"].as_str().expect("a name");
         if let Some(inside) = name.strip_prefix("campaign/") {
-            assert_eq!(dependency["digest"]["sha256"], sha256(&fs::read(campaign.join(inside)).expect("readable")), "{name}");
+            assert_eq!(
+                dependency["digest"]["sha256"],
+                sha256(&fs::read(campaign.join(inside)).expect("readable")),
+                "{name}"
+            );
             read += 1;
         }
     }
-    assert!(read > 30 && dependencies.len() == read + 3, "{read} files of the campaign, three of the protocol");
+    assert!(
+        read > 30 && dependencies.len() == read + 3,
+        "{read} files of the campaign, three of the protocol"
+    );
     let external = &found["predicate"]["buildDefinition"]["externalParameters"];
-    assert_eq!(external["parameters"]["percentile_rule"], serde_json::json!({"value": "hazen", "setBy": "command line"}));
-    assert_eq!(external["parameters"]["lowpass_frequency"], serde_json::json!({"value": "19.5 Hz", "setBy": "campaign"}));
+    assert_eq!(
+        external["parameters"]["percentile_rule"],
+        serde_json::json!({"value": "hazen", "setBy": "command line"})
+    );
+    assert_eq!(
+        external["parameters"]["lowpass_frequency"],
+        serde_json::json!({"value": "19.5 Hz", "setBy": "campaign"})
+    );
 }
 
 #[test]
@@ -107,7 +139,15 @@ fn it_is_the_same_wherever_it_is_made() {
     let mut texts = Vec::new();
     for name in ["one", "another/deeper"] {
         let out = folder.path().join(name);
-        let ran = fishplate(&["certify", &text(&example("coach-good")), "--out", &text(&out), "--only", "results", "-q"]);
+        let ran = fishplate(&[
+            "certify",
+            &text(&example("coach-good")),
+            "--out",
+            &text(&out),
+            "--only",
+            "results",
+            "-q",
+        ]);
         assert_eq!(ran.code, 0, "{}", ran.stderr);
         texts.push(fs::read_to_string(out.join("statement.json")).expect("readable"));
     }

@@ -1,4 +1,5 @@
-//! `verify`: everything agrees as written; whatever is changed, in the campaign or in the report, is told by its name.
+//! `verify`: everything agrees as written; whatever is changed, in the campaign or in the report,
+//! is told by its name.
 
 use std::fs;
 use std::path::Path;
@@ -27,13 +28,21 @@ fn what_was_written_agrees_from_every_side() {
         }
         let both = verify(&report, Some(&campaign), &[]);
         assert_eq!(both.code, 0, "{}{}", both.stdout, both.stderr);
-        assert!(check(&both, "input files").contains("42 files") && check(&both, "run again").starts_with("agrees"), "{}", both.stdout);
+        assert!(
+            check(&both, "input files").contains("42 files")
+                && check(&both, "run again").starts_with("agrees"),
+            "{}",
+            both.stdout
+        );
     }
     let pages = verify(&written.pdf(), Some(&campaign), &["--jobs", "1"]);
     assert!(check(&pages, "pages").contains("byte for byte"), "{}", pages.stdout);
     assert!(check(&pages, "protocol text").contains("3 files"), "{}", pages.stdout);
     let folder = verify(&written.out(), None, &[]);
-    assert!(check(&folder, "statement").starts_with("agrees") && check(&folder, "results.json").starts_with("agrees"));
+    assert!(
+        check(&folder, "statement").starts_with("agrees")
+            && check(&folder, "results.json").starts_with("agrees")
+    );
     // Nothing but the report is needed: the campaign's protocol may be gone.
     let bare = copy(&campaign);
     fs::remove_dir_all(bare.path().join("rules")).expect("removed");
@@ -51,7 +60,8 @@ fn results_alone_find_their_protocol_by_its_hash() {
     let ran = verify(&results, None, &[]);
     assert_eq!(ran.code, 3, "{}", ran.stdout);
     assert!(
-        check(&ran, "protocol text").contains("--protocol") && ran.stdout.contains("Result: the check could not be completed"),
+        check(&ran, "protocol text").contains("--protocol")
+            && ran.stdout.contains("Result: the check could not be completed"),
         "{}",
         ran.stdout
     );
@@ -65,12 +75,15 @@ fn results_alone_find_their_protocol_by_its_hash() {
     assert!(check(&other, "protocol text").starts_with("NOT POSSIBLE"), "{}", other.stdout);
 }
 
-/// Metrics without sides, whole records without sections: every kind of protocol can be replayed and run again.
+/// Metrics without sides, whole records without sections: every kind of protocol can be replayed
+/// and run again.
 #[test]
 fn other_kinds_of_protocols_agree_too() {
-    for (campaign, more) in
-        [("coach-good", vec![]), ("sprague-geers", vec!["--protocol", "sprague-geers"]), ("sway", vec!["--protocol", "stationary-sway"])]
-    {
+    for (campaign, more) in [
+        ("coach-good", vec![]),
+        ("sprague-geers", vec!["--protocol", "sprague-geers"]),
+        ("sway", vec!["--protocol", "stationary-sway"]),
+    ] {
         let out = tempfile::tempdir().expect("a folder");
         let (folder, to) = (text(&example(campaign)), text(out.path()));
         let mut arguments = vec!["certify", &folder, "--out", &to, "--only", "results", "-q"];
@@ -95,59 +108,86 @@ fn a_changed_campaign_is_told_by_file_and_number() {
         ran.stdout
     };
     // One sample.
-    let out = changed(&|campaign| cell(&campaign.join("measurement/S05.csv"), 400, "Y_1R [kN]", "60.00"));
+    let out =
+        changed(&|campaign| cell(&campaign.join("measurement/S05.csv"), 400, "Y_1R [kN]", "60.00"));
     assert!(out.contains("changed: measurement/S05.csv: SHA-256 "), "{out}");
-    assert!(out.contains("].measured (Y_max, zone 2, S05, Y_1R): ") && out.contains(" in the report, "), "{out}");
+    assert!(
+        out.contains("].measured (Y_max, zone 2, S05, Y_1R): ") && out.contains(" in the report, "),
+        "{out}"
+    );
     assert!(!out.contains("measurement/S06.csv"), "{out}");
     // A byte that changes no number.
-    let out = changed(&|campaign| lines(&campaign.join("sections.csv"), |lines| lines.push(String::new())));
+    let out = changed(&|campaign| {
+        lines(&campaign.join("sections.csv"), |lines| lines.push(String::new()))
+    });
     assert!(out.contains("changed: sections.csv") && out.contains("all 2"), "{out}");
     assert!(out.contains("not checked  pages"), "what differs already is not told twice: {out}");
     // A record gone.
-    let out = changed(&|campaign| fs::remove_file(campaign.join("simulation/S01.csv")).expect("removed"));
-    assert!(out.contains("missing: simulation/S01.csv") && out.contains("no longer read: simulation/S01.csv"), "{out}");
+    let out =
+        changed(&|campaign| fs::remove_file(campaign.join("simulation/S01.csv")).expect("removed"));
+    assert!(
+        out.contains("missing: simulation/S01.csv")
+            && out.contains("no longer read: simulation/S01.csv"),
+        "{out}"
+    );
     assert!(out.contains("sections[0].used (zone 1, S01): true in the report, false now"), "{out}");
     assert!(out.contains("verdict: `not validated` in the report, `not assessable` now"), "{out}");
     // A section more.
     let out = changed(&|campaign| {
         for kind in ["simulation", "measurement", "track"] {
-            fs::copy(campaign.join(kind).join("S01.csv"), campaign.join(kind).join("X01.csv")).expect("copied");
+            fs::copy(campaign.join(kind).join("S01.csv"), campaign.join(kind).join("X01.csv"))
+                .expect("copied");
         }
         lines(&campaign.join("sections.csv"), |lines| {
             let more = lines[1].replacen("S01", "X01", 1);
             lines.push(more);
         });
     });
-    assert!(out.contains("extra: measurement/X01.csv is read now, but was not read for the report"), "{out}");
+    assert!(
+        out.contains("extra: measurement/X01.csv is read now, but was not read for the report"),
+        "{out}"
+    );
     assert!(out.contains("(zone 1, X01): missing in the report"), "{out}");
     // The vehicle.
-    let out = changed(&|campaign| replace(&campaign.join("vehicle.yaml"), "category: passenger", "category: freight"));
+    let out = changed(&|campaign| {
+        replace(&campaign.join("vehicle.yaml"), "category: passenger", "category: freight")
+    });
     assert!(out.contains("changed: vehicle.yaml") && out.contains("limit_std"), "{out}");
     // No campaign any more.
-    let out = changed(&|campaign| fs::write(campaign.join("campaign.yaml"), "name: [").expect("written"));
-    assert!(out.contains("changed: campaign.yaml") && out.contains("the campaign can no longer be evaluated"), "{out}");
+    let out =
+        changed(&|campaign| fs::write(campaign.join("campaign.yaml"), "name: [").expect("written"));
+    assert!(
+        out.contains("changed: campaign.yaml")
+            && out.contains("the campaign can no longer be evaluated"),
+        "{out}"
+    );
 }
 
-/// Every kind of number and word in the results, changed by hand: the check that must find it, without the campaign.
+/// Every kind of number and word in the results, changed by hand: the check that must find it,
+/// without the campaign.
 #[test]
 fn changed_results_do_not_agree_with_themselves() {
     let written = written();
     let whole = fs::read_to_string(written.results()).expect("readable");
     let parsed: serde_json::Value = serde_json::from_str(&whole).expect("JSON");
     let folder = tempfile::tempdir().expect("a folder");
-    // The report beside them gives the protocol only if it carries the same results, so it is named.
+    // The report beside them gives the protocol only if it carries the same results, so it is
+    // named.
     let protocol = text(&written.campaign().join("rules/p.fp"));
     let found = |change: &dyn Fn(&mut serde_json::Value)| {
         let mut changed = parsed.clone();
         change(&mut changed);
         assert!(changed != parsed, "nothing was changed");
         let path = folder.path().join("results.json");
-        fs::write(&path, serde_json::to_string_pretty(&changed).expect("JSON") + "\n").expect("written");
+        fs::write(&path, serde_json::to_string_pretty(&changed).expect("JSON") + "\n")
+            .expect("written");
         let ran = verify(&path, None, &["--protocol", &protocol]);
         assert_eq!(ran.code, 1, "{}{}", ran.stdout, ran.stderr);
         ran
     };
-    let number = |value: &mut serde_json::Value, by: f64| *value = serde_json::json!(value.as_f64().expect("a number") + by);
+    let number = |value: &mut serde_json::Value, by: f64| {
+        *value = serde_json::json!(value.as_f64().expect("a number") + by)
+    };
     type Change<'a> = (&'a str, &'a dyn Fn(&mut serde_json::Value));
     let changes: &[Change<'_>] = &[
         ("statistics", &|all| all["verdict"] = "validated".into()),
@@ -155,7 +195,9 @@ fn changed_results_do_not_agree_with_themselves() {
         ("statistics", &|all| number(&mut all["quantities"][2]["mean"], -0.02)),
         ("statistics", &|all| number(&mut all["quantities"][2]["limit_mean"], 0.1)),
         ("statistics", &|all| all["quantities"][2]["holds"] = true.into()),
-        ("statistics", &|all| number(&mut all["quantities"][0]["statistics"][0]["normalised"], 0.001)),
+        ("statistics", &|all| {
+            number(&mut all["quantities"][0]["statistics"][0]["normalised"], 0.001)
+        }),
         ("statistics", &|all| number(&mut all["quantities"][4]["values"][17]["measured"], 0.01)),
         ("statistics", &|all| number(&mut all["quantities"][4]["values"][17]["difference"], 1e-6)),
         ("statistics", &|all| all["quantities"][4]["statistics"][0]["rule"]["line"] = 6.into()),
@@ -166,7 +208,10 @@ fn changed_results_do_not_agree_with_themselves() {
         // A curve of this radius is of another zone.
         ("statistics", &|all| {
             let columns = all["sections"][12]["columns"].as_array_mut().expect("a list");
-            let radius = columns.iter_mut().find(|column| column["name"] == "radius" || column["unit"] == "m").expect("a radius");
+            let radius = columns
+                .iter_mut()
+                .find(|column| column["name"] == "radius" || column["unit"] == "m")
+                .expect("a radius");
             radius["value"] = "5000".into();
         }),
         ("protocol rules", &|all| all["protocol"]["title"] = "Theirs".into()),
@@ -180,7 +225,11 @@ fn changed_results_do_not_agree_with_themselves() {
     }
     // A key twice: readers differ in which one they take.
     let path = folder.path().join("results.json");
-    fs::write(&path, whole.replacen("  \"verdict\"", "  \"verdict\": \"validated\",\n  \"verdict\"", 1)).expect("written");
+    fs::write(
+        &path,
+        whole.replacen("  \"verdict\"", "  \"verdict\": \"validated\",\n  \"verdict\"", 1),
+    )
+    .expect("written");
     let ran = verify(&path, None, &["--protocol", &protocol]);
     assert_eq!(ran.code, 1);
     assert!(check(&ran, "form").starts_with("DIFFERS"), "{}", ran.stdout);
@@ -213,7 +262,12 @@ fn a_changed_page_is_told() {
     fs::write(&path, &bytes).expect("written");
     let ran = verify(&path, Some(&written.campaign()), &[]);
     assert_eq!(ran.code, 1, "{}", ran.stdout);
-    assert!(check(&ran, "pages").starts_with("DIFFERS") && check(&ran, "run again").starts_with("agrees"), "{}", ran.stdout);
+    assert!(
+        check(&ran, "pages").starts_with("DIFFERS")
+            && check(&ran, "run again").starts_with("agrees"),
+        "{}",
+        ran.stdout
+    );
     // What is added behind the end, as a signature inside a PDF is, leaves the pages as they were.
     let mut longer = fs::read(written.pdf()).expect("readable");
     longer.extend_from_slice(b"\n% more\n");
@@ -248,7 +302,10 @@ fn what_is_no_report_is_refused_with_help() {
         ran.stderr
     };
     assert!(refused("a.pdf", b"hello").contains("is not a PDF"));
-    assert!(refused("a.json", b"{}").contains("not a results file of `certify`: missing field `fishplate`"));
+    assert!(
+        refused("a.json", b"{}")
+            .contains("not a results file of `certify`: missing field `fishplate`")
+    );
     assert!(refused("a.json", b"{\"a\": ").contains("results-unreadable"));
     assert!(refused("a.json", b"").contains("file-empty"));
     assert!(refused("a.json", &[b'['; 100_000]).contains("results-unreadable"));
@@ -264,5 +321,10 @@ fn what_is_no_report_is_refused_with_help() {
     let study = fishplate(&["study", "sections", &text(&example("coach")), "--out", &out, "-q"]);
     assert!(study.code <= 1, "{}", study.stderr);
     let ran = verify(&folder.path().join("study/report.pdf"), None, &[]);
-    assert!(ran.code == 2 && ran.stderr.contains("written by `study`; its attachments are study.json; only"), "{}", ran.stderr);
+    assert!(
+        ran.code == 2
+            && ran.stderr.contains("written by `study`; its attachments are study.json; only"),
+        "{}",
+        ran.stderr
+    );
 }

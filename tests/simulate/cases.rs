@@ -1,4 +1,5 @@
-//! Faults of catalogues and of descriptions of simulators: each case lies beside the message that it gives.
+//! Faults of catalogues and of descriptions of simulators: each case lies beside the message that
+//! it gives.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -13,11 +14,18 @@ use fishplate::source::Source;
 
 use super::root;
 
-/// Compares the problems of every case in a folder with the text beside it, and gathers their codes.
-fn cases(folder: &str, read: impl Fn(&Arc<Source>, &Path, &mut Problems)) -> BTreeSet<&'static str> {
+/// Compares the problems of every case in a folder with the text beside it, and gathers their
+/// codes.
+fn cases(
+    folder: &str,
+    read: impl Fn(&Arc<Source>, &Path, &mut Problems),
+) -> BTreeSet<&'static str> {
     let folder = root().join("tests/cases").join(folder);
     let mut codes = BTreeSet::new();
-    let mut paths: Vec<_> = fs::read_dir(&folder).expect("a folder").map(|entry| entry.expect("readable").path()).collect();
+    let mut paths: Vec<_> = fs::read_dir(&folder)
+        .expect("a folder")
+        .map(|entry| entry.expect("readable").path())
+        .collect();
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "yaml"));
     paths.sort();
     for path in paths {
@@ -40,19 +48,26 @@ fn cases(folder: &str, read: impl Fn(&Arc<Source>, &Path, &mut Problems)) -> BTr
     codes
 }
 
-/// Codes that stand in a source file as `"code"` after the word `error(` or as the first argument of `fault` and `refuse`.
+/// Codes that stand in a source file as `"code"` after the word `error(` or as the first argument
+/// of `fault` and `refuse`.
 fn codes_in(file: &str) -> BTreeSet<String> {
     let text = fs::read_to_string(root().join(file)).expect("a source");
     let calls = ["error(", "fault(", "refuse("];
     let after = calls.iter().flat_map(|call| text.split(call).skip(1));
-    let quoted = after.filter_map(|rest| rest.trim_start().strip_prefix('"')?.split('"').next().map(str::to_string));
+    let quoted = after.filter_map(|rest| {
+        rest.trim_start().strip_prefix('"')?.split('"').next().map(str::to_string)
+    });
     quoted.collect()
 }
 
 #[test]
 fn catalogues() {
     let find = |name: &str, from: &Source| {
-        if name == from.name { Ok(Source::new(name, from.text.clone())) } else { library::parent_catalogue(name, from) }
+        if name == from.name {
+            Ok(Source::new(name, from.text.clone()))
+        } else {
+            library::parent_catalogue(name, from)
+        }
     };
     let codes = cases("effects", |source, _, problems| {
         effects::read(source, &find, &model_parameters(), problems);
@@ -80,15 +95,25 @@ fn simulators() {
 #[test]
 fn cut_anywhere() {
     let catalogue = library::CATALOGUES[0].text;
-    let formulas = fs::read_to_string(root().join("tests/cases/effects/formula-units.yaml")).expect("readable");
+    let formulas = fs::read_to_string(root().join("tests/cases/effects/formula-units.yaml"))
+        .expect("readable");
     let simulator = "simulator: s\ncommand: [echo, '{set}', '{out}']\nset: ['{name}']\ntimeout: 5 s\nenvironment: {A: b}\n";
     let step = |text: &str| (text.len() / 120).max(1);
     for text in [catalogue, &formulas] {
         for at in (0..text.len()).step_by(step(text)).filter(|at| text.is_char_boundary(*at)) {
-            effects::read(&Source::new("cut", &text[..at]), &library::parent_catalogue, &model_parameters(), &mut Problems::default());
+            effects::read(
+                &Source::new("cut", &text[..at]),
+                &library::parent_catalogue,
+                &model_parameters(),
+                &mut Problems::default(),
+            );
         }
     }
     for at in 0..simulator.len() {
-        read_program(&Source::new("cut", &simulator[..at]), Path::new("."), &mut Problems::default());
+        read_program(
+            &Source::new("cut", &simulator[..at]),
+            Path::new("."),
+            &mut Problems::default(),
+        );
     }
 }

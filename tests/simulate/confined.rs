@@ -6,7 +6,9 @@ use super::{Place, SECTIONS};
 
 /// The sections whose records differ between two campaigns.
 fn changed(place: &Place, a: &str, b: &str) -> Vec<&'static str> {
-    let bytes = |out: &str, section: &str| fs::read(place.path(&format!("{out}/simulation/{section}.csv"))).expect("written");
+    let bytes = |out: &str, section: &str| {
+        fs::read(place.path(&format!("{out}/simulation/{section}.csv"))).expect("written")
+    };
     SECTIONS.into_iter().filter(|section| bytes(a, section) != bytes(b, section)).collect()
 }
 
@@ -36,7 +38,10 @@ fn to_zones_directions_and_sections() {
 #[test]
 fn sizes_by_zone() {
     let place = Place::new();
-    place.simulated("both", &["--effect", "friction=0.6 in zone 3", "--effect", "friction=0.2 in zone 4"]);
+    place.simulated(
+        "both",
+        &["--effect", "friction=0.6 in zone 3", "--effect", "friction=0.2 in zone 4"],
+    );
     place.simulated("high", &["--effect", "friction=0.6"]);
     place.simulated("low", &["--effect", "friction=0.2"]);
     assert_eq!(changed(&place, "both", "high"), ["S01", "S06", "S13"]);
@@ -47,7 +52,10 @@ fn sizes_by_zone() {
 fn to_nothing_is_a_slip() {
     let place = Place::new();
     for (effect, words) in [
-        ("friction=0.2 in zones 3, 7", ["`7`, but no section has this value", "known here: 1, 2, 3, 4"]),
+        (
+            "friction=0.2 in zones 3, 7",
+            ["`7`, but no section has this value", "known here: 1, 2, 3, 4"],
+        ),
         ("friction=0.2 in direction lefft", ["`lefft`", "did you mean `left`?"]),
         ("friction=0.2 in section S06b", ["`S06b`", "did you mean `S06`?"]),
         ("friction=0.2 in zones ", ["confined", "in zones 3, 4"]),

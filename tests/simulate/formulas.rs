@@ -17,25 +17,36 @@ effects:
       bridge.stop: {unit: N, neutral: 1000000, range: [10000, 1000000]}
 ";
 
-/// Both channels come from the record as it was: `Y_1L` uses `Y_1R` before it is changed. Parameters are in their own units.
+/// Both channels come from the record as it was: `Y_1L` uses `Y_1R` before it is changed.
+/// Parameters are in their own units.
 #[test]
 fn channels_are_computed_anew() {
     let place = Place::new();
     place.write("mine.yaml", CATALOGUE);
     place.simulated("plain", &[]);
-    let effects = ["--effect", "leaking_bridge.leak=4 in zone 4", "--effect", "leaking_bridge.stop=20000 in zone 4"];
+    let effects = [
+        "--effect",
+        "leaking_bridge.leak=4 in zone 4",
+        "--effect",
+        "leaking_bridge.stop=20000 in zone 4",
+    ];
     place.simulated("with", &[&effects[..], &["--effects", "mine.yaml"]].concat());
     let (plain, with) = (place.record("plain", "S13"), place.record("with", "S13"));
     let value = |name: &str, n: usize| channel(&plain, name)[n];
     let all = 0..plain.axis.len();
     let right: Vec<f64> = all.clone().map(|n| value("Y_1R", n) + 0.04 * value("Q_1R", n)).collect();
-    let left: Vec<f64> = all.map(|n| value("Y_1L", n).max(-20.0) + 0.04 * (value("Q_1L", n) - value("Y_1R", n)).abs()).collect();
+    let left: Vec<f64> = all
+        .map(|n| value("Y_1L", n).max(-20.0) + 0.04 * (value("Q_1L", n) - value("Y_1R", n)).abs())
+        .collect();
     assert!(apart(&right, channel(&with, "Y_1R")) < 1.1 * 2.0 * FORCE);
     assert!(apart(&left, channel(&with, "Y_1L")) < 1.2 * 2.0 * FORCE);
     assert_eq!(channel(&plain, "Y_2L"), channel(&with, "Y_2L"));
     for section in &SECTIONS[..3] {
         let record = format!("simulation/{section}.csv");
-        assert!(place.text(&format!("plain/{record}")) == place.text(&format!("with/{record}")), "confined to zone 4");
+        assert!(
+            place.text(&format!("plain/{record}")) == place.text(&format!("with/{record}")),
+            "confined to zone 4"
+        );
     }
 }
 
@@ -43,14 +54,20 @@ fn channels_are_computed_anew() {
 fn neutral_changes_nothing_and_increments_need_no_run() {
     let place = Place::new();
     place.write("mine.yaml", CATALOGUE);
-    place.simulated("same", &["--effects", "mine.yaml", "--effect", "leaking_bridge=0", "--increment"]);
+    place.simulated(
+        "same",
+        &["--effects", "mine.yaml", "--effect", "leaking_bridge=0", "--increment"],
+    );
     assert!(place.record("same", "S13") == place.record("small", "S13"));
 }
 
 #[test]
 fn a_value_that_is_not_finite() {
     let place = Place::new();
-    place.write("mine.yaml", &CATALOGUE.replace("Y_1R + leak * Q_1R", "Y_1R / (Y_1R - Y_1R) * leak * 1 kN"));
+    place.write(
+        "mine.yaml",
+        &CATALOGUE.replace("Y_1R + leak * Q_1R", "Y_1R / (Y_1R - Y_1R) * leak * 1 kN"),
+    );
     let ran = place.simulate("out", &["--effects", "mine.yaml", "--effect", "leaking_bridge=5"]);
     assert_eq!(ran.code, 3, "{}", ran.stderr);
     assert!(ran.stderr.contains("section `S01`: `Y_1R` is not finite at 69."), "{}", ran.stderr);
@@ -59,8 +76,15 @@ fn a_value_that_is_not_finite() {
 #[test]
 fn other_units_than_the_catalogue_says() {
     let place = Place::new();
-    place.write("mine.yaml", &CATALOGUE.replace("effects:\n", "units: {guiding forces: N}\neffects:\n"));
+    place.write(
+        "mine.yaml",
+        &CATALOGUE.replace("effects:\n", "units: {guiding forces: N}\neffects:\n"),
+    );
     let ran = place.simulate("out", &["--effects", "mine.yaml", "--effect", "leaking_bridge=5"]);
     assert_eq!(ran.code, 2, "{}", ran.stderr);
-    assert!(ran.stderr.contains("`Y_1R` is recorded in kN, but the catalogue expects N"), "{}", ran.stderr);
+    assert!(
+        ran.stderr.contains("`Y_1R` is recorded in kN, but the catalogue expects N"),
+        "{}",
+        ran.stderr
+    );
 }

@@ -2,8 +2,8 @@
 
 use super::{ACCELERATION, FORCE, Place, SECTIONS, apart, channel};
 
-/// Where the model itself made the recorded simulation, recorded + (with - without) is the simulation with the effect, within the
-/// digits that are written.
+/// Where the model itself made the recorded simulation, recorded + (with - without) is the
+/// simulation with the effect, within the digits that are written.
 #[test]
 fn on_the_models_own_records_they_are_direct_simulations() {
     let place = Place::new();
@@ -12,20 +12,39 @@ fn on_the_models_own_records_they_are_direct_simulations() {
         let record = format!("simulation/{section}.csv");
         place.write(&format!("small/{record}"), &place.text(&format!("plain/{record}")));
     }
-    let effects = ["--effect", "friction=0.5", "--effect", "payload=4 t", "--effect", "sensor_gain=1.2 on Y_1R"];
+    let effects = [
+        "--effect",
+        "friction=0.5",
+        "--effect",
+        "payload=4 t",
+        "--effect",
+        "sensor_gain=1.2 on Y_1R",
+    ];
     place.simulated("direct", &effects);
     place.simulated("increment", &[&effects[..], &["--increment"]].concat());
     for section in SECTIONS {
-        let [plain, direct, increment] = ["plain", "direct", "increment"].map(|out| place.record(out, section));
+        let [plain, direct, increment] =
+            ["plain", "direct", "increment"].map(|out| place.record(out, section));
         for known in &direct.channels {
             let digit = if known.name.starts_with('a') { ACCELERATION } else { FORCE };
             let off = apart(&known.values, channel(&increment, &known.name));
-            // The recorded value was rounded, scaled by the gain, and the sum is rounded again. Positions are written to 1 mm: the
-            // difference is taken half a millimetre beside its place at most.
-            let added: Vec<f64> = known.values.iter().zip(channel(&plain, &known.name)).map(|(with, without)| with - without).collect();
-            let steepest = added.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+            // The recorded value was rounded, scaled by the gain, and the sum is rounded again.
+            // Positions are written to 1 mm: the difference is taken half a millimetre beside its
+            // place at most.
+            let added: Vec<f64> = known
+                .values
+                .iter()
+                .zip(channel(&plain, &known.name))
+                .map(|(with, without)| with - without)
+                .collect();
+            let steepest =
+                added.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
             let beside = 0.0005 / (direct.axis[1] - direct.axis[0]);
-            assert!(off <= 2.3 * digit + 1.2 * beside * steepest, "{section} {}: {off}", known.name);
+            assert!(
+                off <= 2.3 * digit + 1.2 * beside * steepest,
+                "{section} {}: {off}",
+                known.name
+            );
         }
     }
 }
@@ -46,9 +65,14 @@ fn what_the_records_have_of_their_own_stays() {
     }
     place.simulated("increment", &["--increment", "--effect", "friction=0.5"]);
     let record = place.record("increment", "S13");
-    assert!(channel(&record, "strain").iter().enumerate().all(|(n, value)| *value == (n % 7) as f64));
+    assert!(
+        channel(&record, "strain").iter().enumerate().all(|(n, value)| *value == (n % 7) as f64)
+    );
     let before = super::signals(&place.path("small/simulation/S13.csv"));
-    assert!(apart(channel(&record, "Y_1L"), channel(&before, "Y_1L")) > 1.0, "friction moves the guiding force");
+    assert!(
+        apart(channel(&record, "Y_1L"), channel(&before, "Y_1L")) > 1.0,
+        "friction moves the guiding force"
+    );
 }
 
 /// Without an effect of the simulator nothing is run and nothing changes but the measuring chain.
@@ -73,7 +97,11 @@ fn records_in_other_units() {
         for line in text.lines().skip(1) {
             let cells = line.split(',').enumerate().map(|(n, cell)| {
                 // Time, distance, sixteen forces, accelerations.
-                if (2..18).contains(&n) { format!("{:.0}", 1e3 * cell.parse::<f64>().expect("a number")) } else { cell.to_string() }
+                if (2..18).contains(&n) {
+                    format!("{:.0}", 1e3 * cell.parse::<f64>().expect("a number"))
+                } else {
+                    cell.to_string()
+                }
             });
             made += &(cells.collect::<Vec<_>>().join(",") + "\n");
         }
@@ -91,10 +119,19 @@ fn records_in_other_units() {
 fn the_baseline() {
     let place = Place::new();
     let ran = place.simulated("out", &["--baseline"]);
-    assert!(ran.stderr.contains("baseline: reference vehicle model deviates") && !ran.stderr.contains("warning"), "{}", ran.stderr);
+    assert!(
+        ran.stderr.contains("baseline: reference vehicle model deviates")
+            && !ran.stderr.contains("warning"),
+        "{}",
+        ran.stderr
+    );
     place.replace("small/vehicle.yaml", "mass: 32000.0", "mass: 40000.0");
     let ran = place.simulated("heavy", &["--baseline"]);
-    for word in ["warning[baseline]", "does not reproduce the campaign's simulation", "channels deviate by more than 5 %"] {
+    for word in [
+        "warning[baseline]",
+        "does not reproduce the campaign's simulation",
+        "channels deviate by more than 5 %",
+    ] {
         assert!(ran.stderr.contains(word), "`{word}` is not in {}", ran.stderr);
     }
 }

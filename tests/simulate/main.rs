@@ -1,6 +1,8 @@
-//! `simulate` and effects, mostly through the command line: what is added, to what, and what is said where it cannot be.
+//! `simulate` and effects, mostly through the command line: what is added, to what, and what is
+//! said where it cannot be.
 //!
-//! The physics of the model is tested elsewhere; here stand effects, files, other simulators and messages.
+//! The physics of the model is tested elsewhere; here stand effects, files, other simulators and
+//! messages.
 
 #[path = "../common/program.rs"]
 mod program;
@@ -26,7 +28,8 @@ use fishplate::simulate::signals_of;
 use program::{Ran, program, ran};
 use tempfile::TempDir;
 
-/// The sections of the small campaign: a straight, a left and two right-hand curves, one in each zone.
+/// The sections of the small campaign: a straight, a left and two right-hand curves, one in each
+/// zone.
 const SECTIONS: [&str; 4] = ["S01", "S06", "S10", "S13"];
 
 fn root() -> PathBuf {
@@ -55,7 +58,9 @@ impl Place {
             fs::copy(coach().join(file), place.path("small").join(file)).expect("copied");
         }
         let table = fs::read_to_string(coach().join("sections.csv")).expect("readable");
-        let kept = table.lines().filter(|line| line.starts_with("section") || SECTIONS.iter().any(|name| line.starts_with(name)));
+        let kept = table.lines().filter(|line| {
+            line.starts_with("section") || SECTIONS.iter().any(|name| line.starts_with(name))
+        });
         place.write("small/sections.csv", &(kept.collect::<Vec<_>>().join("\n") + "\n"));
         place
     }
@@ -84,7 +89,10 @@ impl Place {
     /// `simulate small --out OUT` with more arguments; nothing may be left of a call that fails.
     #[track_caller]
     fn simulate(&self, out: &str, more: &[&str]) -> Ran {
-        let ran = ran(program().current_dir(self.0.path()).args(["simulate", "small", "--out", out]).args(more));
+        let ran = ran(program()
+            .current_dir(self.0.path())
+            .args(["simulate", "small", "--out", out])
+            .args(more));
         assert_eq!(self.path(out).exists(), ran.code == 0, "{}", ran.stderr);
         ran
     }
@@ -106,8 +114,11 @@ impl Place {
 
 #[track_caller]
 fn signals(path: &Path) -> Signals {
-    let place = FilePlace { path: path.to_path_buf(), shown: "record".into(), inside: "record".into() };
-    signals_of(&RecordSource::File(place)).unwrap_or_else(|problems| panic!("{}: {problems:?}", path.display())).0
+    let place =
+        FilePlace { path: path.to_path_buf(), shown: "record".into(), inside: "record".into() };
+    signals_of(&RecordSource::File(place))
+        .unwrap_or_else(|problems| panic!("{}: {problems:?}", path.display()))
+        .0
 }
 
 #[track_caller]
@@ -122,6 +133,7 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// Half a digit of what records are written with, for forces in kN and accelerations in m/s^2, and the rounding of the sum.
+/// Half a digit of what records are written with, for forces in kN and accelerations in m/s^2, and
+/// the rounding of the sum.
 const FORCE: f64 = 0.0051;
 const ACCELERATION: f64 = 0.000_051;

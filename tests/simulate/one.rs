@@ -8,7 +8,15 @@ use super::{Place, apart, channel, signals};
 /// `simulate --vehicle small/vehicle.yaml --track small/track/S10.csv` in a place.
 #[track_caller]
 fn one(place: &Place, more: &[&str]) -> Ran {
-    let fixed = ["simulate", "--vehicle", "small/vehicle.yaml", "--track", "small/track/S10.csv", "-o", "out.csv"];
+    let fixed = [
+        "simulate",
+        "--vehicle",
+        "small/vehicle.yaml",
+        "--track",
+        "small/track/S10.csv",
+        "-o",
+        "out.csv",
+    ];
     let ran = ran(program().current_dir(place.path("")).args(fixed).args(more));
     assert_eq!(place.path("out.csv").exists(), ran.code == 0, "{}", ran.stderr);
     ran
@@ -33,7 +41,10 @@ fn a_record_is_written() {
     assert_eq!(made.channels.len(), 22);
     assert!((made.rate - 200.0).abs() < 1e-6);
     let metres = 77.6 / 3.6 / 200.0;
-    assert!(made.axis.windows(2).all(|pair| (pair[1] - pair[0] - metres).abs() < 0.0011), "a constant speed");
+    assert!(
+        made.axis.windows(2).all(|pair| (pair[1] - pair[0] - metres).abs() < 0.0011),
+        "a constant speed"
+    );
 }
 
 #[test]
@@ -44,7 +55,11 @@ fn speeds() {
     fs::remove_file(place.path("out.csv")).expect("removed");
     let metres = (77.6_f64 / 3.6).to_string();
     one(&place, &["--speed", &metres]);
-    assert_eq!(kmh, fs::read(place.path("out.csv")).expect("written"), "77.6 km/h and {metres} m/s");
+    assert_eq!(
+        kmh,
+        fs::read(place.path("out.csv")).expect("written"),
+        "77.6 km/h and {metres} m/s"
+    );
     fs::remove_file(place.path("out.csv")).expect("removed");
     refused(&place, &[], 2, &["speed-missing", "--speed 30"]);
     refused(&place, &["--speed", "fast"], 2, &["`fast` is not a number (in m/s)"]);
@@ -56,7 +71,9 @@ fn speeds() {
 #[test]
 fn effects_that_are_none() {
     let place = Place::new();
-    let wrong = |effect: &str, words: &[&str]| refused(&place, &["--speed", "22", "--effect", effect], 2, words);
+    let wrong = |effect: &str, words: &[&str]| {
+        refused(&place, &["--speed", "22", "--effect", effect], 2, words)
+    };
     wrong("fricton=0.5", &["unknown-effect", "did you mean `friction`?"]);
     wrong("payload.payload.mas=1000", &["unknown-parameter", "did you mean `payload.mass`?"]);
     wrong("friction=2", &["range", "2 is outside the range of `friction`: 0.05 to 0.7"]);
@@ -79,7 +96,12 @@ fn effects_that_are_none() {
 #[test]
 fn an_effect_that_is_given_twice() {
     let place = Place::new();
-    refused(&place, &["--speed", "22", "--effect", "friction=0.3", "--effect", "friction=0.4"], 2, &["duplicate-effect", "given twice"]);
+    refused(
+        &place,
+        &["--speed", "22", "--effect", "friction=0.3", "--effect", "friction=0.4"],
+        2,
+        &["duplicate-effect", "given twice"],
+    );
 }
 
 /// Several faults are told at once, each with its place in what was written.
@@ -87,7 +109,11 @@ fn an_effect_that_is_given_twice() {
 fn all_faults_at_once() {
     let place = Place::new();
     let ran = one(&place, &["--speed", "22", "--effect", "friction=2", "--effect", "paylod=3"]);
-    assert!(ran.stderr.contains("2 errors") && ran.stderr.contains("--effect:1:1"), "{}", ran.stderr);
+    assert!(
+        ran.stderr.contains("2 errors") && ran.stderr.contains("--effect:1:1"),
+        "{}",
+        ran.stderr
+    );
 }
 
 #[test]
@@ -120,15 +146,28 @@ fn files_that_are_wrong() {
     refused(&place, &speed, 2, &["file-missing", "small/profile.csv"]);
     fs::rename(place.path("profile.csv"), place.path("small/profile.csv")).expect("moved");
     fs::remove_file(place.path("small/profile_worn.csv")).expect("removed");
-    refused(&place, &["--speed", "22", "--effect", "worn_profile=1"], 2, &["a worn profile needs a second profile table"]);
+    refused(
+        &place,
+        &["--speed", "22", "--effect", "worn_profile=1"],
+        2,
+        &["a worn profile needs a second profile table"],
+    );
     assert_eq!(one(&place, &speed).code, 0, "without wear, one profile is enough");
 }
 
-/// A run that diverges is told with time and place; the exit code says that the work could not be done.
+/// A run that diverges is told with time and place; the exit code says that the work could not be
+/// done.
 #[test]
 fn divergence() {
     let place = Place::new();
-    let hunting = ["--speed", "540 km/h", "--effect", "yaw_damper_loss=0", "--effect", "worn_profile.profile.conicity_scale=3"];
+    let hunting = [
+        "--speed",
+        "540 km/h",
+        "--effect",
+        "yaw_damper_loss=0",
+        "--effect",
+        "worn_profile.profile.conicity_scale=3",
+    ];
     refused(&place, &hunting, 3, &["simulation-failed", " s after the start, at ", " m"]);
 }
 
@@ -139,11 +178,36 @@ fn neutral_values_change_nothing() {
     one(&place, &["--speed", "22"]);
     let plain = signals(&place.path("out.csv"));
     fs::remove_file(place.path("out.csv")).expect("removed");
-    one(&place, &["--speed", "22", "--effect", "friction=0.35", "--effect", "sensor_gain=1 on forces_of_none"]);
+    one(
+        &place,
+        &[
+            "--speed",
+            "22",
+            "--effect",
+            "friction=0.35",
+            "--effect",
+            "sensor_gain=1 on forces_of_none",
+        ],
+    );
     assert!(!place.path("out.csv").exists());
-    one(&place, &["--speed", "22", "--effect", "friction=0.35", "--effect", "sensor_gain=1 on guiding forces"]);
+    one(
+        &place,
+        &[
+            "--speed",
+            "22",
+            "--effect",
+            "friction=0.35",
+            "--effect",
+            "sensor_gain=1 on guiding forces",
+        ],
+    );
     let same = signals(&place.path("out.csv"));
     for known in &plain.channels {
-        assert_eq!(apart(&known.values, channel(&same, &known.name)).to_bits(), 0.0_f64.to_bits(), "{}", known.name);
+        assert_eq!(
+            apart(&known.values, channel(&same, &known.name)).to_bits(),
+            0.0_f64.to_bits(),
+            "{}",
+            known.name
+        );
     }
 }

@@ -15,12 +15,14 @@ fn both(effects: &[&str]) -> (Signals, Signals) {
     (place.record("plain", "S13"), place.record("with", "S13"))
 }
 
-/// A channel is what a function makes of it, within the digits that are written (times `scale`); all others are as they were.
+/// A channel is what a function makes of it, within the digits that are written (times `scale`);
+/// all others are as they were.
 #[track_caller]
 fn becomes(effect: &str, name: &str, scale: f64, expected: impl Fn(usize, f64, &Signals) -> f64) {
     let (plain, with) = both(&[effect]);
     let digit = if name.starts_with('a') { ACCELERATION } else { FORCE };
-    let values: Vec<f64> = channel(&plain, name).iter().enumerate().map(|(n, x)| expected(n, *x, &plain)).collect();
+    let values: Vec<f64> =
+        channel(&plain, name).iter().enumerate().map(|(n, x)| expected(n, *x, &plain)).collect();
     let off = apart(&values, channel(&with, name));
     assert!(off <= digit * (1.0 + scale), "{effect}: {off}");
     for other in plain.channels.iter().filter(|other| other.name != name) {
@@ -56,14 +58,18 @@ fn clipping() {
 
 #[test]
 fn crosstalk_of_one_wheel() {
-    becomes("crosstalk=0.1 on Y_2R", "Y_2R", 1.1, |n, x, plain| x + 0.1 * channel(plain, "Q_2R")[n]);
+    becomes("crosstalk=0.1 on Y_2R", "Y_2R", 1.1, |n, x, plain| {
+        x + 0.1 * channel(plain, "Q_2R")[n]
+    });
 }
 
 #[test]
 fn crosstalk_of_all_wheels() {
     let (plain, with) = both(&["crosstalk=0.1"]);
     for wheel in ["1R", "1L", "2R", "2L", "3R", "3L", "4R", "4L"] {
-        let sides = channel(&plain, &format!("Y_{wheel}")).iter().zip(channel(&plain, &format!("Q_{wheel}")));
+        let sides = channel(&plain, &format!("Y_{wheel}"))
+            .iter()
+            .zip(channel(&plain, &format!("Q_{wheel}")));
         let expected: Vec<f64> = sides.map(|(y, q)| y + 0.1 * q).collect();
         assert!(apart(&expected, channel(&with, &format!("Y_{wheel}"))) <= 2.1 * FORCE, "{wheel}");
     }
@@ -77,16 +83,26 @@ fn swap() {
     assert_eq!(channel(&plain, "Y_1L"), channel(&with, "Y_1L"));
 }
 
-/// The recorded distance is the true one plus the shift, and the record still begins and ends where the section needs it.
+/// The recorded distance is the true one plus the shift, and the record still begins and ends where
+/// the section needs it.
 #[test]
 fn shift() {
     let (plain, with) = both(&["sync_shift=12"]);
-    assert!((plain.axis[0] - with.axis[0]).abs() < 0.1 && plain.axis.len().abs_diff(with.axis.len()) <= 1, "the same window");
+    assert!(
+        (plain.axis[0] - with.axis[0]).abs() < 0.1
+            && plain.axis.len().abs_diff(with.axis.len()) <= 1,
+        "the same window"
+    );
     let mut compared = 0;
     for (n, x) in with.axis.iter().enumerate() {
         let true_position = x - 12.0;
-        let Some(after) = plain.axis.iter().position(|known| *known >= true_position).filter(|after| *after > 0) else { continue };
-        let share = (true_position - plain.axis[after - 1]) / (plain.axis[after] - plain.axis[after - 1]);
+        let Some(after) =
+            plain.axis.iter().position(|known| *known >= true_position).filter(|after| *after > 0)
+        else {
+            continue;
+        };
+        let share =
+            (true_position - plain.axis[after - 1]) / (plain.axis[after] - plain.axis[after - 1]);
         let q = channel(&plain, "Q_1L");
         let expected = q[after - 1] + share * (q[after] - q[after - 1]);
         compared += 1;
@@ -96,7 +112,8 @@ fn shift() {
     assert!(compared > 1000, "{compared}");
 }
 
-/// Butterworth of second order by the bilinear transform, written out: its recursion is compared with the library's filter too.
+/// Butterworth of second order by the bilinear transform, written out: its recursion is compared
+/// with the library's filter too.
 #[test]
 fn low_pass() {
     let (edge, rate) = (6.0, 200.0);
@@ -117,7 +134,8 @@ fn low_pass() {
             out
         })
         .collect();
-    let filter = Filter::design(Band::LowPass(edge), 2, rate, Phase::Causal, Cutoff::PerPass).expect("a filter");
+    let filter = Filter::design(Band::LowPass(edge), 2, rate, Phase::Causal, Cutoff::PerPass)
+        .expect("a filter");
     assert!(apart(&recursion, &filter.apply(input).expect("long enough")) < 1e-9);
     assert!(apart(&recursion, channel(&with, "Q_1R")) < 2.0 * FORCE);
     assert_eq!(channel(&plain, "Y_1R"), channel(&with, "Y_1R"), "not on other channels");
@@ -127,7 +145,9 @@ fn low_pass() {
 #[test]
 fn noise() {
     let (plain, with) = both(&["sensor_noise=2 on Y_1R, Y_1L"]);
-    let added = |name: &str| -> Vec<f64> { channel(&with, name).iter().zip(channel(&plain, name)).map(|(a, b)| a - b).collect() };
+    let added = |name: &str| -> Vec<f64> {
+        channel(&with, name).iter().zip(channel(&plain, name)).map(|(a, b)| a - b).collect()
+    };
     let (right, left) = (added("Y_1R"), added("Y_1L"));
     let n = right.len() as f64;
     let mean = |values: &[f64]| values.iter().sum::<f64>() / n;
@@ -135,19 +155,29 @@ fn noise() {
     for values in [&right, &left] {
         assert!(mean(values).abs() < 4.0 * 2.0 / n.sqrt());
         assert!((product(values, values) - 4.0).abs() < 4.0 * 4.0 * (2.0 / n).sqrt());
-        assert!((product(&values[1..], values) * n / (n - 1.0)).abs() < 4.0 * 4.0 / n.sqrt(), "white");
+        assert!(
+            (product(&values[1..], values) * n / (n - 1.0)).abs() < 4.0 * 4.0 / n.sqrt(),
+            "white"
+        );
     }
     assert!(product(&right, &left).abs() < 4.0 * 4.0 / n.sqrt(), "channels are independent");
     assert_eq!(channel(&plain, "Y_2R"), channel(&with, "Y_2R"));
 }
 
-/// The chain has one order however effects are listed: cross-talk, low-pass, gain, polarity, offset.
+/// The chain has one order however effects are listed: cross-talk, low-pass, gain, polarity,
+/// offset.
 #[test]
 fn the_order_of_the_chain() {
-    let (plain, with) =
-        both(&["sensor_offset=3 on Y_1R", "polarity on Y_1R", "sensor_gain=0.5 on Y_1R", "crosstalk=0.1 on Y_1R", "clipping=9 on Y_1R"]);
+    let (plain, with) = both(&[
+        "sensor_offset=3 on Y_1R",
+        "polarity on Y_1R",
+        "sensor_gain=0.5 on Y_1R",
+        "crosstalk=0.1 on Y_1R",
+        "clipping=9 on Y_1R",
+    ]);
     let sides = channel(&plain, "Y_1R").iter().zip(channel(&plain, "Q_1R"));
-    let expected: Vec<f64> = sides.map(|(y, q)| (-(y + 0.1 * q) * 0.5 + 3.0).clamp(-9.0, 9.0)).collect();
+    let expected: Vec<f64> =
+        sides.map(|(y, q)| (-(y + 0.1 * q) * 0.5 + 3.0).clamp(-9.0, 9.0)).collect();
     assert!(apart(&expected, channel(&with, "Y_1R")) < 2.0 * FORCE);
 }
 

@@ -1,4 +1,5 @@
-//! The shipped catalogue against the list of effects that the model was asked for: names, units, ranges.
+//! The shipped catalogue against the list of effects that the model was asked for: names, units,
+//! ranges.
 
 use fishplate::effects::{Acts, Catalogue, Effect, Parameter};
 use fishplate::library::{self, CATALOGUES};
@@ -12,12 +13,18 @@ use super::{Place, SECTIONS};
 fn catalogue() -> Catalogue {
     let mut problems = Problems::default();
     let source = library::find_catalogue(CATALOGUES[0].name, None).expect("shipped");
-    let read = fishplate::effects::read(&source, &library::parent_catalogue, &model_parameters(), &mut problems);
+    let read = fishplate::effects::read(
+        &source,
+        &library::parent_catalogue,
+        &model_parameters(),
+        &mut problems,
+    );
     assert!(problems.0.is_empty(), "{}", problems.render(false));
     read.expect("a catalogue")
 }
 
-/// Effect, parameter, unit, and values that must be possible: section 9 of the model's specification.
+/// Effect, parameter, unit, and values that must be possible: section 9 of the model's
+/// specification.
 const ASKED: [(&str, &str, &str, &[f64]); 33] = [
     ("friction", "friction", "-", &[0.10, 0.65]),
     ("worn_profile", "profile.worn_share", "-", &[0.0, 1.0]),
@@ -55,7 +62,10 @@ const ASKED: [(&str, &str, &str, &[f64]); 33] = [
 ];
 
 fn parameters(catalogue: &Catalogue) -> impl Iterator<Item = (&Effect, &Parameter)> {
-    catalogue.effects.iter().flat_map(|effect| effect.parameters.iter().map(move |parameter| (effect, parameter)))
+    catalogue
+        .effects
+        .iter()
+        .flat_map(|effect| effect.parameters.iter().map(move |parameter| (effect, parameter)))
 }
 
 #[test]
@@ -63,32 +73,64 @@ fn every_effect_that_was_asked_for_is_there() {
     let catalogue = catalogue();
     for (effect, name, unit, values) in ASKED {
         let found = catalogue.effect(effect).unwrap_or_else(|| panic!("no {effect}"));
-        let parameter = found.parameters.iter().find(|known| known.name == name).unwrap_or_else(|| panic!("{effect} has no {name}"));
+        let parameter = found
+            .parameters
+            .iter()
+            .find(|known| known.name == name)
+            .unwrap_or_else(|| panic!("{effect} has no {name}"));
         assert_eq!(parameter.unit, Unit::parse(unit).expect("a unit"), "{name}");
         for value in values {
-            assert!((parameter.low..=parameter.high).contains(value), "{name}: {value} is outside {} to {}", parameter.low, parameter.high);
+            assert!(
+                (parameter.low..=parameter.high).contains(value),
+                "{name}: {value} is outside {} to {}",
+                parameter.low,
+                parameter.high
+            );
         }
     }
 }
 
-/// What a simulator adds names a parameter of the model, in a unit of the same kind; what the chain adds needs none.
+/// What a simulator adds names a parameter of the model, in a unit of the same kind; what the chain
+/// adds needs none.
 #[test]
 fn every_parameter_reaches_the_model() {
     let catalogue = catalogue();
     for (effect, parameter) in parameters(&catalogue) {
-        assert!(!effect.means.is_empty() && !parameter.meaning.is_empty() && !effect.title.is_empty(), "{}: in words", parameter.name);
-        assert_eq!(effect.acts == Acts::MeasuringChain, parameter.model.is_none(), "{}", parameter.name);
+        assert!(
+            !effect.means.is_empty() && !parameter.meaning.is_empty() && !effect.title.is_empty(),
+            "{}: in words",
+            parameter.name
+        );
+        assert_eq!(
+            effect.acts == Acts::MeasuringChain,
+            parameter.model.is_none(),
+            "{}",
+            parameter.name
+        );
         if let Some((key, factor)) = &parameter.model {
-            let known = PARAMETERS.iter().find(|known| known.key == key).unwrap_or_else(|| panic!("no {key}"));
+            let known = PARAMETERS
+                .iter()
+                .find(|known| known.key == key)
+                .unwrap_or_else(|| panic!("no {key}"));
             let (written, model) = (&parameter.unit, Unit::parse(known.unit).expect("a unit"));
             assert_eq!(written.dimension, model.dimension, "{key}");
             assert!((written.factor / model.factor - factor).abs() < 1e-12, "{key}");
         }
         let inside = parameter.low..=parameter.high;
         assert!(inside.contains(&parameter.default), "{}: default", parameter.name);
-        assert!(parameter.neutral.is_none_or(|neutral| inside.contains(&neutral)), "{}: neutral", parameter.name);
+        assert!(
+            parameter.neutral.is_none_or(|neutral| inside.contains(&neutral)),
+            "{}: neutral",
+            parameter.name
+        );
         for fit in &effect.fits {
-            assert!(fit.axes.iter().all(|(at, values)| *at < effect.parameters.len() && values.len() > 1 || values.len() == 1), "fit");
+            assert!(
+                fit.axes
+                    .iter()
+                    .all(|(at, values)| *at < effect.parameters.len() && values.len() > 1
+                        || values.len() == 1),
+                "fit"
+            );
         }
     }
 }
@@ -99,18 +141,31 @@ fn neutral_values_give_identical_records() {
     let place = Place::new();
     place.simulated("plain", &[]);
     let mut problems = Problems::default();
-    let campaign = fishplate::data::Campaign::open(&place.path("small"), &mut problems).expect("a campaign");
+    let campaign =
+        fishplate::data::Campaign::open(&place.path("small"), &mut problems).expect("a campaign");
     let catalogue = catalogue();
     let mut arguments = Vec::new();
-    for (effect, parameter) in parameters(&catalogue).filter(|(_, parameter)| parameter.model.is_some()) {
+    for (effect, parameter) in
+        parameters(&catalogue).filter(|(_, parameter)| parameter.model.is_some())
+    {
         let (key, _) = parameter.model.as_ref().expect("a parameter of the model");
-        let written = campaign.vehicle.lookup(key).and_then(|node| node.scalar_text()).unwrap_or_else(|| panic!("no {key}"));
+        let written = campaign
+            .vehicle
+            .lookup(key)
+            .and_then(|node| node.scalar_text())
+            .unwrap_or_else(|| panic!("no {key}"));
         // The number without its unit, which is that of the parameter.
         let written = written.split(' ').next().unwrap_or_default();
-        // Some are neutral outside of what is plausible for the effect: rigid bodies have no frequency.
-        let plausible = written.parse().is_ok_and(|value: f64| (parameter.low..=parameter.high).contains(&value));
+        // Some are neutral outside of what is plausible for the effect: rigid bodies have no
+        // frequency.
+        let plausible = written
+            .parse()
+            .is_ok_and(|value: f64| (parameter.low..=parameter.high).contains(&value));
         if plausible || written == "both" {
-            arguments.extend(["--effect".to_string(), format!("{}.{}={written}", effect.name, parameter.name)]);
+            arguments.extend([
+                "--effect".to_string(),
+                format!("{}.{}={written}", effect.name, parameter.name),
+            ]);
         }
     }
     assert!(arguments.len() > 40, "{}", arguments.len());

@@ -1,4 +1,5 @@
-//! The method and the step of the built-in model, and the records of the example that were made with them.
+//! The method and the step of the built-in model, and the records of the example that were made
+//! with them.
 
 use std::fs;
 
@@ -8,13 +9,20 @@ use super::{Place, apart, channel, root};
 /// `simulate examples/code-benchmark` into a place.
 fn simulated(place: &Place, out: &str, more: &[&str]) -> Ran {
     let out = place.path(out);
-    ran(program().current_dir(root()).args(["simulate", "examples/code-benchmark", "--out"]).arg(out).args(more))
+    ran(program()
+        .current_dir(root())
+        .args(["simulate", "examples/code-benchmark", "--out"])
+        .arg(out)
+        .args(more))
 }
 
 /// Some columns of a record, by the names of their headers.
 fn cut(record: &str, columns: &[&str]) -> String {
     let heads: Vec<&str> = record.lines().next().expect("a header").split(',').collect();
-    let at: Vec<usize> = columns.iter().map(|name| heads.iter().position(|head| head == name).expect("a column")).collect();
+    let at: Vec<usize> = columns
+        .iter()
+        .map(|name| heads.iter().position(|head| head == name).expect("a column"))
+        .collect();
     let line = |line: &str| {
         let cells: Vec<&str> = line.split(',').collect();
         at.iter().map(|at| cells[*at]).collect::<Vec<_>>().join(",") + "\n"
@@ -22,33 +30,49 @@ fn cut(record: &str, columns: &[&str]) -> String {
     record.lines().map(line).collect()
 }
 
-/// The commands of `examples/code-benchmark/README.md` write the records that are there; the records of the independent program are
-/// those of `examples/coach`.
+/// The commands of `examples/code-benchmark/README.md` write the records that are there; the
+/// records of the independent program are those of `examples/coach`.
 #[test]
 fn the_example_is_made_by_its_commands() {
     let place = Place::new();
-    let readme = fs::read_to_string(root().join("examples/code-benchmark/README.md")).expect("there");
-    let commands: Vec<&str> =
-        readme.lines().filter_map(|line| line.strip_prefix("    fishplate ")).filter(|words| words.starts_with("simulate")).collect();
+    let readme =
+        fs::read_to_string(root().join("examples/code-benchmark/README.md")).expect("there");
+    let commands: Vec<&str> = readme
+        .lines()
+        .filter_map(|line| line.strip_prefix("    fishplate "))
+        .filter(|words| words.starts_with("simulate"))
+        .collect();
     assert_eq!(commands.len(), 4);
     for command in commands {
         // Quotes hold a step together.
         let words: Vec<String> = command
             .split('"')
             .enumerate()
-            .flat_map(|(at, part)| if at % 2 == 1 { vec![part.to_string()] } else { part.split_whitespace().map(str::to_string).collect() })
+            .flat_map(|(at, part)| {
+                if at % 2 == 1 {
+                    vec![part.to_string()]
+                } else {
+                    part.split_whitespace().map(str::to_string).collect()
+                }
+            })
             .collect();
         let at = words.iter().position(|word| word == "--out").expect("an output");
         let name = words[at + 1].trim_start_matches("target/").to_string();
         let out = place.path(&name);
-        let words = words.iter().enumerate().map(|(nth, word)| if nth == at + 1 { out.display().to_string() } else { word.clone() });
+        let words = words.iter().enumerate().map(|(nth, word)| {
+            if nth == at + 1 { out.display().to_string() } else { word.clone() }
+        });
         let made = ran(program().current_dir(root()).args(words));
         assert_eq!(made.code, 0, "{command}\n{}", made.stderr);
-        let folder = if name == "reference" { "reference".to_string() } else { format!("codes/{name}") };
+        let folder =
+            if name == "reference" { "reference".to_string() } else { format!("codes/{name}") };
         same(&|section| place.text(&format!("{name}/simulation/{section}.csv")), &folder);
     }
     same(
-        &|section| fs::read_to_string(root().join(format!("examples/coach/simulation/{section}.csv"))).expect("there"),
+        &|section| {
+            fs::read_to_string(root().join(format!("examples/coach/simulation/{section}.csv")))
+                .expect("there")
+        },
         "codes/independent",
     );
     let origin = place.text("midpoint/origin.yaml");
@@ -60,7 +84,8 @@ fn the_example_is_made_by_its_commands() {
 fn same(made: &dyn Fn(&str) -> String, folder: &str) {
     for section in ["S01", "S05", "S13"] {
         let there = root().join(format!("examples/code-benchmark/{folder}/{section}.csv"));
-        let there = fs::read_to_string(&there).unwrap_or_else(|error| panic!("{}: {error}", there.display()));
+        let there = fs::read_to_string(&there)
+            .unwrap_or_else(|error| panic!("{}: {error}", there.display()));
         let heads: Vec<&str> = there.lines().next().expect("a header").split(',').collect();
         assert!(cut(&made(section), &heads) == there, "{folder}/{section}.csv");
     }

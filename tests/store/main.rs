@@ -1,4 +1,5 @@
-//! Records on a server: the same values as from files, few bytes, and what goes wrong is told with the URL.
+//! Records on a server: the same values as from files, few bytes, and what goes wrong is told with
+//! the URL.
 
 #[path = "../common/program.rs"]
 mod program;
@@ -18,7 +19,10 @@ struct Campaign {
 impl Campaign {
     /// With the records below a URL, or copies of the files.
     fn new(records: Option<&str>) -> Self {
-        let (folder, example) = (tempfile::tempdir().expect("a temporary folder"), Path::new("examples/run").to_path_buf());
+        let (folder, example) = (
+            tempfile::tempdir().expect("a temporary folder"),
+            Path::new("examples/run").to_path_buf(),
+        );
         for name in ["vehicle.yaml", "profile.csv"] {
             fs::copy(example.join(name), folder.path().join(name)).expect("copied");
         }
@@ -27,7 +31,8 @@ impl Campaign {
             Some(url) => text.replace(": records/", &format!(": {url}/")),
             None => text,
         };
-        fs::write(folder.path().join("campaign.yaml"), format!("sections: sections.csv\n{text}")).expect("written");
+        fs::write(folder.path().join("campaign.yaml"), format!("sections: sections.csv\n{text}"))
+            .expect("written");
         let made = Self { folder, example };
         if records.is_none() {
             fs::create_dir(made.path("records")).expect("made");
@@ -36,7 +41,11 @@ impl Campaign {
                 fs::copy(file.path(), made.path("records").join(file.file_name())).expect("copied");
             }
         }
-        let found = ran(program().arg("sections").arg(&made.example).arg("--out").arg(made.path("sections.csv")));
+        let found = ran(program()
+            .arg("sections")
+            .arg(&made.example)
+            .arg("--out")
+            .arg(made.path("sections.csv")));
         assert_eq!(found.code, 0, "{}", found.stderr);
         made
     }
@@ -47,7 +56,12 @@ impl Campaign {
 
     fn reduce(&self, allowed: &str, more: &[&str]) -> Ran {
         let mut command = program();
-        command.arg("reduce").arg(self.folder.path()).arg("--no-plots").arg("--out").arg(self.path("values.parquet"));
+        command
+            .arg("reduce")
+            .arg(self.folder.path())
+            .arg("--no-plots")
+            .arg("--out")
+            .arg(self.path("values.parquet"));
         ran(command.args(more).env("FISHPLATE_STORES", allowed))
     }
 }
@@ -56,10 +70,18 @@ impl Campaign {
 fn a_record_in_a_store_is_parquet() {
     let campaign = Campaign::new(Some("https://example.org/runs"));
     let text = fs::read_to_string(campaign.path("campaign.yaml")).expect("readable");
-    fs::write(campaign.path("campaign.yaml"), text.replace("north-track.parquet", "north-track.csv")).expect("written");
+    fs::write(
+        campaign.path("campaign.yaml"),
+        text.replace("north-track.parquet", "north-track.csv"),
+    )
+    .expect("written");
     let found = campaign.reduce("", &[]);
     assert_eq!(found.code, 2, "{}", found.stderr);
-    assert!(found.stderr.contains("error[format-not-read]") && found.stderr.contains("campaign.yaml"), "{}", found.stderr);
+    assert!(
+        found.stderr.contains("error[format-not-read]") && found.stderr.contains("campaign.yaml"),
+        "{}",
+        found.stderr
+    );
 }
 
 #[cfg(not(feature = "store"))]
@@ -92,7 +114,8 @@ mod with_the_feature {
     fn in_groups(from: &Path, to: &Path) {
         let open = |path: &Path| fs::File::open(path).expect("there");
         let reader = ParquetRecordBatchReaderBuilder::try_new(open(from)).expect("Parquet");
-        let (schema, batches) = (reader.schema().clone(), reader.with_batch_size(ROWS).build().expect("readable"));
+        let (schema, batches) =
+            (reader.schema().clone(), reader.with_batch_size(ROWS).build().expect("readable"));
         let file = fs::File::create(to).expect("created");
         let mut writer = ArrowWriter::try_new(file, schema, None).expect("a writer");
         for batch in batches {
@@ -141,7 +164,11 @@ mod with_the_feature {
     }
 
     /// One request; nothing when the connection is to be closed.
-    fn answer(mut stream: &TcpStream, folder: &Path, given: &Mutex<Vec<(String, u64)>>) -> Option<()> {
+    fn answer(
+        mut stream: &TcpStream,
+        folder: &Path,
+        given: &Mutex<Vec<(String, u64)>>,
+    ) -> Option<()> {
         let mut reader = BufReader::new(stream);
         let mut line = String::new();
         reader.read_line(&mut line).ok().filter(|read| *read > 0)?;
@@ -160,15 +187,22 @@ mod with_the_feature {
                 range = Some((from.parse::<usize>().ok()?, to.parse::<usize>().ok()? + 1));
             }
         }
-        let (_, fault, name) = path.split('/').collect::<Vec<_>>().try_into().ok().map(|[a, b, c]: [&str; 3]| (a, b, c))?;
+        let (_, fault, name) = path
+            .split('/')
+            .collect::<Vec<_>>()
+            .try_into()
+            .ok()
+            .map(|[a, b, c]: [&str; 3]| (a, b, c))?;
         let content = fs::read(folder.join(name)).ok().filter(|_| fault != "missing");
         let Some(content) = content else {
             return write!(stream, "HTTP/1.1 404 Not Found\r\nContent-Length: 0\r\n\r\n").ok();
         };
         let size = content.len();
-        let head = "Last-Modified: Thu, 26 Nov 2026 10:00:00 GMT\r\nETag: \"one\"\r\nAccept-Ranges: bytes";
+        let head =
+            "Last-Modified: Thu, 26 Nov 2026 10:00:00 GMT\r\nETag: \"one\"\r\nAccept-Ranges: bytes";
         if method == "HEAD" {
-            return write!(stream, "HTTP/1.1 200 OK\r\nContent-Length: {size}\r\n{head}\r\n\r\n").ok();
+            return write!(stream, "HTTP/1.1 200 OK\r\nContent-Length: {size}\r\n{head}\r\n\r\n")
+                .ok();
         }
         let (from, to) = range?;
         given.lock().expect("no panic").push((name.to_string(), (to - from) as u64));
@@ -188,15 +222,21 @@ mod with_the_feature {
     /// The values and verdicts of a campaign.
     fn judged(campaign: &Campaign) -> Value {
         let out = campaign.path("judged");
-        let done = ran(program().arg("judge").arg(campaign.path("values.parquet")).args(["--only", "results", "--out"]).arg(&out));
+        let done = ran(program()
+            .arg("judge")
+            .arg(campaign.path("values.parquet"))
+            .args(["--only", "results", "--out"])
+            .arg(&out));
         assert!(done.code < 2, "{}", done.stderr);
-        serde_json::from_str(&fs::read_to_string(out.join("results.json")).expect("readable")).expect("JSON")
+        serde_json::from_str(&fs::read_to_string(out.join("results.json")).expect("readable"))
+            .expect("JSON")
     }
 
     #[test]
     fn the_same_values_as_from_files() {
         let server = Server::start();
-        let (near, far) = (Campaign::new(None), Campaign::new(Some(&format!("{}/runs", server.url))));
+        let (near, far) =
+            (Campaign::new(None), Campaign::new(Some(&format!("{}/runs", server.url))));
         for campaign in [&near, &far] {
             let done = campaign.reduce(&server.url, &[]);
             assert_eq!(done.code, 0, "{}", done.stderr);
@@ -209,7 +249,14 @@ mod with_the_feature {
         let text = other.to_string();
         assert!(text.contains(&format!("{}/runs/north-measured.parquet", server.url)));
         // What neighbouring sections have in common is asked for once.
-        let files = ["north-measured", "north-simulated", "north-track", "south-measured", "south-simulated", "south-track"];
+        let files = [
+            "north-measured",
+            "north-simulated",
+            "north-track",
+            "south-measured",
+            "south-simulated",
+            "south-track",
+        ];
         let whole: u64 = files.iter().map(|name| server.size(&format!("{name}.parquet"))).sum();
         let read: u64 = server.taken().iter().map(|(_, bytes)| bytes).sum();
         assert!(read < whole * 11 / 10, "{read} of {whole} bytes");
@@ -220,11 +267,20 @@ mod with_the_feature {
         let server = Server::start();
         let far = Campaign::new(Some(&format!("{}/runs", server.url)));
         let text = fs::read_to_string(far.path("campaign.yaml")).expect("readable");
-        fs::write(far.path("campaign.yaml"), text.replace("sections: sections.csv\n", "")).expect("written");
+        fs::write(far.path("campaign.yaml"), text.replace("sections: sections.csv\n", ""))
+            .expect("written");
         let out = far.path("again.csv");
-        let done = ran(program().arg("sections").arg(far.folder.path()).arg("--out").arg(&out).env("FISHPLATE_STORES", &server.url));
+        let done = ran(program()
+            .arg("sections")
+            .arg(far.folder.path())
+            .arg("--out")
+            .arg(&out)
+            .env("FISHPLATE_STORES", &server.url));
         assert_eq!(done.code, 0, "{}", done.stderr);
-        assert_eq!(fs::read(out).expect("written"), fs::read(far.path("sections.csv")).expect("there"));
+        assert_eq!(
+            fs::read(out).expect("written"),
+            fs::read(far.path("sections.csv")).expect("there")
+        );
     }
 
     #[test]
@@ -238,7 +294,9 @@ mod with_the_feature {
         let done = far.reduce(&server.url, &["--jobs", "1"]);
         assert_eq!(done.code, 0, "{}", done.stderr);
         let taken = server.taken();
-        let of = |name: &str| taken.iter().filter(|(of, _)| of == name).map(|(_, bytes)| bytes).sum::<u64>();
+        let of = |name: &str| {
+            taken.iter().filter(|(of, _)| of == name).map(|(_, bytes)| bytes).sum::<u64>()
+        };
         // Of some ten row groups, two or three have the section and what is beside it.
         for name in ["south-measured.parquet", "south-simulated.parquet"] {
             let (read, whole) = (of(name), server.size(name));
@@ -251,7 +309,9 @@ mod with_the_feature {
     fn of_sections() -> TempDir {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let out = folder.path().join("campaign");
-        let made = ran(program().args(["convert-records", "examples/coach", "--to", "parquet", "--out"]).arg(&out));
+        let made = ran(program()
+            .args(["convert-records", "examples/coach", "--to", "parquet", "--out"])
+            .arg(&out));
         assert_eq!(made.code, 0, "{}", made.stderr);
         for name in ["measurement", "simulation"] {
             fs::rename(out.join(name), folder.path().join(name)).expect("moved");
@@ -277,19 +337,31 @@ mod with_the_feature {
             fs::write(campaign.join("campaign.yaml"), text).expect("written");
             let out = folder.path().join(out);
             let mut command = program();
-            command.arg("certify").arg(campaign).args(["--only", "results", "--out"]).arg(&out).env("FISHPLATE_STORES", allowed);
+            command
+                .arg("certify")
+                .arg(campaign)
+                .args(["--only", "results", "--out"])
+                .arg(&out)
+                .env("FISHPLATE_STORES", allowed);
             let done = ran(&mut command);
-            let json = fs::read_to_string(out.join("results.json")).map(|text| serde_json::from_str::<Value>(&text).expect("JSON"));
+            let json = fs::read_to_string(out.join("results.json"))
+                .map(|text| serde_json::from_str::<Value>(&text).expect("JSON"));
             (done, json.unwrap_or_default())
         };
         let (done, far_results) = certified(&far, &campaign, "far", &format!("{url}/"));
         assert!(done.code < 2, "{}", done.stderr);
         // The same campaign with its records inside.
         let near = folder.path().join("near");
-        let copied = Command::new("cp").arg("-r").arg(&campaign).arg(&near).status().expect("started");
+        let copied =
+            Command::new("cp").arg("-r").arg(&campaign).arg(&near).status().expect("started");
         assert!(copied.success());
         for name in ["measurement", "simulation"] {
-            let copied = Command::new("cp").arg("-r").arg(folder.path().join(name)).arg(&near).status().expect("started");
+            let copied = Command::new("cp")
+                .arg("-r")
+                .arg(folder.path().join(name))
+                .arg(&near)
+                .status()
+                .expect("started");
             assert!(copied.success());
         }
         let (done, near_results) = certified(&text, &near, "near-out", "");
@@ -297,15 +369,31 @@ mod with_the_feature {
         for key in ["verdict", "reasons", "quantities", "zones"] {
             assert_eq!(far_results[key], near_results[key], "{key}");
         }
-        assert!(far_results.to_string().contains(&format!("{url}/measurement/")), "the files are named by their URLs");
-        // A store that is not allowed, a section without a record, a campaign that does not name its sections.
+        assert!(
+            far_results.to_string().contains(&format!("{url}/measurement/")),
+            "the files are named by their URLs"
+        );
+        // A store that is not allowed, a section without a record, a campaign that does not name
+        // its sections.
         let (done, results) = certified(&far, &campaign, "refused", "");
-        assert!(format!("{}{}{results}", done.stdout, done.stderr).contains("may not be read"), "{}", done.stderr);
-        let first = fs::read_dir(folder.path().join("measurement")).expect("a folder").next().expect("a record").expect("a file");
+        assert!(
+            format!("{}{}{results}", done.stdout, done.stderr).contains("may not be read"),
+            "{}",
+            done.stderr
+        );
+        let first = fs::read_dir(folder.path().join("measurement"))
+            .expect("a folder")
+            .next()
+            .expect("a record")
+            .expect("a file");
         fs::remove_file(first.path()).expect("removed");
         let (_, results) = certified(&far, &campaign, "missing", &format!("{url}/"));
         assert!(results.to_string().contains("there is no object"), "{results}");
-        let unnamed = far.lines().filter(|line| !line.starts_with("sections:")).collect::<Vec<_>>().join("\n");
+        let unnamed = far
+            .lines()
+            .filter(|line| !line.starts_with("sections:"))
+            .collect::<Vec<_>>()
+            .join("\n");
         fs::remove_file(campaign.join("sections.csv")).expect("removed");
         let (done, _) = certified(&unnamed, &campaign, "unnamed", &format!("{url}/"));
         assert_eq!(done.code, 2);
@@ -315,13 +403,22 @@ mod with_the_feature {
     #[test]
     fn faults_name_the_url() {
         let server = Server::start();
-        for (fault, says) in [("missing", "there is no object"), ("cut", "cannot be read"), ("short", "cannot be read")] {
+        for (fault, says) in [
+            ("missing", "there is no object"),
+            ("cut", "cannot be read"),
+            ("short", "cannot be read"),
+        ] {
             let url = format!("{}/{fault}", server.url);
             let far = Campaign::new(Some(&url));
             let done = far.reduce(&server.url, &["--jobs", "1", "--shard", "0/12"]);
             let told = format!("{}{}", done.stdout, done.stderr);
-            let values = fs::read(far.path("values.parquet")).map(|_| judged(&far).to_string()).unwrap_or_default();
-            assert!([&told, &values].iter().any(|text| text.contains(says) && text.contains(&url)), "{fault}: {told}\n{values}");
+            let values = fs::read(far.path("values.parquet"))
+                .map(|_| judged(&far).to_string())
+                .unwrap_or_default();
+            assert!(
+                [&told, &values].iter().any(|text| text.contains(says) && text.contains(&url)),
+                "{fault}: {told}\n{values}"
+            );
         }
     }
 
@@ -332,7 +429,10 @@ mod with_the_feature {
         for allowed in ["", "http://127.0.0.1", "http://127.0.0.1:1/"] {
             let done = far.reduce(allowed, &[]);
             let told = format!("{}{}", done.stdout, done.stderr);
-            assert!(told.contains("may not be read") && told.contains("FISHPLATE_STORES"), "{told}");
+            assert!(
+                told.contains("may not be read") && told.contains("FISHPLATE_STORES"),
+                "{told}"
+            );
         }
         assert!(server.taken().is_empty());
     }

@@ -21,7 +21,8 @@ pub struct Limit {
     pub span: Span,
 }
 
-/// An estimate without a limit. It is printed and decides nothing. One `for each zone` gives one for every zone.
+/// An estimate without a limit. It is printed and decides nothing. One `for each zone` gives one
+/// for every zone.
 #[derive(Clone, Debug)]
 pub struct Report {
     pub estimate: Estimate,
@@ -41,7 +42,8 @@ pub struct Estimate {
     pub kind: EstimateKind,
     /// Whether it measures scatter. The best value is then 0 for every quantity.
     pub of_scatter: bool,
-    /// Unit in which it is printed, where it differs from that of the values: for a share or a length.
+    /// Unit in which it is printed, where it differs from that of the values: for a share or a
+    /// length.
     pub unit: Option<Unit>,
 }
 
@@ -73,13 +75,16 @@ impl Estimate {
     pub fn weighted(&self) -> Option<(Statistic, usize, &Expr)> {
         let EstimateKind::Of(of) = &self.kind else { return None };
         match (&of.expr.kind, of.taken.as_slice()) {
-            (Kind::Input(0), [Taking::Weighted { statistic, ddof, by }]) => Some((*statistic, *ddof, by)),
+            (Kind::Input(0), [Taking::Weighted { statistic, ddof, by }]) => {
+                Some((*statistic, *ddof, by))
+            }
             _ => None,
         }
     }
 }
 
-/// An expression over numbers taken from the rows of a group; [`Kind::Input`] is an index into `taken`.
+/// An expression over numbers taken from the rows of a group; [`Kind::Input`] is an index into
+/// `taken`.
 #[derive(Clone, Debug)]
 pub struct OfGroup {
     pub expr: Expr,
@@ -96,7 +101,10 @@ impl OfGroup {
                 Taking::Bound { of, .. } => of.others(),
                 Taking::EachGroup { of, .. } => of.others(),
                 Taking::Fit(fit) => fit.at.iter().flat_map(OfGroup::others).collect(),
-                Taking::Statistic(..) | Taking::Weighted { .. } | Taking::Count | Taking::Data { .. } => Vec::new(),
+                Taking::Statistic(..)
+                | Taking::Weighted { .. }
+                | Taking::Count
+                | Taking::Data { .. } => Vec::new(),
             }
         }
         self.taken.iter().flat_map(of).collect()
@@ -123,8 +131,8 @@ pub enum Taking {
         confidence: f64,
         bootstrap: bool,
     },
-    /// Share of the rows, or of the sections, that satisfy a condition. [`Kind::Input`] 0 is the value of a row; inputs from 1 on
-    /// are `others`, statistics of other quantities.
+    /// Share of the rows, or of the sections, that satisfy a condition. [`Kind::Input`] 0 is the
+    /// value of a row; inputs from 1 on are `others`, statistics of other quantities.
     Share {
         condition: Expr,
         of_sections: bool,
@@ -132,7 +140,8 @@ pub enum Taking {
         /// What rows or sections count by, if not all alike.
         by: Option<Expr>,
     },
-    /// A statistic of all rows of another quantity, an index into [`Plan::quantities`](super::Plan::quantities).
+    /// A statistic of all rows of another quantity, an index into
+    /// [`Plan::quantities`](super::Plan::quantities).
     Other {
         quantity: usize,
         id: String,
@@ -173,7 +182,8 @@ pub struct Fit {
     pub lower: bool,
 }
 
-/// The rows that a limit applies to, and their groups. A limit `for each zone` gives one limit for every zone.
+/// The rows that a limit applies to, and their groups. A limit `for each zone` gives one limit for
+/// every zone.
 #[derive(Clone, Debug, Default)]
 pub struct Scope {
     /// Only rows of these zones; all rows if empty.

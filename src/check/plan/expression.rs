@@ -8,7 +8,8 @@ use crate::catalog::Function;
 use crate::source::Span;
 use crate::units::Dimension;
 
-/// Where an expression is written, and its words. In YAML, the place of a part of a field is not always known, but its words are.
+/// Where an expression is written, and its words. In YAML, the place of a part of a field is not
+/// always known, but its words are.
 #[derive(Clone, Debug)]
 pub struct Origin {
     pub span: Span,

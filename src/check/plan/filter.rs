@@ -18,7 +18,8 @@ pub struct Step {
     pub kind: StepSpec,
     /// As printed: `low-pass 20 Hz, order 4, zero-phase, as-applied`.
     pub words: String,
-    /// Whether its frequencies are in cycles per length, so that it must follow a resampling over a length.
+    /// Whether its frequencies are in cycles per length, so that it must follow a resampling over a
+    /// length.
     pub per_length: bool,
     /// Dimension of the output divided by that of the input.
     pub factor: Dimension,

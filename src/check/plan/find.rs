@@ -10,7 +10,8 @@ pub struct Find {
     pub step: f64,
     /// The length of a section; without it, the minimum length of its zone.
     pub length: Option<Expr>,
-    /// What is highest in the section that is taken of several that overlap; without it, the first is taken.
+    /// What is highest in the section that is taken of several that overlap; without it, the first
+    /// is taken.
     pub prefer: Option<OfSignals>,
     /// Section data, in an order in which each needs only those before it.
     pub data: Vec<FoundDatum>,
@@ -49,7 +50,8 @@ pub struct FindCondition {
 #[derive(Clone, Debug)]
 pub struct Keep {
     pub most: usize,
-    /// Indices into [`Plan::columns`](super::Plan::columns): so many of each combination of their words.
+    /// Indices into [`Plan::columns`](super::Plan::columns): so many of each combination of their
+    /// words.
     pub each: Vec<usize>,
     pub words: String,
 }

@@ -80,7 +80,8 @@ impl Plan {
         &self.verdicts[0]
     }
 
-    /// The same plan, with all plausibility findings as notes: they are reported and exclude no section.
+    /// The same plan, with all plausibility findings as notes: they are reported and exclude no
+    /// section.
     #[must_use]
     pub fn only_telling(&self) -> Self {
         let mut plan = self.clone();
@@ -127,7 +128,8 @@ pub struct Datum {
     pub key: String,
     pub kind: DatumKind,
     pub default: Option<Scalar>,
-    /// Whether the vehicle file may omit it. Rules that depend on it then apply as far as they hold for every value.
+    /// Whether the vehicle file may omit it. Rules that depend on it then apply as far as they hold
+    /// for every value.
     pub may_be_absent: bool,
     /// Allowed values of a number; `None` where the protocol states none.
     pub range: Option<DatumRange>,

@@ -33,7 +33,8 @@ pub enum Taken {
 }
 
 impl Taken {
-    /// Whether it needs samples at common points. These are not available after a window or resampling.
+    /// Whether it needs samples at common points. These are not available after a window or
+    /// resampling.
     pub fn needs_samples(self) -> bool {
         match self {
             Self::Reduced(_) => false,
@@ -124,7 +125,8 @@ pub struct Position {
 pub enum Evaluation {
     /// Numbers of each record, assessed or compared.
     Values { values: Vec<Valued>, records: Records },
-    /// One number of the two signals; `over` is the other signal its wording names, one for each position, with its name and unit.
+    /// One number of the two signals; `over` is the other signal its wording names, one for each
+    /// position, with its name and unit.
     Metric { metric: Metric, over: Vec<Signal>, over_axis: Option<Axis>, pairing: Pairing },
     /// One number of metrics, of numbers of one side, and of numbers of both sides' samples.
     Combined { of: Valued, pairing: Pairing },
@@ -168,7 +170,8 @@ pub struct DeclaredRecord {
     pub span: Span,
 }
 
-/// Which records are compared. In a row the first stands in the place of the simulation, the second in that of the measurement.
+/// Which records are compared. In a row the first stands in the place of the simulation, the second
+/// in that of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pairing {
     /// Each of the first with each of the second; a record is not compared with itself.
@@ -181,7 +184,10 @@ pub enum Pairing {
 
 impl Pairing {
     /// Every simulated record with every measured one.
-    pub const SIDES: Self = Self::Each(Chosen { side: Side::Simulated, record: None }, Chosen { side: Side::Measured, record: None });
+    pub const SIDES: Self = Self::Each(
+        Chosen { side: Side::Simulated, record: None },
+        Chosen { side: Side::Measured, record: None },
+    );
 
     fn reads(self, side: Side) -> bool {
         match self {
@@ -237,27 +243,41 @@ impl Evaluation {
     /// The metrics in it that are not checked against a reference implementation, in words.
     pub fn unverified(&self) -> Vec<String> {
         let of_inputs = |inputs: &[Input]| -> Vec<Metric> {
-            inputs.iter().filter_map(|input| if let Taken::Compared(metric) = input.taken { Some(metric) } else { None }).collect()
+            inputs
+                .iter()
+                .filter_map(|input| {
+                    if let Taken::Compared(metric) = input.taken { Some(metric) } else { None }
+                })
+                .collect()
         };
         let metrics = match self {
             Self::Values { .. } => Vec::new(),
             Self::Metric { metric, .. } => vec![*metric],
-            Self::Combined { of, .. } => of.inputs.first().map_or_else(Vec::new, |inputs| of_inputs(inputs)),
+            Self::Combined { of, .. } => {
+                of.inputs.first().map_or_else(Vec::new, |inputs| of_inputs(inputs))
+            }
         };
-        metrics.into_iter().filter(|metric| metric.0.unverified).map(|metric| metric.0.form.in_words()).collect()
+        metrics
+            .into_iter()
+            .filter(|metric| metric.0.unverified)
+            .map(|metric| metric.0.form.in_words())
+            .collect()
     }
 
     /// Whether records of this side are needed.
     pub fn reads(&self, side: Side) -> bool {
         match self {
-            Self::Values { records: Records::Of(of) | Records::Spread { of, .. }, .. } => of.side == side,
+            Self::Values { records: Records::Of(of) | Records::Spread { of, .. }, .. } => {
+                of.side == side
+            }
             Self::Values { records: Records::Compared { pairing, .. }, .. }
             | Self::Metric { pairing, .. }
             | Self::Combined { pairing, .. } => pairing.reads(side),
         }
     }
 
-    /// Which records are compared pair by pair; `None` where each is taken by itself or compared with what is central of several.
+    /// Which records are compared pair by pair; `None` where each is taken by itself or compared
+    /// with what is central of several.
     pub fn pairing(&self) -> Option<Pairing> {
         match self {
             Self::Values { records: Records::Compared { pairing, .. }, .. }
@@ -283,7 +303,12 @@ impl Evaluation {
             Self::Values { values, .. } if values.len() > 1 => {
                 // Without the condition of its case.
                 let words = &values.get(which)?.expr.span.words;
-                Some(words.split_once(" when ").map_or(words.as_ref(), |(value, _)| value).to_string())
+                Some(
+                    words
+                        .split_once(" when ")
+                        .map_or(words.as_ref(), |(value, _)| value)
+                        .to_string(),
+                )
             }
             _ => None,
         }
@@ -296,7 +321,10 @@ impl Evaluation {
 
     /// Whether rows have two sides and a difference.
     pub fn has_sides(&self) -> bool {
-        matches!(self, Self::Values { records: Records::Compared { .. } | Records::Spread { .. }, .. })
+        matches!(
+            self,
+            Self::Values { records: Records::Compared { .. } | Records::Spread { .. }, .. }
+        )
     }
 
     /// Whether repeated sections are compared with their originals.

@@ -37,14 +37,16 @@ pub enum OnFault {
     NotAssessable,
 }
 
-/// A condition that sound data satisfy, checked in every section and at every position. A violation is reported as a finding.
+/// A condition that sound data satisfy, checked in every section and at every position. A violation
+/// is reported as a finding.
 ///
 /// A block with several fields `of` gives one rule for each of them.
 #[derive(Clone, Debug)]
 pub struct Plausibility {
     pub name: String,
     pub title: String,
-    /// Each position with the name of its signal; empty where the rule uses only data or named signals.
+    /// Each position with the name of its signal; empty where the rule uses only data or named
+    /// signals.
     pub signals: Vec<(String, Signal)>,
     pub chain: Vec<Step>,
     pub test: Test,
@@ -107,7 +109,8 @@ pub struct Distinct {
     pub sides: bool,
 }
 
-/// From when on a measured channel is reported that correlates with another simulated channel of its rule.
+/// From when on a measured channel is reported that correlates with another simulated channel of
+/// its rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exchanged {
     /// Least correlation with the other channel.
@@ -121,7 +124,8 @@ pub struct SectionRules {
     pub whole_records: bool,
     /// How sections are found in the runs of a campaign that has no table of sections.
     pub find: Option<Find>,
-    /// Record that there must be on each side of a found section, SI of the axis; without it, the length of the section.
+    /// Record that there must be on each side of a found section, SI of the axis; without it, the
+    /// length of the section.
     pub margin: Option<f64>,
     pub keep: Option<Keep>,
     /// Index of the column of the zone.
@@ -141,7 +145,8 @@ pub struct Domain {
     pub name: String,
     pub title: String,
     pub over: Vec<Coordinate>,
-    /// Indices into [`Plan::columns`](super::Plan::columns): sections of other words are of another hull.
+    /// Indices into [`Plan::columns`](super::Plan::columns): sections of other words are of another
+    /// hull.
     pub each: Vec<usize>,
     /// Either a note, or not assessable.
     pub otherwise: OnFault,

@@ -34,7 +34,8 @@ pub enum SignalKind {
     OverAxis(AxisOperation, Box<Signal>),
     /// The number of a section that is taken from a signal, the same all along: `Y - mean of Y`.
     Level(Reducer, Box<Signal>),
-    /// The own processed signal of this side, at the points where both sides have one. Only in values taken from both sides.
+    /// The own processed signal of this side, at the points where both sides have one. Only in
+    /// values taken from both sides.
     Side(Side),
     /// The signal of the first condition on the section that holds.
     Select(Vec<(Expr, Signal)>, Option<Box<Signal>>),

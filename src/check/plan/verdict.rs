@@ -48,7 +48,8 @@ pub enum Decision {
     Person(String),
 }
 
-/// A condition on other verdicts, given by their index in [`Plan::verdicts`](super::Plan::verdicts).
+/// A condition on other verdicts, given by their index in
+/// [`Plan::verdicts`](super::Plan::verdicts).
 #[derive(Clone, Debug)]
 pub enum Over {
     Holds(usize),

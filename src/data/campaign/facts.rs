@@ -23,8 +23,18 @@ pub struct Fact {
 }
 
 /// Keys of `campaign.yaml` beside those of the records.
-pub(super) const LAYOUT: [&str; 10] =
-    ["name", SHORT_NAME, "vehicle", "sections", APPLICATION, "parameters", "protocol", ORIGIN_KEY, REPORT_KEY, RUNS];
+pub(super) const LAYOUT: [&str; 10] = [
+    "name",
+    SHORT_NAME,
+    "vehicle",
+    "sections",
+    APPLICATION,
+    "parameters",
+    "protocol",
+    ORIGIN_KEY,
+    REPORT_KEY,
+    RUNS,
+];
 /// The key of the table of wanted operation.
 pub(super) const APPLICATION: &str = "application";
 /// What the campaign is called where it stands beside others.
@@ -32,11 +42,13 @@ pub(super) const SHORT_NAME: &str = "short name";
 
 /// Scalars at the top and one map below it, in the order written.
 pub(super) fn facts(tree: &Node) -> Vec<Fact> {
-    let layout = |key: &str| LAYOUT.contains(&key) || RecordKind::ALL.iter().any(|kind| kind.key() == key);
+    let layout =
+        |key: &str| LAYOUT.contains(&key) || RecordKind::ALL.iter().any(|kind| kind.key() == key);
     let mut facts = Vec::new();
     for (key, node) in tree.entries().iter().filter(|(key, _)| !layout(&key.text)) {
         facts.extend(fact("", key, node));
-        facts.extend(node.entries().iter().filter_map(|(inner, node)| fact(&key.text, inner, node)));
+        facts
+            .extend(node.entries().iter().filter_map(|(inner, node)| fact(&key.text, inner, node)));
     }
     facts
 }
@@ -44,10 +56,18 @@ pub(super) fn facts(tree: &Node) -> Vec<Fact> {
 fn fact(group: &str, key: &Key, node: &Node) -> Option<Fact> {
     let text = match &node.value {
         // A short list of scalars reads well in a line; anything deeper is no fact to print.
-        Value::List(items) => items.iter().map(Node::scalar_text).collect::<Option<Vec<_>>>()?.join(", "),
+        Value::List(items) => {
+            items.iter().map(Node::scalar_text).collect::<Option<Vec<_>>>()?.join(", ")
+        }
         _ => node.scalar_text()?.to_string(),
     };
     let (name, unit) = name_and_unit(&key.text);
     let unit = unit.map(|range| key.text[range].trim().to_string());
-    Some(Fact { group: group.to_string(), name: name.to_string(), unit, text, span: node.span.clone() })
+    Some(Fact {
+        group: group.to_string(),
+        name: name.to_string(),
+        unit,
+        text,
+        span: node.span.clone(),
+    })
 }

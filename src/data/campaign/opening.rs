@@ -29,9 +29,14 @@ impl Opening<'_> {
         result.map_err(|problem| self.problems.push(problem)).ok()
     }
 
-    pub(super) fn yaml(&mut self, place: &Place, named: Option<&Span>) -> Option<(Arc<Source>, Node)> {
+    pub(super) fn yaml(
+        &mut self,
+        place: &Place,
+        named: Option<&Span>,
+    ) -> Option<(Arc<Source>, Node)> {
         let read = self.folder.read_text(place);
-        let (source, sha256, bytes) = self.keep(read.map_err(|problem| named_at(problem, named)))?;
+        let (source, sha256, bytes) =
+            self.keep(read.map_err(|problem| named_at(problem, named)))?;
         self.files.push(ReadFile { path: place.inside.clone(), sha256, bytes });
         let tree = yaml::load(&source, self.problems)?;
         Some((source, tree))
@@ -41,7 +46,9 @@ impl Opening<'_> {
     pub(super) fn text(&mut self, tree: &Node, key: &str) -> Option<Spanned<String>> {
         let node = tree.get(key)?;
         match node.scalar_text() {
-            Some(text) if !text.trim().is_empty() => Some(Spanned::new(text.to_string(), node.span.clone())),
+            Some(text) if !text.trim().is_empty() => {
+                Some(Spanned::new(text.to_string(), node.span.clone()))
+            }
             _ => {
                 let says = format!("`{key}` must be text; this is {}", node.kind_in_words());
                 self.problems.push(Problem::error("wrong-kind", says).at(&node.span));
@@ -54,12 +61,15 @@ impl Opening<'_> {
     pub(super) fn misspelt(&mut self, tree: &Node) {
         let layout = || LAYOUT.into_iter().chain(RecordKind::ALL.into_iter().map(RecordKind::key));
         for (key, _) in tree.entries() {
-            let off = |known: &&str| strsim::damerau_levenshtein(&key.text.to_lowercase(), known) <= 1;
+            let off =
+                |known: &&str| strsim::damerau_levenshtein(&key.text.to_lowercase(), known) <= 1;
             if layout().any(|known| known == key.text) {
                 continue;
             }
             if let Some(near) = layout().find(off) {
-                let problem = Problem::error("unknown-key", format!("a campaign has no key `{}`", key.text)).at(&key.span);
+                let problem =
+                    Problem::error("unknown-key", format!("a campaign has no key `{}`", key.text))
+                        .at(&key.span);
                 self.problems.push(problem.help(format!("did you mean `{near}`?")));
             }
         }
@@ -82,7 +92,9 @@ impl Opening<'_> {
         for (state, _) in states {
             let written = self.text(node, &state.text);
             let data = written.and_then(|written| self.vehicle(&written));
-            found.extend(data.map(|data| VehicleState { state: Some(state.text.trim().to_string()), data }));
+            found.extend(
+                data.map(|data| VehicleState { state: Some(state.text.trim().to_string()), data }),
+            );
         }
         found
     }
@@ -95,7 +107,8 @@ impl Opening<'_> {
         if matches!(vehicle.value, Value::Map(_) | Value::Null) {
             return Some(vehicle);
         }
-        let says = format!("a vehicle is a map of keys and values; this is {}", vehicle.kind_in_words());
+        let says =
+            format!("a vehicle is a map of keys and values; this is {}", vehicle.kind_in_words());
         self.problems.push(Problem::error("wrong-kind", says).at(&vehicle.span));
         None
     }
@@ -105,7 +118,8 @@ impl Opening<'_> {
     }
 
     pub(super) fn application(&mut self, tree: &Node) -> Option<Table> {
-        // No other column has names: of two equal speeds in the first one, the second would be a fault.
+        // No other column has names: of two equal speeds in the first one, the second would be a
+        // fault.
         self.table(tree, APPLICATION, None)?.named_by(POINT_KEY, self.problems)
     }
 
@@ -115,7 +129,9 @@ impl Opening<'_> {
         let place = self.keep(place)?;
         let mut found = Problems::default();
         let read = self.folder.read_text(&place).map_err(|problem| found.push(problem)).ok();
-        let table = read.and_then(|(source, sha256, bytes)| Some((Table::parse(source, sha256, names, &mut found)?, bytes)));
+        let table = read.and_then(|(source, sha256, bytes)| {
+            Some((Table::parse(source, sha256, names, &mut found)?, bytes))
+        });
         for problem in found.0 {
             self.problems.push(named_at(problem, Some(&written.span)));
         }
@@ -140,24 +156,39 @@ impl Opening<'_> {
     pub(super) fn parameters(&mut self, tree: &Node) -> Vec<Parameter> {
         let Some(node) = tree.get("parameters") else { return Vec::new() };
         if !matches!(node.value, Value::Map(_) | Value::Null) {
-            let says = format!("`parameters` must be a map of names and values; this is {}", node.kind_in_words());
+            let says = format!(
+                "`parameters` must be a map of names and values; this is {}",
+                node.kind_in_words()
+            );
             self.problems.push(Problem::error("wrong-kind", says).at(&node.span));
         }
         for (key, value) in node.entries() {
             // What the campaign lacks was meant, whatever the protocol calls its parameters.
-            let layout = ["vehicle", "sections", APPLICATION, "protocol"].into_iter().chain(RecordKind::ALL.map(RecordKind::key));
+            let layout = ["vehicle", "sections", APPLICATION, "protocol"]
+                .into_iter()
+                .chain(RecordKind::ALL.map(RecordKind::key));
             if layout.into_iter().any(|known| known == key.text) && tree.get(&key.text).is_none() {
                 let says = format!("`{}` stands among the parameters of the protocol", key.text);
                 let problem = Problem::error("unknown-key", says).at(&key.span);
-                self.problems.push(problem.help(format!("`{}` is a key of the campaign: it stands at the left margin", key.text)));
+                self.problems.push(problem.help(format!(
+                    "`{}` is a key of the campaign: it stands at the left margin",
+                    key.text
+                )));
                 continue;
             }
             if value.scalar_text().is_none() {
-                let says = format!("the parameter `{}` must be a single value; this is {}", key.text, value.kind_in_words());
+                let says = format!(
+                    "the parameter `{}` must be a single value; this is {}",
+                    key.text,
+                    value.kind_in_words()
+                );
                 self.problems.push(Problem::error("wrong-kind", says).at(&value.span));
             }
         }
-        node.entries().iter().map(|(name, value)| Parameter { name: name.clone(), value: value.clone() }).collect()
+        node.entries()
+            .iter()
+            .map(|(name, value)| Parameter { name: name.clone(), value: value.clone() })
+            .collect()
     }
 }
 

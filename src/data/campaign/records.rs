@@ -1,4 +1,5 @@
-//! Where the records of a campaign are: one folder or several of each kind, a file for each section.
+//! Where the records of a campaign are: one folder or several of each kind, a file for each
+//! section.
 
 use std::collections::HashSet;
 use std::path::Path;
@@ -38,7 +39,8 @@ impl RecordKind {
     }
 }
 
-/// Most comparisons of names with names that are made to suggest what was meant for missing records of a campaign.
+/// Most comparisons of names with names that are made to suggest what was meant for missing records
+/// of a campaign.
 const MOST_COMPARISONS: usize = 1_000_000;
 
 impl Campaign {
@@ -52,25 +54,38 @@ impl Campaign {
         }
         let (place, span) = self.record_folder(RecordKind::Measurement.into())?;
         let inside = format!("{}/", place.inside);
-        let kept = self.folder.memory().records.keys().filter_map(|name| name.strip_prefix(&inside));
-        let names: Vec<Cell> = kept.map(|name| Spanned::new(name.to_string(), span.clone())).collect();
+        let kept =
+            self.folder.memory().records.keys().filter_map(|name| name.strip_prefix(&inside));
+        let names: Vec<Cell> =
+            kept.map(|name| Spanned::new(name.to_string(), span.clone())).collect();
         if !names.is_empty() {
             return Ok(names);
         }
         self.none_in_memory(&inside, span)?;
-        let nearest = |problem: Problem| problem.suggest(&place.inside, Self::folders_beside(&place).iter().map(String::as_str));
-        let entries = disk::names(&place.path).map_err(|error| nearest(no_folder(&error, &place.shown).at(span)))?;
+        let nearest = |problem: Problem| {
+            problem.suggest(&place.inside, Self::folders_beside(&place).iter().map(String::as_str))
+        };
+        let entries = disk::names(&place.path)
+            .map_err(|error| nearest(no_folder(&error, &place.shown).at(span)))?;
         let mut names: Vec<String> = entries
             .iter()
             .filter_map(|name| Some(Format::stem(name.to_str()?)?.to_string()))
             .filter(|name| !name.starts_with('.'))
             .collect();
         if names.is_empty() {
-            let others: Vec<String> = entries.into_iter().filter_map(|name| name.into_string().ok()).collect();
-            if let Some(problem) = others.iter().find_map(|name| other_format(Path::new(name), &format!("{}/{name}", place.inside))) {
+            let others: Vec<String> =
+                entries.into_iter().filter_map(|name| name.into_string().ok()).collect();
+            if let Some(problem) = others
+                .iter()
+                .find_map(|name| other_format(Path::new(name), &format!("{}/{name}", place.inside)))
+            {
                 return Err(problem.at(span));
             }
-            return Err(Problem::error("no-records", format!("there is no CSV or Parquet file in `{}`", place.shown)).at(span));
+            return Err(Problem::error(
+                "no-records",
+                format!("there is no CSV or Parquet file in `{}`", place.shown),
+            )
+            .at(span));
         }
         names.sort();
         // Both formats of a section are told when it is read.
@@ -82,8 +97,13 @@ impl Campaign {
         let found = self.found(which)?;
         let RecordFolder { folder: written, place, .. } = found;
         if found.in_store() {
-            let says = format!("`{}` is in a store, and a folder of the campaign is needed here", written.value);
-            return Err(Problem::error("record-in-store", says).at(&written.span).help("copy the records to the campaign's folder"));
+            let says = format!(
+                "`{}` is in a store, and a folder of the campaign is needed here",
+                written.value
+            );
+            return Err(Problem::error("record-in-store", says)
+                .at(&written.span)
+                .help("copy the records to the campaign's folder"));
         }
         if let Some(place) = place.get() {
             return Ok((place.clone(), &written.span));
@@ -104,9 +124,12 @@ impl Campaign {
         self.record_folders.iter().filter(move |folder| folder.kind == kind)
     }
 
-    /// Every record of a section of one kind, one at least: that there is none is told when it is read.
+    /// Every record of a section of one kind, one at least: that there is none is told when it is
+    /// read.
     pub fn records(&self, kind: RecordKind) -> Vec<WhichRecord> {
-        (0..self.folders_of(kind).count().max(1)).map(|number| WhichRecord { kind, number }).collect()
+        (0..self.folders_of(kind).count().max(1))
+            .map(|number| WhichRecord { kind, number })
+            .collect()
     }
 
     /// The name of a record, where there are several of its kind.
@@ -135,7 +158,10 @@ impl Campaign {
     /// `several-records`: who asks needs one record of a kind, and there are several.
     pub fn only_one(&self, kind: RecordKind) -> Result<(), Problem> {
         let folders: Vec<&RecordFolder> = self.folders_of(kind).collect();
-        let at = self.tree.get(kind.key()).map_or_else(|| self.tree.span.part(0..0), |node| node.span.clone());
+        let at = self
+            .tree
+            .get(kind.key())
+            .map_or_else(|| self.tree.span.part(0..0), |node| node.span.clone());
         if folders.len() > 1 { Err(members::several(kind, &folders, &at)) } else { Ok(()) }
     }
 
@@ -172,8 +198,8 @@ impl Campaign {
     /// Where a record of a section is, which must exist.
     ///
     /// # Errors
-    /// `key-missing`, `folder-missing`, `path-outside`, `file-missing` (with the nearest name in that folder), `two-formats`; of an object
-    /// as [`Campaign::run_source`].
+    /// `key-missing`, `folder-missing`, `path-outside`, `file-missing` (with the nearest name in
+    /// that folder), `two-formats`; of an object as [`Campaign::run_source`].
     pub fn source_of(&self, which: WhichRecord, section: &Cell) -> Result<RecordSource, Problem> {
         check_file_name(&section.value, &section.span)?;
         if let Some(run) = self.run_of(section) {
@@ -189,29 +215,43 @@ impl Campaign {
             return Ok(RecordSource::Memory(Arc::clone(frame)));
         }
         self.none_in_memory(&name, &section.span)?;
-        let unreadable =
-            |inside: &str, error| Problem::error("file-unreadable", format!("`{inside}` cannot be read: {error}")).at(&section.span);
+        let unreadable = |inside: &str, error| {
+            Problem::error("file-unreadable", format!("`{inside}` cannot be read: {error}"))
+                .at(&section.span)
+        };
         let [csv, parquet] = Format::ALL.map(|format| {
             let place = self.folder.place(&format!("{name}.{}", format.ending()), &section.span)?;
-            let there = disk::is_file(&place.path).map_err(|error| unreadable(&place.inside, error))?;
+            let there =
+                disk::is_file(&place.path).map_err(|error| unreadable(&place.inside, error))?;
             Ok((place, there))
         });
         let place = match (csv?, parquet?) {
-            ((place, true), (_, false)) | ((_, false), (place, true)) => return Ok(RecordSource::File(place)),
+            ((place, true), (_, false)) | ((_, false), (place, true)) => {
+                return Ok(RecordSource::File(place));
+            }
             ((place, false), (_, false)) => place,
             ((csv, true), (parquet, true)) => {
-                let says = format!("`{}` and `{}` are both the record of section {}", csv.inside, parquet.inside, section.value);
+                let says = format!(
+                    "`{}` and `{}` are both the record of section {}",
+                    csv.inside, parquet.inside, section.value
+                );
                 let problem = Problem::error("two-formats", says).at(&section.span);
                 return Err(problem.help("remove one of them, or move it to another folder"));
             }
         };
         if !disk::is_folder(&folder.path).map_err(|error| unreadable(&folder.inside, error))? {
-            let problem = Problem::error("folder-missing", format!("there is no folder `{}`", folder.inside)).at(span);
-            return Err(problem.suggest(&folder.inside, Self::folders_beside(&folder).iter().map(String::as_str)));
+            let problem =
+                Problem::error("folder-missing", format!("there is no folder `{}`", folder.inside))
+                    .at(span);
+            return Err(problem.suggest(
+                &folder.inside,
+                Self::folders_beside(&folder).iter().map(String::as_str),
+            ));
         }
         let others = found.strangers.get_or_init(|| self.strangers(&folder.path));
         let in_other_format = |name: &String| {
-            let same = Path::new(name).file_stem().and_then(|stem| stem.to_str()) == Some(&section.value);
+            let same =
+                Path::new(name).file_stem().and_then(|stem| stem.to_str()) == Some(&section.value);
             other_format(Path::new(name), &format!("{}/{name}", folder.inside)).filter(|_| same)
         };
         if let Some(problem) = others.iter().find_map(in_other_format) {
@@ -219,7 +259,12 @@ impl Campaign {
         }
         let problem = Problem::error(
             "file-missing",
-            format!("there is no file `{}` or `{}.{}`", place.inside, section.value, Format::Parquet.ending()),
+            format!(
+                "there is no file `{}` or `{}.{}`",
+                place.inside,
+                section.value,
+                Format::Parquet.ending()
+            ),
         )
         .at(&section.span);
         if others.len().saturating_mul(self.names.len()) > MOST_COMPARISONS {
@@ -241,27 +286,44 @@ impl Campaign {
         if self.folder.on_disk() {
             return Ok(());
         }
-        let problem = Problem::error("file-missing", format!("there is no record `{name}` in memory")).at(at);
+        let problem =
+            Problem::error("file-missing", format!("there is no record `{name}` in memory")).at(at);
         Err(problem.suggest(name, self.folder.memory().records.keys().map(String::as_str)))
     }
 
     /// The folders beside one that does not exist, by their paths inside the campaign.
     fn folders_beside(missing: &Place) -> Vec<String> {
         let Some(beside) = missing.path.parent() else { return Vec::new() };
-        let inside = missing.inside.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
-        let names = disk::names(beside).unwrap_or_default().into_iter().filter_map(|name| name.into_string().ok());
-        names.filter(|name| disk::is_folder(&beside.join(name)).unwrap_or(false)).map(|name| format!("{inside}{name}")).collect()
+        let inside = missing
+            .inside
+            .rsplit_once('/')
+            .map_or(String::new(), |(folder, _)| format!("{folder}/"));
+        let names = disk::names(beside)
+            .unwrap_or_default()
+            .into_iter()
+            .filter_map(|name| name.into_string().ok());
+        names
+            .filter(|name| disk::is_folder(&beside.join(name)).unwrap_or(false))
+            .map(|name| format!("{inside}{name}"))
+            .collect()
     }
 
-    /// Files of a folder but the records of sections: the record of another section is not what was meant.
+    /// Files of a folder but the records of sections: the record of another section is not what was
+    /// meant.
     fn strangers(&self, folder: &Path) -> Vec<String> {
         let sections: HashSet<&str> = self.names.iter().map(|name| name.value.as_str()).collect();
-        let names = disk::names(folder).unwrap_or_default().into_iter().filter_map(|name| name.into_string().ok());
-        names.filter(|name| !Format::stem(name).is_some_and(|name| sections.contains(name))).collect()
+        let names = disk::names(folder)
+            .unwrap_or_default()
+            .into_iter()
+            .filter_map(|name| name.into_string().ok());
+        names
+            .filter(|name| !Format::stem(name).is_some_and(|name| sections.contains(name)))
+            .collect()
     }
 
-    /// Reads the wanted columns of a section's record; of a section that is cut from a run, only this part of it. Its faults go into
-    /// results, which must be the same wherever the campaign lies: they name the record by its path inside the campaign.
+    /// Reads the wanted columns of a section's record; of a section that is cut from a run, only
+    /// this part of it. Its faults go into results, which must be the same wherever the campaign
+    /// lies: they name the record by its path inside the campaign.
     ///
     /// # Errors
     /// As [`Campaign::source_of`] and [`RecordSource::read`].
@@ -287,35 +349,57 @@ impl Campaign {
         };
         if let Some((axis, offset)) = offset {
             let along = record.columns.iter_mut().find(|column| column.name == axis);
-            along.into_iter().flat_map(|column| &mut column.values).for_each(|value| *value += offset);
+            along
+                .into_iter()
+                .flat_map(|column| &mut column.values)
+                .for_each(|value| *value += offset);
         }
-        let file = ReadFile { path: source.inside().to_string(), sha256: record.sha256.clone(), bytes: record.bytes as u64 };
+        let file = ReadFile {
+            path: source.inside().to_string(),
+            sha256: record.sha256.clone(),
+            bytes: record.bytes as u64,
+        };
         Ok((record, file))
     }
 }
 
 /// Synchronisation of both sides.
 impl Campaign {
-    /// What is added to the axis of a section's measurement: the axis and the offset in SI. `None` where the table has no column
-    /// `offset` or the cell is empty.
+    /// What is added to the axis of a section's measurement: the axis and the offset in SI. `None`
+    /// where the table has no column `offset` or the cell is empty.
     ///
     /// # Errors
     /// Of the column or the cell; an offset that is neither a length nor a time.
     pub fn offset(&self, section: &Cell) -> Result<Option<(&'static str, f64)>, Problem> {
-        let Some((table, column)) = self.sections.as_ref().and_then(|table| Some((table, table.column(OFFSET)?))) else { return Ok(None) };
+        let Some((table, column)) =
+            self.sections.as_ref().and_then(|table| Some((table, table.column(OFFSET)?)))
+        else {
+            return Ok(None);
+        };
         let heading = &table.columns[column];
         let unit = heading.unit(None)?;
-        let Some((axis, _)) = AXES.iter().find(|(_, dimension)| *dimension == unit.dimension) else {
-            let says = format!("the offset is in {unit}, which is {}; it is added to a distance or a time", unit.dimension.in_words());
+        let Some((axis, _)) = AXES.iter().find(|(_, dimension)| *dimension == unit.dimension)
+        else {
+            let says = format!(
+                "the offset is in {unit}, which is {}; it is added to a distance or a time",
+                unit.dimension.in_words()
+            );
             return Err(Problem::error("unit-mismatch", says).at(&heading.span));
         };
-        let Some(cell) = table.row_named(&section.value).and_then(|row| table.cell(row, column)).filter(|cell| !cell.value.is_empty())
+        let Some(cell) = table
+            .row_named(&section.value)
+            .and_then(|row| table.cell(row, column))
+            .filter(|cell| !cell.value.is_empty())
         else {
             return Ok(None);
         };
         match cell.value.parse::<f64>() {
             Ok(offset) if offset.is_finite() => Ok(Some((axis, unit.to_si(offset)))),
-            _ => Err(Problem::error("not-a-number", format!("`{OFFSET}`: `{}` is not a number", cell.value)).at(&cell.span)),
+            _ => Err(Problem::error(
+                "not-a-number",
+                format!("`{OFFSET}`: `{}` is not a number", cell.value),
+            )
+            .at(&cell.span)),
         }
     }
 
@@ -323,13 +407,16 @@ impl Campaign {
     pub fn offsets_in_words(&self) -> Option<String> {
         let unit = |axis: &str| if axis == AXES[0].0 { "m" } else { "s" };
         let one = |name: &Cell| {
-            let (axis, offset) = self.offset(name).ok().flatten().filter(|(_, offset)| *offset != 0.0)?;
+            let (axis, offset) =
+                self.offset(name).ok().flatten().filter(|(_, offset)| *offset != 0.0)?;
             Some((axis, format!("{} {offset:+} {}", name.value, unit(axis))))
         };
         let all: Vec<(&str, String)> = self.names.iter().filter_map(one).collect();
         let axis = all.first()?.0;
         let list = all.into_iter().map(|(_, text)| text).collect::<Vec<_>>().join(", ");
-        Some(format!("Added to the {axis} of the measurement (column `{OFFSET}` of the table of sections): {list}."))
+        Some(format!(
+            "Added to the {axis} of the measurement (column `{OFFSET}` of the table of sections): {list}."
+        ))
     }
 }
 

@@ -18,7 +18,8 @@ use crate::yaml::{Node, Value};
 pub const RUNS: &str = "runs";
 /// The column of the table of sections that says from which run a section is cut.
 pub const RUN_COLUMN: &str = "run";
-/// The key of a run that says what is done with a drift of the distance between both sides, and its words.
+/// The key of a run that says what is done with a drift of the distance between both sides, and its
+/// words.
 const DRIFT: &str = "drift";
 pub const CORRECT: &str = "correct";
 pub const TELL: &str = "tell";
@@ -70,12 +71,14 @@ impl Run {
 
 /// Reads the runs of a campaign.
 ///
-/// Problems: `wrong-kind`, `no-records`, `name-invalid`, `unknown-key`, `unknown-choice`, `format-not-read`, and those of [`Folder::place`].
+/// Problems: `wrong-kind`, `no-records`, `name-invalid`, `unknown-key`, `unknown-choice`,
+/// `format-not-read`, and those of [`Folder::place`].
 pub(super) fn read(tree: &Node, folder: &Folder, problems: &mut Problems) -> Vec<Run> {
     const EXAMPLE: &str = "for instance: `runs: {R1: {measurement: R1/measurement.parquet, simulation: R1/simulation.parquet}}`";
     let Some(node) = tree.get(RUNS) else { return Vec::new() };
     if !matches!(&node.value, Value::Map(runs) if !runs.is_empty()) {
-        let says = format!("`{RUNS}` must be a map of names and runs; this is {}", node.kind_in_words());
+        let says =
+            format!("`{RUNS}` must be a map of names and runs; this is {}", node.kind_in_words());
         problems.push(Problem::error("wrong-kind", says).at(&node.span).help(EXAMPLE));
         return Vec::new();
     }
@@ -87,7 +90,11 @@ pub(super) fn read(tree: &Node, folder: &Folder, problems: &mut Problems) -> Vec
             continue;
         }
         if !matches!(&node.value, Value::Map(_)) {
-            let says = format!("the run `{}` must be a map of its files; this is {}", name.value, node.kind_in_words());
+            let says = format!(
+                "the run `{}` must be a map of its files; this is {}",
+                name.value,
+                node.kind_in_words()
+            );
             problems.push(Problem::error("wrong-kind", says).at(&node.span).help(EXAMPLE));
             continue;
         }
@@ -98,13 +105,22 @@ pub(super) fn read(tree: &Node, folder: &Folder, problems: &mut Problems) -> Vec
     runs
 }
 
-fn one(name: Spanned<String>, node: &Node, (folder, held): (&Folder, &Held), problems: &mut Problems) -> Option<Run> {
+fn one(
+    name: Spanned<String>,
+    node: &Node,
+    (folder, held): (&Folder, &Held),
+    problems: &mut Problems,
+) -> Option<Run> {
     let before = problems.errors();
     let known = std::array::from_fn(|_| Known::with(held));
     let mut run = Run { name, files: Vec::new(), facts: Vec::new(), known, correct_drift: false };
     for (key, value) in node.entries() {
         let Some(text) = value.scalar_text().map(str::trim).filter(|text| !text.is_empty()) else {
-            let says = format!("`{}` of a run must be a single value; this is {}", key.text, value.kind_in_words());
+            let says = format!(
+                "`{}` of a run must be a single value; this is {}",
+                key.text,
+                value.kind_in_words()
+            );
             problems.push(Problem::error("wrong-kind", says).at(&value.span));
             continue;
         };
@@ -121,11 +137,18 @@ fn one(name: Spanned<String>, node: &Node, (folder, held): (&Folder, &Held), pro
                 TELL => {}
                 other => {
                     let says = format!("`{DRIFT}` cannot be `{other}`");
-                    problems.push(Problem::error("unknown-choice", says).at(&value.span).suggest(other, [CORRECT, TELL]));
+                    problems.push(
+                        Problem::error("unknown-choice", says)
+                            .at(&value.span)
+                            .suggest(other, [CORRECT, TELL]),
+                    );
                 }
             }
-        } else if let Some(near) = known().find(|known| strsim::damerau_levenshtein(&key.text.to_lowercase(), known) <= 1) {
-            let problem = Problem::error("unknown-key", format!("a run has no key `{}`", key.text)).at(&key.span);
+        } else if let Some(near) =
+            known().find(|known| strsim::damerau_levenshtein(&key.text.to_lowercase(), known) <= 1)
+        {
+            let problem = Problem::error("unknown-key", format!("a run has no key `{}`", key.text))
+                .at(&key.span);
             problems.push(problem.help(format!("did you mean `{near}`?")));
         } else {
             let (name, unit) = name_and_unit(&key.text);
@@ -135,12 +158,17 @@ fn one(name: Spanned<String>, node: &Node, (folder, held): (&Folder, &Held), pro
     }
     if run.files.is_empty() && problems.errors() == before {
         let says = format!("the run `{}` names no file", run.name.value);
-        problems.push(Problem::error("no-records", says).at(&node.span).help("name its files: `measurement`, `simulation`, `track`"));
+        problems.push(
+            Problem::error("no-records", says)
+                .at(&node.span)
+                .help("name its files: `measurement`, `simulation`, `track`"),
+        );
     }
     (problems.errors() == before).then_some(run)
 }
 
-/// A file of a run is inside the campaign, or an object in a store. Of an object only Parquet can be read in parts.
+/// A file of a run is inside the campaign, or an object in a store. Of an object only Parquet can
+/// be read in parts.
 fn check_file(written: &Spanned<String>, folder: &Folder) -> Result<(), Problem> {
     if !store::is_url(&written.value) {
         return folder.place(&written.value, &written.span).map(|_| ());
@@ -148,8 +176,14 @@ fn check_file(written: &Spanned<String>, folder: &Folder) -> Result<(), Problem>
     if Format::of(Path::new(&written.value)) == Format::Parquet {
         return Ok(());
     }
-    let says = format!("`{}` is in a store and does not end in `.{}`", written.value, Format::Parquet.ending());
-    Err(Problem::error("format-not-read", says).at(&written.span).help("write it as Parquet, or copy it to the campaign's folder"))
+    let says = format!(
+        "`{}` is in a store and does not end in `.{}`",
+        written.value,
+        Format::Parquet.ending()
+    );
+    Err(Problem::error("format-not-read", says)
+        .at(&written.span)
+        .help("write it as Parquet, or copy it to the campaign's folder"))
 }
 
 /// Every run that the table of sections names is there.
@@ -158,16 +192,24 @@ fn check_file(written: &Spanned<String>, folder: &Folder) -> Result<(), Problem>
 pub(super) fn check_column(table: &Table, runs: &[Run], problems: &mut Problems) {
     let Some(column) = table.column(RUN_COLUMN).filter(|_| !runs.is_empty()) else { return };
     for row in 0..table.rows.len() {
-        let Some(cell) = table.cell(row, column).filter(|cell| !cell.value.trim().is_empty()) else { continue };
+        let Some(cell) = table.cell(row, column).filter(|cell| !cell.value.trim().is_empty())
+        else {
+            continue;
+        };
         let names = || runs.iter().map(|run| run.name.value.as_str());
         if !names().any(|name| name == cell.value.trim()) {
             let says = format!("the campaign has no run `{}`", cell.value.trim());
-            problems.push(Problem::error("unknown-run", says).at(&cell.span).suggest(cell.value.trim(), names()));
+            problems.push(
+                Problem::error("unknown-run", says)
+                    .at(&cell.span)
+                    .suggest(cell.value.trim(), names()),
+            );
         }
     }
 }
 
-/// The part of a run that is read for a section: what the axis is called, and from where to where, SI.
+/// The part of a run that is read for a section: what the axis is called, and from where to where,
+/// SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
     pub axis: String,
@@ -176,11 +218,13 @@ pub struct Part {
 }
 
 impl Part {
-    /// How much of a run is read on each side of a section, in lengths of the section, if there is so much: a section of 70 m at 70 km/h
-    /// then has 7 s on each side, in which filters from 0.4 Hz on settle.
+    /// How much of a run is read on each side of a section, in lengths of the section, if there is
+    /// so much: a section of 70 m at 70 km/h then has 7 s on each side, in which filters from 0.4
+    /// Hz on settle.
     const BESIDE: f64 = 2.0;
 
-    /// A section with what is read beside it, for filters and for shifts; more if a larger margin is asked for.
+    /// A section with what is read beside it, for filters and for shifts; more if a larger margin
+    /// is asked for.
     pub fn around(axis: &str, (start, end): (f64, f64), margin: Option<f64>) -> Self {
         let margin = margin.unwrap_or(0.0).max(Self::BESIDE * (end - start));
         Self { axis: axis.to_string(), from: start - margin, to: end + margin }
@@ -192,14 +236,18 @@ impl Campaign {
         &self.runs
     }
 
-    /// The run that a section is part of; without a table of sections, the run of this name as a whole.
+    /// The run that a section is part of; without a table of sections, the run of this name as a
+    /// whole.
     pub fn run_of(&self, section: &Cell) -> Option<&Run> {
         if self.runs.is_empty() {
             return None;
         }
         let name = match &self.sections {
             None => section.value.as_str(),
-            Some(table) => table.cell(table.row_named(&section.value)?, table.column(RUN_COLUMN)?)?.value.trim(),
+            Some(table) => table
+                .cell(table.row_named(&section.value)?, table.column(RUN_COLUMN)?)?
+                .value
+                .trim(),
         };
         self.runs.iter().find(|run| run.name.value == name)
     }
@@ -207,7 +255,8 @@ impl Campaign {
     /// The record of a run, which must exist.
     ///
     /// # Errors
-    /// `key-missing`, `path-outside`, `file-missing`; of an object `url-invalid`, `store-not-allowed`, `store-not-built`, `file-unreadable`.
+    /// `key-missing`, `path-outside`, `file-missing`; of an object `url-invalid`,
+    /// `store-not-allowed`, `store-not-built`, `file-unreadable`.
     pub fn run_source(&self, run: &Run, kind: RecordKind) -> Result<RecordSource, Problem> {
         let Some(file) = run.file(kind) else {
             let says = format!("the run `{}` has no `{}`", run.name.value, kind.key());
@@ -217,20 +266,33 @@ impl Campaign {
             return run.known(kind).stored(&file.value, &file.span).map(RecordSource::Object);
         }
         let known = run.known(kind);
-        let place = known.place().map_or_else(|| self.folder.place(&file.value, &file.span), |place| Ok(place.clone()))?;
+        let place = known.place().map_or_else(
+            || self.folder.place(&file.value, &file.span),
+            |place| Ok(place.clone()),
+        )?;
         if let Some(frame) = self.folder.memory().records.get(&place.inside) {
             return Ok(RecordSource::Memory(Arc::clone(frame)));
         }
         self.none_in_memory(&place.inside, &file.span)?;
-        let unreadable = |error| Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", place.inside)).at(&file.span);
+        let unreadable = |error| {
+            Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", place.inside))
+                .at(&file.span)
+        };
         if known.place().is_some() || disk::is_file(&place.path).map_err(unreadable)? {
             known.found(&place);
             return Ok(RecordSource::File(place));
         }
-        let problem = Problem::error("file-missing", format!("there is no file `{}`", place.inside)).at(&file.span);
-        let others = place.path.parent().and_then(|folder| disk::names(folder).ok()).unwrap_or_default();
-        let folder = file.value.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
-        let others: Vec<String> = others.into_iter().filter_map(|name| Some(format!("{folder}{}", name.to_str()?))).collect();
+        let problem =
+            Problem::error("file-missing", format!("there is no file `{}`", place.inside))
+                .at(&file.span);
+        let others =
+            place.path.parent().and_then(|folder| disk::names(folder).ok()).unwrap_or_default();
+        let folder =
+            file.value.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
+        let others: Vec<String> = others
+            .into_iter()
+            .filter_map(|name| Some(format!("{folder}{}", name.to_str()?)))
+            .collect();
         Err(problem.suggest(&file.value, others.iter().map(String::as_str)))
     }
 
@@ -242,7 +304,8 @@ impl Campaign {
     }
 
     /// # Errors
-    /// `section-in-run`: who asks needs a file for each section, and the sections are parts of runs.
+    /// `section-in-run`: who asks needs a file for each section, and the sections are parts of
+    /// runs.
     pub fn file_for_each_section(&self) -> Result<(), Problem> {
         if self.runs.is_empty() {
             return Ok(());

@@ -1,17 +1,21 @@
-//! Decoded numbers that neighbouring stretches have in common: decoded once, and kept for the next stretch within a bound.
+//! Decoded numbers that neighbouring stretches have in common: decoded once, and kept for the next
+//! stretch within a bound.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Rows of a block: a row group with at most so many is one block, a longer one is parted, since some programs write a million rows in a
-/// group. At 200 Hz a block has 160 s; 24 channels of both sides take 13 MB.
+/// Rows of a block: a row group with at most so many is one block, a longer one is parted, since
+/// some programs write a million rows in a group. At 200 Hz a block has 160 s; 24 channels of both
+/// sides take 13 MB.
 pub(super) const ROWS: usize = 1 << 15;
-/// Most bytes that are kept for each thread: two blocks of 24 channels of both sides and of the track, since a section may lie across the
-/// end of a block. It bounds the memory, whatever the length of a run and the number of runs.
+/// Most bytes that are kept for each thread: two blocks of 24 channels of both sides and of the
+/// track, since a section may lie across the end of a block. It bounds the memory, whatever the
+/// length of a run and the number of runs.
 const MOST: usize = 32 << 20;
 
-/// The numbers of a column in a block, SI; `None` if one of them is missing or not finite, or the block cannot be decoded.
+/// The numbers of a column in a block, SI; `None` if one of them is missing or not finite, or the
+/// block cannot be decoded.
 pub(super) type Numbers = Option<Arc<Vec<f64>>>;
 
 /// Rows of a file that are decoded together.
@@ -49,7 +53,8 @@ struct Entry {
     used: u64,
 }
 
-/// Columns of a block by their position in the file. Who decodes holds the lock, so that others wait instead of decoding the same.
+/// Columns of a block by their position in the file. Who decodes holds the lock, so that others
+/// wait instead of decoding the same.
 #[derive(Debug, Default)]
 struct Block(Mutex<Vec<(usize, Numbers)>>);
 
@@ -59,13 +64,24 @@ impl Decoded {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The numbers of some columns of a block, given by their positions in the file. `decode` gives those that are not kept, in the order in
-    /// which it is asked for them.
-    pub fn get(&self, place: Place, positions: &[usize], decode: impl FnOnce(&[usize]) -> Vec<Numbers>) -> Vec<Numbers> {
+    /// The numbers of some columns of a block, given by their positions in the file. `decode` gives
+    /// those that are not kept, in the order in which it is asked for them.
+    pub fn get(
+        &self,
+        place: Place,
+        positions: &[usize],
+        decode: impl FnOnce(&[usize]) -> Vec<Numbers>,
+    ) -> Vec<Numbers> {
         let block = self.kept().block(place.clone());
         let mut columns = block.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = |columns: &[(usize, Numbers)], position: usize| columns.iter().position(|(known, _)| *known == position);
-        let lacking: Vec<usize> = positions.iter().copied().filter(|position| known(&columns, *position).is_none()).collect();
+        let known = |columns: &[(usize, Numbers)], position: usize| {
+            columns.iter().position(|(known, _)| *known == position)
+        };
+        let lacking: Vec<usize> = positions
+            .iter()
+            .copied()
+            .filter(|position| known(&columns, *position).is_none())
+            .collect();
         if !lacking.is_empty() {
             let new = decode(&lacking);
             let bytes = new.iter().flatten().map(|numbers| numbers.len() * size_of::<f64>()).sum();
@@ -77,7 +93,10 @@ impl Decoded {
             }
             kept.grown(&place, &block, bytes);
         }
-        positions.iter().map(|&position| known(&columns, position).and_then(|at| columns[at].1.clone())).collect()
+        positions
+            .iter()
+            .map(|&position| known(&columns, position).and_then(|at| columns[at].1.clone()))
+            .collect()
     }
 
     /// Columns of blocks that were decoded so far.
@@ -98,12 +117,20 @@ impl Kept {
     /// Counts what was added to a block; the blocks that were not used for the longest time go.
     fn grown(&mut self, place: &Place, block: &Arc<Block>, bytes: usize) {
         // A block that went meanwhile is not counted: it lives as long as who reads it.
-        let Some(entry) = self.blocks.get_mut(place).filter(|entry| Arc::ptr_eq(&entry.block, block)) else { return };
+        let Some(entry) =
+            self.blocks.get_mut(place).filter(|entry| Arc::ptr_eq(&entry.block, block))
+        else {
+            return;
+        };
         entry.bytes += bytes;
         self.bytes += bytes;
         let most = MOST * rayon::current_num_threads();
         while self.bytes > most {
-            let oldest = self.blocks.iter().min_by_key(|(_, entry)| entry.used).map(|(place, _)| place.clone());
+            let oldest = self
+                .blocks
+                .iter()
+                .min_by_key(|(_, entry)| entry.used)
+                .map(|(place, _)| place.clone());
             let Some(gone) = oldest.and_then(|place| self.blocks.remove(&place)) else { return };
             self.bytes -= gone.bytes;
         }
@@ -133,7 +160,11 @@ mod tests {
         }
         assert_eq!(asked, [vec![3, 1], vec![2]]);
         let other = decoded.get(Place::new(Path::new("a"), 1), &[1], |_| vec![None]);
-        assert_eq!((other, decoded.made()), (vec![None], 4), "what cannot be used is not decoded again either");
+        assert_eq!(
+            (other, decoded.made()),
+            (vec![None], 4),
+            "what cannot be used is not decoded again either"
+        );
         decoded.get(Place::new(Path::new("a"), 1), &[1], |_| panic!("known"));
     }
 
@@ -144,7 +175,10 @@ mod tests {
             for _ in 0..8 {
                 scope.spawn(|| {
                     for row in 0..50 {
-                        let found = decoded.get(Place::new(Path::new("a"), row), &[0, 1], |lacking| vec![numbers(row); lacking.len()]);
+                        let found =
+                            decoded.get(Place::new(Path::new("a"), row), &[0, 1], |lacking| {
+                                vec![numbers(row); lacking.len()]
+                            });
                         assert!(found.iter().flatten().all(|numbers| numbers.len() == row));
                     }
                 });
@@ -173,7 +207,9 @@ mod tests {
             let kept = decoded.kept();
             assert!(kept.bytes <= most && kept.blocks.len() <= 4, "{} bytes of {most}", kept.bytes);
         }
-        decoded.get(Place::new(Path::new("a"), 99), &[0], |_| vec![numbers(most / size_of::<f64>() + 1)]);
+        decoded.get(Place::new(Path::new("a"), 99), &[0], |_| {
+            vec![numbers(most / size_of::<f64>() + 1)]
+        });
         assert!(decoded.kept().bytes <= most, "one that is too large is not kept");
     }
 }

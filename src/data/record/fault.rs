@@ -26,14 +26,25 @@ impl Line<'_> {
 /// Number of rows before the last one that determine the expected decimals of its last number.
 const BEFORE: usize = 8;
 
-/// Detects a file that was cut off inside its last number: it ends without a line break, and the number has fewer decimals than those above
-/// it, which all have the same number. If these vary, truncation cannot be detected.
-pub(super) fn cut_number(rows: &str, ended: bool, line: usize, shown: &str, faults: &mut Faults<'_>) {
+/// Detects a file that was cut off inside its last number: it ends without a line break, and the
+/// number has fewer decimals than those above it, which all have the same number. If these vary,
+/// truncation cannot be detected.
+pub(super) fn cut_number(
+    rows: &str,
+    ended: bool,
+    line: usize,
+    shown: &str,
+    faults: &mut Faults<'_>,
+) {
     let mut lines = rows.rsplit('\n').take(1 + BEFORE);
     let (false, Some(last)) = (ended, lines.next()) else { return };
     let decimals = |line: &str| {
         let cell = line.trim_end_matches('\r').rsplit(',').next().unwrap_or_default().trim();
-        if cell.contains(['e', 'E', '"']) { None } else { Some(cell.split_once('.').map_or(0, |(_, decimals)| decimals.len())) }
+        if cell.contains(['e', 'E', '"']) {
+            None
+        } else {
+            Some(cell.split_once('.').map_or(0, |(_, decimals)| decimals.len()))
+        }
     };
     let before: Vec<Option<usize>> = lines.map(decimals).collect();
     let (Some(&Some(usual)), Some(found)) = (before.first(), decimals(last)) else { return };
@@ -47,20 +58,26 @@ pub(super) fn cut_number(rows: &str, ended: bool, line: usize, shown: &str, faul
     }
 }
 
-/// Parses a row with quotes or blanks, or reports its fault. After a fault, columns may have different lengths.
+/// Parses a row with quotes or blanks, or reports its fault. After a fault, columns may have
+/// different lengths.
 pub(super) fn slow_row(line: &Line<'_>, width: usize, sinks: &mut [Sink], faults: &mut Faults<'_>) {
     if line.text.trim().is_empty() {
-        faults.push(|| Problem::error("blank-line", "blank line between the rows").at(&line.span()));
+        faults
+            .push(|| Problem::error("blank-line", "blank line between the rows").at(&line.span()));
         return;
     }
     let cells = match cells::split(line.text) {
         Ok(cells) => cells,
-        Err(StrayQuote(place)) => return faults.push(|| cells::stray_quote(&line.span().part(place))),
+        Err(StrayQuote(place)) => {
+            return faults.push(|| cells::stray_quote(&line.span().part(place)));
+        }
     };
     if cells.len() < width && line.last {
         return faults.push(|| {
             let says = format!("the file ends inside a row: {} of {} values", cells.len(), width);
-            Problem::error("truncated-row", says).at(&line.span()).help("the file may have been cut off; export or copy it again")
+            Problem::error("truncated-row", says)
+                .at(&line.span())
+                .help("the file may have been cut off; export or copy it again")
         });
     }
     if cells.len() != width {
@@ -70,9 +87,10 @@ pub(super) fn slow_row(line: &Line<'_>, width: usize, sinks: &mut [Sink], faults
         let cell = &cells[sink.position];
         match cells::number(&cell.text) {
             Ok(number) => sink.values.push(number * sink.factor),
-            Err((code, says)) => {
-                faults.push(|| Problem::error(code, format!("`{}`: {says}", sink.name)).at(&line.span().part(cell.place.clone())))
-            }
+            Err((code, says)) => faults.push(|| {
+                Problem::error(code, format!("`{}`: {says}", sink.name))
+                    .at(&line.span().part(cell.place.clone()))
+            }),
         }
     }
 }

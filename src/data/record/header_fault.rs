@@ -11,7 +11,9 @@ pub(super) fn alike(wrong: Vec<(&Heading, Problem)>) -> Vec<Problem> {
     let unit = |heading: &Heading| heading.unit.as_ref().map(|unit| unit.text.clone());
     let mut groups: Vec<(&Heading, Problem, Vec<&Heading>)> = Vec::new();
     for (heading, problem) in wrong {
-        let same = groups.iter_mut().find(|(first, of, _)| of.code == problem.code && unit(first) == unit(heading));
+        let same = groups
+            .iter_mut()
+            .find(|(first, of, _)| of.code == problem.code && unit(first) == unit(heading));
         match same {
             Some((_, _, others)) => others.push(heading),
             None => groups.push((heading, problem, Vec::new())),
@@ -19,7 +21,8 @@ pub(super) fn alike(wrong: Vec<(&Heading, Problem)>) -> Vec<Problem> {
     }
     let told = |(_, mut problem, others): (&Heading, Problem, Vec<&Heading>)| {
         if !others.is_empty() {
-            let names: Vec<String> = others.iter().map(|heading| format!("`{}`", heading.name)).collect();
+            let names: Vec<String> =
+                others.iter().map(|heading| format!("`{}`", heading.name)).collect();
             problem.says = format!("{}; the same of {}", problem.says, names.join(", "));
         }
         problem
@@ -30,7 +33,8 @@ pub(super) fn alike(wrong: Vec<(&Heading, Problem)>) -> Vec<Problem> {
 /// The header once more between the rows: files that were put one behind another.
 pub(super) fn repeated(text: &str, body: usize, shown: &str) -> Option<Problem> {
     let header = text[..body].trim_end();
-    let mut lines = text.split('\n').enumerate().skip(1).filter(|(_, line)| line.trim_end() == header);
+    let mut lines =
+        text.split('\n').enumerate().skip(1).filter(|(_, line)| line.trim_end() == header);
     let (at, line) = lines.next()?;
     let more = match lines.count() {
         0 => String::new(),
@@ -38,28 +42,46 @@ pub(super) fn repeated(text: &str, body: usize, shown: &str) -> Option<Problem> 
         more => format!(", and {more} times more"),
     };
     let says = format!("the header stands between the rows again, in line {}{more}", at + 1);
-    let problem = Problem::error("header-repeated", says).at(&Source::excerpt(shown, line.trim_end(), at + 1).whole());
+    let problem = Problem::error("header-repeated", says).at(&Source::excerpt(
+        shown,
+        line.trim_end(),
+        at + 1,
+    )
+    .whole());
     Some(problem.help("one file holds one record: give each its own file and section"))
 }
 
 /// Units that stand in a row or in cells of their own.
-pub(super) fn units_elsewhere(text: &str, body: usize, headings: &[Heading], shown: &str) -> Option<Problem> {
+pub(super) fn units_elsewhere(
+    text: &str,
+    body: usize,
+    headings: &[Heading],
+    shown: &str,
+) -> Option<Problem> {
     units_in_row(text, body, headings, shown).or_else(|| cells::unit_in_cell(headings))
 }
 
 /// Units in a row of their own below the names, which no heading has.
 fn units_in_row(text: &str, body: usize, headings: &[Heading], shown: &str) -> Option<Problem> {
-    let line = text[body..].lines().next().filter(|_| headings.iter().all(|heading| heading.unit.is_none()))?;
+    let line = text[body..]
+        .lines()
+        .next()
+        .filter(|_| headings.iter().all(|heading| heading.unit.is_none()))?;
     let cells = cells::split(line).ok()?;
     let unit = |text: &str| Unit::parse(text.trim_matches(['[', ']', '(', ')'])).is_ok();
-    if cells.len() != headings.len() || !cells.iter().all(|cell| unit(&cell.text) && cell.text.parse::<f64>().is_err()) {
+    if cells.len() != headings.len()
+        || !cells.iter().all(|cell| unit(&cell.text) && cell.text.parse::<f64>().is_err())
+    {
         return None;
     }
-    let (name, unit) = (&headings.first()?.name, cells.first()?.text.trim_matches(['[', ']', '(', ')']));
+    let (name, unit) =
+        (&headings.first()?.name, cells.first()?.text.trim_matches(['[', ']', '(', ')']));
     Some(
         Problem::error("units-in-row", "the units stand in a row of their own")
             .at(&Source::excerpt(shown, line, 2).whole())
-            .help(format!("write each unit behind its name, in one header line: `{name} [{unit}]`")),
+            .help(format!(
+                "write each unit behind its name, in one header line: `{name} [{unit}]`"
+            )),
     )
 }
 
@@ -70,30 +92,47 @@ fn unit_otherwise<'a>(heading: &'a str, name: &str) -> Option<&'a str> {
     (unit.len() < rest.len() && !unit.is_empty() && Unit::parse(unit).is_ok()).then_some(unit)
 }
 
-/// One problem for all columns that the header lacks: it is shown once. A column that is wanted itself is not what was meant by another.
-pub(super) fn missing(headings: &[Heading], names: &[&str], wanted: &[Wanted], shown: &str) -> Problem {
-    let stranger = |name: &&str| !name.is_empty() && !wanted.iter().any(|wanted| wanted.name == *name);
+/// One problem for all columns that the header lacks: it is shown once. A column that is wanted
+/// itself is not what was meant by another.
+pub(super) fn missing(
+    headings: &[Heading],
+    names: &[&str],
+    wanted: &[Wanted],
+    shown: &str,
+) -> Problem {
+    let stranger =
+        |name: &&str| !name.is_empty() && !wanted.iter().any(|wanted| wanted.name == *name);
     let known = || headings.iter().map(|heading| heading.name.as_str()).filter(stranger);
     let problem = match names {
         [name] => {
-            let problem = Problem::error("unknown-channel", format!("`{shown}` has no column `{name}`"));
+            let problem =
+                Problem::error("unknown-channel", format!("`{shown}` has no column `{name}`"));
             match known().find_map(|heading| Some((heading, unit_otherwise(heading, name)?))) {
-                Some((heading, unit)) => problem.help(format!("the unit of `{heading}` goes into square brackets: `{name} [{unit}]`")),
+                Some((heading, unit)) => problem.help(format!(
+                    "the unit of `{heading}` goes into square brackets: `{name} [{unit}]`"
+                )),
                 None => problem.suggest(name, known()),
             }
         }
         _ => {
             let list = names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-            let problem = Problem::error("unknown-channel", format!("`{shown}` has no columns {list}"));
+            let problem =
+                Problem::error("unknown-channel", format!("`{shown}` has no columns {list}"));
             let slips = names.iter().filter_map(|name| {
-                let otherwise = known().find_map(|heading| Some((heading, unit_otherwise(heading, name)?)));
+                let otherwise =
+                    known().find_map(|heading| Some((heading, unit_otherwise(heading, name)?)));
                 match otherwise {
                     Some((heading, unit)) => Some(format!("`{name} [{unit}]` for `{heading}`")),
-                    None => crate::problem::nearest(name, known()).map(|near| format!("`{near}` for `{name}`")),
+                    None => crate::problem::nearest(name, known())
+                        .map(|near| format!("`{near}` for `{name}`")),
                 }
             });
             let slips: Vec<String> = slips.collect();
-            if slips.is_empty() { problem } else { problem.help(format!("did you mean {}?", slips.join(", "))) }
+            if slips.is_empty() {
+                problem
+            } else {
+                problem.help(format!("did you mean {}?", slips.join(", ")))
+            }
         }
     };
     match headings {

@@ -1,4 +1,5 @@
-//! Bytes of files that neighbouring stretches have in common: read once, and kept for the next stretch within a bound.
+//! Bytes of files that neighbouring stretches have in common: read once, and kept for the next
+//! stretch within a bound.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -11,16 +12,19 @@ use bytes::Bytes;
 use super::columnar::Layout;
 use super::decoded::Decoded;
 
-/// Most bytes that are kept in all: both sides and the track of a run of 60 km with 24 channels, or some row groups of longer ones. It
-/// bounds the memory of a worker, whatever the length of the archive.
+/// Most bytes that are kept in all: both sides and the track of a run of 60 km with 24 channels, or
+/// some row groups of longer ones. It bounds the memory of a worker, whatever the length of the
+/// archive.
 const MOST: usize = 64 << 20;
 /// Largest file that is kept as a whole, when it is read for its hash: four of them fit.
 const WHOLE: u64 = MOST as u64 / 4;
 
-/// Files whose footer is kept for each thread: the three records of a run, and the one that was used before.
+/// Files whose footer is kept for each thread: the three records of a run, and the one that was
+/// used before.
 const FOOTERS: usize = 4;
 
-/// The parts of files that were read last, and what was decoded last; shared by all files of a campaign.
+/// The parts of files that were read last, and what was decoded last; shared by all files of a
+/// campaign.
 #[derive(Clone, Default)]
 pub struct Held {
     parts: Arc<Mutex<Parts>>,
@@ -48,7 +52,8 @@ impl Part {
     fn of(&self, file: &Path, range: &Range<u64>) -> Option<Bytes> {
         let from = usize::try_from(range.start.checked_sub(self.start)?).ok()?;
         let to = usize::try_from(range.end.checked_sub(self.start)?).ok()?;
-        (from <= to && to <= self.bytes.len() && self.file == file).then(|| self.bytes.slice(from..to))
+        (from <= to && to <= self.bytes.len() && self.file == file)
+            .then(|| self.bytes.slice(from..to))
     }
 }
 

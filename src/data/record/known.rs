@@ -1,4 +1,5 @@
-//! What is known of a file of which several stretches are read: its hash, and of a text where in it which part of the axis is.
+//! What is known of a file of which several stretches are read: its hash, and of a text where in it
+//! which part of the axis is.
 
 use std::ops::Range;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -58,7 +59,10 @@ pub struct Mark {
 impl Mark {
     /// Of rows with this axis.
     pub fn of(first_row: usize, (from, to): (u64, u64), axis: &Column) -> Self {
-        let (low, high) = axis.values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(*at), high.max(*at)));
+        let (low, high) =
+            axis.values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| {
+                (low.min(*at), high.max(*at))
+            });
         Self { first_row, from, to, low, high }
     }
 
@@ -113,7 +117,8 @@ impl Known {
 
     /// What is known, if no one else shares it.
     pub fn taken(self) -> Option<KnownFile> {
-        let known = Arc::into_inner(self.file)?.into_inner().unwrap_or_else(PoisonError::into_inner)?;
+        let known =
+            Arc::into_inner(self.file)?.into_inner().unwrap_or_else(PoisonError::into_inner)?;
         Arc::into_inner(known)
     }
 

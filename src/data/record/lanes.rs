@@ -22,13 +22,16 @@ pub(super) struct Words;
 impl Lanes for Words {
     #[inline(always)]
     fn ends(self, chunk: &[u8; CHUNK]) -> u64 {
-        // The first loop is vectorised; the product in the second one combines eight flags into one byte.
+        // The first loop is vectorised; the product in the second one combines eight flags into one
+        // byte.
         let mut flags = [0; CHUNK];
         for (flag, byte) in flags.iter_mut().zip(chunk) {
             *flag = u8::from(matches!(byte, b',' | b'\n' | b'"'));
         }
         let (eights, _) = flags.as_chunks::<8>();
-        eights.iter().rev().fold(0, |bits, eight| bits << 8 | u64::from_le_bytes(*eight).wrapping_mul(0x0102_0408_1020_4080) >> 56)
+        eights.iter().rev().fold(0, |bits, eight| {
+            bits << 8 | u64::from_le_bytes(*eight).wrapping_mul(0x0102_0408_1020_4080) >> 56
+        })
     }
 
     #[inline(always)]

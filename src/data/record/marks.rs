@@ -4,7 +4,8 @@ use super::lanes::{CHUNK, Lanes};
 
 /// Bytes indexed at a time; the index fits the first-level cache.
 const STRETCH: usize = 1 << 14;
-/// Marks written at a time. A chunk has seldom more than eight; a loop over exactly those would be mispredicted in most chunks.
+/// Marks written at a time. A chunk has seldom more than eight; a loop over exactly those would be
+/// mispredicted in most chunks.
 const AT_ONCE: usize = 8;
 
 /// The positions after each comma, line feed and quote of a block.

@@ -19,12 +19,15 @@ use crate::problem::Problem;
 use crate::source::{Source, Span};
 use crate::units::Unit;
 
-/// Numbers hashed at a time where they do not lie as 64-bit numbers in memory; it does not change the result.
+/// Numbers hashed at a time where they do not lie as 64-bit numbers in memory; it does not change
+/// the result.
 const BLOCK: usize = 4096;
 
-/// A table that is used as a record. The unit of a column stands in brackets after its name, or in the metadata of its field under `unit`.
+/// A table that is used as a record. The unit of a column stands in brackets after its name, or in
+/// the metadata of its field under `unit`.
 pub struct Frame {
-    /// The path inside the campaign that the record has, such as `measurement/S01`; with the ending of the file that it was read from.
+    /// The path inside the campaign that the record has, such as `measurement/S01`; with the ending
+    /// of the file that it was read from.
     name: String,
     headings: Vec<Heading>,
     batches: Vec<RecordBatch>,
@@ -48,7 +51,10 @@ const CONVERT: &str = "convert the column to float64";
 
 impl fmt::Debug for Frame {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Frame").field("name", &self.name).field("rows", &self.rows).finish_non_exhaustive()
+        f.debug_struct("Frame")
+            .field("name", &self.name)
+            .field("rows", &self.rows)
+            .finish_non_exhaustive()
     }
 }
 
@@ -61,13 +67,25 @@ impl Frame {
         }
         let headings = headings_of(schema, schema, name)?;
         let rows = batches.iter().map(RecordBatch::num_rows).sum();
-        Ok(Self { name: name.to_string(), headings, batches, rows, hash: OnceLock::new(), bytes: None })
+        Ok(Self {
+            name: name.to_string(),
+            headings,
+            batches,
+            rows,
+            hash: OnceLock::new(),
+            bytes: None,
+        })
     }
 
     /// The same table, which was read from a file as it is: results then name the file.
     #[must_use]
     pub fn read_from(self, file: ReadFrom) -> Self {
-        Self { name: format!("{}.{}", self.name, file.ending), hash: OnceLock::from(file.sha256), bytes: Some(file.bytes), ..self }
+        Self {
+            name: format!("{}.{}", self.name, file.ending),
+            hash: OnceLock::from(file.sha256),
+            bytes: Some(file.bytes),
+            ..self
+        }
     }
 
     /// The path inside the campaign that the record has.
@@ -95,7 +113,12 @@ impl Frame {
     }
 
     /// The rows whose axis lies in a range of SI units.
-    pub(super) fn stretch(self: &Arc<Self>, wanted: &[Wanted], axis: &str, range: Range<f64>) -> Result<Record, Vec<Problem>> {
+    pub(super) fn stretch(
+        self: &Arc<Self>,
+        wanted: &[Wanted],
+        axis: &str,
+        range: Range<f64>,
+    ) -> Result<Record, Vec<Problem>> {
         let columns = self.columns(wanted)?;
         let at = axis_of(&columns, axis, &self.name)?;
         let mut stretch = Stretch::new(range, at, &columns);
@@ -107,9 +130,14 @@ impl Frame {
 
     fn columns(&self, wanted: &[Wanted]) -> Result<Vec<Column>, Vec<Problem>> {
         let mut columns = find_columns(&self.headings, wanted, &self.name)?;
-        let kind = |column: &Column| Some(self.batches.first()?.schema_ref().field(column.position).data_type().clone());
-        let other = |column: &Column| not_numbers(&kind(column)?, &column.name, &self.headings.get(column.position)?.span);
-        let problems: Vec<Problem> = columns.iter().filter_map(other).map(|problem| problem.help(CONVERT)).collect();
+        let kind = |column: &Column| {
+            Some(self.batches.first()?.schema_ref().field(column.position).data_type().clone())
+        };
+        let other = |column: &Column| {
+            not_numbers(&kind(column)?, &column.name, &self.headings.get(column.position)?.span)
+        };
+        let problems: Vec<Problem> =
+            columns.iter().filter_map(other).map(|problem| problem.help(CONVERT)).collect();
         if !problems.is_empty() {
             return Err(problems);
         }
@@ -122,10 +150,19 @@ impl Frame {
             let mut first = 0;
             for batch in &self.batches {
                 let mut fault = |row: usize, column: &Column, value: Option<f64>| {
-                    faults.push(|| wrong(&self.name, &self.headings[column.position], row, value).label(format!("row {}", row + 1)));
+                    faults.push(|| {
+                        wrong(&self.name, &self.headings[column.position], row, value)
+                            .label(format!("row {}", row + 1))
+                    });
                 };
-                let done = append(batch.column(column.position).as_ref(), column, first, &mut fault);
-                done.map_err(|why| vec![Problem::error("not-a-number", format!("`{}`: {why}", self.name)).help(CONVERT)])?;
+                let done =
+                    append(batch.column(column.position).as_ref(), column, first, &mut fault);
+                done.map_err(|why| {
+                    vec![
+                        Problem::error("not-a-number", format!("`{}`: {why}", self.name))
+                            .help(CONVERT),
+                    ]
+                })?;
                 first += batch.num_rows();
             }
         }
@@ -144,8 +181,9 @@ impl Frame {
         self.rows.saturating_mul(self.headings.len()).saturating_mul(8)
     }
 
-    /// SHA-256 of the content, which does not depend on how it lies in memory: for each column its heading, a zero byte, and its numbers as
-    /// 64-bit floating-point numbers, lowest byte first; texts with a zero byte after each. A missing number is a NaN.
+    /// SHA-256 of the content, which does not depend on how it lies in memory: for each column its
+    /// heading, a zero byte, and its numbers as 64-bit floating-point numbers, lowest byte first;
+    /// texts with a zero byte after each. A missing number is a NaN.
     fn sha256(&self) -> String {
         let compute = || {
             let mut hash = Hasher::default();
@@ -162,13 +200,18 @@ impl Frame {
     }
 
     fn add(&self, hash: &mut Hasher, array: &Arc<dyn Array>, heading: &Heading, position: usize) {
-        if let Some(numbers) = array.as_primitive_opt::<Float64Type>().filter(|numbers| numbers.null_count() == 0)
+        if let Some(numbers) =
+            array.as_primitive_opt::<Float64Type>().filter(|numbers| numbers.null_count() == 0)
             && cfg!(target_endian = "little")
         {
             return hash.add(numbers.values().inner().as_slice());
         }
         let mut texts = |texts: &mut dyn Iterator<Item = Option<&str>>| {
-            texts.for_each(|text| [text.unwrap_or_default().as_bytes(), &[0]].into_iter().for_each(|bytes| hash.add(bytes)));
+            texts.for_each(|text| {
+                [text.unwrap_or_default().as_bytes(), &[0]]
+                    .into_iter()
+                    .for_each(|bytes| hash.add(bytes))
+            });
         };
         match array.data_type() {
             DataType::Utf8 => return texts(&mut array.as_string::<i32>().iter()),
@@ -176,7 +219,8 @@ impl Frame {
             DataType::Utf8View => return texts(&mut array.as_string_view().iter()),
             _ => {}
         }
-        let mut column = Column { name: heading.name.clone(), unit: Unit::one(), values: Vec::new(), position };
+        let mut column =
+            Column { name: heading.name.clone(), unit: Unit::one(), values: Vec::new(), position };
         let mut missing: Vec<usize> = Vec::new();
         let numbers = append(array.as_ref(), &mut column, 0, &mut |row, _, value| {
             if value.is_none() {
@@ -196,14 +240,27 @@ impl Frame {
     /// The place of a sample, from 0, or of its value in a column.
     pub(super) fn place(&self, row: usize, column: Option<&Column>) -> Option<Span> {
         let Some(column) = column else {
-            return Some(Source::excerpt(self.name.as_str(), format!("row {}", row + 1), row + 1).whole());
+            return Some(
+                Source::excerpt(self.name.as_str(), format!("row {}", row + 1), row + 1).whole(),
+            );
         };
         let mut first = 0;
         for batch in &self.batches {
             if row < first + batch.num_rows() {
                 let mut one = Column { values: Vec::new(), unit: Unit::one(), ..column.clone() };
-                append(batch.column(column.position).slice(row - first, 1).as_ref(), &mut one, row, &mut |_, _, _| {}).ok()?;
-                return Some(value_at(&self.name, self.headings.get(column.position)?, row, &one.values.first()?.to_string()));
+                append(
+                    batch.column(column.position).slice(row - first, 1).as_ref(),
+                    &mut one,
+                    row,
+                    &mut |_, _, _| {},
+                )
+                .ok()?;
+                return Some(value_at(
+                    &self.name,
+                    self.headings.get(column.position)?,
+                    row,
+                    &one.values.first()?.to_string(),
+                ));
             }
             first += batch.num_rows();
         }

@@ -1,15 +1,17 @@
 //! Plain decimal numbers such as `-12.34`, eight bytes at a time.
 //!
-//! Nearly all numbers of a record have no exponent and few enough digits that, read as an integer, they fit the 53 bits of a double. The
-//! integer and the divisor, a power of ten, are then exact, and the quotient, rounded once, is the double nearest to the decimal
-//! (Clinger, "How to read floating point numbers accurately", PLDI 1990). All other numbers use a general parser.
+//! Nearly all numbers of a record have no exponent and few enough digits that, read as an integer,
+//! they fit the 53 bits of a double. The integer and the divisor, a power of ten, are then exact,
+//! and the quotient, rounded once, is the double nearest to the decimal (Clinger, "How to read
+//! floating point numbers accurately", PLDI 1990). All other numbers use a general parser.
 
 use std::ops::Range;
 
 /// Maximum number of digits before or after the point.
 const MOST: usize = 8;
 /// Signed, since conversion of signed integers to double is a single instruction.
-const TENS: [i64; MOST + 1] = [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
+const TENS: [i64; MOST + 1] =
+    [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
 
 /// The finite number in a cell; `None` if it is not one.
 #[inline]
@@ -22,7 +24,8 @@ fn general(text: &[u8], cell: Range<usize>) -> Option<f64> {
     fast_float2::parse(text.get(cell)?).ok().filter(|number: &f64| number.is_finite())
 }
 
-/// The number in a cell if it has a plain form, few digits, and is not close to either end of the text.
+/// The number in a cell if it has a plain form, few digits, and is not close to either end of the
+/// text.
 #[inline]
 fn plain(text: &[u8], cell: Range<usize>) -> Option<f64> {
     let sign = usize::from(text.get(cell.start) == Some(&b'-'));
@@ -40,9 +43,11 @@ fn plain(text: &[u8], cell: Range<usize>) -> Option<f64> {
             (number(tail & after | before & !after)?, decimals)
         }
         // At most fifteen digits, less than 2^53.
-        Some(decimals @ 1..=MOST) if whole < MOST => {
-            (number(high_end(head, whole)?)? * TENS[decimals] + number(tail & u64::MAX << (8 * (MOST - decimals)))?, decimals)
-        }
+        Some(decimals @ 1..=MOST) if whole < MOST => (
+            number(high_end(head, whole)?)? * TENS[decimals]
+                + number(tail & u64::MAX << (8 * (MOST - decimals)))?,
+            decimals,
+        ),
         Some(_) => return None,
     };
     let size = digits as f64 / TENS[decimals] as f64;
@@ -70,7 +75,8 @@ fn first(bytes: u64, byte: u8) -> usize {
     zeros.trailing_zeros() as usize / 8
 }
 
-/// Moves the first `count` of eight bytes to the high end, filled with zeros; `None` for a count of 0.
+/// Moves the first `count` of eight bytes to the high end, filled with zeros; `None` for a count of
+/// 0.
 #[inline]
 fn high_end(digits: u64, count: usize) -> Option<u64> {
     if (1..=MOST).contains(&count) { Some(digits << (8 * (MOST - count))) } else { None }
@@ -151,8 +157,32 @@ mod tests {
     /// What the lanes of this processor read, they read as the standard library does.
     #[test]
     fn any_lanes_read_the_same() {
-        let long = ["9007199254740992", "9007199254740993", "0.123456789012345", "-0.01806157", "123456789.123456", ".5", "5.", "1e-5"];
-        let faults = ["", "-", ".", "-.", "--1", "1.2.3", "1:5", "1/5", "12345678901234567x", "0x1", "1,", "inf", "nan", "1 "];
+        let long = [
+            "9007199254740992",
+            "9007199254740993",
+            "0.123456789012345",
+            "-0.01806157",
+            "123456789.123456",
+            ".5",
+            "5.",
+            "1e-5",
+        ];
+        let faults = [
+            "",
+            "-",
+            ".",
+            "-.",
+            "--1",
+            "1.2.3",
+            "1:5",
+            "1/5",
+            "12345678901234567x",
+            "0x1",
+            "1,",
+            "inf",
+            "nan",
+            "1 ",
+        ];
         each!(lanes => {
             for text in long.into_iter().chain(["9007199254740993.5", "12345678901234567", "0.00000000000000001"]) {
                 let row = format!("0.98765432109876,{text},0.98765432109876");

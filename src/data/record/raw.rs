@@ -24,7 +24,10 @@ pub fn read_raw(path: &Path, shown: &str) -> Result<Vec<FileColumn>, Vec<Problem
     let (headings, body) = header(text, shown)?;
     let rows = text[body..].trim_end();
     if rows.is_empty() {
-        return Err(one(Problem::error("no-rows", format!("`{shown}` has a header and no samples"))));
+        return Err(one(Problem::error(
+            "no-rows",
+            format!("`{shown}` has a header and no samples"),
+        )));
     }
     let mut faults = Faults::new(shown);
     let mut columns: Vec<Numbers> = vec![Numbers::default(); headings.len()];
@@ -46,17 +49,28 @@ pub fn read_raw(path: &Path, shown: &str) -> Result<Vec<FileColumn>, Vec<Problem
         });
     }
     let made = headings.iter().zip(columns).zip(texts).map(|((heading, column), texts)| {
-        let heading = heading.unit.as_ref().map_or_else(|| heading.name.clone(), |unit| format!("{} [{}]", heading.name, unit.text));
+        let heading = heading.unit.as_ref().map_or_else(
+            || heading.name.clone(),
+            |unit| format!("{} [{}]", heading.name, unit.text),
+        );
         let digits = column.form();
-        let values = if column.text { Values::Texts(texts) } else { Values::Numbers(column.values) };
+        let values =
+            if column.text { Values::Texts(texts) } else { Values::Numbers(column.values) };
         FileColumn { heading, values, digits }
     });
     Ok(made.collect())
 }
 
-fn each_row(rows: &str, shown: &str, width: usize, faults: &mut Faults<'_>, mut each: impl FnMut(usize, Vec<RawCell>)) {
+fn each_row(
+    rows: &str,
+    shown: &str,
+    width: usize,
+    faults: &mut Faults<'_>,
+    mut each: impl FnMut(usize, Vec<RawCell>),
+) {
     for (row, line) in rows.split('\n').enumerate() {
-        let line = fault::Line { text: line.trim_end_matches('\r'), number: row + 2, last: false, shown };
+        let line =
+            fault::Line { text: line.trim_end_matches('\r'), number: row + 2, last: false, shown };
         match cells::split(line.text) {
             _ if line.text.trim().is_empty() => fault::slow_row(&line, width, &mut [], faults),
             Ok(cells) if cells.len() == width => each(row, cells),
@@ -92,8 +106,9 @@ impl Numbers {
             return;
         };
         self.values.push(value);
-        let decimals =
-            *self.decimals.get_or_insert_with(|| cell.split_once('.').map_or(0, |(_, decimals)| decimals.len().min(Digits::MOST)));
+        let decimals = *self.decimals.get_or_insert_with(|| {
+            cell.split_once('.').map_or(0, |(_, decimals)| decimals.len().min(Digits::MOST))
+        });
         self.irregular = self.irregular || Digits::Decimals(decimals).write(value) != cell;
         self.significant = self.significant.max(Digits::significant(cell));
     }
@@ -101,7 +116,8 @@ impl Numbers {
     /// Whether a cell of an irregular column has one of the other forms.
     fn compare(&mut self, row: usize, cell: &str) {
         let Some(value) = self.values.get(row).copied().filter(|_| self.irregular) else { return };
-        self.not_significant = self.not_significant || Digits::Significant(self.significant).write(value) != cell;
+        self.not_significant =
+            self.not_significant || Digits::Significant(self.significant).write(value) != cell;
         self.not_shortest = self.not_shortest || Digits::Shortest.write(value) != cell;
     }
 

@@ -22,8 +22,9 @@ pub(super) struct Part<'a> {
     pub before: usize,
 }
 
-/// Fills the columns from the text below the header, which begins at `start`; returns the number of rows. The bytes of the text, header
-/// included, are added to the hash on the way: it waits for its own results most of the time, in which numbers can be read.
+/// Fills the columns from the text below the header, which begins at `start`; returns the number of
+/// rows. The bytes of the text, header included, are added to the hash on the way: it waits for its
+/// own results most of the time, in which numbers can be read.
 pub(super) fn read(
     text: &str,
     start: usize,
@@ -56,7 +57,13 @@ pub(super) fn read(
     };
     let (rows, sinks, mut faults) = lanes::fastest(reading);
     if faults.is_empty() && rows > 0 {
-        fault::cut_number(&text[start..end], text.len() > end, before + rows + 1, shown, &mut faults);
+        fault::cut_number(
+            &text[start..end],
+            text.len() > end,
+            before + rows + 1,
+            shown,
+            &mut faults,
+        );
     }
     if before + rows == 0 {
         faults.push(|| Problem::error("no-rows", format!("`{shown}` has a header and no samples")));
@@ -78,7 +85,8 @@ impl Hashed<'_> {
     /// Adds a block, unless all before `end` are added.
     #[inline(always)]
     fn step(&mut self, end: usize) {
-        if let (Some(hash), Some(block)) = (&mut self.hash, self.bytes.get(self.at..self.at + hash::BLOCK))
+        if let (Some(hash), Some(block)) =
+            (&mut self.hash, self.bytes.get(self.at..self.at + hash::BLOCK))
             && self.at < end
         {
             hash.add(block);
@@ -117,7 +125,15 @@ impl<'a> Work for Reading<'a, '_> {
 
     #[inline(always)]
     fn run(self, lanes: impl Lanes) -> Self::Output {
-        let Self { text, rows: Range { start, end: end_of_rows }, width, mut sinks, mut faults, part, mut hashed } = self;
+        let Self {
+            text,
+            rows: Range { start, end: end_of_rows },
+            width,
+            mut sinks,
+            mut faults,
+            part,
+            mut hashed,
+        } = self;
         let Part { shown, before } = part;
         let bytes = text.as_bytes();
         let mut marks = Marks::default();
@@ -137,7 +153,8 @@ impl<'a> Work for Reading<'a, '_> {
                 for sink in &mut sinks {
                     sink.values.truncate(rows);
                 }
-                let end = memchr::memchr(b'\n', &bytes[at..]).map_or(bytes.len(), |found| at + found);
+                let end =
+                    memchr::memchr(b'\n', &bytes[at..]).map_or(bytes.len(), |found| at + found);
                 if end >= marks.end && at > stretch {
                     // Cut off by the end of the block: the next block begins with it.
                     break;
@@ -146,8 +163,12 @@ impl<'a> Work for Reading<'a, '_> {
                     faults.push(|| long_line(&bytes[at..end], before + rows + 2, shown));
                     break 'file;
                 }
-                let line =
-                    fault::Line { text: text[at..end].trim_end_matches('\r'), number: before + rows + 2, last: end == bytes.len(), shown };
+                let line = fault::Line {
+                    text: text[at..end].trim_end_matches('\r'),
+                    number: before + rows + 2,
+                    last: end == bytes.len(),
+                    shown,
+                };
                 // A faulty row is counted, so that later rows have the right numbers.
                 fault::slow_row(&line, width, &mut sinks, &mut faults);
                 rows += 1;
@@ -171,11 +192,19 @@ fn expected_rows(bytes: &[u8], width: usize) -> usize {
 /// Numbers that are read while a block is hashed: about as long as that takes by itself.
 const BETWEEN: usize = 6;
 
-/// Parses the row whose cells begin at the first `width` marks; the next mark is the start of the next row.
+/// Parses the row whose cells begin at the first `width` marks; the next mark is the start of the
+/// next row.
 ///
 /// `None` if the row is irregular; some columns may then have one value more.
 #[inline(always)]
-fn row(lanes: impl Lanes, bytes: &[u8], cells: &[usize], width: usize, sinks: &mut [Sink], hashed: &mut Hashed<'_>) -> Option<()> {
+fn row(
+    lanes: impl Lanes,
+    bytes: &[u8],
+    cells: &[usize],
+    width: usize,
+    sinks: &mut [Sink],
+    hashed: &mut Hashed<'_>,
+) -> Option<()> {
     let (cells, next) = (cells.get(..width)?, *cells.get(width)?);
     // Quotes and missing cells are detected where only commas are expected.
     if bytes[next - 1] != b'\n' || !cells[1..].iter().all(|cell| bytes[cell - 1] == b',') {
@@ -184,7 +213,8 @@ fn row(lanes: impl Lanes, bytes: &[u8], cells: &[usize], width: usize, sinks: &m
     let end = if bytes[next - 2] == b'\r' { next - 2 } else { next - 1 };
     for sinks in sinks.chunks_mut(BETWEEN) {
         for sink in sinks {
-            let cell = cells[sink.position]..cells.get(sink.position + 1).map_or(end, |next| next - 1);
+            let cell =
+                cells[sink.position]..cells.get(sink.position + 1).map_or(end, |next| next - 1);
             sink.values.push(lanes.number(bytes, cell)? * sink.factor);
         }
         hashed.step(next);

@@ -1,10 +1,14 @@
-//! Where a record is: in a file, in an object store, or in memory. All readers of records of a campaign go through here.
+//! Where a record is: in a file, in an object store, or in memory. All readers of records of a
+//! campaign go through here.
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use super::memory::Frame;
-use super::{Block, Format, Known, Record, Run, Stored, Wanted, read_headings, read_record, read_stretch, stream_known};
+use super::{
+    Block, Format, Known, Record, Run, Stored, Wanted, read_headings, read_record, read_stretch,
+    stream_known,
+};
 use crate::data::cells::Heading;
 use crate::data::folder::Place;
 use crate::problem::Problem;
@@ -60,9 +64,17 @@ impl RecordSource {
     ///
     /// # Errors
     /// As [`read_stretch`].
-    pub fn stretch(&self, wanted: &[Wanted], axis: &str, range: Range<f64>, known: &Known) -> Result<Record, Vec<Problem>> {
+    pub fn stretch(
+        &self,
+        wanted: &[Wanted],
+        axis: &str,
+        range: Range<f64>,
+        known: &Known,
+    ) -> Result<Record, Vec<Problem>> {
         match self {
-            Self::File(place) => read_stretch(&place.path, &place.inside, wanted, axis, range, known),
+            Self::File(place) => {
+                read_stretch(&place.path, &place.inside, wanted, axis, range, known)
+            }
             Self::Object(stored) => stored.stretch(wanted, axis, range, known),
             Self::Memory(frame) => frame.stretch(wanted, axis, range),
         }
@@ -72,9 +84,17 @@ impl RecordSource {
     ///
     /// # Errors
     /// As [`stream_known`]; `record-in-memory`.
-    pub fn stream(&self, wanted: &[Wanted], axis: &str, known: &Known, mut each: impl FnMut(&Block<'_>)) -> Result<Run, Vec<Problem>> {
+    pub fn stream(
+        &self,
+        wanted: &[Wanted],
+        axis: &str,
+        known: &Known,
+        mut each: impl FnMut(&Block<'_>),
+    ) -> Result<Run, Vec<Problem>> {
         match self {
-            Self::File(place) => stream_known(&place.path, &place.inside, wanted, (axis, known), each),
+            Self::File(place) => {
+                stream_known(&place.path, &place.inside, wanted, (axis, known), each)
+            }
             Self::Object(stored) => stored.stream(wanted, known, &mut each),
             Self::Memory(frame) => Err(vec![in_memory(frame)]),
         }
@@ -88,8 +108,13 @@ impl RecordSource {
         match self {
             Self::File(place) => Ok(place),
             Self::Object(stored) => {
-                let says = format!("the record `{}` is in a store, and a file is needed here", stored.url());
-                Err(Problem::error("record-in-store", says).at(at).help("copy the records to the campaign's folder"))
+                let says = format!(
+                    "the record `{}` is in a store, and a file is needed here",
+                    stored.url()
+                );
+                Err(Problem::error("record-in-store", says)
+                    .at(at)
+                    .help("copy the records to the campaign's folder"))
             }
             Self::Memory(frame) => Err(in_memory(&frame).at(at)),
         }

@@ -11,8 +11,8 @@ use crate::problem::Problem;
 use crate::source::Span;
 use crate::store::{Object, Refused};
 
-/// An object, and where its parts are kept that are read again. Of an object, the footer and the wanted columns of the row groups that are
-/// needed are read, and nothing else.
+/// An object, and where its parts are kept that are read again. Of an object, the footer and the
+/// wanted columns of the row groups that are needed are read, and nothing else.
 #[derive(Clone, Debug)]
 pub struct Stored {
     pub(super) object: Object,
@@ -39,13 +39,24 @@ impl Stored {
 
     /// # Errors
     /// As [`super::read_stretch`] of a Parquet file.
-    pub fn stretch(&self, wanted: &[Wanted], axis: &str, range: Range<f64>, known: &Known) -> Result<Record, Vec<Problem>> {
+    pub fn stretch(
+        &self,
+        wanted: &[Wanted],
+        axis: &str,
+        range: Range<f64>,
+        known: &Known,
+    ) -> Result<Record, Vec<Problem>> {
         columnar::stretch(At::Object(self), self.url(), wanted, (axis, &range), known)
     }
 
     /// # Errors
     /// As [`super::stream`] of a Parquet file.
-    pub fn stream(&self, wanted: &[Wanted], known: &Known, each: &mut dyn FnMut(&Block<'_>)) -> Result<Run, Vec<Problem>> {
+    pub fn stream(
+        &self,
+        wanted: &[Wanted],
+        known: &Known,
+        each: &mut dyn FnMut(&Block<'_>),
+    ) -> Result<Run, Vec<Problem>> {
         columnar::stream(At::Object(self), self.url(), wanted, known, each)
     }
 }

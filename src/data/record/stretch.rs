@@ -6,12 +6,14 @@ use std::path::Path;
 
 use super::{Column, Origin, Record, Wanted, find_columns, header, rows};
 use crate::data::hash::Hasher;
-use crate::data::text::{LONGEST_LINE, decode_from, long_line, open_text, read_line_of, unreadable};
+use crate::data::text::{
+    LONGEST_LINE, decode_from, long_line, open_text, read_line_of, unreadable,
+};
 use crate::problem::Problem;
 use crate::source::Source;
 
-/// Bytes of text read at a time, and so what is read at least for a stretch: about 1200 rows of 24 channels, 6 s at 200 Hz. Larger
-/// blocks are not read faster.
+/// Bytes of text read at a time, and so what is read at least for a stretch: about 1200 rows of 24
+/// channels, 6 s at 200 Hz. Larger blocks are not read faster.
 const BLOCK: usize = 1 << 18;
 
 /// Consecutive rows of a record.
@@ -43,7 +45,8 @@ pub struct Run {
 /// Index of the axis among the columns.
 pub(super) fn axis_of(columns: &[Column], axis: &str, shown: &str) -> Result<usize, Vec<Problem>> {
     columns.iter().position(|column| column.name == axis).ok_or_else(|| {
-        let problem = Problem::error("unknown-channel", format!("`{shown}` has no column `{axis}`"));
+        let problem =
+            Problem::error("unknown-channel", format!("`{shown}` has no column `{axis}`"));
         vec![problem.suggest(axis, columns.iter().map(|column| column.name.as_str()))]
     })
 }
@@ -68,7 +71,14 @@ pub(super) struct Stretch {
 impl Stretch {
     pub fn new(range: Range<f64>, axis: usize, columns: &[Column]) -> Self {
         let empty = |column: &Column| Column { values: Vec::new(), ..column.clone() };
-        Self { range, axis, columns: columns.iter().map(empty).collect(), first_row: 0, next: 0, again: None }
+        Self {
+            range,
+            axis,
+            columns: columns.iter().map(empty).collect(),
+            first_row: 0,
+            next: 0,
+            again: None,
+        }
     }
 
     /// Makes room for so many rows, so that no column is moved while it grows.
@@ -82,7 +92,10 @@ impl Stretch {
         let inside = |value: &f64| *value >= self.range.start && *value <= self.range.end;
         let mut at = 0;
         while let Some(start) = axis[at..].iter().position(inside).map(|found| at + found) {
-            let end = axis[start..].iter().position(|value| !inside(value)).map_or(axis.len(), |found| start + found);
+            let end = axis[start..]
+                .iter()
+                .position(|value| !inside(value))
+                .map_or(axis.len(), |found| start + found);
             if self.next == 0 {
                 self.first_row = first_row + start;
             } else if self.next != first_row + start {
@@ -115,7 +128,9 @@ impl Stretch {
         };
         if let Some(row) = self.again {
             let row = record.row_shown(row - self.first_row);
-            let says = format!("`{name}` enters the range from {start} to {end} again at row {row} of `{shown}`; it must increase");
+            let says = format!(
+                "`{name}` enters the range from {start} to {end} again at row {row} of `{shown}`; it must increase"
+            );
             return Err(vec![Problem::error("axis-not-increasing", says)]);
         }
         if record.rows == 0 {
@@ -127,7 +142,12 @@ impl Stretch {
 }
 
 /// A text, in blocks that end with a line.
-pub(super) fn text(path: &Path, shown: &str, wanted: &[Wanted], each: &mut dyn FnMut(&Block<'_>)) -> Result<Run, Vec<Problem>> {
+pub(super) fn text(
+    path: &Path,
+    shown: &str,
+    wanted: &[Wanted],
+    each: &mut dyn FnMut(&Block<'_>),
+) -> Result<Run, Vec<Problem>> {
     let one = |problem: Problem| vec![problem];
     let mut file = open_text(path, shown).map_err(one)?;
     let mut hash = Hasher::default();
@@ -138,22 +158,42 @@ pub(super) fn text(path: &Path, shown: &str, wanted: &[Wanted], each: &mut dyn F
     let (mut bytes, mut buffer, mut rows_read) = (first.len() as u64, Vec::new(), 0_usize);
     loop {
         let kept = buffer.len();
-        (&mut file).take(BLOCK as u64).read_to_end(&mut buffer).map_err(|error| one(unreadable(shown, &error)))?;
+        (&mut file)
+            .take(BLOCK as u64)
+            .read_to_end(&mut buffer)
+            .map_err(|error| one(unreadable(shown, &error)))?;
         let added = buffer.len() - kept;
         hash.add(&buffer[kept..]);
         bytes += added as u64;
         let ended = added < BLOCK;
-        // The last line is left for the next block: it may be cut off, or blank lines at the end of the file may follow.
+        // The last line is left for the next block: it may be cut off, or blank lines at the end of
+        // the file may follow.
         let full = buffer.trim_ascii_end().len();
-        let end = if ended { buffer.len() } else { memchr::memrchr(b'\n', &buffer[..full]).map_or(0, |end| end + 1) };
+        let end = if ended {
+            buffer.len()
+        } else {
+            memchr::memrchr(b'\n', &buffer[..full]).map_or(0, |end| end + 1)
+        };
         if buffer.len() - end > BLOCK.max(LONGEST_LINE) {
             return Err(one(unbroken(&buffer[end..], rows_read + 2, shown)));
         }
         if end > 0 && (full > 0 || rows_read == 0) {
             let text = decode_from(&buffer[..end], shown, rows_read + 2).map_err(one)?;
-            let rows = rows::read(text, 0, headings.len(), &mut columns, rows::Part { shown, before: rows_read }, None)?;
+            let rows = rows::read(
+                text,
+                0,
+                headings.len(),
+                &mut columns,
+                rows::Part { shown, before: rows_read },
+                None,
+            )?;
             let before = bytes - buffer.len() as u64;
-            each(&Block { first_row: rows_read, rows, columns: &columns, bytes: (before, before + end as u64) });
+            each(&Block {
+                first_row: rows_read,
+                rows,
+                columns: &columns,
+                bytes: (before, before + end as u64),
+            });
             rows_read += rows;
             buffer.drain(..end);
         }
@@ -162,7 +202,10 @@ pub(super) fn text(path: &Path, shown: &str, wanted: &[Wanted], each: &mut dyn F
         }
     }
     if rows_read == 0 {
-        return Err(one(Problem::error("no-rows", format!("`{shown}` has a header and no samples"))));
+        return Err(one(Problem::error(
+            "no-rows",
+            format!("`{shown}` has a header and no samples"),
+        )));
     }
     columns.iter_mut().for_each(|column| column.values = Vec::new());
     let channels = headings.into_iter().map(|heading| heading.name).collect();
@@ -173,7 +216,11 @@ pub(super) fn text(path: &Path, shown: &str, wanted: &[Wanted], each: &mut dyn F
 fn unbroken(rest: &[u8], line: usize, shown: &str) -> Problem {
     if rest.iter().take(LONGEST_LINE).any(|byte| *byte == b'\n') {
         let at = Source::excerpt(shown, "", line + 1).whole();
-        return Problem::error("blank-line", format!("blank lines from line {} of `{shown}` on", line + 1)).at(&at);
+        return Problem::error(
+            "blank-line",
+            format!("blank lines from line {} of `{shown}` on", line + 1),
+        )
+        .at(&at);
     }
     long_line(rest, line, shown)
 }

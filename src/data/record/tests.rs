@@ -17,23 +17,42 @@ fn wanted() -> [Wanted; 2] {
 /// Code and `line:column` of each problem.
 fn faults(text: &str) -> Vec<(&'static str, String)> {
     let problems = read(text.as_bytes(), &wanted()).expect_err(text);
-    problems.iter().map(|problem| (problem.code, problem.at.as_ref().map_or(String::new(), |at| at.to_string()[6..].to_string()))).collect()
+    problems
+        .iter()
+        .map(|problem| {
+            (
+                problem.code,
+                problem.at.as_ref().map_or(String::new(), |at| at.to_string()[6..].to_string()),
+            )
+        })
+        .collect()
 }
 
 #[test]
 fn wanted_columns_in_si_and_in_the_order_asked_for() {
-    let text = "\u{feff}\"Y [kN]\",note [-],time [ms],x\r\n1.5,\"a, b\",5,-\r\n -2e1 ,,\"10\",\r\n\r\n";
+    let text =
+        "\u{feff}\"Y [kN]\",note [-],time [ms],x\r\n1.5,\"a, b\",5,-\r\n -2e1 ,,\"10\",\r\n\r\n";
     let record = read(text.as_bytes(), &wanted()).unwrap_or_else(|problems| panic!("{problems:?}"));
-    assert_eq!(record.columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>(), ["time", "Y"]);
+    assert_eq!(
+        record.columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>(),
+        ["time", "Y"]
+    );
     assert_eq!(record.columns[0].values, [0.005, 0.01]);
     assert_eq!(record.columns[1].values, [1500.0, -20_000.0]);
-    assert_eq!((record.rows, record.channels.len(), record.columns[1].unit.text.as_str()), (2, 4, "kN"));
+    assert_eq!(
+        (record.rows, record.channels.len(), record.columns[1].unit.text.as_str()),
+        (2, 4, "kN")
+    );
     assert_eq!(record.bytes, text.len());
 }
 
 #[test]
 fn an_optional_column_may_be_missing() {
-    let wanted = [Wanted::new("time", Dimension::TIME), Wanted::new("Z", FORCE).if_there(), Wanted::new("time", Dimension::TIME)];
+    let wanted = [
+        Wanted::new("time", Dimension::TIME),
+        Wanted::new("Z", FORCE).if_there(),
+        Wanted::new("time", Dimension::TIME),
+    ];
     assert_eq!(read(b"time [s]\n1", &wanted).map(|record| record.columns.len()).ok(), Some(1));
     assert_eq!(read(b"time [s]\n1\n2\n", &[]).map(|record| record.rows).ok(), Some(2));
 }
@@ -79,20 +98,25 @@ fn a_problem_far_down_keeps_only_its_line_and_many_are_counted() {
     }
     let problems = read(text.as_bytes(), &wanted()).expect_err("ten faults");
     assert_eq!(problems.len(), 6);
-    assert_eq!(problems[0].at.as_ref().map(|at| (at.to_string(), at.source.text.as_str())), Some(("r.csv:29992:3".into(), "1,x")));
+    assert_eq!(
+        problems[0].at.as_ref().map(|at| (at.to_string(), at.source.text.as_str())),
+        Some(("r.csv:29992:3".into(), "1,x"))
+    );
     assert_eq!(problems[5].says, "and 5 more problems in `r.csv`");
 }
 
 #[test]
 fn a_place_is_found_again() {
     let mut file = tempfile::NamedTempFile::new().expect("a temporary file");
-    std::io::Write::write_all(&mut file, "Y [kN],time [s]\r\n1,2\r\n3,45\r\n".as_bytes()).expect("writable");
+    std::io::Write::write_all(&mut file, "Y [kN],time [s]\r\n1,2\r\n3,45\r\n".as_bytes())
+        .expect("writable");
     let record = read_record(file.path(), "r.csv", &wanted()).expect("good");
     let place = record.place(1, record.column("time")).expect("there");
     assert_eq!((place.to_string(), place.text()), ("r.csv:3:3".into(), "45"));
 }
 
-const SAMPLE: &str = "time [s],\"x [-]\",Y [kN]\r\n0.000,a,-1.25\r\n0.005,\"b, c\",1e-3\n0.010,,7\n";
+const SAMPLE: &str =
+    "time [s],\"x [-]\",Y [kN]\r\n0.000,a,-1.25\r\n0.005,\"b, c\",1e-3\n0.010,,7\n";
 
 #[test]
 fn every_prefix_is_survived() {

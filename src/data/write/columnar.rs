@@ -18,17 +18,20 @@ use super::digits::Digits;
 use super::table_csv;
 use crate::problem::Problem;
 
-/// Rows of a row group: 80 s at 200 Hz, so that the record of a section is one group, and a stretch of a long run needs one or two groups of
-/// 5 km at 60 m/s. With fewer rows, dictionaries and footers take a larger share of the file.
+/// Rows of a row group: 80 s at 200 Hz, so that the record of a section is one group, and a stretch
+/// of a long run needs one or two groups of 5 km at 60 m/s. With fewer rows, dictionaries and
+/// footers take a larger share of the file.
 const GROUP: usize = 1 << 14;
-/// Level of compression: higher levels save some percent of the size and take several times as long.
+/// Level of compression: higher levels save some percent of the size and take several times as
+/// long.
 const LEVEL: i32 = 3;
-/// A column is not compressed unless this saves at least so much of its size. Numbers of seven digits with noise would become a fifth
-/// smaller, and reading them would take four times as long.
+/// A column is not compressed unless this saves at least so much of its size. Numbers of seven
+/// digits with noise would become a fifth smaller, and reading them would take four times as long.
 const LEAST_SAVED: f64 = 0.25;
 /// Numbers that are compressed for a trial.
 const TRIED: usize = 1 << 13;
-/// A column with at most this share of different values in its rows is written with a dictionary: a speed that hardly changes, a flag.
+/// A column with at most this share of different values in its rows is written with a dictionary: a
+/// speed that hardly changes, a flag.
 const DICTIONARY: f64 = 1.0 / 16.0;
 
 /// The values of a column.
@@ -66,7 +69,8 @@ pub struct FileColumn {
     /// `name [unit]`, as in the header of a text.
     pub heading: String,
     pub values: Values,
-    /// How its numbers are written in a text, if all are written alike. It is in the metadata of the field.
+    /// How its numbers are written in a text, if all are written alike. It is in the metadata of
+    /// the field.
     pub digits: Option<Digits>,
 }
 
@@ -93,21 +97,31 @@ impl Layout {
             }
             Values::Texts(_) => (DataType::Utf8, true, true),
         };
-        Self { heading: column.heading.clone(), kind, digits: column.digits, dictionary, compressed }
+        Self {
+            heading: column.heading.clone(),
+            kind,
+            digits: column.digits,
+            dictionary,
+            compressed,
+        }
     }
 }
 
-/// Writes a Parquet file of so many rows; `part` gives the values of all columns in a range of rows, a row group at a time.
+/// Writes a Parquet file of so many rows; `part` gives the values of all columns in a range of
+/// rows, a row group at a time.
 ///
 /// # Errors
-/// `write-failed`: columns of different length, or two of the same name; the system's error. That of `part`.
+/// `write-failed`: columns of different length, or two of the same name; the system's error. That
+/// of `part`.
 pub fn parquet_in_groups(
     layouts: &[Layout],
     rows: usize,
     mut part: impl FnMut(Range<usize>) -> Result<Vec<Values>, Problem>,
     sink: impl io::Write + Send,
 ) -> Result<(), Problem> {
-    let failed = |error: &dyn std::fmt::Display| Problem::error("write-failed", format!("a record cannot be written as Parquet: {error}"));
+    let failed = |error: &dyn std::fmt::Display| {
+        Problem::error("write-failed", format!("a record cannot be written as Parquet: {error}"))
+    };
     let mut properties = properties().map_err(|error| failed(&error))?;
     let mut fields = Vec::new();
     for layout in layouts {
@@ -116,11 +130,16 @@ pub fn parquet_in_groups(
         if !layout.compressed {
             properties = properties.set_column_compression(path, Compression::UNCOMPRESSED);
         }
-        let metadata = layout.digits.map(Digits::metadata).map(|(key, value)| (key.to_string(), value));
-        fields.push(Field::new(&layout.heading, layout.kind.clone(), false).with_metadata(metadata.into_iter().collect::<HashMap<_, _>>()));
+        let metadata =
+            layout.digits.map(Digits::metadata).map(|(key, value)| (key.to_string(), value));
+        fields.push(
+            Field::new(&layout.heading, layout.kind.clone(), false)
+                .with_metadata(metadata.into_iter().collect::<HashMap<_, _>>()),
+        );
     }
     let schema = Arc::new(Schema::new(fields));
-    let mut writer = ArrowWriter::try_new(sink, Arc::clone(&schema), Some(properties.build())).map_err(|error| failed(&error))?;
+    let mut writer = ArrowWriter::try_new(sink, Arc::clone(&schema), Some(properties.build()))
+        .map_err(|error| failed(&error))?;
     for start in (0..rows).step_by(GROUP) {
         let array = |values: Values| -> ArrayRef {
             match values {
@@ -129,7 +148,8 @@ pub fn parquet_in_groups(
             }
         };
         let arrays = part(start..rows.min(start + GROUP))?.into_iter().map(array).collect();
-        let batch = RecordBatch::try_new(Arc::clone(&schema), arrays).map_err(|error| failed(&error))?;
+        let batch =
+            RecordBatch::try_new(Arc::clone(&schema), arrays).map_err(|error| failed(&error))?;
         writer.write(&batch).map_err(|error| failed(&error))?;
     }
     writer.close().map_err(|error| failed(&error))?;
@@ -144,7 +164,9 @@ pub fn parquet(columns: &[FileColumn]) -> Result<Vec<u8>, Problem> {
     let layouts: Vec<Layout> = columns.iter().map(Layout::of).collect();
     let rows = columns.iter().map(|column| column.values.len()).max().unwrap_or(0);
     let mut bytes = Vec::new();
-    let part = |range: Range<usize>| Ok(columns.iter().map(|column| column.values.part(range.clone())).collect());
+    let part = |range: Range<usize>| {
+        Ok(columns.iter().map(|column| column.values.part(range.clone())).collect())
+    };
     parquet_in_groups(&layouts, rows, part, &mut bytes)?;
     Ok(bytes)
 }
@@ -160,7 +182,8 @@ pub fn csv_header(headings: &[&str]) -> String {
     table_csv(&[headings.to_vec()])
 }
 
-/// The other lines. Numbers have the form of their column, or else the fewest digits that give the same double again.
+/// The other lines. Numbers have the form of their column, or else the fewest digits that give the
+/// same double again.
 pub fn csv_rows(columns: &[FileColumn]) -> String {
     let rows = columns.iter().map(|column| column.values.len()).max().unwrap_or(0);
     let mut text = String::new();
@@ -169,9 +192,14 @@ pub fn csv_rows(columns: &[FileColumn]) -> String {
             text.push_str(if at == 0 { "" } else { "," });
             match &column.values {
                 Values::Numbers(values) => {
-                    text.push_str(&Digits::exact(column.digits, values.get(row).copied().unwrap_or(f64::NAN)));
+                    text.push_str(&Digits::exact(
+                        column.digits,
+                        values.get(row).copied().unwrap_or(f64::NAN),
+                    ));
                 }
-                Values::Texts(texts) => push_cell(&mut text, texts.get(row).map_or("", String::as_str)),
+                Values::Texts(texts) => {
+                    push_cell(&mut text, texts.get(row).map_or("", String::as_str))
+                }
             }
         }
         text.push('\n');
@@ -223,10 +251,19 @@ mod tests {
     /// Two decimals are compressed; noise in all digits is not.
     #[test]
     fn compression_is_for_columns_that_it_makes_smaller() {
-        let noise = |n: i32| f64::from(n.wrapping_mul(1_103_515_245).wrapping_add(12_345) >> 3) * 1.234_567_89e-7;
+        let noise = |n: i32| {
+            f64::from(n.wrapping_mul(1_103_515_245).wrapping_add(12_345) >> 3) * 1.234_567_89e-7
+        };
         let all: Vec<f64> = (0..5000).map(noise).collect();
         let rounded: Vec<f64> = all.iter().map(|value| (value * 10.0).round() / 100.0).collect();
-        assert!(saved(&all) < LEAST_SAVED && saved(&rounded) > LEAST_SAVED, "{} {}", saved(&all), saved(&rounded));
-        assert!(different(&all) > 0.9 && different(&[1.0; 100]) <= DICTIONARY && different(&[]) == 0.0);
+        assert!(
+            saved(&all) < LEAST_SAVED && saved(&rounded) > LEAST_SAVED,
+            "{} {}",
+            saved(&all),
+            saved(&rounded)
+        );
+        assert!(
+            different(&all) > 0.9 && different(&[1.0; 100]) <= DICTIONARY && different(&[]) == 0.0
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! How the numbers of a column are written as text, so that a record that was converted and converted back is the same text.
+//! How the numbers of a column are written as text, so that a record that was converted and
+//! converted back is the same text.
 
 /// Digits with which every double is written uniquely.
 const UNIQUE: usize = 17;
@@ -8,9 +9,11 @@ const UNIQUE: usize = 17;
 pub enum Digits {
     /// The same number of decimals: `12.50`.
     Decimals(usize),
-    /// At most so many significant digits, without zeros at the end, with an exponent for small and large numbers: `%.6g` of C.
+    /// At most so many significant digits, without zeros at the end, with an exponent for small and
+    /// large numbers: `%.6g` of C.
     Significant(usize),
-    /// The fewest digits that give the same double again, as Python writes numbers: `12.5`, `1.0`, `1e-05`.
+    /// The fewest digits that give the same double again, as Python writes numbers: `12.5`, `1.0`,
+    /// `1e-05`.
     Shortest,
 }
 
@@ -45,8 +48,13 @@ impl Digits {
             Self::Significant(count) => {
                 let (mantissa, exponent) = split(&format!("{value:.*e}", count - 1));
                 match usize::try_from(exponent) {
-                    Ok(whole) if whole < count => without_zeros(&format!("{value:.*}", count - 1 - whole)),
-                    Err(_) if exponent >= -4 => without_zeros(&format!("{value:.*}", count.saturating_add_signed(-exponent) - 1)),
+                    Ok(whole) if whole < count => {
+                        without_zeros(&format!("{value:.*}", count - 1 - whole))
+                    }
+                    Err(_) if exponent >= -4 => without_zeros(&format!(
+                        "{value:.*}",
+                        count.saturating_add_signed(-exponent) - 1
+                    )),
                     _ => scientific(&without_zeros(&mantissa), exponent),
                 }
             }
@@ -62,9 +70,11 @@ impl Digits {
         }
     }
 
-    /// In this form if that is the same double, else with the digits that make it so. A column can be said to have fewer than it has.
+    /// In this form if that is the same double, else with the digits that make it so. A column can
+    /// be said to have fewer than it has.
     pub fn exact(form: Option<Self>, value: f64) -> String {
-        let same = |text: &String| text.parse().is_ok_and(|again: f64| again.to_bits() == value.to_bits());
+        let same =
+            |text: &String| text.parse().is_ok_and(|again: f64| again.to_bits() == value.to_bits());
         let plain = value == 0.0 || (1e-5..1e16).contains(&value.abs());
         let shortest = || if plain { format!("{value}") } else { format!("{value:e}") };
         form.map(|form| form.write(value)).filter(same).unwrap_or_else(shortest)
@@ -73,7 +83,11 @@ impl Digits {
     /// Number of significant digits of a number as it is written.
     pub fn significant(text: &str) -> usize {
         let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
-        let digits = mantissa.trim_start_matches(['-', '+', '0', '.']).bytes().filter(u8::is_ascii_digit).count();
+        let digits = mantissa
+            .trim_start_matches(['-', '+', '0', '.'])
+            .bytes()
+            .filter(u8::is_ascii_digit)
+            .count();
         digits.clamp(1, UNIQUE)
     }
 }
@@ -85,7 +99,11 @@ fn split(text: &str) -> (String, isize) {
 }
 
 fn without_zeros(text: &str) -> String {
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text.to_string() }
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_string()
+    } else {
+        text.to_string()
+    }
 }
 
 /// With a sign and two digits at least in the exponent.
@@ -118,7 +136,13 @@ mod tests {
             (1e300, "1e+300", "1e+300"),
             (0.1 + 0.2, "0.3", "0.30000000000000004"),
         ] {
-            assert_eq!((Digits::Significant(6).write(value).as_str(), Digits::Shortest.write(value).as_str()), (six, shortest));
+            assert_eq!(
+                (
+                    Digits::Significant(6).write(value).as_str(),
+                    Digits::Shortest.write(value).as_str()
+                ),
+                (six, shortest)
+            );
         }
         assert_eq!(Digits::Decimals(2).write(12.5), "12.50");
         assert_eq!(["5.70776e-06", "0.0120", "-100", "0"].map(Digits::significant), [6, 3, 3, 1]);

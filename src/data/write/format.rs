@@ -30,7 +30,10 @@ pub fn record_csv(columns: &[OutColumn<'_>]) -> Result<String, Problem> {
         for (at, column) in columns.iter().enumerate() {
             let value = column.unit.from_si(column.values[row]);
             if !value.is_finite() {
-                return Err(Problem::error("not-finite", format!("the value of `{}` in row {} is not finite", column.name, row + 2)));
+                return Err(Problem::error(
+                    "not-finite",
+                    format!("the value of `{}` in row {} is not finite", column.name, row + 2),
+                ));
             }
             text.push_str(if at == 0 { "" } else { "," });
             push_number(&mut text, value, column.decimals);
@@ -73,7 +76,9 @@ fn push_number(text: &mut String, value: f64, decimals: usize) {
     let start = text.len();
     // Writing to a string cannot fail.
     let _ = write!(text, "{value:.decimals$}");
-    if text[start..].starts_with('-') && text[start..].bytes().all(|byte| matches!(byte, b'-' | b'0' | b'.')) {
+    if text[start..].starts_with('-')
+        && text[start..].bytes().all(|byte| matches!(byte, b'-' | b'0' | b'.'))
+    {
         text.remove(start);
     }
 }
@@ -159,9 +164,12 @@ pub fn yaml_text(value: &str) -> String {
 /// Plain if this is certainly read back as the same text, else in double quotes.
 fn push_text(text: &mut String, value: &str) {
     const WORDS: [&str; 10] = ["true", "false", "null", "yes", "no", "on", "off", "y", "n", "~"];
-    // A unit in brackets may follow a word; `: ` and ` #` may not, so texts with colons and hashes are quoted.
+    // A unit in brackets may follow a word; `: ` and ` #` may not, so texts with colons and hashes
+    // are quoted.
     let plain = value.starts_with(|letter: char| letter.is_alphabetic() || letter == '_')
-        && value.chars().all(|letter| letter.is_alphanumeric() || " _-./^()[]²³µ°%,;+*=".contains(letter))
+        && value
+            .chars()
+            .all(|letter| letter.is_alphanumeric() || " _-./^()[]²³µ°%,;+*=".contains(letter))
         && !value.ends_with(' ')
         && !WORDS.contains(&value.to_lowercase().as_str());
     if plain {
@@ -175,7 +183,12 @@ fn push_text(text: &mut String, value: &str) {
             '\\' => text.push_str("\\\\"),
             '\n' => text.push_str("\\n"),
             '\t' => text.push_str("\\t"),
-            _ if letter.is_control() || matches!(letter, '\u{feff}' | '\u{2028}' | '\u{2029}' | '\u{fffe}' | '\u{ffff}') => {
+            _ if letter.is_control()
+                || matches!(
+                    letter,
+                    '\u{feff}' | '\u{2028}' | '\u{2029}' | '\u{fffe}' | '\u{ffff}'
+                ) =>
+            {
                 let _ = write!(text, "\\U{:08x}", u32::from(letter));
             }
             _ => text.push(letter),
@@ -195,14 +208,20 @@ mod tests {
 
     fn load(text: &str) -> Node {
         let mut problems = Problems::default();
-        yaml::load(&Source::new("t", text), &mut problems).unwrap_or_else(|| panic!("{text}\n{}", problems.render(false)))
+        yaml::load(&Source::new("t", text), &mut problems)
+            .unwrap_or_else(|| panic!("{text}\n{}", problems.render(false)))
     }
 
     /// Equality of trees without places.
     fn same(a: &Node, b: &Node) -> bool {
         match (&a.value, &b.value) {
-            (Value::List(a), Value::List(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b)),
-            (Value::Map(a), Value::Map(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.0.text == b.0.text && same(&a.1, &b.1)),
+            (Value::List(a), Value::List(b)) => {
+                a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same(a, b))
+            }
+            (Value::Map(a), Value::Map(b)) => {
+                a.len() == b.len()
+                    && a.iter().zip(b).all(|(a, b)| a.0.text == b.0.text && same(&a.1, &b.1))
+            }
             (a, b) => a == b,
         }
     }
@@ -222,8 +241,14 @@ mod tests {
 
     #[test]
     fn a_tree_is_read_back_as_it_was() {
-        let root = load("a: {b: [1.50, no, 'x: y', [], {}], c: ~, 'd e [kN]': true}\nf: \"5\"\ng:\n- - 1\n  - k: v\n");
-        let entries: Vec<_> = root.entries().iter().map(|(key, node)| (key.text.as_str(), Entry::Node(node))).collect();
+        let root = load(
+            "a: {b: [1.50, no, 'x: y', [], {}], c: ~, 'd e [kN]': true}\nf: \"5\"\ng:\n- - 1\n  - k: v\n",
+        );
+        let entries: Vec<_> = root
+            .entries()
+            .iter()
+            .map(|(key, node)| (key.text.as_str(), Entry::Node(node)))
+            .collect();
         let text = campaign_yaml(&entries);
         assert!(same(&root, &load(&text)), "{text}");
     }

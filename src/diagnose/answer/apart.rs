@@ -1,5 +1,5 @@
-//! Selection of the sections that, if measured again, would best discriminate two causes: T-optimal design (Atkinson and Fedorov 1975)
-//! among further sections like those of each stratum.
+//! Selection of the sections that, if measured again, would best discriminate two causes: T-optimal
+//! design (Atkinson and Fedorov 1975) among further sections like those of each stratum.
 
 use crate::diagnose::inference::fit::Fitted;
 use crate::diagnose::response::candidate::Candidate;
@@ -25,7 +25,13 @@ pub fn apart(found: &Found, member: &Fitted, rival: &Fitted) -> Option<Apart> {
     best(&found.allowed.alone.covariance, &found.seen.first_runs(), &found.strata, &change, of)
 }
 
-fn best(covariance: &Covariance, all: &[usize], strata: &[Vec<usize>], change: &[f64], rival: (&Candidate, &Mask)) -> Option<Apart> {
+fn best(
+    covariance: &Covariance,
+    all: &[usize],
+    strata: &[Vec<usize>],
+    change: &[f64],
+    rival: (&Candidate, &Mask),
+) -> Option<Apart> {
     let distance = |more: &[usize]| {
         let sections = [all, more].concat();
         let view = View { says: String::new(), sections, features: (0..covariance.size).collect() };
@@ -44,12 +50,18 @@ mod tests {
     use crate::diagnose::response::candidate::Node;
     use crate::diagnose::uncertainty::response::ResponseError;
 
-    /// Two features in each of four sections, unit noise. The effect changes both features equally. The rival does so in the first two
-    /// sections and changes them in opposite directions in the last two. Only the last two discriminate.
+    /// Two features in each of four sections, unit noise. The effect changes both features equally.
+    /// The rival does so in the first two sections and changes them in opposite directions in the
+    /// last two. Only the last two discriminate.
     #[test]
     fn the_sections_in_which_rivals_differ_are_chosen() {
-        let covariance =
-            Covariance { diagonal: vec![1.0; 8], inside: Vec::new(), shared: Vec::new(), size: 2, response: ResponseError::default() };
+        let covariance = Covariance {
+            diagonal: vec![1.0; 8],
+            inside: Vec::new(),
+            shared: Vec::new(),
+            size: 2,
+            response: ResponseError::default(),
+        };
         let change = vec![2.0; 8];
         let nodes = vec![
             Node { size: 0.0, change: Vec::new() },
@@ -57,10 +69,21 @@ mod tests {
         ];
         let rival = Candidate::path("rival", nodes);
         let everywhere = Mask { confined: None, sections: vec![true; 4], asked_by: None };
-        let found = best(&covariance, &[0, 1, 2, 3], &[vec![0, 1], vec![2, 3]], &change, (&rival, &everywhere)).expect("both change");
+        let found = best(
+            &covariance,
+            &[0, 1, 2, 3],
+            &[vec![0, 1], vec![2, 3]],
+            &change,
+            (&rival, &everywhere),
+        )
+        .expect("both change");
         // |a|^2 - (a'b)^2 / |b|^2, with b the rival at size 1.
         assert_eq!(found.sections, [2, 3]);
         assert!((found.now - (32.0_f64 - 16.0 * 16.0 / 32.0).sqrt()).abs() < 1e-9, "{}", found.now);
-        assert!((found.then - (48.0_f64 - 16.0 * 16.0 / 48.0).sqrt()).abs() < 1e-9, "{}", found.then);
+        assert!(
+            (found.then - (48.0_f64 - 16.0 * 16.0 / 48.0).sqrt()).abs() < 1e-9,
+            "{}",
+            found.then
+        );
     }
 }

@@ -3,12 +3,19 @@
 use crate::diagnose::run::{Found, length};
 use crate::result::diagnosis::Detectable;
 
-/// Per effect and parameter, the smallest detectable sizes to either side of neutral: those whose change has the length from which nine of ten
-/// single effects are named in drawn campaigns. None where no length suffices.
+/// Per effect and parameter, the smallest detectable sizes to either side of neutral: those whose
+/// change has the length from which nine of ten single effects are named in drawn campaigns. None
+/// where no length suffices.
 pub fn detectable(found: &Found) -> Vec<Detectable> {
     let mut list: Vec<Detectable> = Vec::new();
-    for candidate in found.candidates.iter().filter(|candidate| !candidate.discrete && candidate.fixed.is_empty()) {
-        let Some(neutral) = candidate.neutral().filter(|neutral| neutral.is_finite()) else { continue };
+    for candidate in found
+        .candidates
+        .iter()
+        .filter(|candidate| !candidate.discrete && candidate.fixed.is_empty())
+    {
+        let Some(neutral) = candidate.neutral().filter(|neutral| neutral.is_finite()) else {
+            continue;
+        };
         let mut nodes: Vec<(f64, f64)> = candidate
             .nodes
             .iter()
@@ -19,7 +26,10 @@ pub fn detectable(found: &Found) -> Vec<Detectable> {
         let below = nodes.iter().copied().filter(|(away, _)| *away < 0.0);
         let above = nodes.iter().copied().filter(|(away, _)| *away > 0.0);
         let needed = found.rates.calibration.length;
-        let (below, above) = (needed.and_then(|needed| long_enough(below, needed)), needed.and_then(|needed| long_enough(above, needed)));
+        let (below, above) = (
+            needed.and_then(|needed| long_enough(below, needed)),
+            needed.and_then(|needed| long_enough(above, needed)),
+        );
         let nearer = |a: f64, b: f64| if a.abs() <= b.abs() { a } else { b };
         let made = Detectable {
             effect: candidate.effect.clone(),
@@ -30,13 +40,20 @@ pub fn detectable(found: &Found) -> Vec<Detectable> {
             below,
             above,
         };
-        let alike = |known: &&mut Detectable| known.effect == made.effect && known.parameter == made.parameter && known.unit == made.unit;
+        let alike = |known: &&mut Detectable| {
+            known.effect == made.effect
+                && known.parameter == made.parameter
+                && known.unit == made.unit
+        };
         match list.iter_mut().find(alike) {
             Some(_) if candidate.channels.is_empty() => {}
             Some(known) => {
-                let farther = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| if a.abs() >= b.abs() { a } else { b });
+                let farther = |a: Option<f64>, b: Option<f64>| {
+                    a.zip(b).map(|(a, b)| if a.abs() >= b.abs() { a } else { b })
+                };
                 known.smallest = farther(known.smallest, made.smallest);
-                (known.below, known.above) = (farther(known.below, made.below), farther(known.above, made.above));
+                (known.below, known.above) =
+                    (farther(known.below, made.below), farther(known.above, made.above));
             }
             None => list.push(made),
         }
@@ -44,8 +61,8 @@ pub fn detectable(found: &Found) -> Vec<Detectable> {
     list
 }
 
-/// The distance from neutral at which the whitened change reaches a length. `nodes` are distances and lengths in increasing order, linear in
-/// between. Nothing if it does not reach it.
+/// The distance from neutral at which the whitened change reaches a length. `nodes` are distances
+/// and lengths in increasing order, linear in between. Nothing if it does not reach it.
 fn long_enough(nodes: impl Iterator<Item = (f64, f64)>, needed: f64) -> Option<f64> {
     let mut before = (0.0, 0.0);
     for (away, long) in nodes {

@@ -1,4 +1,5 @@
-//! Alternative causes, their probabilities, and recommended measurements where the data do not discriminate.
+//! Alternative causes, their probabilities, and recommended measurements where the data do not
+//! discriminate.
 
 use super::apart::{Apart, apart};
 use super::causes::cause;
@@ -7,39 +8,71 @@ use crate::diagnose::inference::chosen::plausible;
 use crate::diagnose::inference::fit::Fitted;
 use crate::diagnose::inputs::Inputs;
 use crate::diagnose::levels::chosen::TOLERANCE_SD;
-use crate::diagnose::levels::rivals::{NEAREST, NEAREST_SHARE, OUTSIDE, OUTSIDE_SUSPECTED, OUTSIDE_UNEXPLAINED, TEMPERATURE, TOLD_APART};
+use crate::diagnose::levels::rivals::{
+    NEAREST, NEAREST_SHARE, OUTSIDE, OUTSIDE_SUSPECTED, OUTSIDE_UNEXPLAINED, TEMPERATURE,
+    TOLD_APART,
+};
 use crate::diagnose::run::{Found, deviations};
 use crate::effects::Effect;
 use crate::result::diagnosis::Cause;
 
-/// Sets in which another effect replaces one member, and whether the data discriminate them from the answer.
+/// Sets in which another effect replaces one member, and whether the data discriminate them from
+/// the answer.
 pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
     let best = found.answer.chosen.evidence;
     let mut causes: Vec<Cause> = Vec::new();
     let own = |at: usize| &found.candidates[found.answer.chosen.members[at].candidate];
     for (at, fit, fall) in &found.answer.rivals {
         let of = &found.candidates[fit.candidate];
-        // The same effect on another channel is another cause if the data do not show which channel it is.
-        let elsewhere = of.effect == own(*at).effect && of.channels != own(*at).channels && !of.channels.is_empty() && *fall <= NEAREST;
-        let named = found.answer.chosen.members.iter().any(|member| found.candidates[member.candidate].effect == of.effect);
+        // The same effect on another channel is another cause if the data do not show which channel
+        // it is.
+        let elsewhere = of.effect == own(*at).effect
+            && of.channels != own(*at).channels
+            && !of.channels.is_empty()
+            && *fall <= NEAREST;
+        let named = found
+            .answer
+            .chosen
+            .members
+            .iter()
+            .any(|member| found.candidates[member.candidate].effect == of.effect);
         if named && !elsewhere {
             continue;
         }
-        if causes.len() >= 5 || causes.iter().any(|cause| cause.effects.iter().any(|effect| effect.name == of.effect)) {
+        if causes.len() >= 5
+            || causes
+                .iter()
+                .any(|cause| cause.effects.iter().any(|effect| effect.name == of.effect))
+        {
             continue;
         }
         // Effects refused by a guard are reported separately.
-        if found.answer.refused.iter().any(|refused| found.candidates[refused.fitted.candidate].is_like(of)) || !plausible(of, fit.size) {
+        if found
+            .answer
+            .refused
+            .iter()
+            .any(|refused| found.candidates[refused.fitted.candidate].is_like(of))
+            || !plausible(of, fit.size)
+        {
             continue;
         }
         // A size within a declared tolerance is part of the covariance already.
         if deviations(of, fit.size, inputs.settings, &found.declared, true) < TOLERANCE_SD {
             continue;
         }
-        let near = *fall <= (NEAREST_SHARE * found.answer.chosen.members[*at].evidence).max(NEAREST)
+        let near = *fall
+            <= (NEAREST_SHARE * found.answer.chosen.members[*at].evidence).max(NEAREST)
             && fit.evidence > found.rates.bars.least(of)
-            || found.answer.stability.get(*at).is_some_and(|stability| stability.as_well(fit.candidate));
-        let drawn = found.answer.stability.get(*at).map_or(0.0, |stability| stability.instead_of(fit.candidate));
+            || found
+                .answer
+                .stability
+                .get(*at)
+                .is_some_and(|stability| stability.as_well(fit.candidate));
+        let drawn = found
+            .answer
+            .stability
+            .get(*at)
+            .map_or(0.0, |stability| stability.instead_of(fit.candidate));
         let mut members = found.answer.chosen.members.clone();
         members[*at] = fit.clone();
         let mut cause = cause(inputs, found, &members, causes.len() + 2);
@@ -50,14 +83,25 @@ pub fn ambiguity(inputs: &Inputs<'_>, found: &Found) -> Vec<Cause> {
     causes
 }
 
-/// Sets the probability of each cause. `failing` is the smallest share of resamples in which a member has the most evidence, where that
-/// share is too small. The probabilities are then these shares, which the causes contain as `probability` on entry.
-pub fn probabilities(causes: &mut [Cause], verdict: Verdict, suspected: bool, failing: Option<f64>) {
-    // A rival may have more evidence than an answer that was selected with the simulated tolerances: both are then equally probable.
+/// Sets the probability of each cause. `failing` is the smallest share of resamples in which a
+/// member has the most evidence, where that share is too small. The probabilities are then these
+/// shares, which the causes contain as `probability` on entry.
+pub fn probabilities(
+    causes: &mut [Cause],
+    verdict: Verdict,
+    suspected: bool,
+    failing: Option<f64>,
+) {
+    // A rival may have more evidence than an answer that was selected with the simulated
+    // tolerances: both are then equally probable.
     let best = causes.first().map_or(0.0, |answer| answer.evidence);
-    let by_evidence = |cause: &Cause| ((cause.evidence - best).min(0.0) / (2.0 * TEMPERATURE)).exp();
+    let by_evidence =
+        |cause: &Cause| ((cause.evidence - best).min(0.0) / (2.0 * TEMPERATURE)).exp();
     let weights: Vec<f64> = match failing {
-        Some(first) => causes.iter().map(|cause| if cause.rank == 1 { first } else { cause.probability }).collect(),
+        Some(first) => causes
+            .iter()
+            .map(|cause| if cause.rank == 1 { first } else { cause.probability })
+            .collect(),
         None => causes.iter().map(by_evidence).collect(),
     };
     // A cause outside the catalogue is always possible, and more probable where a residual remains.
@@ -73,11 +117,17 @@ pub fn probabilities(causes: &mut [Cause], verdict: Verdict, suspected: bool, fa
     }
 }
 
-pub fn discriminating(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verdict: Verdict) -> Option<String> {
+pub fn discriminating(
+    inputs: &Inputs<'_>,
+    found: &Found,
+    causes: &[Cause],
+    verdict: Verdict,
+) -> Option<String> {
     if verdict != Verdict::Ambiguous {
         return None;
     }
-    let effects = causes.iter().filter(|cause| cause.in_ambiguity_set).flat_map(|cause| &cause.effects);
+    let effects =
+        causes.iter().filter(|cause| cause.in_ambiguity_set).flat_map(|cause| &cause.effects);
     let mut measurements: Vec<String> = Vec::new();
     for effect in effects {
         let known: Option<&Effect> = inputs.catalogue.effect(&effect.name);
@@ -87,16 +137,25 @@ pub fn discriminating(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verd
             measurements.push(settled);
         }
     }
-    measurements.extend(found.answer.suspect.as_ref().map(|suspect| format!("a measurement of `{}`", suspect.key)));
+    measurements.extend(
+        found.answer.suspect.as_ref().map(|suspect| format!("a measurement of `{}`", suspect.key)),
+    );
     measurements.extend(more_sections(inputs, found, causes));
     (!measurements.is_empty()).then(|| measurements.join("; or "))
 }
 
-/// A statement where two possible causes are far apart but neither is preferred: the data would discriminate them if one were the whole
-/// cause.
-pub fn neither(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verdict: Verdict) -> Option<String> {
-    let (names, apart) = nearest(found, causes).filter(|(_, apart)| verdict == Verdict::Ambiguous && apart.now >= TOLD_APART)?;
-    let [one, other] = names.map(|name| inputs.catalogue.effect(name).map_or(name, |effect| effect.title.as_str()));
+/// A statement where two possible causes are far apart but neither is preferred: the data would
+/// discriminate them if one were the whole cause.
+pub fn neither(
+    inputs: &Inputs<'_>,
+    found: &Found,
+    causes: &[Cause],
+    verdict: Verdict,
+) -> Option<String> {
+    let (names, apart) = nearest(found, causes)
+        .filter(|(_, apart)| verdict == Verdict::Ambiguous && apart.now >= TOLD_APART)?;
+    let [one, other] = names
+        .map(|name| inputs.catalogue.effect(name).map_or(name, |effect| effect.title.as_str()));
     Some(format!(
         "{one} | {other}: their changes differ by {:.1} standard deviations on these sections. If one of them were the whole cause, these \
          data would show which one. Therefore a further effect is present.",
@@ -106,21 +165,32 @@ pub fn neither(inputs: &Inputs<'_>, found: &Found, causes: &[Cause], verdict: Ve
 
 /// A member of the answer and the possible cause closest to it, by name.
 fn nearest<'a>(found: &'a Found, causes: &[Cause]) -> Option<([&'a str; 2], Apart)> {
-    let near =
-        |name: &str| causes.iter().skip(1).any(|cause| cause.in_ambiguity_set && cause.effects.iter().any(|effect| effect.name == name));
+    let near = |name: &str| {
+        causes.iter().skip(1).any(|cause| {
+            cause.in_ambiguity_set && cause.effects.iter().any(|effect| effect.name == name)
+        })
+    };
     let effect = |fit: &Fitted| found.candidates[fit.candidate].effect.as_str();
-    let differs = |at: usize, fit: &Fitted| near(effect(fit)) && effect(fit) != effect(&found.answer.chosen.members[at]);
+    let differs = |at: usize, fit: &Fitted| {
+        near(effect(fit)) && effect(fit) != effect(&found.answer.chosen.members[at])
+    };
     let (at, rival, _) = found.answer.rivals.iter().find(|(at, fit, _)| differs(*at, fit))?;
     let member = &found.answer.chosen.members[*at];
     Some(([effect(member), effect(rival)], apart(found, member, rival)?))
 }
 
-/// Further sections of the kind that best discriminates the answer from its closest rival, unless the data discriminate them already.
+/// Further sections of the kind that best discriminates the answer from its closest rival, unless
+/// the data discriminate them already.
 fn more_sections(inputs: &Inputs<'_>, found: &Found, causes: &[Cause]) -> Option<String> {
     let (_, apart) = nearest(found, causes).filter(|(_, apart)| apart.now < TOLD_APART)?;
-    let sections: Vec<&str> = apart.sections.iter().map(|at| found.seen.sections[*at].section.name()).collect();
+    let sections: Vec<&str> =
+        apart.sections.iter().map(|at| found.seen.sections[*at].section.name()).collect();
     let stratum = inputs.settings.stratum.as_deref();
-    let kind = apart.sections.first().zip(stratum).and_then(|(at, column)| found.seen.sections[*at].section.says(column));
+    let kind = apart
+        .sections
+        .first()
+        .zip(stratum)
+        .and_then(|(at, column)| found.seen.sections[*at].section.says(column));
     Some(format!(
         "the same number of additional sections like {} ({}); the two closest causes would then differ by {3:.1} standard deviations instead of {2:.1}",
         sections.join(", "),

@@ -1,4 +1,5 @@
-//! Reduction of the gap by cross-validation: the effects simulated on sections excluded from the fit, and the protocol evaluated again.
+//! Reduction of the gap by cross-validation: the effects simulated on sections excluded from the
+//! fit, and the protocol evaluated again.
 
 use rayon::prelude::*;
 
@@ -24,7 +25,10 @@ pub fn applied(found: &Found, members: &[Fitted]) -> Vec<Applied> {
             let of = &found.candidates[member.candidate];
             let mut values = of.fixed.clone();
             values.push((of.size.clone(), member.size));
-            let confined = found.masks[member.mask].confined.clone().map(|(column, values)| Confined { column, values });
+            let confined = found.masks[member.mask]
+                .confined
+                .clone()
+                .map(|(column, values)| Confined { column, values });
             Applied { effect: of.effect.clone(), values, channels: of.channels.clone(), confined }
         })
         .collect()
@@ -54,21 +58,43 @@ pub fn trained(found: &Found, fold: &[usize]) -> Vec<Fitted> {
     let size = found.seen.features.len();
     let whitener = found.allowed.settled.covariance.part(&kept, &features).whitener();
     let part = |column: &[f64]| crate::diagnose::selection::guards::part(column, size, &view);
-    let mut candidates: Vec<crate::diagnose::response::candidate::Candidate> =
-        found.answer.chosen.members.iter().map(|member| found.candidates[member.candidate].clone()).collect();
+    let mut candidates: Vec<crate::diagnose::response::candidate::Candidate> = found
+        .answer
+        .chosen
+        .members
+        .iter()
+        .map(|member| found.candidates[member.candidate].clone())
+        .collect();
     for candidate in &mut candidates {
-        candidate.nodes.iter_mut().filter(|node| !node.change.is_empty()).for_each(|node| node.change = part(&node.change));
+        candidate
+            .nodes
+            .iter_mut()
+            .filter(|node| !node.change.is_empty())
+            .for_each(|node| node.change = part(&node.change));
     }
     let masks = found.masks.iter().map(|mask| crate::diagnose::response::mask::Mask {
         confined: mask.confined.clone(),
         sections: kept.iter().map(|at| mask.sections[*at]).collect(),
-        asked_by: mask
-            .asked_by
-            .map(|by| found.answer.chosen.members.iter().position(|member| member.candidate == by).unwrap_or(usize::MAX)),
+        asked_by: mask.asked_by.map(|by| {
+            found
+                .answer
+                .chosen
+                .members
+                .iter()
+                .position(|member| member.candidate == by)
+                .unwrap_or(usize::MAX)
+        }),
     });
     let fitter = Fitter::new(&whitener, &candidates, masks.collect());
     let z = whitener.apply(&part(&found.allowed.beside.difference));
-    let set: Vec<(usize, usize)> = found.answer.chosen.members.iter().enumerate().map(|(at, member)| (at, member.mask)).collect();
+    let set: Vec<(usize, usize)> = found
+        .answer
+        .chosen
+        .members
+        .iter()
+        .enumerate()
+        .map(|(at, member)| (at, member.mask))
+        .collect();
     let chosen = crate::diagnose::inference::sets::Sets::new(&fitter, &z).chosen(&set);
     if chosen.members.len() != set.len() {
         return found.answer.chosen.members.clone();
@@ -95,10 +121,18 @@ pub fn improved(
         let observed = &sections[at];
         let effects = members(at);
         match simulator {
-            Some(simulator) => Ok(simulate(simulator, catalogue, &effects, &observed.section, Some(&observed.simulated))?.signals),
+            Some(simulator) => Ok(simulate(
+                simulator,
+                catalogue,
+                &effects,
+                &observed.section,
+                Some(&observed.simulated),
+            )?
+            .signals),
             None => {
                 let mut signals = observed.simulated.clone();
-                crate::simulate::Plan::new(catalogue, &effects, &observed.section, None)?.operate(&mut signals, &observed.section)?;
+                crate::simulate::Plan::new(catalogue, &effects, &observed.section, None)?
+                    .operate(&mut signals, &observed.section)?;
                 Ok(signals)
             }
         }
@@ -108,7 +142,12 @@ pub fn improved(
 
 /// The gap of some sections before and after, over all quantities.
 #[must_use]
-pub fn within(before: &Certification, after: &Certification, sections: &[&str], seed: u64) -> Touched {
+pub fn within(
+    before: &Certification,
+    after: &Certification,
+    sections: &[&str],
+    seed: u64,
+) -> Touched {
     let (before, after) = (of_sections(before, sections), of_sections(after, sections));
     removed(&before, &after, &(0..before.quantities.len()).collect::<Vec<_>>(), seed)
 }
@@ -124,8 +163,8 @@ pub fn of_sections(of: &Certification, sections: &[&str]) -> Certification {
     part
 }
 
-/// Quantities before and after, with the interval of the removed share. `noise` is the protocol evaluated on records that differ only by
-/// the declared noise.
+/// Quantities before and after, with the interval of the removed share. `noise` is the protocol
+/// evaluated on records that differ only by the declared noise.
 #[must_use]
 pub fn compare(
     before: &Certification,
@@ -136,7 +175,10 @@ pub fn compare(
 ) -> Shrink {
     let every: Vec<usize> = (0..before.quantities.len()).collect();
     let whole = removed(before, after, &every, seed);
-    let touched: Vec<usize> = every.into_iter().filter(|at| change(&before.quantities[*at], &after.quantities[*at]) >= TOUCHED).collect();
+    let touched: Vec<usize> = every
+        .into_iter()
+        .filter(|at| change(&before.quantities[*at], &after.quantities[*at]) >= TOUCHED)
+        .collect();
     let quantity = |at: usize| {
         let (was, is) = (&before.quantities[at], &after.quantities[at]);
         let floor = noise.map_or(0.0, |noise| sum_of_squares(&noise.quantities[at]));
@@ -158,7 +200,9 @@ pub fn compare(
     };
     let quantities = (0..before.quantities.len()).map(quantity);
     Shrink {
-        measure: "root mean square of the normalised means and standard deviations of all quantities".into(),
+        measure:
+            "root mean square of the normalised means and standard deviations of all quantities"
+                .into(),
         before: whole.before,
         after: whole.after,
         fraction_removed: whole.fraction_removed,
@@ -174,14 +218,24 @@ pub fn compare(
 }
 
 /// The removed share of some quantities, with its interval by resampling sections.
-fn removed(before: &Certification, after: &Certification, quantities: &[usize], seed: u64) -> Touched {
+fn removed(
+    before: &Certification,
+    after: &Certification,
+    quantities: &[usize],
+    seed: u64,
+) -> Touched {
     let names = sections(before);
     let all: Vec<usize> = (0..names.len()).collect();
-    let both = |drawn: &[usize]| (measure(before, quantities, &names, drawn), measure(after, quantities, &names, drawn));
+    let both = |drawn: &[usize]| {
+        (measure(before, quantities, &names, drawn), measure(after, quantities, &names, drawn))
+    };
     let share = |(from, to): (f64, f64)| if from > 0.0 { 1.0 - to / from } else { 0.0 };
     let mut random = Gauss::new(seed);
-    let mut shares: Vec<f64> =
-        (0..RESAMPLES).map(|_| share(both(&all.iter().map(|_| random.below(names.len().max(1))).collect::<Vec<_>>()))).collect();
+    let mut shares: Vec<f64> = (0..RESAMPLES)
+        .map(|_| {
+            share(both(&all.iter().map(|_| random.below(names.len().max(1))).collect::<Vec<_>>()))
+        })
+        .collect();
     shares.sort_by(f64::total_cmp);
     let at = |share: f64| shares[((RESAMPLES - 1) as f64 * share) as usize];
     let (from, to) = both(&all);
@@ -193,32 +247,52 @@ fn removed(before: &Certification, after: &Certification, quantities: &[usize], 
         low: at(0.05),
         high: at(0.95),
         variance_explained: {
-            let sum = |of: &Certification| -> f64 { quantities.iter().map(|at| squares(&of.quantities[*at])).sum() };
+            let sum = |of: &Certification| -> f64 {
+                quantities.iter().map(|at| squares(&of.quantities[*at])).sum()
+            };
             let from = sum(before);
             if from > 0.0 { 1.0 - sum(after) / from } else { 0.0 }
         },
     }
 }
 
-/// Sum of squared differences, each divided by the limit of their standard deviation; 0 without such a limit.
+/// Sum of squared differences, each divided by the limit of their standard deviation; 0 without
+/// such a limit.
 fn squares(quantity: &QuantityResult) -> f64 {
     let limit = limit_of(quantity, "std").filter(|limit| *limit > 0.0);
-    limit.map_or(0.0, |limit| quantity.values.iter().map(|value| (value.difference / limit).powi(2)).sum())
+    limit.map_or(0.0, |limit| {
+        quantity.values.iter().map(|value| (value.difference / limit).powi(2)).sum()
+    })
 }
 
-/// Root mean square change of a quantity's differences, divided by the limit of their standard deviation.
+/// Root mean square change of a quantity's differences, divided by the limit of their standard
+/// deviation.
 fn change(before: &QuantityResult, after: &QuantityResult) -> f64 {
     let Some(limit) = limit_of(before, "std").filter(|limit| *limit > 0.0) else { return 0.0 };
-    let squares: f64 = before.values.iter().zip(&after.values).map(|(a, b)| (a.difference - b.difference).powi(2)).sum();
+    let squares: f64 = before
+        .values
+        .iter()
+        .zip(&after.values)
+        .map(|(a, b)| (a.difference - b.difference).powi(2))
+        .sum();
     (squares / before.values.len().max(1) as f64).sqrt() / limit
 }
 
 fn limit_of(quantity: &QuantityResult, name: &str) -> Option<f64> {
-    quantity.statistics.iter().find(|statistic| statistic.name.starts_with(name)).and_then(|statistic| statistic.limit)
+    quantity
+        .statistics
+        .iter()
+        .find(|statistic| statistic.name.starts_with(name))
+        .and_then(|statistic| statistic.limit)
 }
 
 fn normalised(quantity: &QuantityResult, name: &str) -> Option<f64> {
-    quantity.statistics.iter().find(|statistic| statistic.name.starts_with(name)).and_then(|statistic| statistic.normalised).map(f64::abs)
+    quantity
+        .statistics
+        .iter()
+        .find(|statistic| statistic.name.starts_with(name))
+        .and_then(|statistic| statistic.normalised)
+        .map(f64::abs)
 }
 
 fn sum_of_squares(quantity: &QuantityResult) -> f64 {
@@ -232,24 +306,38 @@ fn explained(before: f64, after: f64, floor: f64) -> Option<f64> {
 }
 
 fn sections(of: &Certification) -> Vec<String> {
-    of.sections.iter().filter(|section| section.used).map(|section| section.section.clone()).collect()
+    of.sections
+        .iter()
+        .filter(|section| section.used)
+        .map(|section| section.section.clone())
+        .collect()
 }
 
-/// Root mean square of the normalised means and standard deviations of some quantities, over the drawn sections.
+/// Root mean square of the normalised means and standard deviations of some quantities, over the
+/// drawn sections.
 fn measure(of: &Certification, quantities: &[usize], names: &[String], drawn: &[usize]) -> f64 {
     let (mut sum, mut count) = (0.0, 0);
     for quantity in quantities.iter().map(|at| &of.quantities[*at]) {
         let values: Vec<f64> = drawn
             .iter()
-            .flat_map(|at| quantity.values.iter().filter(|value| value.section == names[*at]).map(|value| value.difference))
+            .flat_map(|at| {
+                quantity
+                    .values
+                    .iter()
+                    .filter(|value| value.section == names[*at])
+                    .map(|value| value.difference)
+            })
             .collect();
         let n = values.len() as f64;
         if values.len() < 2 {
             continue;
         }
         let mean = values.iter().sum::<f64>() / n;
-        let std = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
-        for (value, limit) in [(mean.abs(), limit_of(quantity, "mean")), (std, limit_of(quantity, "std"))] {
+        let std =
+            (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
+        for (value, limit) in
+            [(mean.abs(), limit_of(quantity, "mean")), (std, limit_of(quantity, "std"))]
+        {
             if let Some(limit) = limit.filter(|limit| *limit > 0.0) {
                 sum += (value / limit).powi(2);
                 count += 1;
@@ -259,20 +347,33 @@ fn measure(of: &Certification, quantities: &[usize], names: &[String], drawn: &[
     if count == 0 { 0.0 } else { (sum / f64::from(count)).sqrt() }
 }
 
-/// The part of the whitened difference that each member removes alone, as a share of what all remove together.
+/// The part of the whitened difference that each member removes alone, as a share of what all
+/// remove together.
 #[must_use]
 pub fn shares(found: &Found) -> Vec<(String, f64)> {
-    let all: f64 = found.answer.chosen.members.iter().map(|member| dot(&member.whitened, &member.whitened)).sum();
+    let all: f64 = found
+        .answer
+        .chosen
+        .members
+        .iter()
+        .map(|member| dot(&member.whitened, &member.whitened))
+        .sum();
     let share = |member: &Fitted| dot(&member.whitened, &member.whitened) / all.max(1e-300);
-    found.answer.chosen.members.iter().map(|member| (found.candidates[member.candidate].effect.clone(), share(member))).collect()
+    found
+        .answer
+        .chosen
+        .members
+        .iter()
+        .map(|member| (found.candidates[member.candidate].effect.clone(), share(member)))
+        .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// 25 to 5 is a reduction by four fifths; above a floor of 5 by all, above 4 by 20 of 21. With a floor of 25 nothing is to be
-    /// explained.
+    /// 25 to 5 is a reduction by four fifths; above a floor of 5 by all, above 4 by 20 of 21. With
+    /// a floor of 25 nothing is to be explained.
     #[test]
     fn what_noise_makes_is_not_to_be_explained() {
         assert_eq!(explained(25.0, 5.0, 0.0), Some(0.8));

@@ -1,4 +1,5 @@
-//! The verdict of a diagnosis: one table of rules over what was found, of which the first that applies decides.
+//! The verdict of a diagnosis: one table of rules over what was found, of which the first that
+//! applies decides.
 
 use crate::diagnose::levels::common::NINETY;
 use crate::diagnose::levels::verdict::{MISFIT, ROOMY};
@@ -39,13 +40,15 @@ pub struct Facts {
     /// Whether a channel differs by more than is allowed, or a trend or a sum of forces remains.
     pub lacking: bool,
     pub systematic: bool,
-    /// Whether most of the excess remains, a parameter outside the catalogue explains more, or an effect that the data contradict does.
+    /// Whether most of the excess remains, a parameter outside the catalogue explains more, or an
+    /// effect that the data contradict does.
     pub much_left: bool,
     /// Whether alternatives are as good, or another effect is better in many resamples.
     pub tied: bool,
     /// Whether the criteria of the protocol are not met without effects.
     pub protocol_fails: bool,
-    /// The gap on sections excluded from the fit that the effects remove, as a share; nothing where no quantity of the protocol feels them.
+    /// The gap on sections excluded from the fit that the effects remove, as a share; nothing where
+    /// no quantity of the protocol feels them.
     pub removed: Option<f64>,
     /// The same on the sections that the campaign holds out.
     pub held_out: Option<f64>,
@@ -79,23 +82,31 @@ const RULES: [Rule; 10] = [
     rule(
         |of| of.misfit > MISFIT,
         Verdict::Unexplained,
-        Some("With the named effects, the remaining differences are still larger than noise, tolerances and model discrepancy allow."),
+        Some(
+            "With the named effects, the remaining differences are still larger than noise, tolerances and model discrepancy allow.",
+        ),
     ),
     rule(
         |of| of.removed.is_some_and(|removed| removed <= 0.0),
         Verdict::Unexplained,
-        Some("The named effects improve the fit, but do not decrease the gap on sections excluded from the fit."),
+        Some(
+            "The named effects improve the fit, but do not decrease the gap on sections excluded from the fit.",
+        ),
     ),
     rule(
         |of| of.held_out.is_some_and(|removed| removed <= 0.0),
         Verdict::Unexplained,
-        Some("The named effects improve the fit, but do not decrease the gap on the sections that the campaign holds out."),
+        Some(
+            "The named effects improve the fit, but do not decrease the gap on the sections that the campaign holds out.",
+        ),
     ),
     rule(|of| of.tied, Verdict::Ambiguous, None),
     rule(
         |of| of.removed.is_none() && of.protocol_fails,
         Verdict::Explained,
-        Some("No quantity of the protocol depends on the named effects: they do not explain why its criteria are not met."),
+        Some(
+            "No quantity of the protocol depends on the named effects: they do not explain why its criteria are not met.",
+        ),
     ),
     rule(|_| true, Verdict::Explained, None),
 ];
@@ -113,8 +124,8 @@ pub fn fails(protocol: OfProtocol) -> bool {
     protocol == OfProtocol::NotValidated
 }
 
-/// The share of the gap that the effects remove on sections excluded from the fit: the larger of that of all quantities and of those that
-/// the effects change. Nothing where they change none.
+/// The share of the gap that the effects remove on sections excluded from the fit: the larger of
+/// that of all quantities and of those that the effects change. Nothing where they change none.
 #[must_use]
 pub fn removed(shrink: Option<&Shrink>) -> Option<f64> {
     let shrink = shrink?;
@@ -122,12 +133,23 @@ pub fn removed(shrink: Option<&Shrink>) -> Option<f64> {
     Some(shrink.fraction_removed.max(touched.fraction_removed))
 }
 
-/// How well the answer fits: chi-squared of all that is left, with the model error of the simulated effects allowed.
+/// How well the answer fits: chi-squared of all that is left, with the model error of the simulated
+/// effects allowed.
 #[must_use]
 pub fn fit(found: &Found) -> Fit {
     use statrs::distribution::{ChiSquared, ContinuousCDF};
-    let covariance = with_room(&found.allowed.beside.covariance, &found.candidates, &found.masks, &found.answer.chosen);
-    let rest = left(&found.candidates, &found.masks, &found.allowed.beside.difference, &found.answer.chosen);
+    let covariance = with_room(
+        &found.allowed.beside.covariance,
+        &found.candidates,
+        &found.masks,
+        &found.answer.chosen,
+    );
+    let rest = left(
+        &found.candidates,
+        &found.masks,
+        &found.allowed.beside.difference,
+        &found.answer.chosen,
+    );
     let z = covariance.whitener().apply(&rest);
     let features = z.len().max(1) as f64;
     let chi_squared: f64 = z.iter().map(|z| z * z).sum();
@@ -135,7 +157,12 @@ pub fn fit(found: &Found) -> Fit {
     let p_value = ChiSquared::new(freedom).map_or(f64::NAN, |law| law.sf(chi_squared));
     let per_feature = chi_squared / features;
     let scale = per_feature.sqrt();
-    Fit { chi2_per_feature: per_feature, p_value, allowance_scale: scale, allowance_scale_sd: scale / (2.0 * freedom).sqrt() }
+    Fit {
+        chi2_per_feature: per_feature,
+        p_value,
+        allowance_scale: scale,
+        allowance_scale_sd: scale / (2.0 * freedom).sqrt(),
+    }
 }
 
 /// A remark where what is allowed does not fit what is left.
@@ -179,12 +206,17 @@ mod tests {
         ] {
             assert_eq!(of(facts), Verdict::Unexplained, "{facts:?}");
         }
-        // An effect that no quantity of the protocol feels is not refuted by the protocol; that it does not explain it is said.
+        // An effect that no quantity of the protocol feels is not refuted by the protocol; that it
+        // does not explain it is said.
         let unfelt = Facts { removed: None, protocol_fails: true, ..answer };
         assert_eq!(of(unfelt), Verdict::Explained);
         assert!(verdict(&unfelt).1.is_some_and(|reason| reason.starts_with("No quantity")));
         assert_eq!(of(nothing), Verdict::NoSignificantGap);
-        for facts in [Facts { lacking: true, ..nothing }, Facts { faulty: true, ..nothing }, Facts { systematic: true, ..nothing }] {
+        for facts in [
+            Facts { lacking: true, ..nothing },
+            Facts { faulty: true, ..nothing },
+            Facts { systematic: true, ..nothing },
+        ] {
             assert_eq!(verdict(&facts), (Verdict::Unexplained, None), "{facts:?}");
         }
         let (within, reason) = verdict(&Facts { protocol_fails: true, ..nothing });
@@ -196,7 +228,12 @@ mod tests {
     fn allowances_far_from_what_is_left_are_told() {
         let of = |per_feature: f64| {
             let scale = per_feature.sqrt();
-            remark(&Fit { chi2_per_feature: per_feature, p_value: 0.5, allowance_scale: scale, allowance_scale_sd: scale / 20.0 })
+            remark(&Fit {
+                chi2_per_feature: per_feature,
+                p_value: 0.5,
+                allowance_scale: scale,
+                allowance_scale_sd: scale / 20.0,
+            })
         };
         assert!(of(1.0).is_none());
         assert!(of(7.8).is_some_and(|says| says.contains("2.79 \u{b1} 0.23 times as large")));

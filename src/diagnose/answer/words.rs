@@ -23,7 +23,9 @@ pub type Protocol = (OfProtocol, Option<OfProtocol>);
 /// The gap on held-out sections, in a sentence.
 fn on_held_out(held: &HeldOut) -> Option<String> {
     let (before, after, removed) = (held.before?, held.after?, 100.0 * held.fraction_removed?);
-    let interval = held.low.zip(held.high).map_or(String::new(), |(low, high)| format!(" ({:.0} to {:.0} %)", 100.0 * low, 100.0 * high));
+    let interval = held.low.zip(held.high).map_or(String::new(), |(low, high)| {
+        format!(" ({:.0} to {:.0} %)", 100.0 * low, 100.0 * high)
+    });
     let changes = if after <= before { "decreases" } else { "increases" };
     Some(format!(
         "On the {} sections held out by the campaign ({}) the gap {changes} from {before:.3} to {after:.3}: {removed:.0} % is removed{interval}.",
@@ -42,28 +44,43 @@ pub fn diagnosis(
     (shrink, held_out): (Option<Shrink>, HeldOut),
 ) -> Diagnosis {
     let (before, after) = chi(found);
-    let (unexplained_share, too_much) = unexplained(&found.answer.lack_before, &found.answer.lack_after);
-    // An outlying section does not refute an answer, but without an answer it is a significant difference.
+    let (unexplained_share, too_much) =
+        unexplained(&found.answer.lack_before, &found.answer.lack_after);
+    // An outlying section does not refute an answer, but without an answer it is a significant
+    // difference.
     let lacking = found.answer.lack_after.iter().any(|lack| lack.sigma_with_them > LACK);
     let ambiguous = ambiguity(inputs, found);
     let named = !found.answer.chosen.members.is_empty();
-    let invariants = crate::diagnose::localisation::invariants::invariants(inputs.settings, found, units);
-    let (mut trends, together) = crate::diagnose::localisation::trends::trends(inputs.settings, found, units);
+    let invariants =
+        crate::diagnose::localisation::invariants::invariants(inputs.settings, found, units);
+    let (mut trends, together) =
+        crate::diagnose::localisation::trends::trends(inputs.settings, found, units);
     let drifts = super::steady::drifts(inputs.settings, found);
     // A trend that is certain, however small its share of the gap.
     let left = crate::diagnose::localisation::trends::certain(&trends)
         || super::steady::certain(&drifts).is_some()
         || crate::diagnose::localisation::invariants::stays(&invariants).is_some();
-    // The smallest share of resamples in which a member has the most evidence, where that share is too small.
-    let least = found.answer.stability.iter().filter(|stability| stability.fails()).map(|stability| stability.first).reduce(f64::min);
+    // The smallest share of resamples in which a member has the most evidence, where that share is
+    // too small.
+    let least = found
+        .answer
+        .stability
+        .iter()
+        .filter(|stability| stability.fails())
+        .map(|stability| stability.first)
+        .reduce(f64::min);
     let fit = verdict::fit(found);
     let facts = Facts {
         named,
         faulty: !found.seen.faults.is_empty(),
         lacking,
         systematic: left,
-        much_left: too_much || found.answer.suspect.as_ref().is_some_and(Suspect::beats) || found.answer.contradicting.is_some(),
-        tied: found.answer.suspect.is_some() || least.is_some() || ambiguous.iter().any(|rival| rival.in_ambiguity_set),
+        much_left: too_much
+            || found.answer.suspect.as_ref().is_some_and(Suspect::beats)
+            || found.answer.contradicting.is_some(),
+        tied: found.answer.suspect.is_some()
+            || least.is_some()
+            || ambiguous.iter().any(|rival| rival.in_ambiguity_set),
         protocol_fails: verdict::fails(protocol.0),
         removed: verdict::removed(shrink.as_ref()),
         held_out: held_out.fraction_removed,
@@ -72,17 +89,31 @@ pub fn diagnosis(
     let (verdict, reason) = verdict::verdict(&facts);
     let mut causes = vec![];
     if named {
-        causes.push(Cause { evidence: found.answer.chosen.evidence, ..cause(inputs, found, &found.answer.chosen.members, 1) });
-        // Where the gap remains, the candidate with more evidence than the answer was refused. It is reported there and is not a rival.
+        causes.push(Cause {
+            evidence: found.answer.chosen.evidence,
+            ..cause(inputs, found, &found.answer.chosen.members, 1)
+        });
+        // Where the gap remains, the candidate with more evidence than the answer was refused. It
+        // is reported there and is not a rival.
         let best = causes[0].evidence;
-        causes.extend(ambiguous.into_iter().filter(|rival| verdict != Verdict::Unexplained || rival.evidence <= best));
+        causes.extend(
+            ambiguous
+                .into_iter()
+                .filter(|rival| verdict != Verdict::Unexplained || rival.evidence <= best),
+        );
         causes.iter_mut().enumerate().for_each(|(at, cause)| cause.rank = at + 1);
     }
     probabilities(&mut causes, verdict, found.answer.suspect.is_some(), least);
     let discriminating_measurement = discriminating(inputs, found, &causes, verdict);
     let radius = |key: &str| crate::diagnose::inputs::value_of(inputs.campaign, key);
-    let shapes = crate::diagnose::localisation::shapes::shapes(inputs.settings, &found.seen, &radius, inputs.seed);
-    let mut says = says(inputs, found, (verdict, left, reason), &causes, shrink.as_ref(), unexplained_share);
+    let shapes = crate::diagnose::localisation::shapes::shapes(
+        inputs.settings,
+        &found.seen,
+        &radius,
+        inputs.seed,
+    );
+    let mut says =
+        says(inputs, found, (verdict, left, reason), &causes, shrink.as_ref(), unexplained_share);
     says.extend(on_held_out(&held_out));
     let trends_tested = trends.len();
     trends.retain(|trend| trend.before.p_value.min(trend.after.p_value) < TOLD);
@@ -93,10 +124,24 @@ pub fn diagnosis(
         says.extend(crate::diagnose::localisation::shapes::worth_a_word(&shapes));
     }
     says.extend(neither(inputs, found, &causes, verdict));
-    let noted = found.runs.failed.iter().map(|failed| format!("a simulation failed and was excluded: {failed}"));
-    let left_out = found.seen.left_out.iter().map(|(section, reason)| format!("section {section} was excluded: {reason}"));
-    let again = found.seen.sections.iter().filter(|observed| observed.again).map(|observed| observed.section.name());
-    let again = again.map(|name| format!("section {name} repeats another section and is not counted twice"));
+    let noted = found
+        .runs
+        .failed
+        .iter()
+        .map(|failed| format!("a simulation failed and was excluded: {failed}"));
+    let left_out = found
+        .seen
+        .left_out
+        .iter()
+        .map(|(section, reason)| format!("section {section} was excluded: {reason}"));
+    let again = found
+        .seen
+        .sections
+        .iter()
+        .filter(|observed| observed.again)
+        .map(|observed| observed.section.name());
+    let again = again
+        .map(|name| format!("section {name} repeats another section and is not counted twice"));
     let mut notes: Vec<String> = noted.chain(left_out).chain(again).collect();
     let unknown = found.declared.unknown.iter();
     notes.extend(unknown.map(|name| format!("the catalogue has no tolerance `{name}`; the value that the campaign declares is not used")));
@@ -109,11 +154,17 @@ pub fn diagnosis(
     notes.extend(alone(found));
     notes.extend(verdict::remark(&fit));
     if !inputs.references.is_empty() {
-        let names: Vec<&str> = inputs.references.iter().map(|reference| reference.campaign.name.as_str()).collect();
-        notes.push(format!("the standing discrepancy of the simulation was estimated from: {}", names.join(", ")));
+        let names: Vec<&str> =
+            inputs.references.iter().map(|reference| reference.campaign.name.as_str()).collect();
+        notes.push(format!(
+            "the standing discrepancy of the simulation was estimated from: {}",
+            names.join(", ")
+        ));
     }
     if inputs.simulator.is_none() {
-        notes.push("no simulator could be run; only effects of the measuring chain were tested".into());
+        notes.push(
+            "no simulator could be run; only effects of the measuring chain were tested".into(),
+        );
     }
     Diagnosis {
         fishplate: env!("CARGO_PKG_VERSION"),
@@ -144,7 +195,9 @@ pub fn diagnosis(
         nearest: nearest(inputs, found),
         how: How {
             catalogue: inputs.catalogue.name.clone(),
-            simulator: inputs.simulator.map_or("none".into(), |simulator| simulator.name().to_string()),
+            simulator: inputs
+                .simulator
+                .map_or("none".into(), |simulator| simulator.name().to_string()),
             mode: "increments on the recorded simulation".into(),
             tolerances: tolerances.into(),
             sections: found.seen.sections.len(),
@@ -170,21 +223,40 @@ fn simulated_time(found: &Found) -> f64 {
 /// Outlying sections with the channels concerned.
 fn alone(found: &Found) -> Option<String> {
     let one = |at: usize| {
-        let mut channels: Vec<&str> =
-            found.answer.lack_after.iter().filter(|lack| lack.alone.contains(&at)).map(|lack| lack.channel.as_str()).collect();
+        let mut channels: Vec<&str> = found
+            .answer
+            .lack_after
+            .iter()
+            .filter(|lack| lack.alone.contains(&at))
+            .map(|lack| lack.channel.as_str())
+            .collect();
         channels.dedup();
-        (!channels.is_empty()).then(|| format!("{} in {}", found.seen.sections[at].section.name(), channels.join(", ")))
+        (!channels.is_empty()).then(|| {
+            format!("{} in {}", found.seen.sections[at].section.name(), channels.join(", "))
+        })
     };
     let all: Vec<String> = (0..found.seen.sections.len()).filter_map(one).collect();
     let told = !all.is_empty() && !found.answer.chosen.members.is_empty();
-    told.then(|| format!("individual outlying sections, which do not decide whether the gap is explained: {}", all.join("; ")))
+    told.then(|| {
+        format!(
+            "individual outlying sections, which do not decide whether the gap is explained: {}",
+            all.join("; ")
+        )
+    })
 }
 
 fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {
     let one = |refused: &crate::diagnose::inference::chosen::Refused| {
         let of = &found.candidates[refused.fitted.candidate];
-        let title = inputs.catalogue.effect(&of.effect).map_or(of.effect.as_str(), |effect| effect.title.as_str());
-        let on = if of.channels.is_empty() || of.channels.len() > 2 { String::new() } else { format!(" ({})", of.channels.join(", ")) };
+        let title = inputs
+            .catalogue
+            .effect(&of.effect)
+            .map_or(of.effect.as_str(), |effect| effect.title.as_str());
+        let on = if of.channels.is_empty() || of.channels.len() > 2 {
+            String::new()
+        } else {
+            format!(" ({})", of.channels.join(", "))
+        };
         Vetoed {
             name: of.effect.clone(),
             size: refused.fitted.size,
@@ -202,17 +274,32 @@ fn nearest(inputs: &Inputs<'_>, found: &Found) -> Vec<Nearest> {
         let of = &found.candidates[fit.candidate];
         let bar = found.rates.bars.least(of);
         let needed = if found.masks[fit.mask].asked_by.is_some() { 2.0 * bar } else { bar };
-        let away = deviations(&found.candidates[fit.candidate], fit.size, inputs.settings, &found.declared, true);
+        let away = deviations(
+            &found.candidates[fit.candidate],
+            fit.size,
+            inputs.settings,
+            &found.declared,
+            true,
+        );
         let wants = match () {
             () if fit.evidence < needed => format!("evidence of at least {needed:.1}"),
             () if away < TOLERANCE_SD => {
-                format!("larger deviation from the declared value: {away:.1} of {TOLERANCE_SD:.1} standard deviations")
+                format!(
+                    "larger deviation from the declared value: {away:.1} of {TOLERANCE_SD:.1} standard deviations"
+                )
             }
             // Candidates are tested one at a time, by evidence.
-            () if found.answer.chosen.members.is_empty() => "more evidence than the effect that was rejected in its place".into(),
+            () if found.answer.chosen.members.is_empty() => {
+                "more evidence than the effect that was rejected in its place".into()
+            }
             () => "a larger share of the named effects".into(),
         };
-        Nearest { effect: of.effect.clone(), says: cause(inputs, found, std::slice::from_ref(fit), 0).says, evidence: fit.evidence, wants }
+        Nearest {
+            effect: of.effect.clone(),
+            says: cause(inputs, found, std::slice::from_ref(fit), 0).says,
+            evidence: fit.evidence,
+            wants,
+        }
     };
     found.answer.nearest.iter().map(one).collect()
 }
@@ -225,7 +312,9 @@ fn says(
     shrink: Option<&Shrink>,
     unexplained: f64,
 ) -> Vec<String> {
-    let faulty = |fault: &Fault| format!("Fault of the recording: {} (sections {}).", fault.says, fault.sections.join(", "));
+    let faulty = |fault: &Fault| {
+        format!("Fault of the recording: {} (sections {}).", fault.says, fault.sections.join(", "))
+    };
     let mut lines: Vec<String> = found.seen.faults.iter().map(faulty).collect();
     match verdict {
         Verdict::NoSignificantGap => {
@@ -293,9 +382,16 @@ fn says(
             }
         }
     }
-    lines.extend(reason.map(str::to_string).filter(|reason| !lines.contains(reason)).into_iter().collect::<Vec<_>>());
+    lines.extend(
+        reason
+            .map(str::to_string)
+            .filter(|reason| !lines.contains(reason))
+            .into_iter()
+            .collect::<Vec<_>>(),
+    );
     if let Some(shrink) = shrink {
-        let (before, after, low, high) = (shrink.before, shrink.after, 100.0 * shrink.low, 100.0 * shrink.high);
+        let (before, after, low, high) =
+            (shrink.before, shrink.after, 100.0 * shrink.low, 100.0 * shrink.high);
         let removed = 100.0 * shrink.fraction_removed;
         lines.push(match removed < 0.0 {
             false => format!(

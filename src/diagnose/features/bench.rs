@@ -50,18 +50,26 @@ impl std::fmt::Debug for Bench<'_> {
 impl Bench<'_> {
     /// The settings that apply in a section.
     fn there(&self, section: usize) -> impl DoubleEndedIterator<Item = &Plan> {
-        self.set.iter().filter(move |set| set.sections.as_ref().is_none_or(|sections| sections[section])).map(|set| &set.plan)
+        self.set
+            .iter()
+            .filter(move |set| set.sections.as_ref().is_none_or(|sections| sections[section]))
+            .map(|set| &set.plan)
     }
 
     /// The value that is set for a parameter in a section, if any.
     #[must_use]
     pub fn value(&self, section: usize, key: &str) -> Option<f64> {
-        self.there(section).rev().flat_map(|plan| &plan.settings).find(|(known, _)| known == key).map(|(_, value)| *value)
+        self.there(section)
+            .rev()
+            .flat_map(|plan| &plan.settings)
+            .find(|(known, _)| known == key)
+            .map(|(_, value)| *value)
     }
 
     /// The operations on the signals of a section, in the order of the measuring chain.
     fn chain(&self, section: usize) -> Plan {
-        let mut operators: Vec<_> = self.there(section).flat_map(|plan| plan.operators.clone()).collect();
+        let mut operators: Vec<_> =
+            self.there(section).flat_map(|plan| plan.operators.clone()).collect();
         operators.sort_by_key(|(operator, ..)| *operator);
         Plan { operators, ..Plan::default() }
     }
@@ -78,13 +86,18 @@ impl Bench<'_> {
     ///
     /// # Errors
     /// The error of the first section that fails.
-    pub fn moved(&self, settings: &(dyn Fn(usize) -> Vec<(String, f64)> + Sync)) -> Result<Vec<f64>, Problem> {
+    pub fn moved(
+        &self,
+        settings: &(dyn Fn(usize) -> Vec<(String, f64)> + Sync),
+    ) -> Result<Vec<f64>, Problem> {
         let keys = self.set.iter().flat_map(|set| &set.plan.settings).map(|(key, _)| key);
         let each: Vec<Vec<(String, f64)>> = (0..self.seen.sections.len())
             .map(|at| {
                 let mut all = settings(at);
                 for key in keys.clone() {
-                    if let (Some(value), false) = (self.value(at, key), all.iter().any(|(known, _)| known == key)) {
+                    if let (Some(value), false) =
+                        (self.value(at, key), all.iter().any(|(known, _)| known == key))
+                    {
                         all.push((key.clone(), value));
                     }
                 }
@@ -98,19 +111,31 @@ impl Bench<'_> {
             };
             chain.operators.iter().map(of).collect::<Vec<_>>()
         };
-        let made_by: Vec<Vec<(String, f64)>> =
-            each.iter().zip(&chains).map(|(settings, chain)| [settings.clone(), operated(chain)].concat()).collect();
-        if let Some(known) = self.cache.as_ref().and_then(|cache| cache.get(self.seen.identity(), &made_by, self.seen.len())) {
+        let made_by: Vec<Vec<(String, f64)>> = each
+            .iter()
+            .zip(&chains)
+            .map(|(settings, chain)| [settings.clone(), operated(chain)].concat())
+            .collect();
+        if let Some(known) = self
+            .cache
+            .as_ref()
+            .and_then(|cache| cache.get(self.seen.identity(), &made_by, self.seen.len()))
+        {
             return Ok(known);
         }
         let run = |at: usize| {
-            let task =
-                Task { section: &self.seen.sections[at].section, settings: &each[at], shift: 0.0, inside_only: chains[at].shift() == 0.0 };
+            let task = Task {
+                section: &self.seen.sections[at].section,
+                settings: &each[at],
+                shift: 0.0,
+                inside_only: chains[at].shift() == 0.0,
+            };
             let mut signals = self.simulator.run(&task)?;
             chains[at].operate(&mut signals, task.section)?;
             Ok(self.seen.of(at, &signals, true))
         };
-        let parts: Result<Vec<Vec<f64>>, Problem> = (0..self.seen.sections.len()).into_par_iter().map(run).collect();
+        let parts: Result<Vec<Vec<f64>>, Problem> =
+            (0..self.seen.sections.len()).into_par_iter().map(run).collect();
         let features = parts?.concat();
         if let Some(cache) = &self.cache {
             cache.put(self.seen.identity(), &made_by, &features);

@@ -29,7 +29,9 @@ impl Cache {
     /// The key of an entry: what the features depend on, and the settings by section.
     fn key(&self, identity: &str, settings: &[Vec<(String, f64)>]) -> String {
         let mut key = format!("{}\n{identity}", self.of);
-        for (name, value) in settings.iter().flat_map(|of| of.iter().map(|(name, value)| (name.as_str(), *value)).chain([("", 0.0)])) {
+        for (name, value) in settings.iter().flat_map(|of| {
+            of.iter().map(|(name, value)| (name.as_str(), *value)).chain([("", 0.0)])
+        }) {
             key += &format!("\n{name}={:016x}", value.to_bits());
         }
         key
@@ -41,7 +43,12 @@ impl Cache {
 
     /// The cached features of a simulation, if present; `wanted` is their number.
     #[must_use]
-    pub fn get(&self, identity: &str, settings: &[Vec<(String, f64)>], wanted: usize) -> Option<Vec<f64>> {
+    pub fn get(
+        &self,
+        identity: &str,
+        settings: &[Vec<(String, f64)>],
+        wanted: usize,
+    ) -> Option<Vec<f64>> {
         let key = self.key(identity, settings);
         let path = self.path(&key);
         if let Ok(None) = disk::kind(&path) {
@@ -51,7 +58,9 @@ impl Cache {
             let (sealed, bytes) = bytes.split_at_checked(SEAL)?;
             let (chunks, rest) = bytes.as_chunks::<8>();
             let values: Vec<f64> = chunks.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect();
-            let whole = rest.is_empty() && values.len() == wanted && values.iter().all(|value| value.is_finite());
+            let whole = rest.is_empty()
+                && values.len() == wanted
+                && values.iter().all(|value| value.is_finite());
             (whole && sealed == seal(&key, bytes).as_bytes()).then_some(values)
         });
         if let (None, Ok(mut damaged)) = (&values, self.damaged.lock()) {
@@ -67,12 +76,15 @@ impl Cache {
         let first = damaged.iter().min()?.display().to_string();
         let says = match damaged.len() {
             1 => format!("the cached result `{first}` is damaged; it was computed again"),
-            count => format!("{count} cached results are damaged, among them `{first}`; they were computed again"),
+            count => format!(
+                "{count} cached results are damaged, among them `{first}`; they were computed again"
+            ),
         };
         Some(Problem::warning("cache-damaged", says))
     }
 
-    /// Stores the features of a simulation. A write error is ignored: the simulation is then repeated.
+    /// Stores the features of a simulation. A write error is ignored: the simulation is then
+    /// repeated.
     pub fn put(&self, identity: &str, settings: &[Vec<(String, f64)>], features: &[f64]) {
         let key = self.key(identity, settings);
         let bytes: Vec<u8> = features.iter().flat_map(|value| value.to_le_bytes()).collect();

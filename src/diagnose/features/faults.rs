@@ -13,8 +13,13 @@ pub fn faults(sections: &[Observed], channels: &[String]) -> Vec<Fault> {
         for observed in sections {
             let Some(measured) = inside(&observed.measured, channel, observed) else { continue };
             let Some(simulated) = inside(&observed.simulated, channel, observed) else { continue };
-            let fault = still(&measured, &simulated, observed.measured.rate).map(|says| ("dropout", says));
-            let Some((fault, says)) = fault.or_else(|| cut_off(&measured, &simulated).map(|says| ("clipping", says))) else { continue };
+            let fault =
+                still(&measured, &simulated, observed.measured.rate).map(|says| ("dropout", says));
+            let Some((fault, says)) =
+                fault.or_else(|| cut_off(&measured, &simulated).map(|says| ("clipping", says)))
+            else {
+                continue;
+            };
             match found.iter_mut().find(|known| known.channel == *channel && known.fault == fault) {
                 Some(known) => known.sections.push(observed.section.name().to_string()),
                 None => found.push(Fault {
@@ -30,11 +35,15 @@ pub fn faults(sections: &[Observed], channels: &[String]) -> Vec<Fault> {
 }
 
 fn inside(signals: &Signals, channel: &str, observed: &Observed) -> Option<Vec<f64>> {
-    crate::diagnose::features::observed::piece(signals, channel, &observed.section).map(|piece| piece.values)
+    crate::diagnose::features::observed::piece(signals, channel, &observed.section)
+        .map(|piece| piece.values)
 }
 
 fn range(values: &[f64]) -> f64 {
-    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(*value), high.max(*value))
+        });
     (high - low).max(0.0)
 }
 
@@ -51,19 +60,32 @@ fn still(measured: &[f64], simulated: &[f64], rate: f64) -> Option<String> {
     }
     let seconds = (longest.1 - longest.0) as f64 / rate;
     let meanwhile = simulated.get(longest.0..longest.1.min(simulated.len())).map_or(0.0, range);
-    (seconds >= STILL && meanwhile > MOVES * range(simulated) && meanwhile > 0.0)
-        .then(|| format!("keeps the value {} for {seconds:.1} s while the simulated signal varies", measured[longest.0]))
+    (seconds >= STILL && meanwhile > MOVES * range(simulated) && meanwhile > 0.0).then(|| {
+        format!(
+            "keeps the value {} for {seconds:.1} s while the simulated signal varies",
+            measured[longest.0]
+        )
+    })
 }
 
-/// Runs of samples at the extreme value. If the simulation does not exceed the bound, saturation cannot be detected.
+/// Runs of samples at the extreme value. If the simulation does not exceed the bound, saturation
+/// cannot be detected.
 fn cut_off(measured: &[f64], simulated: &[f64]) -> Option<String> {
     let most = measured.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let least = measured.iter().copied().fold(f64::INFINITY, f64::min);
-    let beyond = |bound: f64, over: bool| simulated.iter().any(|value| if over { *value > bound } else { *value < bound });
+    let beyond = |bound: f64, over: bool| {
+        simulated.iter().any(|value| if over { *value > bound } else { *value < bound })
+    };
     for (bound, over) in [(most, true), (least, false)] {
-        let rows = measured.chunk_by(|a, b| a.to_bits() == b.to_bits()).filter(|row| row[0] == bound && row.len() >= ROW).count();
+        let rows = measured
+            .chunk_by(|a, b| a.to_bits() == b.to_bits())
+            .filter(|row| row[0] == bound && row.len() >= ROW)
+            .count();
         if rows >= TIMES && range(measured) > 0.0 && beyond(bound, over) {
-            return Some(format!("is saturated: it does not go {} {bound}", if over { "above" } else { "below" }));
+            return Some(format!(
+                "is saturated: it does not go {} {bound}",
+                if over { "above" } else { "below" }
+            ));
         }
     }
     None
@@ -83,7 +105,9 @@ mod tests {
         let mut measured = simulated.clone();
         assert_eq!(still(&measured, &simulated, 200.0), None);
         measured[300..450].fill(1.25);
-        assert!(still(&measured, &simulated, 200.0).is_some_and(|says| says.contains("1.25 for 0.8 s")));
+        assert!(
+            still(&measured, &simulated, 200.0).is_some_and(|says| says.contains("1.25 for 0.8 s"))
+        );
         assert_eq!(still(&[2.0; 1000], &[3.0; 1000], 200.0), None);
     }
 
@@ -94,7 +118,8 @@ mod tests {
         assert!(cut_off(&measured, &simulated).is_some_and(|says| says.contains("above 7")));
         assert_eq!(cut_off(&simulated, &simulated), None);
         // The rounded signal has runs at its peaks, but at different values.
-        let rounded: Vec<f64> = simulated.iter().map(|value| (value * 100.0).round() / 100.0).collect();
+        let rounded: Vec<f64> =
+            simulated.iter().map(|value| (value * 100.0).round() / 100.0).collect();
         assert_eq!(cut_off(&rounded, &simulated), None);
     }
 }

@@ -1,7 +1,7 @@
 //! Features of a record: levels, band powers, gains and lags of its channels.
 //!
-//! Features of a channel depend on that channel alone, and on the simulated one for gains and lags. An operation on one channel
-//! therefore changes the features of that channel only.
+//! Features of a channel depend on that channel alone, and on the simulated one for gains and lags.
+//! An operation on one channel therefore changes the features of that channel only.
 
 use crate::diagnose::levels::features::{INVERTED, SPIKES};
 use crate::metrics::fourier;
@@ -19,7 +19,8 @@ pub struct Layout {
     pub furthest: f64,
 }
 
-/// To be changed whenever the definition of a feature changes: features in caches are then computed again.
+/// To be changed whenever the definition of a feature changes: features in caches are then computed
+/// again.
 pub const VERSION: &str = "levels are means; samples up to the highest band";
 
 /// The features of one channel.
@@ -51,7 +52,8 @@ pub enum Kind {
     Gain,
     /// Distance of the record behind the simulation, in the unit of the axis.
     Lag,
-    /// Coordinate of the difference of the records along the changes that the effects cause, sample by sample.
+    /// Coordinate of the difference of the records along the changes that the effects cause, sample
+    /// by sample.
     Increment(usize),
 }
 
@@ -105,9 +107,10 @@ pub struct Spectrum {
     padded: usize,
 }
 
-/// Winsorised mean (Dixon 1960): the lowest and the highest hundredth of the samples are replaced by the next value inside, so that single
-/// spikes have no influence. For an oscillating signal it scatters two to four times less than the median, since whole periods cancel.
-/// `None` of an empty slice.
+/// Winsorised mean (Dixon 1960): the lowest and the highest hundredth of the samples are replaced
+/// by the next value inside, so that single spikes have no influence. For an oscillating signal it
+/// scatters two to four times less than the median, since whole periods cancel. `None` of an empty
+/// slice.
 #[must_use]
 pub fn level(values: &[f64]) -> Option<f64> {
     let last = values.len().checked_sub(1)?;
@@ -115,12 +118,20 @@ pub fn level(values: &[f64]) -> Option<f64> {
     let mut sorted = values.to_vec();
     let (_, low, above) = sorted.select_nth_unstable_by(out, f64::total_cmp);
     let low = *low;
-    let high = if above.is_empty() { low } else { *above.select_nth_unstable_by((last - 2 * out).saturating_sub(1), f64::total_cmp).1 };
-    Some(values.iter().map(|value| value.clamp(low, high.max(low))).sum::<f64>() / values.len() as f64)
+    let high = if above.is_empty() {
+        low
+    } else {
+        *above.select_nth_unstable_by((last - 2 * out).saturating_sub(1), f64::total_cmp).1
+    };
+    Some(
+        values.iter().map(|value| value.clamp(low, high.max(low))).sum::<f64>()
+            / values.len() as f64,
+    )
 }
 
 impl Spectrum {
-    /// Spectrum with a Hann taper, padded to a power of two of at least twice the length, so that correlations do not wrap around.
+    /// Spectrum with a Hann taper, padded to a power of two of at least twice the length, so that
+    /// correlations do not wrap around.
     #[must_use]
     pub fn new(piece: &Piece) -> Self {
         let n = piece.values.len();
@@ -147,7 +158,12 @@ impl Spectrum {
         // The lengths are those of the plan: the call cannot fail.
         let _ = transform.process(&mut input, &mut output);
         let lines = output.into_iter().map(|line| (line.re, line.im)).collect();
-        Self { lines, width: piece.rate / padded as f64, scale: 2.0 / (power.max(1e-300) * padded as f64), padded }
+        Self {
+            lines,
+            width: piece.rate / padded as f64,
+            scale: 2.0 / (power.max(1e-300) * padded as f64),
+            padded,
+        }
     }
 
     fn range(&self, low: f64, high: f64) -> std::ops::Range<usize> {
@@ -159,22 +175,31 @@ impl Spectrum {
     /// Mean square between two frequencies in Hz.
     #[must_use]
     pub fn power(&self, low: f64, high: f64) -> f64 {
-        self.lines[self.range(low, high)].iter().map(|(re, im)| re * re + im * im).sum::<f64>() * self.scale
+        self.lines[self.range(low, high)].iter().map(|(re, im)| re * re + im * im).sum::<f64>()
+            * self.scale
     }
 
-    /// Regression of `self` on `reference` over a band: the gain, and the lag in samples of the largest correlation, of either sign.
+    /// Regression of `self` on `reference` over a band: the gain, and the lag in samples of the
+    /// largest correlation, of either sign.
     #[must_use]
     pub fn alike(&self, reference: &Self, band: (f64, f64), furthest: usize) -> (f64, f64) {
-        self.correlated(reference, band, furthest).map_or((0.0, 0.0), |alike| (alike.gain(), alike.lag()))
+        self.correlated(reference, band, furthest)
+            .map_or((0.0, 0.0), |alike| (alike.gain(), alike.lag()))
     }
 
-    /// The second-largest peak of the correlation as a share of the largest. Near 1, the lag is not unique, as for a slow periodic motion.
+    /// The second-largest peak of the correlation as a share of the largest. Near 1, the lag is not
+    /// unique, as for a slow periodic motion.
     #[must_use]
     pub fn next_best(&self, reference: &Self, band: (f64, f64), furthest: usize) -> f64 {
         self.correlated(reference, band, furthest).map_or(0.0, |alike| alike.next_best())
     }
 
-    fn correlated(&self, reference: &Self, (low, high): (f64, f64), furthest: usize) -> Option<Correlated> {
+    fn correlated(
+        &self,
+        reference: &Self,
+        (low, high): (f64, f64),
+        furthest: usize,
+    ) -> Option<Correlated> {
         if self.padded != reference.padded {
             return None;
         }
@@ -190,7 +215,11 @@ impl Spectrum {
         let mut values = inverse.make_output_vec();
         // The lengths are those of the plan: the call cannot fail.
         let _ = inverse.process(&mut cross, &mut values);
-        Some(Correlated { values, own, furthest: (furthest as i64).min(self.padded as i64 / 2 - 2) })
+        Some(Correlated {
+            values,
+            own,
+            furthest: (furthest as i64).min(self.padded as i64 / 2 - 2),
+        })
     }
 }
 
@@ -214,10 +243,16 @@ impl Correlated {
 
     /// The lag of the largest correlation, and -1 if that is negative.
     fn best(&self) -> (i64, f64) {
-        let signed = |sign: f64| move |a: &i64, b: &i64| (sign * self.at(*a)).total_cmp(&(sign * self.at(*b)));
+        let signed = |sign: f64| {
+            move |a: &i64, b: &i64| (sign * self.at(*a)).total_cmp(&(sign * self.at(*b)))
+        };
         let most = |sign: f64| (-self.furthest..=self.furthest).max_by(signed(sign)).unwrap_or(0);
         let (upright, inverted) = (most(1.0), most(-1.0));
-        if -self.at(inverted) > INVERTED * self.at(upright) { (inverted, -1.0) } else { (upright, 1.0) }
+        if -self.at(inverted) > INVERTED * self.at(upright) {
+            (inverted, -1.0)
+        } else {
+            (upright, 1.0)
+        }
     }
 
     /// The same, interpolated between samples.
@@ -231,9 +266,15 @@ impl Correlated {
     fn next_best(&self) -> f64 {
         let (best, sign) = self.best();
         let beyond = |by: i64| {
-            let lags = move || std::iter::successors(Some(best), move |lag| Some(lag + by)).take_while(|lag| lag.abs() <= self.furthest);
+            let lags = move || {
+                std::iter::successors(Some(best), move |lag| Some(lag + by))
+                    .take_while(|lag| lag.abs() <= self.furthest)
+            };
             // Skip the peak: down to where the correlation rises again.
-            let down = lags().zip(lags().skip(1)).take_while(|(a, b)| sign * self.at(*b) < sign * self.at(*a)).count();
+            let down = lags()
+                .zip(lags().skip(1))
+                .take_while(|(a, b)| sign * self.at(*b) < sign * self.at(*a))
+                .count();
             lags().skip(down).map(|lag| sign * self.at(lag)).fold(0.0, f64::max)
         };
         (beyond(-1).max(beyond(1)) / (sign * self.at(best)).max(1e-300)).min(1.0)
@@ -242,9 +283,17 @@ impl Correlated {
 
 /// Appends the features of one channel, in the order of [`Layout::features`].
 ///
-/// `reference` is the spectrum of the simulated channel. `noise` is the standard deviation per sample of white noise whose power is added,
-/// in the unit of the channel. `shift` is the distance of the piece's axis behind that of the reference.
-pub fn of_channel(layout: &Layout, of: &ChannelFeatures, piece: &Piece, reference: Option<&Spectrum>, noise: f64, out: &mut Vec<f64>) {
+/// `reference` is the spectrum of the simulated channel. `noise` is the standard deviation per
+/// sample of white noise whose power is added, in the unit of the channel. `shift` is the distance
+/// of the piece's axis behind that of the reference.
+pub fn of_channel(
+    layout: &Layout,
+    of: &ChannelFeatures,
+    piece: &Piece,
+    reference: Option<&Spectrum>,
+    noise: f64,
+    out: &mut Vec<f64>,
+) {
     if of.level {
         out.push(level(&piece.values).unwrap_or(0.0));
     }
@@ -259,7 +308,11 @@ pub fn of_channel(layout: &Layout, of: &ChannelFeatures, piece: &Piece, referenc
     }
     if of.alike {
         let (gain, lag) = match reference {
-            Some(reference) => spectrum.alike(reference, layout.alike, (layout.furthest / piece.step.max(1e-9)) as usize),
+            Some(reference) => spectrum.alike(
+                reference,
+                layout.alike,
+                (layout.furthest / piece.step.max(1e-9)) as usize,
+            ),
             None => (1.0, 0.0),
         };
         out.push(gain);
@@ -272,7 +325,11 @@ mod tests {
     use super::*;
 
     fn sine(frequency: f64, amplitude: f64, delay: usize) -> Piece {
-        let values = (0..2000).map(|n| amplitude * (std::f64::consts::TAU * frequency * (n as f64 - delay as f64) / 200.0).sin() + 3.0);
+        let values = (0..2000).map(|n| {
+            amplitude
+                * (std::f64::consts::TAU * frequency * (n as f64 - delay as f64) / 200.0).sin()
+                + 3.0
+        });
         Piece { values: values.collect(), rate: 200.0, step: 0.1 }
     }
 
@@ -302,12 +359,14 @@ mod tests {
         let again = long.next_best(&long, (0.5, 8.0), 400);
         // The Hann taper over 10 s, correlated with itself at a lag of 1 s.
         let tapered = |n: usize| (std::f64::consts::PI * (n as f64 + 0.5) / 2000.0).sin().powi(2);
-        let wanted = (0..1800).map(|n| tapered(n) * tapered(n + 200)).sum::<f64>() / (0..2000).map(|n| tapered(n).powi(2)).sum::<f64>();
+        let wanted = (0..1800).map(|n| tapered(n) * tapered(n + 200)).sum::<f64>()
+            / (0..2000).map(|n| tapered(n).powi(2)).sum::<f64>();
         assert!((again - wanted).abs() < 0.01, "{again} for {wanted}");
         assert_eq!(long.next_best(&long, (0.5, 8.0), 60), 0.0);
     }
 
-    /// 200 values of which two at either end are replaced: 2, 2, 2, 3, ..., 197, 197, 197; their own values have no influence.
+    /// 200 values of which two at either end are replaced: 2, 2, 2, 3, ..., 197, 197, 197; their
+    /// own values have no influence.
     #[test]
     fn levels() {
         let mut values: Vec<f64> = (0..200).map(f64::from).collect();

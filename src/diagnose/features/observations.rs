@@ -9,7 +9,9 @@ use crate::data::hash::sha256;
 use crate::data::{Campaign, RecordKind};
 use crate::diagnose::features::faults::faults;
 use crate::diagnose::features::increments::{Increments, Limit};
-use crate::diagnose::features::layout::{ChannelFeatures, Feature, Kind, Layout, Spectrum, VERSION, of_channel};
+use crate::diagnose::features::layout::{
+    ChannelFeatures, Feature, Kind, Layout, Spectrum, VERSION, of_channel,
+};
 use crate::diagnose::features::observed::{Observed, piece};
 use crate::diagnose::features::scatter::{Scatter, scatter};
 use crate::diagnose::levels::observations::ROUNDED;
@@ -37,8 +39,8 @@ pub struct Observations {
 }
 
 impl Observations {
-    /// Reads the records of a campaign in the units given by `unit`, else in those of the simulation, and finds the channels that both
-    /// sides have.
+    /// Reads the records of a campaign in the units given by `unit`, else in those of the
+    /// simulation, and finds the channels that both sides have.
     ///
     /// Problems: no section can be read; no channel of the catalogue is in the records.
     pub fn read(
@@ -70,13 +72,20 @@ impl Observations {
             }
         }
         if good.is_empty() {
-            let reason = left_out.first().map_or(String::new(), |(section, reason)| format!("; section `{section}`: {reason}"));
-            problems.push(Problem::error("no-sections", format!("no section of the campaign can be compared{reason}")));
+            let reason = left_out.first().map_or(String::new(), |(section, reason)| {
+                format!("; section `{section}`: {reason}")
+            });
+            problems.push(Problem::error(
+                "no-sections",
+                format!("no section of the campaign can be compared{reason}"),
+            ));
             return None;
         }
         let mut sections: Vec<Observed> = Vec::new();
         for (section, simulated, measured) in good {
-            let again = section.fact("repeat of").is_some_and(|of| sections.iter().any(|known| known.section.name() == of))
+            let again = section
+                .fact("repeat of")
+                .is_some_and(|of| sections.iter().any(|known| known.section.name() == of))
                 || sections.iter().any(|known| known.measured.channels == measured.channels);
             sections.push(Observed {
                 section,
@@ -88,16 +97,28 @@ impl Observations {
                 again,
             });
         }
-        let mut layout = Layout { channels: Vec::new(), edges: settings.edges.clone(), alike: settings.alike, furthest: settings.furthest };
-        let everywhere = |name: &String| {
-            sections.iter().all(|observed| observed.simulated.channel(name).is_some() && observed.measured.channel(name).is_some())
+        let mut layout = Layout {
+            channels: Vec::new(),
+            edges: settings.edges.clone(),
+            alike: settings.alike,
+            furthest: settings.furthest,
         };
-        let channels = |group: &GroupFeatures| catalogue.channels(&group.name).unwrap_or_default().into_iter().filter(everywhere);
+        let everywhere = |name: &String| {
+            sections.iter().all(|observed| {
+                observed.simulated.channel(name).is_some()
+                    && observed.measured.channel(name).is_some()
+            })
+        };
+        let channels = |group: &GroupFeatures| {
+            catalogue.channels(&group.name).unwrap_or_default().into_iter().filter(everywhere)
+        };
         let all: Vec<String> = settings.groups.iter().flat_map(&channels).collect();
         let faults = faults(&sections, &all);
         let mut noise = Vec::new();
         for (at, group) in settings.groups.iter().enumerate() {
-            for name in channels(group).filter(|name| faults.iter().all(|fault| fault.channel != *name)) {
+            for name in
+                channels(group).filter(|name| faults.iter().all(|fault| fault.channel != *name))
+            {
                 noise.push(group.noise.as_deref().and_then(declared).unwrap_or(0.0));
                 let bands = group.bands.min(settings.edges.len().saturating_sub(1));
                 layout.channels.push(ChannelFeatures {
@@ -112,9 +133,16 @@ impl Observations {
             }
         }
         if layout.channels.is_empty() {
-            let known: Vec<String> = catalogue.groups.iter().flat_map(|group| group.channels.clone()).collect();
-            let says = format!("no channel of the catalogue `{}` is in both records of every section", catalogue.name);
-            problems.push(Problem::error("no-channels", says).help(format!("the catalogue lists {}", known.join(", "))));
+            let known: Vec<String> =
+                catalogue.groups.iter().flat_map(|group| group.channels.clone()).collect();
+            let says = format!(
+                "no channel of the catalogue `{}` is in both records of every section",
+                catalogue.name
+            );
+            problems.push(
+                Problem::error("no-channels", says)
+                    .help(format!("the catalogue lists {}", known.join(", "))),
+            );
             return None;
         }
         if let Some(problem) = above_nyquist(catalogue, &layout, &sections) {
@@ -123,23 +151,34 @@ impl Observations {
         }
         let features = layout.features();
         sections.par_iter_mut().enumerate().for_each(|(at, observed)| {
-            let of = |signals: &Signals, of: &ChannelFeatures| piece(signals, &of.name, &observed.section);
-            let spectrum = |channel: &ChannelFeatures| of(&observed.simulated, channel).map(|piece| Spectrum::new(&piece));
+            let of = |signals: &Signals, of: &ChannelFeatures| {
+                piece(signals, &of.name, &observed.section)
+            };
+            let spectrum = |channel: &ChannelFeatures| {
+                of(&observed.simulated, channel).map(|piece| Spectrum::new(&piece))
+            };
             observed.references = layout.channels.iter().map(spectrum).collect();
             let scatter = |(channel, reference): (&ChannelFeatures, &Option<Spectrum>)| {
-                let (measured, simulated) = of(&observed.measured, channel).zip(of(&observed.simulated, channel))?;
+                let (measured, simulated) =
+                    of(&observed.measured, channel).zip(of(&observed.simulated, channel))?;
                 Some(scatter(&layout, &measured, &simulated, reference.as_ref()?, at as u64))
             };
             let both = layout.channels.iter().zip(&observed.references);
-            observed.scatter = both.map(|both| scatter(both).unwrap_or(Scatter { level: 0.0, has_lag: false })).collect();
+            observed.scatter = both
+                .map(|both| scatter(both).unwrap_or(Scatter { level: 0.0, has_lag: false }))
+                .collect();
         });
         Some(Self { layout, features, sections, noise, left_out, faults, hashed: OnceLock::new() })
     }
 
-    /// Adds the comparison sample by sample, for the channels of some groups. `with` are the signals of each section with each effect.
+    /// Adds the comparison sample by sample, for the channels of some groups. `with` are the
+    /// signals of each section with each effect.
     pub fn compare_samples(&mut self, groups: &[bool], with: &[Vec<Signals>]) {
         let channels = &mut self.layout.channels;
-        channels.iter_mut().filter(|channel| groups[channel.group]).for_each(|channel| channel.increments = with.len());
+        channels
+            .iter_mut()
+            .filter(|channel| groups[channel.group])
+            .for_each(|channel| channel.increments = with.len());
         let (channels, edges) = (&self.layout.channels, &self.layout.edges);
         self.sections.par_iter_mut().enumerate().for_each(|(at, observed)| {
             let of = |channel: &ChannelFeatures| {
@@ -147,11 +186,23 @@ impl Observations {
                     return None;
                 }
                 let values = |signals: &Signals| on_axis(observed, signals, &channel.name);
-                let (simulated, measured) = (values(&observed.simulated), values(&observed.measured));
-                let change = |with: &Vec<Signals>| values(&with[at]).iter().zip(&simulated).map(|(with, base)| with - base).collect();
+                let (simulated, measured) =
+                    (values(&observed.simulated), values(&observed.measured));
+                let change = |with: &Vec<Signals>| {
+                    values(&with[at])
+                        .iter()
+                        .zip(&simulated)
+                        .map(|(with, base)| with - base)
+                        .collect()
+                };
                 let highest = if channel.bands > 0 { edges.get(channel.bands) } else { None };
                 let limit = highest.and_then(|edge| Limit::new(observed.simulated.rate, *edge));
-                Increments::new(&with.iter().map(change).collect::<Vec<_>>(), &simulated, &measured, limit)
+                Increments::new(
+                    &with.iter().map(change).collect::<Vec<_>>(),
+                    &simulated,
+                    &measured,
+                    limit,
+                )
             };
             observed.increments = channels.iter().map(of).collect();
         });
@@ -159,16 +210,35 @@ impl Observations {
         self.hashed = OnceLock::new();
     }
 
-    /// What the features of a simulated record depend on besides the record: under another identity, kept features are not valid.
+    /// What the features of a simulated record depend on besides the record: under another
+    /// identity, kept features are not valid.
     #[must_use]
     pub fn identity(&self) -> &str {
         self.hashed.get_or_init(|| {
-            let named =
-                |observed: &Observed| format!("{} {:?} {:?}", observed.section.name(), observed.section.start, observed.section.end);
+            let named = |observed: &Observed| {
+                format!(
+                    "{} {:?} {:?}",
+                    observed.section.name(),
+                    observed.section.start,
+                    observed.section.end
+                )
+            };
             let sections: Vec<String> = self.sections.iter().map(named).collect();
-            let of = |increments: &Option<Increments>| increments.as_ref().map_or(String::new(), Increments::identity);
-            let samples: Vec<String> = self.sections.iter().flat_map(|observed| observed.increments.iter().map(of)).collect();
-            sha256(format!("{VERSION}\n{:?}\n{:?}\n{sections:?}\n{samples:?}", self.layout, self.noise).as_bytes())
+            let of = |increments: &Option<Increments>| {
+                increments.as_ref().map_or(String::new(), Increments::identity)
+            };
+            let samples: Vec<String> = self
+                .sections
+                .iter()
+                .flat_map(|observed| observed.increments.iter().map(of))
+                .collect();
+            sha256(
+                format!(
+                    "{VERSION}\n{:?}\n{:?}\n{sections:?}\n{samples:?}",
+                    self.layout, self.noise
+                )
+                .as_bytes(),
+            )
         })
     }
 
@@ -189,7 +259,8 @@ impl Observations {
         self.len() == 0
     }
 
-    /// Features of the signals of a section. `noisy` adds the power of the declared noise, which simulated signals do not contain.
+    /// Features of the signals of a section. `noisy` adds the power of the declared noise, which
+    /// simulated signals do not contain.
     #[must_use]
     pub fn of(&self, at: usize, signals: &Signals, noisy: bool) -> Vec<f64> {
         let mut out = Vec::with_capacity(self.features.len());
@@ -200,7 +271,14 @@ impl Observations {
     }
 
     /// Features of one channel of a section.
-    pub fn of_channel(&self, at: usize, signals: &Signals, channel: usize, noisy: bool, out: &mut Vec<f64>) {
+    pub fn of_channel(
+        &self,
+        at: usize,
+        signals: &Signals,
+        channel: usize,
+        noisy: bool,
+        out: &mut Vec<f64>,
+    ) {
         let observed = &self.sections[at];
         let of = &self.layout.channels[channel];
         let before = out.len();
@@ -211,7 +289,11 @@ impl Observations {
         let wanted = self.features.iter().filter(|feature| feature.channel == channel).count();
         out.resize(before + wanted - of.increments, 0.0);
         let increments = observed.increments.get(channel).and_then(Option::as_ref);
-        out.extend(increments.and_then(|of_it| of_it.of(&on_axis(observed, signals, &of.name))).unwrap_or_default());
+        out.extend(
+            increments
+                .and_then(|of_it| of_it.of(&on_axis(observed, signals, &of.name)))
+                .unwrap_or_default(),
+        );
         out.resize(before + wanted, 0.0);
     }
 
@@ -232,7 +314,12 @@ impl Observations {
     #[must_use]
     pub fn extent(&self, at: usize) -> (f64, f64) {
         let observed = &self.sections[at];
-        let inside = observed.measured.axis.iter().filter(|x| **x >= observed.section.start && **x <= observed.section.end).count();
+        let inside = observed
+            .measured
+            .axis
+            .iter()
+            .filter(|x| **x >= observed.section.start && **x <= observed.section.end)
+            .count();
         (observed.measured.rate, inside as f64 / observed.measured.rate)
     }
 
@@ -243,7 +330,8 @@ impl Observations {
     }
 }
 
-/// A channel at the positions of the simulated record inside the section, linear between its own samples.
+/// A channel at the positions of the simulated record inside the section, linear between its own
+/// samples.
 fn on_axis(observed: &Observed, signals: &Signals, name: &str) -> Vec<f64> {
     let Some(channel) = signals.channel(name) else { return Vec::new() };
     let inside = |x: &&f64| (observed.section.start..=observed.section.end).contains(*x);
@@ -253,40 +341,57 @@ fn on_axis(observed: &Observed, signals: &Signals, name: &str) -> Vec<f64> {
 }
 
 /// Simulated and measured signals in the same units: those of `unit`, else of the simulation.
-fn both_sides(campaign: &Campaign, section: &Section, unit: &dyn Fn(&str) -> Option<Unit>) -> Result<(Signals, Signals), Problem> {
+fn both_sides(
+    campaign: &Campaign,
+    section: &Section,
+    unit: &dyn Fn(&str) -> Option<Unit>,
+) -> Result<(Signals, Signals), Problem> {
     let side = |kind| recorded_inside(campaign, kind, section).map_err(first);
     let (mut simulated, units) = side(RecordKind::Simulation)?;
     let (mut measured, others) = side(RecordKind::Measurement)?;
-    let to = |name: &str| unit(name).or_else(|| units.iter().find(|(known, _)| known == name).map(|(_, unit)| unit.clone()));
+    let to = |name: &str| {
+        unit(name)
+            .or_else(|| units.iter().find(|(known, _)| known == name).map(|(_, unit)| unit.clone()))
+    };
     in_units(&mut simulated, &units, &to)?;
     in_units(&mut measured, &others, &to)?;
     Ok((simulated, measured))
 }
 
 fn first(problems: Vec<Problem>) -> Problem {
-    problems.into_iter().next().unwrap_or_else(|| Problem::error("unreadable", "the record cannot be read"))
+    problems
+        .into_iter()
+        .next()
+        .unwrap_or_else(|| Problem::error("unreadable", "the record cannot be read"))
 }
 
-/// A band that is a feature, or the band of gain and lag, that ends above half the lowest sampling rate: its power would be that of the
-/// band's lower part, or of nothing.
+/// A band that is a feature, or the band of gain and lag, that ends above half the lowest sampling
+/// rate: its power would be that of the band's lower part, or of nothing.
 fn above_nyquist(catalogue: &Catalogue, layout: &Layout, sections: &[Observed]) -> Option<Problem> {
     let rates = |observed: &Observed| [observed.measured.rate, observed.simulated.rate];
     let slowest = |observed: &&Observed| rates(observed)[0].min(rates(observed)[1]);
     let observed = sections.iter().min_by(|a, b| slowest(a).total_cmp(&slowest(b)))?;
     let [measured, simulated] = rates(observed);
-    let (rate, side) = if simulated < measured { (simulated, "simulation") } else { (measured, "measurement") };
+    let (rate, side) =
+        if simulated < measured { (simulated, "simulation") } else { (measured, "measurement") };
     let bands = layout.channels.iter().map(|channel| channel.bands).max().unwrap_or(0);
     let used = layout.edges.iter().enumerate().take(if bands > 0 { bands + 1 } else { 0 });
-    let written = |key: &str, at: usize| Some(catalogue.diagnosis.as_ref()?.get(key)?.items().get(at)?.span.clone());
+    let written = |key: &str, at: usize| {
+        Some(catalogue.diagnosis.as_ref()?.get(key)?.items().get(at)?.span.clone())
+    };
     let alike = layout.channels.iter().any(|channel| channel.alike).then_some(layout.alike.1);
-    let all = used.map(|(at, edge)| (*edge, written("bands", at))).chain(alike.map(|edge| (edge, written("alike", 1))));
-    let (edge, at) = all.into_iter().find(|(edge, at)| *edge > 0.5 * rate * (1.0 + ROUNDED) && at.is_some())?;
+    let all = used
+        .map(|(at, edge)| (*edge, written("bands", at)))
+        .chain(alike.map(|edge| (edge, written("alike", 1))));
+    let (edge, at) =
+        all.into_iter().find(|(edge, at)| *edge > 0.5 * rate * (1.0 + ROUNDED) && at.is_some())?;
     let says = format!(
         "a band ends at {edge} Hz, but the {side} of section `{}` has {} samples a second: above {} Hz it has no content",
         observed.section.name(),
         whole(rate),
         0.5 * whole(rate)
     );
-    let problem = Problem::error("band-above-nyquist", says).help("end the bands below half the sampling rate");
+    let problem = Problem::error("band-above-nyquist", says)
+        .help("end the bands below half the sampling rate");
     Some(at.map_or(problem.clone(), |at| problem.at(&at)))
 }

@@ -6,7 +6,11 @@ use crate::diagnose::settings::Settings;
 /// The stratum of a section.
 #[must_use]
 pub fn stratum_of<'a>(seen: &'a Observations, settings: &Settings, section: usize) -> &'a str {
-    settings.stratum.as_deref().and_then(|column| seen.sections[section].section.fact(column)).unwrap_or("")
+    settings
+        .stratum
+        .as_deref()
+        .and_then(|column| seen.sections[section].section.fact(column))
+        .unwrap_or("")
 }
 
 /// Sections by stratum, in the order in which strata first appear.

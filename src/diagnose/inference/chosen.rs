@@ -17,7 +17,8 @@ pub struct Bars {
     pub exact: f64,
     /// Additional evidence required of a confinement.
     pub confined: f64,
-    /// Least distance from neutral of an effect on a tolerated parameter, in declared standard deviations.
+    /// Least distance from neutral of an effect on a tolerated parameter, in declared standard
+    /// deviations.
     pub tolerance_sd: f64,
     pub most: usize,
 }
@@ -30,7 +31,8 @@ impl Bars {
     }
 }
 
-/// A set of effects fitted together, and the residual. `fall` and `evidence` of a member are what the set loses without it.
+/// A set of effects fitted together, and the residual. `fall` and `evidence` of a member are what
+/// the set loses without it.
 #[derive(Clone, Debug)]
 pub struct Chosen {
     pub members: Vec<Fitted>,
@@ -58,7 +60,9 @@ impl Judged {
     pub fn refused(self, fitted: Fitted) -> Option<Refused> {
         let contradicted = matches!(self, Self::Contradicted(_));
         match self {
-            Self::Refused(reason) | Self::Contradicted(reason) => Some(Refused { fitted, reason, contradicted }),
+            Self::Refused(reason) | Self::Contradicted(reason) => {
+                Some(Refused { fitted, reason, contradicted })
+            }
             Self::Sound | Self::Doubtful => None,
         }
     }
@@ -131,27 +135,45 @@ pub fn unconfine(fitter: &Fitter<'_>, rest: &[f64], fit: &mut Fitted, bars: &Bar
 pub fn undone(chosen: &Chosen) -> Option<usize> {
     let (last, others) = chosen.members.split_last()?;
     let length = |member: &Fitted| dot(&member.whitened, &member.whitened).sqrt();
-    others.iter().position(|other| dot(&other.whitened, &last.whitened) < UNDONE * length(other) * length(last))
+    others.iter().position(|other| {
+        dot(&other.whitened, &last.whitened) < UNDONE * length(other) * length(last)
+    })
 }
 
-/// Whether the same cause is a member already: another size of the same effect on the same channels, or of an inverted channel.
+/// Whether the same cause is a member already: another size of the same effect on the same
+/// channels, or of an inverted channel.
 #[must_use]
 pub fn taken(fitter: &Fitter<'_>, chosen: &Chosen, fit: &Fitted) -> bool {
     let of = &fitter.candidates[fit.candidate];
     chosen.members.iter().any(|member| {
         let known = &fitter.candidates[member.candidate];
-        let turned = known.exact && of.exact && (known.discrete || of.discrete) && known.channels == of.channels;
-        turned || known.effect == of.effect && (known.channels == of.channels || of.channels.is_empty())
+        let turned = known.exact
+            && of.exact
+            && (known.discrete || of.discrete)
+            && known.channels == of.channels;
+        turned
+            || known.effect == of.effect
+                && (known.channels == of.channels || of.channels.is_empty())
     })
 }
 
-/// The candidates with the most evidence for the residual, one per effect; neither members nor refused.
+/// The candidates with the most evidence for the residual, one per effect; neither members nor
+/// refused.
 #[must_use]
 pub fn nearest(fitter: &Fitter<'_>, chosen: &Chosen, refused: &[Refused]) -> Vec<Fitted> {
     let mut fits = fitter.all(&chosen.weighed());
     let effect = |fit: &Fitted| fitter.candidates[fit.candidate].effect.as_str();
-    let known: Vec<&str> = chosen.members.iter().chain(refused.iter().map(|refused| &refused.fitted)).map(effect).collect();
-    fits.retain(|fit| fit.evidence >= TELLING && plausible(&fitter.candidates[fit.candidate], fit.size) && !known.contains(&effect(fit)));
+    let known: Vec<&str> = chosen
+        .members
+        .iter()
+        .chain(refused.iter().map(|refused| &refused.fitted))
+        .map(effect)
+        .collect();
+    fits.retain(|fit| {
+        fit.evidence >= TELLING
+            && plausible(&fitter.candidates[fit.candidate], fit.size)
+            && !known.contains(&effect(fit))
+    });
     fits.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     let mut told: Vec<Fitted> = Vec::new();
     for fit in fits {
@@ -162,10 +184,14 @@ pub fn nearest(fitter: &Fitter<'_>, chosen: &Chosen, refused: &[Refused]) -> Vec
     told
 }
 
-/// A refused candidate with contradictory views that has more evidence for the residual than any member: a difference is present that no
-/// effect explains.
+/// A refused candidate with contradictory views that has more evidence for the residual than any
+/// member: a difference is present that no effect explains.
 #[must_use]
-pub fn contradicting(fitter: &Fitter<'_>, chosen: &Chosen, refused: &[Refused]) -> Option<(Refused, f64)> {
+pub fn contradicting(
+    fitter: &Fitter<'_>,
+    chosen: &Chosen,
+    refused: &[Refused],
+) -> Option<(Refused, f64)> {
     let most = chosen.members.iter().map(|member| member.evidence).reduce(f64::max)?;
     let fits = refused.iter().filter(|refused| refused.contradicted).filter_map(|refused| {
         let left = fitter.fit(&chosen.weighed(), refused.fitted.candidate, refused.fitted.mask)?;
@@ -189,8 +215,8 @@ mod tests {
     use crate::diagnose::uncertainty::response::ResponseError;
     use crate::diagnose::uncertainty::whiten::Covariance;
 
-    /// Ten sections of two features of unit variance: one differs by 2, which a member explains, the other by 3, which a refused effect
-    /// would explain.
+    /// Ten sections of two features of unit variance: one differs by 2, which a member explains,
+    /// the other by 3, which a refused effect would explain.
     #[test]
     fn more_than_the_answer_that_views_contradict_is_told() {
         const SECTIONS: usize = 10;
@@ -203,9 +229,13 @@ mod tests {
             response: ResponseError::default(),
         };
         let path = |effect: &str, change: Vec<f64>| {
-            Candidate::path(effect, vec![Node { size: 0.0, change: Vec::new() }, Node { size: 10.0, change }])
+            Candidate::path(
+                effect,
+                vec![Node { size: 0.0, change: Vec::new() }, Node { size: 10.0, change }],
+            )
         };
-        let candidates = [path("named", per_section(10.0, 0.0)), path("refused", per_section(0.0, 10.0))];
+        let candidates =
+            [path("named", per_section(10.0, 0.0)), path("refused", per_section(0.0, 10.0))];
         let whitener = covariance.whitener();
         let everywhere = Mask { confined: None, sections: vec![true; SECTIONS], asked_by: None };
         let fitter = Fitter::new(&whitener, &candidates, vec![everywhere]);
@@ -216,7 +246,8 @@ mod tests {
             let refused = Refused { contradicted, ..Refused::new(fit(1), "views differ") };
             contradicting(&fitter, &chosen, &[refused]).map(|(_, evidence)| evidence)
         };
-        // 10 * 3^2 less the penalty of a path of 10 * 10^1/2 standard deviations: 2 ln (31.6 / (2 pi)^1/2) = 5.07.
+        // 10 * 3^2 less the penalty of a path of 10 * 10^1/2 standard deviations: 2 ln (31.6 / (2
+        // pi)^1/2) = 5.07.
         let evidence = told(3.0, true).expect("it has more");
         assert!((evidence - (90.0 - 5.07)).abs() < 0.01, "{evidence}");
         assert_eq!((told(3.0, false), told(1.9, true)), (None, None));

@@ -25,7 +25,8 @@ pub struct Fitted {
     pub size: f64,
     /// Fall of chi-squared.
     pub fall: f64,
-    /// Fall less the penalty of the free parameters: twice the logarithm of the Bayes factor against no effect.
+    /// Fall less the penalty of the free parameters: twice the logarithm of the Bayes factor
+    /// against no effect.
     pub evidence: f64,
     /// Whitened change.
     pub whitened: Vec<f64>,
@@ -64,17 +65,30 @@ impl<'a> Fitter<'a> {
         Self::knowing(whitener, candidates, masks, Known::new())
     }
 
-    /// As [`Self::new`], reusing the results of an earlier fitter. Candidates may have more nodes since, and there may be more masks.
+    /// As [`Self::new`], reusing the results of an earlier fitter. Candidates may have more nodes
+    /// since, and there may be more masks.
     #[must_use]
-    pub fn knowing(whitener: &'a Whitener, candidates: &'a [Candidate], masks: Vec<Mask>, known: Known) -> Self {
-        let every = (0..candidates.len()).flat_map(|at| (0..masks.len()).map(move |mask| (at, mask)));
-        let keys: Vec<(usize, usize)> = every.filter(|(at, mask)| allowed(candidates, &masks, *at, *mask)).collect();
+    pub fn knowing(
+        whitener: &'a Whitener,
+        candidates: &'a [Candidate],
+        masks: Vec<Mask>,
+        known: Known,
+    ) -> Self {
+        let every =
+            (0..candidates.len()).flat_map(|at| (0..masks.len()).map(move |mask| (at, mask)));
+        let keys: Vec<(usize, usize)> =
+            every.filter(|(at, mask)| allowed(candidates, &masks, *at, *mask)).collect();
         Self::whitening(whitener, candidates, masks, known, keys)
     }
 
     /// For fits of some members alone, each under its own mask.
     #[must_use]
-    pub fn of(whitener: &'a Whitener, candidates: &'a [Candidate], masks: Vec<Mask>, members: &[Fitted]) -> Self {
+    pub fn of(
+        whitener: &'a Whitener,
+        candidates: &'a [Candidate],
+        masks: Vec<Mask>,
+        members: &[Fitted],
+    ) -> Self {
         let keys = members.iter().map(|member| (member.candidate, member.mask)).collect();
         Self::whitening(whitener, candidates, masks, Known::new(), keys)
     }
@@ -115,24 +129,36 @@ impl<'a> Fitter<'a> {
     fn meet(&self, z: &[f64], candidate: usize, mask: usize) -> Option<Best> {
         let path = self.whitened.get(&(candidate, mask))?;
         let of = &self.candidates[candidate];
-        let along: Vec<f64> = path.nodes.iter().map(|node| if node.is_empty() { 0.0 } else { dot(z, node) }).collect();
-        let Closest { segment, share, fall } = closest(&path.lengths, &path.products, &along, of.discrete)?;
+        let along: Vec<f64> = path
+            .nodes
+            .iter()
+            .map(|node| if node.is_empty() { 0.0 } else { dot(z, node) })
+            .collect();
+        let Closest { segment, share, fall } =
+            closest(&path.lengths, &path.products, &along, of.discrete)?;
         Some(Best { segment, share, fall, evidence: fall - self.price((candidate, mask)) })
     }
 
-    /// The price of a member: of its size, along a path of that length, of the choice among the candidates of the effect, and of the mask.
+    /// The price of a member: of its size, along a path of that length, of the choice among the
+    /// candidates of the effect, and of the mask.
     #[must_use]
     pub fn price(&self, member: Member) -> f64 {
         let long = self.whitened.get(&member).map_or(0.0, |path| path.long);
         let alternatives = self.candidates[member.0].alternatives as f64;
-        2.0 * (long / std::f64::consts::TAU.sqrt()).max(1.0).ln() + 2.0 * alternatives.ln() + self.price_of_mask(member.1)
+        2.0 * (long / std::f64::consts::TAU.sqrt()).max(1.0).ln()
+            + 2.0 * alternatives.ln()
+            + self.price_of_mask(member.1)
     }
 
-    /// Columns of the whitened model error of a member at a fit on its path, from the nearer of the two nodes.
+    /// Columns of the whitened model error of a member at a fit on its path, from the nearer of the
+    /// two nodes.
     #[must_use]
     pub fn model_error(&self, member: Member, (segment, share): (usize, f64)) -> DMatrix<f64> {
         let rows = self.whitener.features();
-        let (Some(path), false) = (self.whitened.get(&member), self.candidates[member.0].exact) else { return DMatrix::zeros(rows, 0) };
+        let (Some(path), false) = (self.whitened.get(&member), self.candidates[member.0].exact)
+        else {
+            return DMatrix::zeros(rows, 0);
+        };
         let near = if share < 0.5 { segment } else { segment + 1 };
         let node = if path.nodes[near].is_empty() { 2 * segment + 1 - near } else { near };
         if path.nodes[node].is_empty() {
@@ -160,7 +186,13 @@ impl<'a> Fitter<'a> {
         let sections = self.masks[0].sections.len().max(1);
         let size = z.len() / sections;
         let parts = |a: &[f64], b: &[f64]| -> Vec<f64> {
-            let part = |at: usize| if a.is_empty() || b.is_empty() { 0.0 } else { dot(&a[at * size..][..size], &b[at * size..][..size]) };
+            let part = |at: usize| {
+                if a.is_empty() || b.is_empty() {
+                    0.0
+                } else {
+                    dot(&a[at * size..][..size], &b[at * size..][..size])
+                }
+            };
             (0..sections).map(part).collect()
         };
         let of = &self.candidates[candidate];
@@ -186,7 +218,10 @@ impl<'a> Fitter<'a> {
     /// The largest evidence of any candidate for `z`, in all sections.
     #[must_use]
     pub fn most(&self, z: &[f64]) -> f64 {
-        (0..self.candidates.len()).filter_map(|at| self.meet(z, at, 0)).map(|best| best.evidence).fold(0.0, f64::max)
+        (0..self.candidates.len())
+            .filter_map(|at| self.meet(z, at, 0))
+            .map(|best| best.evidence)
+            .fold(0.0, f64::max)
     }
 
     /// The best size of a candidate under a mask for the whitened difference `z`.
@@ -201,29 +236,45 @@ impl<'a> Fitter<'a> {
         let path = &self.whitened[&(candidate, mask)];
         let of = &self.candidates[candidate];
         let (from, to) = (&of.nodes[segment], &of.nodes[segment + 1]);
-        let whitened = blend(&path.nodes[segment], &path.nodes[segment + 1], share, self.whitener.features());
+        let whitened =
+            blend(&path.nodes[segment], &path.nodes[segment + 1], share, self.whitener.features());
         let size = between(from.size, to.size, share);
         let slope = path.slope(of, &path.nodes, segment, size);
-        Fitted { candidate, mask, segment, share, size, fall, evidence, whitened, slope, doubtful: false }
+        Fitted {
+            candidate,
+            mask,
+            segment,
+            share,
+            size,
+            fall,
+            evidence,
+            whitened,
+            slope,
+            doubtful: false,
+        }
     }
 
     /// The best fit of every candidate, each under its best mask.
     #[must_use]
     pub fn all(&self, z: &[f64]) -> Vec<Fitted> {
         use rayon::prelude::*;
-        (0..self.candidates.len()).into_par_iter().filter_map(|candidate| self.best(z, candidate)).collect()
+        (0..self.candidates.len())
+            .into_par_iter()
+            .filter_map(|candidate| self.best(z, candidate))
+            .collect()
     }
 
     /// The best fit of a candidate under any of its masks.
     #[must_use]
     pub fn best(&self, z: &[f64], candidate: usize) -> Option<Fitted> {
-        let met = (0..self.masks.len()).filter_map(|mask| Some((mask, self.meet(z, candidate, mask)?)));
+        let met =
+            (0..self.masks.len()).filter_map(|mask| Some((mask, self.meet(z, candidate, mask)?)));
         let (mask, best) = met.max_by(|a, b| a.1.evidence.total_cmp(&b.1.evidence))?;
         Some(self.fitted(candidate, mask, best))
     }
 
-    /// The sections in which an effect seems to be present, where it is not present in all: those whose fitted size is more than half of
-    /// the largest ones.
+    /// The sections in which an effect seems to be present, where it is not present in all: those
+    /// whose fitted size is more than half of the largest ones.
     #[must_use]
     pub fn seems_in(&self, z: &[f64], fit: &Fitted) -> Option<Vec<bool>> {
         let sections = self.masks[0].sections.len();
@@ -238,42 +289,66 @@ impl<'a> Fitter<'a> {
                 (length > 0.0).then(|| (dot(&change, &rest) / length, length))
             })
             .collect();
-        let strong: f64 = asked.iter().flatten().map(|(share, length)| share.max(0.0) * length).sum::<f64>();
-        let weight: f64 =
-            asked.iter().flatten().filter(|(share, _)| *share > 0.0).map(|(share, length)| share.max(0.0).powi(2) * length).sum();
+        let strong: f64 =
+            asked.iter().flatten().map(|(share, length)| share.max(0.0) * length).sum::<f64>();
+        let weight: f64 = asked
+            .iter()
+            .flatten()
+            .filter(|(share, _)| *share > 0.0)
+            .map(|(share, length)| share.max(0.0).powi(2) * length)
+            .sum();
         let typical = if strong > 0.0 { weight / strong } else { 0.0 };
-        let inside: Vec<bool> = asked.iter().map(|asked| asked.is_some_and(|(share, _)| share > 0.5 * typical)).collect();
+        let inside: Vec<bool> = asked
+            .iter()
+            .map(|asked| asked.is_some_and(|(share, _)| share > 0.5 * typical))
+            .collect();
         let some = inside.iter().filter(|inside| **inside).count();
-        // Excluding the few sections that fit worst always improves the fit: that is no confinement. One or two sections are not
-        // significant.
+        // Excluding the few sections that fit worst always improves the fit: that is no
+        // confinement. One or two sections are not significant.
         (some > 2 && 4 * some <= 3 * asked.iter().flatten().count()).then_some(inside)
     }
 }
 
 impl Fitted {
-    /// Standard error of the size, by the fit and by the interpolation between simulated sizes; 0 where it has none.
+    /// Standard error of the size, by the fit and by the interpolation between simulated sizes; 0
+    /// where it has none.
     #[must_use]
     pub fn error(&self) -> f64 {
-        if self.slope > 0.0 { (1.0 / self.slope).hypot(INTERPOLATION * self.size.abs().min(1e12)) } else { 0.0 }
+        if self.slope > 0.0 {
+            (1.0 / self.slope).hypot(INTERPOLATION * self.size.abs().min(1e12))
+        } else {
+            0.0
+        }
     }
 
-    /// Standard error of the size by the error of the response that all features share: it is another size, and not seen in the residual.
+    /// Standard error of the size by the error of the response that all features share: it is
+    /// another size, and not seen in the residual.
     #[must_use]
     pub fn common_error(&self, candidates: &[Candidate], common: f64) -> f64 {
         let of = &candidates[self.candidate];
-        let change = of.neutral().filter(|neutral| neutral.is_finite()).map_or(self.size, |neutral| self.size - neutral).abs();
+        let change = of
+            .neutral()
+            .filter(|neutral| neutral.is_finite())
+            .map_or(self.size, |neutral| self.size - neutral)
+            .abs();
         if of.exact { 0.0 } else { common * change }
     }
 
     /// Derivative of the features with respect to the size, at the fitted size.
     #[must_use]
     pub fn tangent(&self, candidates: &[Candidate], masks: &[Mask]) -> Vec<f64> {
-        let [from, to] = [self.segment, self.segment + 1].map(|node| &candidates[self.candidate].nodes[node]);
+        let [from, to] =
+            [self.segment, self.segment + 1].map(|node| &candidates[self.candidate].nodes[node]);
         // Derivative of `between` with respect to the share.
-        let width = if to.size.is_infinite() { from.size / (1.0 - self.share).powi(2) } else { to.size - from.size };
+        let width = if to.size.is_infinite() {
+            from.size / (1.0 - self.share).powi(2)
+        } else {
+            to.size - from.size
+        };
         let get = |node: &Vec<f64>, i: usize| node.get(i).copied().unwrap_or(0.0);
         let raw = |i: usize| (get(&to.change, i) - get(&from.change, i)) / width;
-        masks[self.mask].on(&(0..from.change.len().max(to.change.len())).map(raw).collect::<Vec<f64>>())
+        masks[self.mask]
+            .on(&(0..from.change.len().max(to.change.len())).map(raw).collect::<Vec<f64>>())
     }
 
     /// Change of the features, not whitened.
@@ -283,19 +358,22 @@ impl Fitted {
         let (a, b) = (&of.nodes[self.segment].change, &of.nodes[self.segment + 1].change);
         let n = a.len().max(b.len());
         let get = |node: &Vec<f64>, i: usize| if node.is_empty() { 0.0 } else { node[i] };
-        let raw: Vec<f64> = (0..n).map(|i| (1.0 - self.share) * get(a, i) + self.share * get(b, i)).collect();
+        let raw: Vec<f64> =
+            (0..n).map(|i| (1.0 - self.share) * get(a, i) + self.share * get(b, i)).collect();
         masks[self.mask].on(&raw)
     }
 }
 
-/// Restores candidates that were simulated together with a member that was dropped. Returns whether there are any: the members are then
-/// refitted.
+/// Restores candidates that were simulated together with a member that was dropped. Returns whether
+/// there are any: the members are then refitted.
 pub fn alone_again(candidates: &mut [Candidate], members: &[Fitted]) -> bool {
     let mut any = false;
     for member in members {
         let candidate = &mut candidates[member.candidate];
         let gone = |at: &usize| members.iter().all(|member| member.candidate != *at);
-        if let Some(placed) = candidate.beside.take_if(|placed| placed.there.members.iter().any(gone)) {
+        if let Some(placed) =
+            candidate.beside.take_if(|placed| placed.there.members.iter().any(gone))
+        {
             candidate.nodes = placed.alone.to_vec();
             any = true;
         }

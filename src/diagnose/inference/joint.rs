@@ -1,8 +1,9 @@
 //! The joint fit of a set of effects, and its evidence.
 //!
-//! All sizes of a set are fitted together by generalised least squares under `C + U U'`: the allowed difference `C` and the model error
-//! `U` of the simulated members. The evidence of the set is twice the logarithm of its Bayes factor against no effect (Laplace):
-//! `z'z - r' (C + U U')^-1 r - log |I + U' C^-1 U|`, less the prices of the sizes and choices of its members.
+//! All sizes of a set are fitted together by generalised least squares under `C + U U'`: the
+//! allowed difference `C` and the model error `U` of the simulated members. The evidence of the set
+//! is twice the logarithm of its Bayes factor against no effect (Laplace): `z'z - r' (C + U U')^-1
+//! r - log |I + U' C^-1 U|`, less the prices of the sizes and choices of its members.
 
 use std::sync::Arc;
 
@@ -39,7 +40,8 @@ struct Seen {
 impl Seen {
     fn new(path: &Path, metric: &Metric, discrete: bool) -> Self {
         let nodes: Vec<Vec<f64>> = path.nodes.iter().map(|node| metric.apply(node)).collect();
-        let product = |a: &Vec<f64>, b: &Vec<f64>| if a.is_empty() || b.is_empty() { 0.0 } else { dot(a, b) };
+        let product =
+            |a: &Vec<f64>, b: &Vec<f64>| if a.is_empty() || b.is_empty() { 0.0 } else { dot(a, b) };
         let lengths = nodes.iter().map(|node| product(node, node)).collect();
         let products = nodes.windows(2).map(|pair| product(&pair[0], &pair[1])).collect();
         Self { nodes, lengths, products, discrete }
@@ -65,7 +67,8 @@ fn alternate(z: &[f64], paths: &[Seen]) -> Option<Vec<(usize, f64)>> {
             if let Some(change) = changes.get(at) {
                 rest.iter_mut().zip(change).for_each(|(rest, change)| *rest += change);
             }
-            let Closest { segment, share, .. } = closest(&path.lengths, &path.products, &path.along(&rest), path.discrete)?;
+            let Closest { segment, share, .. } =
+                closest(&path.lengths, &path.products, &path.along(&rest), path.discrete)?;
             let change = path.at((segment, share), z.len());
             rest = less(&rest, &change);
             if turn == 0 {
@@ -88,20 +91,27 @@ fn alternate(z: &[f64], paths: &[Seen]) -> Option<Vec<(usize, f64)>> {
 /// Fits a set of effects to the whitened difference `z`; nothing if a member has no path.
 #[must_use]
 pub fn fit(fitter: &Fitter<'_>, z: &[f64], set: &[Member]) -> Option<Joint> {
-    let paths: Vec<&Path> = set.iter().map(|member| fitter.whitened.get(member)).collect::<Option<_>>()?;
+    let paths: Vec<&Path> =
+        set.iter().map(|member| fitter.whitened.get(member)).collect::<Option<_>>()?;
     let mut metric = Metric::default();
     let mut fits: Vec<(usize, f64)> = Vec::new();
     let mut seen = Vec::new();
     for round in 0..=ROUNDS {
-        seen = paths.iter().zip(set).map(|(path, member)| Seen::new(path, &metric, fitter.candidates[member.0].discrete)).collect();
+        seen = paths
+            .iter()
+            .zip(set)
+            .map(|(path, member)| Seen::new(path, &metric, fitter.candidates[member.0].discrete))
+            .collect();
         let now = alternate(&metric.apply(z), &seen)?;
-        let moved = |(a, b): (&(usize, f64), &(usize, f64))| a.0 != b.0 || (a.1 - b.1).abs() > ALIKE;
+        let moved =
+            |(a, b): (&(usize, f64), &(usize, f64))| a.0 != b.0 || (a.1 - b.1).abs() > ALIKE;
         let converged = !fits.is_empty() && !fits.iter().zip(&now).any(moved);
         fits = now;
         if round == ROUNDS || converged {
             break;
         }
-        let columns: Vec<DMatrix<f64>> = set.iter().zip(&fits).map(|(member, fit)| fitter.model_error(*member, *fit)).collect();
+        let columns: Vec<DMatrix<f64>> =
+            set.iter().zip(&fits).map(|(member, fit)| fitter.model_error(*member, *fit)).collect();
         let width = columns.iter().map(DMatrix::ncols).sum::<usize>();
         if width == 0 {
             break;
@@ -116,8 +126,12 @@ pub fn fit(fitter: &Fitter<'_>, z: &[f64], set: &[Member]) -> Option<Joint> {
     }
     let slopes = slopes(&paths, &seen, fitter, set, &fits);
     let price: f64 = set.iter().map(|member| fitter.price(*member)).sum();
-    let mut members: Vec<Fitted> =
-        set.iter().zip(&fits).zip(slopes).map(|((member, fit), slope)| Fitted { slope, ..fitter.at(*member, *fit) }).collect();
+    let mut members: Vec<Fitted> = set
+        .iter()
+        .zip(&fits)
+        .zip(slopes)
+        .map(|((member, fit), slope)| Fitted { slope, ..fitter.at(*member, *fit) })
+        .collect();
     let rest = members.iter().fold(z.to_vec(), |rest, member| less(&rest, &member.whitened));
     let weighed = metric.apply(&rest);
     let fall = dot(z, z) - dot(&weighed, &weighed) - metric.log_determinant;
@@ -126,7 +140,13 @@ pub fn fit(fitter: &Fitter<'_>, z: &[f64], set: &[Member]) -> Option<Joint> {
 }
 
 /// The reciprocal standard error of each size, with the other sizes free.
-fn slopes(paths: &[&Path], seen: &[Seen], fitter: &Fitter<'_>, set: &[Member], fits: &[(usize, f64)]) -> Vec<f64> {
+fn slopes(
+    paths: &[&Path],
+    seen: &[Seen],
+    fitter: &Fitter<'_>,
+    set: &[Member],
+    fits: &[(usize, f64)],
+) -> Vec<f64> {
     let alone: Vec<f64> = (0..set.len())
         .map(|at| {
             let of = &fitter.candidates[set[at].0];
@@ -150,7 +170,8 @@ fn slopes(paths: &[&Path], seen: &[Seen], fitter: &Fitter<'_>, set: &[Member], f
         .collect();
     let gram = DMatrix::from_fn(set.len(), set.len(), |i, j| tangents[i].dot(&tangents[j]));
     // The diagonal of the inverse is the variance inflation by the other sizes.
-    let inverse = gram.pseudo_inverse(1e-9).unwrap_or_else(|_| DMatrix::identity(set.len(), set.len()));
+    let inverse =
+        gram.pseudo_inverse(1e-9).unwrap_or_else(|_| DMatrix::identity(set.len(), set.len()));
     alone.iter().enumerate().map(|(at, slope)| slope / inverse[(at, at)].max(1.0).sqrt()).collect()
 }
 
@@ -163,24 +184,34 @@ mod tests {
     use crate::diagnose::uncertainty::whiten::Covariance;
 
     fn path(effect: &str, change: Vec<f64>) -> Candidate {
-        Candidate::path(effect, vec![Node { size: 0.0, change: Vec::new() }, Node { size: 10.0, change }])
+        Candidate::path(
+            effect,
+            vec![Node { size: 0.0, change: Vec::new() }, Node { size: 10.0, change }],
+        )
     }
 
     fn everywhere(sections: usize) -> Vec<Mask> {
         vec![Mask { confined: None, sections: vec![true; sections], asked_by: None }]
     }
 
-    /// Ten sections of two features of unit variance. Two changes with a cosine of 0.9 are present with sizes 3 and 3. Together they
-    /// explain all of chi-squared, 10 (5.7^2 + 0.19 * 9) = 342. The reciprocal standard error of each size is that of its component
-    /// across the other change: (10 * 1 * 0.19)^1/2.
+    /// Ten sections of two features of unit variance. Two changes with a cosine of 0.9 are present
+    /// with sizes 3 and 3. Together they explain all of chi-squared, 10 (5.7^2 + 0.19 * 9) = 342.
+    /// The reciprocal standard error of each size is that of its component across the other change:
+    /// (10 * 1 * 0.19)^1/2.
     #[test]
     fn similar_changes_are_fitted_together() {
         const SECTIONS: usize = 10;
         let per_section = |a: f64, b: f64| (0..SECTIONS).flat_map(|_| [a, b]).collect::<Vec<f64>>();
         let side = 0.19_f64.sqrt();
-        let candidates = [path("first", per_section(10.0, 0.0)), path("second", per_section(9.0, 10.0 * side))];
-        let covariance =
-            Covariance { diagonal: vec![1.0; 20], inside: Vec::new(), shared: Vec::new(), size: 2, response: ResponseError::default() };
+        let candidates =
+            [path("first", per_section(10.0, 0.0)), path("second", per_section(9.0, 10.0 * side))];
+        let covariance = Covariance {
+            diagonal: vec![1.0; 20],
+            inside: Vec::new(),
+            shared: Vec::new(),
+            size: 2,
+            response: ResponseError::default(),
+        };
         let whitener = covariance.whitener();
         let fitter = Fitter::new(&whitener, &candidates, everywhere(SECTIONS));
         let z = per_section(3.0 + 2.7, 3.0 * side);
@@ -194,14 +225,21 @@ mod tests {
         assert!((both.fall - both.evidence - prices).abs() < 1e-9);
     }
 
-    /// One feature in each of four sections, of unit variance, changed by 10 at size 10, with a common relative error of 0.5: at size 10
-    /// the covariance is I + 25 * 1 1'. A difference of 10 is fitted without a residual, so that the evidence is z'z - log(1 + 25 * 4)
-    /// less the price, and the reciprocal standard error of the size (4 / (1 + 100))^1/2.
+    /// One feature in each of four sections, of unit variance, changed by 10 at size 10, with a
+    /// common relative error of 0.5: at size 10 the covariance is I + 25 * 1 1'. A difference of 10
+    /// is fitted without a residual, so that the evidence is z'z - log(1 + 25 * 4) less the price,
+    /// and the reciprocal standard error of the size (4 / (1 + 100))^1/2.
     #[test]
     fn the_model_error_of_an_effect_costs_evidence_and_widens_its_size() {
         let candidates = [path("effect", vec![10.0; 4])];
         let response = ResponseError::of(&[(&[0], 0.5)], 4);
-        let covariance = Covariance { diagonal: vec![1.0; 4], inside: Vec::new(), shared: Vec::new(), size: 1, response };
+        let covariance = Covariance {
+            diagonal: vec![1.0; 4],
+            inside: Vec::new(),
+            shared: Vec::new(),
+            size: 1,
+            response,
+        };
         let whitener = covariance.whitener();
         let fitter = Fitter::new(&whitener, &candidates, everywhere(4));
         let found = fit(&fitter, &[10.0; 4], &[(0, 0)]).expect("a path");
@@ -213,22 +251,38 @@ mod tests {
         assert!((found.fall - 400.0).abs() < 1e-9 && (found.members[0].slope - 2.0).abs() < 1e-9);
     }
 
-    /// Levels give a size of 1, all other features 0.5, both nearly without noise. The model errors are 0.05 and 0.2, so that the joint
-    /// size is (1 / 0.05^2 + 0.5 / 0.2^2) / (1 / 0.05^2 + 1 / 0.2^2) = 0.9706, with the relative error 1 / (1 / 0.05^2 + 1 / 0.2^2)^1/2.
+    /// Levels give a size of 1, all other features 0.5, both nearly without noise. The model errors
+    /// are 0.05 and 0.2, so that the joint size is (1 / 0.05^2 + 0.5 / 0.2^2) / (1 / 0.05^2 + 1 /
+    /// 0.2^2) = 0.9706, with the relative error 1 / (1 / 0.05^2 + 1 / 0.2^2)^1/2.
     #[test]
     fn levels_say_more_of_a_size_than_other_features() {
         const SECTIONS: usize = 3;
-        let per_section = |level: f64, rest: f64| (0..SECTIONS).flat_map(|_| [level, rest]).collect::<Vec<f64>>();
-        let nodes = vec![Node { size: 0.0, change: Vec::new() }, Node { size: 2.0, change: per_section(20.0, 20.0) }];
+        let per_section =
+            |level: f64, rest: f64| (0..SECTIONS).flat_map(|_| [level, rest]).collect::<Vec<f64>>();
+        let nodes = vec![
+            Node { size: 0.0, change: Vec::new() },
+            Node { size: 2.0, change: per_section(20.0, 20.0) },
+        ];
         let candidates = [Candidate::path("effect", nodes)];
         let response = ResponseError::of(&[(&[0], 0.05), (&[1], 0.2)], SECTIONS);
-        let covariance = Covariance { diagonal: vec![1e-6; 2 * SECTIONS], inside: Vec::new(), shared: Vec::new(), size: 2, response };
+        let covariance = Covariance {
+            diagonal: vec![1e-6; 2 * SECTIONS],
+            inside: Vec::new(),
+            shared: Vec::new(),
+            size: 2,
+            response,
+        };
         let whitener = covariance.whitener();
         let fitter = Fitter::new(&whitener, &candidates, everywhere(SECTIONS));
-        let found = fit(&fitter, &whitener.apply(&per_section(10.0, 5.0)), &[(0, 0)]).expect("a path");
+        let found =
+            fit(&fitter, &whitener.apply(&per_section(10.0, 5.0)), &[(0, 0)]).expect("a path");
         let weights = [0.05_f64.powi(-2), 0.2_f64.powi(-2)];
-        let (size, error) = (found.members[0].size, 1.0 / found.members[0].slope / found.members[0].size);
-        assert!((size - (weights[0] + 0.5 * weights[1]) / (weights[0] + weights[1])).abs() < 1e-4, "{size}");
+        let (size, error) =
+            (found.members[0].size, 1.0 / found.members[0].slope / found.members[0].size);
+        assert!(
+            (size - (weights[0] + 0.5 * weights[1]) / (weights[0] + weights[1])).abs() < 1e-4,
+            "{size}"
+        );
         assert!((error - (weights[0] + weights[1]).powf(-0.5)).abs() < 1e-3, "{error}");
     }
 }

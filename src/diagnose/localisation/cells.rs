@@ -38,7 +38,9 @@ impl Cell {
     #[must_use]
     pub fn unit(&self, found: &Found, units: &Units) -> String {
         let signals = self.signals(found);
-        let unit = units.iter().find(|(name, _)| self.kind == Kind::Level && Some(name) == signals.first());
+        let unit = units
+            .iter()
+            .find(|(name, _)| self.kind == Kind::Level && Some(name) == signals.first());
         unit.map_or_else(|| "-".into(), |(_, unit)| unit.text.clone())
     }
 
@@ -65,20 +67,33 @@ pub fn positions(settings: &Settings) -> Vec<Position> {
 
 /// Levels and every band.
 pub fn kinds(found: &Found) -> impl Iterator<Item = Kind> {
-    std::iter::once(Kind::Level).chain((0..found.seen.layout.edges.len().saturating_sub(1)).map(Kind::Band))
+    std::iter::once(Kind::Level)
+        .chain((0..found.seen.layout.edges.len().saturating_sub(1)).map(Kind::Band))
 }
 
-/// The non-empty cells of one kind and position, for each group of channels and each set of sections.
+/// The non-empty cells of one kind and position, for each group of channels and each set of
+/// sections.
 #[must_use]
-pub fn cells(settings: &Settings, found: &Found, kind: Kind, position: &Position, among: &[Vec<usize>]) -> Vec<Cell> {
+pub fn cells(
+    settings: &Settings,
+    found: &Found,
+    kind: Kind,
+    position: &Position,
+    among: &[Vec<usize>],
+) -> Vec<Cell> {
     let everywhere = position.straight.is_empty() && position.mirrored.is_empty();
     let members = |group: usize, at: usize| {
         let section = &found.seen.sections[at].section;
-        let mirrored = settings.mirror.as_ref().is_some_and(|(column, value)| section.fact(column) == Some(value));
+        let mirrored = settings
+            .mirror
+            .as_ref()
+            .is_some_and(|(column, value)| section.fact(column) == Some(value));
         let names = if mirrored { &position.mirrored } else { &position.straight };
         let here = move |(_, feature): &(usize, &crate::diagnose::features::layout::Feature)| {
             let channel = &found.seen.layout.channels[feature.channel];
-            feature.kind == kind && channel.group == group && (everywhere || names.contains(&channel.name))
+            feature.kind == kind
+                && channel.group == group
+                && (everywhere || names.contains(&channel.name))
         };
         found.seen.features.iter().enumerate().filter(here).map(move |(number, _)| (at, number))
     };
@@ -89,18 +104,23 @@ pub fn cells(settings: &Settings, found: &Found, kind: Kind, position: &Position
         kind,
         members: sections.iter().flat_map(|at| members(group, *at)).collect(),
     };
-    let all = (0..settings.groups.len()).flat_map(|group| among.iter().map(move |sections| (group, sections)));
-    all.map(|(group, sections)| cell(group, sections)).filter(|cell| !cell.members.is_empty()).collect()
+    let all = (0..settings.groups.len())
+        .flat_map(|group| among.iter().map(move |sections| (group, sections)));
+    all.map(|(group, sections)| cell(group, sections))
+        .filter(|cell| !cell.members.is_empty())
+        .collect()
 }
 
-/// The largest p-value that is significant (Benjamini and Yekutieli 2001: valid under any dependence); below zero if none is.
+/// The largest p-value that is significant (Benjamini and Yekutieli 2001: valid under any
+/// dependence); below zero if none is.
 #[must_use]
 pub fn significant_up_to(probabilities: &[f64]) -> f64 {
     let mut order = probabilities.to_vec();
     order.sort_by(f64::total_cmp);
     let count = order.len() as f64;
     let harmonic: f64 = (1..=order.len()).map(|i| 1.0 / i as f64).sum();
-    let passes = |(rank, p): &(usize, f64)| *p <= FALSE_DISCOVERIES * (rank + 1) as f64 / (count * harmonic);
+    let passes =
+        |(rank, p): &(usize, f64)| *p <= FALSE_DISCOVERIES * (rank + 1) as f64 / (count * harmonic);
     order.into_iter().enumerate().rev().find(passes).map_or(-1.0, |(_, p)| p)
 }
 
@@ -112,11 +132,17 @@ impl Covariance {
     /// The marginal covariance of the listed features, given as section and number.
     #[must_use]
     pub fn among(&self, places: &[(usize, usize)]) -> Among {
-        let all =
-            |column: &[f64]| DVector::from_iterator(places.len(), places.iter().map(|(at, feature)| column[at * self.size + feature]));
-        let mut full = DMatrix::from_diagonal(&all(&self.diagonal).map(|variance| variance.max(1e-12)));
+        let all = |column: &[f64]| {
+            DVector::from_iterator(
+                places.len(),
+                places.iter().map(|(at, feature)| column[at * self.size + feature]),
+            )
+        };
+        let mut full =
+            DMatrix::from_diagonal(&all(&self.diagonal).map(|variance| variance.max(1e-12)));
         for (section, column) in &self.inside {
-            let of = |(at, feature): &(usize, usize)| if at == section { column[*feature] } else { 0.0 };
+            let of =
+                |(at, feature): &(usize, usize)| if at == section { column[*feature] } else { 0.0 };
             let one = DVector::from_iterator(places.len(), places.iter().map(of));
             full.ger(1.0, &one, &one, 1.0);
         }
@@ -124,7 +150,10 @@ impl Covariance {
             let one = all(column);
             full.ger(1.0, &one, &one, 1.0);
         }
-        Among(Cholesky::new_with_substitute(full, 1e-12).expect("a substitute makes every pivot positive"))
+        Among(
+            Cholesky::new_with_substitute(full, 1e-12)
+                .expect("a substitute makes every pivot positive"),
+        )
     }
 }
 
@@ -136,8 +165,8 @@ impl Among {
         values.dot(&self.0.solve(&values))
     }
 
-    /// Generalised least squares of `values` on two columns: coefficient of the second column and its standard error. Nothing if the
-    /// columns are collinear.
+    /// Generalised least squares of `values` on two columns: coefficient of the second column and
+    /// its standard error. Nothing if the columns are collinear.
     #[must_use]
     pub fn slope(&self, columns: [&[f64]; 2], values: &[f64]) -> Option<(f64, f64)> {
         let [one, two] = columns.map(DVector::from_column_slice);
@@ -146,7 +175,8 @@ impl Among {
         let (aa, ab, bb) = (one.dot(&first), one.dot(&second), two.dot(&second));
         let determinant = aa * bb - ab * ab;
         let (a, b) = (values.dot(&first), values.dot(&second));
-        (determinant > 1e-9 * aa * bb).then(|| ((aa * b - ab * a) / determinant, (aa / determinant).sqrt()))
+        (determinant > 1e-9 * aa * bb)
+            .then(|| ((aa * b - ab * a) / determinant, (aa / determinant).sqrt()))
     }
 }
 
@@ -155,7 +185,8 @@ mod tests {
     use super::*;
     use crate::diagnose::uncertainty::response::ResponseError;
 
-    /// Two of four features, with the covariance written out: C = [[1 + 0.25 + 1, 0.5], [0.5, 3 + 0.25]].
+    /// Two of four features, with the covariance written out: C = [[1 + 0.25 + 1, 0.5], [0.5, 3 +
+    /// 0.25]].
     #[test]
     fn what_is_not_named_counts_nothing() {
         let covariance = Covariance {
@@ -172,8 +203,8 @@ mod tests {
         assert!((among.chi_squared(&[x, y]) - by_hand).abs() < 1e-12);
     }
 
-    /// Unit variance and a common offset: the slope is that of ordinary least squares, 0.5 with the error 1 / sqrt(5), since the offset is
-    /// a free parameter of the fit.
+    /// Unit variance and a common offset: the slope is that of ordinary least squares, 0.5 with the
+    /// error 1 / sqrt(5), since the offset is a free parameter of the fit.
     #[test]
     fn slope_of_a_line() {
         let covariance = Covariance {

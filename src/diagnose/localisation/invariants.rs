@@ -1,5 +1,5 @@
-//! Sums and differences of quasi-static values that only some causes can change: the sum of all vertical forces is a weight,
-//! independent of wheels and rails.
+//! Sums and differences of quasi-static values that only some causes can change: the sum of all
+//! vertical forces is a weight, independent of wheels and rails.
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -12,26 +12,50 @@ use crate::diagnose::uncertainty::whiten::Covariance;
 use crate::result::diagnosis::Invariant;
 use crate::simulate::Units;
 
-/// Symmetry of a deviation: the same in all sections, or with a sign that changes with the curve; and whether it is the latter.
-const PARITIES: [(&str, bool); 2] = [("alike in all sections", false), ("turns with the curve", true)];
+/// Symmetry of a deviation: the same in all sections, or with a sign that changes with the curve;
+/// and whether it is the latter.
+const PARITIES: [(&str, bool); 2] =
+    [("alike in all sections", false), ("turns with the curve", true)];
 
 impl Covariance {
     /// Variance of the sum of all features, each times its weight.
     #[must_use]
     pub fn variance(&self, weights: &[f64]) -> f64 {
-        let sum = |column: &[f64], weights: &[f64]| column.iter().zip(weights).map(|(x, weight)| x * weight).sum::<f64>().powi(2);
-        let own: f64 = self.diagonal.iter().zip(weights).map(|(variance, weight)| variance * weight * weight).sum();
-        let inside: f64 = self.inside.iter().map(|(at, column)| sum(column, &weights[at * self.size..][..self.size])).sum();
+        let sum = |column: &[f64], weights: &[f64]| {
+            column.iter().zip(weights).map(|(x, weight)| x * weight).sum::<f64>().powi(2)
+        };
+        let own: f64 = self
+            .diagonal
+            .iter()
+            .zip(weights)
+            .map(|(variance, weight)| variance * weight * weight)
+            .sum();
+        let inside: f64 = self
+            .inside
+            .iter()
+            .map(|(at, column)| sum(column, &weights[at * self.size..][..self.size]))
+            .sum();
         own + inside + self.shared.iter().map(|column| sum(column, weights)).sum::<f64>()
     }
 }
 
-/// All invariants of the catalogue whose channels were recorded, simulated - measured, before and after the causes are added.
+/// All invariants of the catalogue whose channels were recorded, simulated - measured, before and
+/// after the causes are added.
 #[must_use]
 pub fn invariants(settings: &Settings, found: &Found, units: &Units) -> Vec<Invariant> {
     let seen = &found.seen;
-    let rest = left(&found.candidates, &found.masks, &found.allowed.beside.difference, &found.answer.chosen);
-    let beside = with_room(&found.allowed.beside.covariance, &found.candidates, &found.masks, &found.answer.chosen);
+    let rest = left(
+        &found.candidates,
+        &found.masks,
+        &found.allowed.beside.difference,
+        &found.answer.chosen,
+    );
+    let beside = with_room(
+        &found.allowed.beside.covariance,
+        &found.candidates,
+        &found.masks,
+        &found.answer.chosen,
+    );
     let sections = seen.first_runs();
     let side = |at: usize| settings.side(&seen.sections[at].section);
     let mut all = Vec::new();
@@ -40,7 +64,11 @@ pub fn invariants(settings: &Settings, found: &Found, units: &Units) -> Vec<Inva
             let channel = seen.layout.channels.iter().position(|known| known.name == channel)?;
             seen.find(channel, Kind::Level)
         };
-        let Some(features) = members.iter().map(|(channel, weight)| Some((feature(channel)?, *weight))).collect::<Option<Vec<_>>>() else {
+        let Some(features) = members
+            .iter()
+            .map(|(channel, weight)| Some((feature(channel)?, *weight)))
+            .collect::<Option<Vec<_>>>()
+        else {
             continue;
         };
         for (parity, turns) in PARITIES {
@@ -55,8 +83,12 @@ pub fn invariants(settings: &Settings, found: &Found, units: &Units) -> Vec<Inva
                     weights[seen.place(*at, *feature)] = weight * times(*at) / turned as f64;
                 }
             }
-            let mean = |values: &[f64]| values.iter().zip(&weights).map(|(value, weight)| value * weight).sum::<f64>();
-            let unit = units.iter().find(|(known, _)| members.first().is_some_and(|(channel, _)| channel == known));
+            let mean = |values: &[f64]| {
+                values.iter().zip(&weights).map(|(value, weight)| value * weight).sum::<f64>()
+            };
+            let unit = units
+                .iter()
+                .find(|(known, _)| members.first().is_some_and(|(channel, _)| channel == known));
             all.push(Invariant {
                 name: name.clone(),
                 parity,
@@ -71,12 +103,14 @@ pub fn invariants(settings: &Settings, found: &Found, units: &Units) -> Vec<Inva
     all
 }
 
-/// The significant invariant of which the causes remove less than half: the causes do not explain that deviation.
+/// The significant invariant of which the causes remove less than half: the causes do not explain
+/// that deviation.
 #[must_use]
 pub fn stays(all: &[Invariant]) -> Option<&Invariant> {
     let tested = all.iter().filter(|one| one.allowed_after > 0.0).count() as f64;
     let chance = |one: &Invariant| tested * 2.0 * Normal::standard().sf(off(one));
-    let stays = |one: &&Invariant| one.after.abs() > TAKES * one.before.abs() && chance(one) < CHANCE;
+    let stays =
+        |one: &&Invariant| one.after.abs() > TAKES * one.before.abs() && chance(one) < CHANCE;
     all.iter().filter(stays).max_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
@@ -85,7 +119,8 @@ fn off(one: &Invariant) -> f64 {
     if one.allowed_after > 0.0 { one.after.abs() / one.allowed_after } else { 0.0 }
 }
 
-/// A sentence on the invariant with the largest deviation after the causes; nothing if none is large enough.
+/// A sentence on the invariant with the largest deviation after the causes; nothing if none is
+/// large enough.
 #[must_use]
 pub fn worst(all: &[Invariant]) -> Option<String> {
     let one = all.iter().max_by(|a, b| off(a).total_cmp(&off(b))).filter(|one| off(one) > WORTH)?;
@@ -115,7 +150,8 @@ mod tests {
         assert!((covariance.variance(&[1.0, -1.0]) - (5.0 - 2.0 * 2.0 + 12.0)).abs() < 1e-12);
     }
 
-    /// Of four invariants, a deviation of 3.02 standard deviations has the probability 4 * 0.0025 = 0.01.
+    /// Of four invariants, a deviation of 3.02 standard deviations has the probability 4 * 0.0025 =
+    /// 0.01.
     #[test]
     fn what_the_causes_take_less_than_half_of_stays() {
         let one = |before: f64, after: f64| Invariant {
@@ -127,7 +163,9 @@ mod tests {
             allowed: 2.0,
             allowed_after: 2.0,
         };
-        let all = |before: f64, after: f64| [one(1.0, 1.0), one(before, after), one(4.0, 0.0), one(-3.0, -3.0)];
+        let all = |before: f64, after: f64| {
+            [one(1.0, 1.0), one(before, after), one(4.0, 0.0), one(-3.0, -3.0)]
+        };
         assert_eq!(stays(&all(6.1, 6.1)).map(|one| one.after), Some(6.1));
         assert_eq!(stays(&all(-6.1, -6.1)).map(|one| one.after), Some(-6.1));
         assert!(stays(&all(6.0, 6.0)).is_none());

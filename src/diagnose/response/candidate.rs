@@ -6,7 +6,8 @@ use crate::diagnose::features::bench::{Bench, Set};
 use crate::effects::{Action, Effect, Parameter};
 use crate::units::Unit;
 
-/// The change of the features with the size of an effect, as a piecewise linear path through the simulated sizes.
+/// The change of the features with the size of an effect, as a piecewise linear path through the
+/// simulated sizes.
 #[derive(Clone, Debug)]
 pub struct Candidate {
     pub effect: String,
@@ -79,13 +80,17 @@ impl Candidate {
         }
     }
 
-    /// Range of the change of a feature between half and one and a half times the distance of a size from neutral.
+    /// Range of the change of a feature between half and one and a half times the distance of a
+    /// size from neutral.
     #[must_use]
     pub fn range_near(&self, size: f64, place: usize) -> f64 {
         let reach = 0.5 * (size - self.neutral().unwrap_or(0.0)).abs();
         let near = self.nodes.iter().filter(|node| (node.size - size).abs() <= reach);
         let changes = near.map(|node| node.change.get(place).copied().unwrap_or(0.0));
-        let (low, high) = changes.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), change| (low.min(change), high.max(change)));
+        let (low, high) = changes
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), change| {
+                (low.min(change), high.max(change))
+            });
         (high - low).max(0.0)
     }
 
@@ -116,7 +121,10 @@ impl Candidate {
     /// Whether it exchanges two channels.
     #[must_use]
     pub fn effect_is_swap(&self) -> bool {
-        self.discrete && self.channels.len() == 2 && self.nodes.len() == 2 && !self.size.contains(crate::effects::CHANNEL)
+        self.discrete
+            && self.channels.len() == 2
+            && self.nodes.len() == 2
+            && !self.size.contains(crate::effects::CHANNEL)
     }
 }
 
@@ -143,7 +151,11 @@ impl Beside {
     /// A bench with these members set.
     #[must_use]
     pub fn on<'a>(&self, bench: &Bench<'a>) -> Bench<'a> {
-        Bench { set: bench.set.iter().chain(&self.set).cloned().collect(), cache: bench.cache.clone(), ..*bench }
+        Bench {
+            set: bench.set.iter().chain(&self.set).cloned().collect(),
+            cache: bench.cache.clone(),
+            ..*bench
+        }
     }
 }
 
@@ -182,8 +194,8 @@ impl Candidate {
     }
 }
 
-/// Interpolates between two sizes. One may be infinite, where the effect vanishes with increasing size: then the reciprocal is
-/// interpolated.
+/// Interpolates between two sizes. One may be infinite, where the effect vanishes with increasing
+/// size: then the reciprocal is interpolated.
 pub fn between(from: f64, to: f64, share: f64) -> f64 {
     if to.is_infinite() {
         return if share < 1.0 { from / (1.0 - share) } else { f64::INFINITY };
@@ -195,11 +207,26 @@ pub fn between(from: f64, to: f64, share: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Lags of 0, 1, 2 and then 30 at the sizes 0 to 3: the range is at most 1 around size 1, and larger around 2.5.
+    /// Lags of 0, 1, 2 and then 30 at the sizes 0 to 3: the range is at most 1 around size 1, and
+    /// larger around 2.5.
     #[test]
     fn what_jumps_between_sizes_is_seen_near_them() {
-        let node = |(size, lag): (f64, f64)| Node { size, change: if size == 0.0 { Vec::new() } else { vec![5.0, lag] } };
-        let of = Candidate::path("effect", [(0.0, 0.0), (1.0, 1.0), (1.5, 2.0), (3.0, 30.0)].map(node).to_vec());
-        assert_eq!([of.range_near(1.0, 1), of.range_near(2.5, 1), of.range_near(2.5, 0), of.range_near(0.0, 1)], [1.0, 28.0, 0.0, 0.0]);
+        let node = |(size, lag): (f64, f64)| Node {
+            size,
+            change: if size == 0.0 { Vec::new() } else { vec![5.0, lag] },
+        };
+        let of = Candidate::path(
+            "effect",
+            [(0.0, 0.0), (1.0, 1.0), (1.5, 2.0), (3.0, 30.0)].map(node).to_vec(),
+        );
+        assert_eq!(
+            [
+                of.range_near(1.0, 1),
+                of.range_near(2.5, 1),
+                of.range_near(2.5, 0),
+                of.range_near(0.0, 1)
+            ],
+            [1.0, 28.0, 0.0, 0.0]
+        );
     }
 }

@@ -1,4 +1,5 @@
-//! The simulation without effects and the allowed difference: the common input of candidates and weighings.
+//! The simulation without effects and the allowed difference: the common input of candidates and
+//! weighings.
 
 use crate::diagnose::features::bench::{Bench, Runs};
 use crate::diagnose::features::observations::Observations;
@@ -33,7 +34,13 @@ impl Ground {
     /// Simulates without effects, and with each tolerance.
     ///
     /// Problems: references that cannot be read; a section that cannot be simulated.
-    pub fn find(inputs: &Inputs<'_>, seen: &Observations, admitted: &Declared, runs: &mut Runs, problems: &mut Problems) -> Option<Self> {
+    pub fn find(
+        inputs: &Inputs<'_>,
+        seen: &Observations,
+        admitted: &Declared,
+        runs: &mut Runs,
+        problems: &mut Problems,
+    ) -> Option<Self> {
         let settings = inputs.settings;
         let declared = |name: &str| admitted.get(name);
         let value = |key: &str| value_of(inputs.campaign, key);
@@ -53,7 +60,9 @@ impl Ground {
         };
         (inputs.trying)("sensitivities to the tolerances");
         let columns = match &bench {
-            Some(bench) => sensitivities(bench, settings, &base, &value, &declared, &|_| true, runs),
+            Some(bench) => {
+                sensitivities(bench, settings, &base, &value, &declared, &|_| true, runs)
+            }
             None => Vec::new(),
         };
         let recorded = as_recorded(seen, bench.as_ref(), settings, &value, &declared, runs);
@@ -64,5 +73,10 @@ impl Ground {
 /// The simulator on the sections; nothing without a simulator.
 #[must_use]
 pub fn bench<'a>(inputs: &Inputs<'a>, seen: &'a Observations) -> Option<Bench<'a>> {
-    inputs.simulator.map(|simulator| Bench { seen, simulator, cache: inputs.cache.clone(), set: Vec::new() })
+    inputs.simulator.map(|simulator| Bench {
+        seen,
+        simulator,
+        cache: inputs.cache.clone(),
+        set: Vec::new(),
+    })
 }

@@ -8,7 +8,8 @@ pub struct Mask {
     /// Column and values; nothing for all sections.
     pub confined: Option<(String, Vec<String>)>,
     pub sections: Vec<bool>,
-    /// The candidate whose fit selected the sections, if they were selected from the data: the selection has a penalty.
+    /// The candidate whose fit selected the sections, if they were selected from the data: the
+    /// selection has a penalty.
     pub asked_by: Option<usize>,
 }
 
@@ -18,8 +19,9 @@ pub fn allowed(candidates: &[Candidate], masks: &[Mask], candidate: usize, mask:
 }
 
 impl Mask {
-    /// Bias of sections selected from the data by their size: the expected mean of that many largest values of a standard normal sample, in
-    /// standard deviations. 0 where nothing was selected.
+    /// Bias of sections selected from the data by their size: the expected mean of that many
+    /// largest values of a standard normal sample, in standard deviations. 0 where nothing was
+    /// selected.
     #[must_use]
     pub fn picked(&self) -> f64 {
         use statrs::distribution::{Continuous, ContinuousCDF, Normal};
@@ -51,11 +53,15 @@ impl Mask {
 mod tests {
     use super::*;
 
-    /// The mean of the upper half of a standard normal distribution is (2 / pi)^1/2 = 0.798, of the upper quarter 1.271 (tables of
-    /// selection intensity, Falconer and Mackay 1996, appendix A).
+    /// The mean of the upper half of a standard normal distribution is (2 / pi)^1/2 = 0.798, of the
+    /// upper quarter 1.271 (tables of selection intensity, Falconer and Mackay 1996, appendix A).
     #[test]
     fn sections_that_were_picked_are_off_by_chance() {
-        let mask = |inside: usize, asked_by| Mask { confined: None, sections: (0..16).map(|at| at < inside).collect(), asked_by };
+        let mask = |inside: usize, asked_by| Mask {
+            confined: None,
+            sections: (0..16).map(|at| at < inside).collect(),
+            asked_by,
+        };
         assert!((mask(8, Some(0)).picked() - std::f64::consts::FRAC_2_PI.sqrt()).abs() < 1e-9);
         assert!((mask(4, Some(0)).picked() - 1.271).abs() < 1e-3);
         assert_eq!((mask(8, None).picked(), mask(16, Some(0)).picked()), (0.0, 0.0));

@@ -9,7 +9,8 @@ use super::candidate::{Candidate, Placed, between};
 use crate::diagnose::levels::fit::APART;
 use crate::diagnose::uncertainty::whiten::dot;
 
-/// A candidate under a mask: its whitened nodes, and the terms of a fit that do not depend on the difference.
+/// A candidate under a mask: its whitened nodes, and the terms of a fit that do not depend on the
+/// difference.
 #[derive(Debug)]
 pub struct Path {
     /// Sizes of the nodes, and the members simulated with them.
@@ -33,9 +34,15 @@ pub struct Closest {
     pub fall: f64,
 }
 
-/// From squared lengths of the nodes, inner products of each with the next, and inner products of each with the difference.
+/// From squared lengths of the nodes, inner products of each with the next, and inner products of
+/// each with the difference.
 #[must_use]
-pub fn closest(lengths: &[f64], products: &[f64], along: &[f64], discrete: bool) -> Option<Closest> {
+pub fn closest(
+    lengths: &[f64],
+    products: &[f64],
+    along: &[f64],
+    discrete: bool,
+) -> Option<Closest> {
     let mut best: Option<Closest> = None;
     for segment in 0..products.len() {
         // |z - (1-t) a - t b|^2 = |z|^2 + c0 + c1 t + c2 t^2
@@ -69,7 +76,8 @@ pub struct BySection {
 }
 
 impl BySection {
-    /// Fall of chi-squared and size with a weight per section; nothing where no section with a weight is changed.
+    /// Fall of chi-squared and size with a weight per section; nothing where no section with a
+    /// weight is changed.
     #[must_use]
     pub fn fit(&self, times: &[f64]) -> Option<(f64, f64)> {
         self.fit_among(times, 0..self.sizes.len())
@@ -78,7 +86,8 @@ impl BySection {
     /// As [`Self::fit`], among sizes on the same side of neutral as `size`.
     #[must_use]
     pub fn fit_beside(&self, times: &[f64], size: f64) -> Option<(f64, f64)> {
-        let nothing = self.lengths.iter().position(|sections| sections.iter().all(|length| *length == 0.0));
+        let nothing =
+            self.lengths.iter().position(|sections| sections.iter().all(|length| *length == 0.0));
         let nodes = match nothing {
             Some(at) if size > self.sizes[at] => at..self.sizes.len(),
             Some(at) if size < self.sizes[at] => 0..at + 1,
@@ -90,12 +99,14 @@ impl BySection {
     fn fit_among(&self, times: &[f64], nodes: Range<usize>) -> Option<(f64, f64)> {
         let sum = |parts: &Vec<f64>| dot(parts, times);
         let segments = nodes.start..nodes.end.saturating_sub(1);
-        let [lengths, products, along] = [&self.lengths[nodes.clone()], &self.products[segments], &self.along[nodes.clone()]]
-            .map(|all| all.iter().map(sum).collect::<Vec<f64>>());
+        let [lengths, products, along] =
+            [&self.lengths[nodes.clone()], &self.products[segments], &self.along[nodes.clone()]]
+                .map(|all| all.iter().map(sum).collect::<Vec<f64>>());
         if lengths.iter().all(|length| *length == 0.0) {
             return None;
         }
-        let Closest { segment, share, fall, .. } = closest(&lengths, &products, &along, self.discrete)?;
+        let Closest { segment, share, fall, .. } =
+            closest(&lengths, &products, &along, self.discrete)?;
         let sizes = &self.sizes[nodes];
         Some((fall, between(sizes[segment], sizes[segment + 1], share)))
     }
@@ -105,7 +116,8 @@ impl Path {
     /// From a candidate and its whitened nodes.
     #[must_use]
     pub fn new(of: &Candidate, nodes: Vec<Vec<f64>>) -> Self {
-        let product = |a: &Vec<f64>, b: &Vec<f64>| if a.is_empty() || b.is_empty() { 0.0 } else { dot(a, b) };
+        let product =
+            |a: &Vec<f64>, b: &Vec<f64>| if a.is_empty() || b.is_empty() { 0.0 } else { dot(a, b) };
         let lengths: Vec<f64> = nodes.iter().map(|node| product(node, node)).collect();
         let products: Vec<f64> = nodes.windows(2).map(|pair| product(&pair[0], &pair[1])).collect();
         let step = |at: usize| (lengths[at] - 2.0 * products[at] + lengths[at + 1]).max(0.0).sqrt();
@@ -125,8 +137,9 @@ impl Path {
         beside && candidate.nodes.iter().map(|node| node.size).eq(self.sizes.iter().copied())
     }
 
-    /// Length of the change per unit of the size, between nodes at some distance on either side. Between two close nodes, scatter of the
-    /// features would dominate. 0 where one of the two sizes is infinite. `nodes` are the whitened nodes, in any metric.
+    /// Length of the change per unit of the size, between nodes at some distance on either side.
+    /// Between two close nodes, scatter of the features would dominate. 0 where one of the two
+    /// sizes is infinite. `nodes` are the whitened nodes, in any metric.
     #[must_use]
     pub fn slope(&self, of: &Candidate, nodes: &[Vec<f64>], segment: usize, size: f64) -> f64 {
         let near = |at: &usize| (of.nodes[*at].size - size).abs() < APART * size.abs();
@@ -148,11 +161,15 @@ mod tests {
     use super::*;
     use crate::diagnose::response::candidate::Node;
 
-    /// Three nodes on a line of slope 2, and one close to the middle node that is off the line: the slope is that of the line.
+    /// Three nodes on a line of slope 2, and one close to the middle node that is off the line: the
+    /// slope is that of the line.
     #[test]
     fn nodes_side_by_side_make_no_slope() {
         let nodes = [(0.0, 0.0), (1.0, 2.0), (1.001, 2.5), (2.0, 4.0)];
-        let node = |(size, change): (f64, f64)| Node { size, change: if size == 0.0 { Vec::new() } else { vec![change] } };
+        let node = |(size, change): (f64, f64)| Node {
+            size,
+            change: if size == 0.0 { Vec::new() } else { vec![change] },
+        };
         let of = Candidate::path("effect", nodes.map(node).to_vec());
         let path = Path::new(&of, of.nodes.iter().map(|node| node.change.clone()).collect());
         assert!((path.slope(&of, &path.nodes, 1, 1.0005) - 2.0).abs() < 1e-12);

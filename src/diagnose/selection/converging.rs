@@ -19,12 +19,14 @@ use crate::result::diagnosis::Calibration;
 pub struct Converging<'a> {
     pub workshop: &'a Workshop<'a>,
     pub place: &'a Place,
-    /// Simulation of the tolerances together with members; absent in a search with fixed tolerances.
+    /// Simulation of the tolerances together with members; absent in a search with fixed
+    /// tolerances.
     pub tolerances: Option<&'a Tolerances<'a>>,
     pub families: &'a [Vec<View>],
     /// Distance of a size from neutral in declared standard deviations.
     pub far: &'a (dyn Fn(&Candidate, f64) -> f64 + Sync),
-    /// Share of the campaigns with nothing hidden in which an effect may reach the required evidence.
+    /// Share of the campaigns with nothing hidden in which an effect may reach the required
+    /// evidence.
     pub false_name_rate: f64,
     pub seed: u64,
 }
@@ -46,8 +48,14 @@ impl Converging<'_> {
         Converging { place, ..*self }
     }
 
-    /// Refits the members with their fitted sizes simulated. A member whose evidence was sufficient only by interpolation is dropped.
-    pub(super) fn simulated(&self, (candidates, masks): (&mut [Candidate], &[Mask]), mut now: Converged, runs: &mut Runs) -> Converged {
+    /// Refits the members with their fitted sizes simulated. A member whose evidence was sufficient
+    /// only by interpolation is dropped.
+    pub(super) fn simulated(
+        &self,
+        (candidates, masks): (&mut [Candidate], &[Mask]),
+        mut now: Converged,
+        runs: &mut Runs,
+    ) -> Converged {
         let Place { whitener, z, .. } = self.place;
         for _ in 0..ROUNDS {
             if !polish(self.workshop, candidates, &now.chosen.members, runs) {
@@ -65,7 +73,9 @@ impl Converging<'_> {
             (!plausible(&fitter.candidates[member.candidate], member.size))
                 .then_some("together with the other effects it requires an implausible value")
         };
-        let first_fault = |members: &[Fitted]| members.iter().enumerate().find_map(|(at, member)| Some((at, fault(member)?)));
+        let first_fault = |members: &[Fitted]| {
+            members.iter().enumerate().find_map(|(at, member)| Some((at, fault(member)?)))
+        };
         while let Some((at, reason)) = first_fault(&now.chosen.members) {
             let fitted = now.chosen.members.remove(at);
             now.refused.push(Refused::new(fitted, reason));
@@ -95,9 +105,15 @@ impl Converging<'_> {
             }
         }
         let change = fit.change(fitter.candidates, &fitter.masks);
-        carried(&self.place.covariance, &fitter.masks[fit.mask], &change, &rest).map_or(judged, |(at, share)| {
-            let section = self.workshop.seen.sections[at].section.name();
-            Judged::Refused(format!("without section {section} only {:.0} % of the evidence remains", 100.0 * share))
-        })
+        carried(&self.place.covariance, &fitter.masks[fit.mask], &change, &rest).map_or(
+            judged,
+            |(at, share)| {
+                let section = self.workshop.seen.sections[at].section.name();
+                Judged::Refused(format!(
+                    "without section {section} only {:.0} % of the evidence remains",
+                    100.0 * share
+                ))
+            },
+        )
     }
 }

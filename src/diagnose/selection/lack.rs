@@ -12,13 +12,23 @@ use crate::diagnose::selection::guards::{View, part};
 use crate::diagnose::selection::place::Place;
 use crate::diagnose::uncertainty::whiten::{Covariance, less};
 
-/// The covariance with an answer, plus the model error of the simulated members, independent between features.
+/// The covariance with an answer, plus the model error of the simulated members, independent
+/// between features.
 #[must_use]
-pub fn with_room(beside: &Covariance, candidates: &[Candidate], masks: &[Mask], chosen: &Chosen) -> Covariance {
+pub fn with_room(
+    beside: &Covariance,
+    candidates: &[Candidate],
+    masks: &[Mask],
+    chosen: &Chosen,
+) -> Covariance {
     let mut wider = beside.clone();
     for member in chosen.members.iter().filter(|member| !candidates[member.candidate].exact) {
         let change = member.change(candidates, masks);
-        wider.diagonal.iter_mut().zip(change).for_each(|(variance, change)| *variance += (beside.response.each * change).powi(2));
+        wider
+            .diagonal
+            .iter_mut()
+            .zip(change)
+            .for_each(|(variance, change)| *variance += (beside.response.each * change).powi(2));
     }
     wider
 }
@@ -47,11 +57,20 @@ pub fn lack_of_fit(covariance: &Covariance, seen: &Observations, rest: &[f64]) -
     for (channel, of) in seen.layout.channels.iter().enumerate() {
         for level in [true, false] {
             let keep = |kind: Kind| (kind == Kind::Level) == level;
-            let features: Vec<usize> =
-                seen.features.iter().enumerate().filter(|(_, f)| f.channel == channel && keep(f.kind)).map(|(at, _)| at).collect();
+            let features: Vec<usize> = seen
+                .features
+                .iter()
+                .enumerate()
+                .filter(|(_, f)| f.channel == channel && keep(f.kind))
+                .map(|(at, _)| at)
+                .collect();
             if !features.is_empty() {
                 let kind = if level { Kind::Level } else { Kind::Band(0) };
-                views.push((of.name.clone(), kind, View { says: String::new(), sections: all.clone(), features }));
+                views.push((
+                    of.name.clone(),
+                    kind,
+                    View { says: String::new(), sections: all.clone(), features },
+                ));
             }
         }
     }
@@ -61,25 +80,44 @@ pub fn lack_of_fit(covariance: &Covariance, seen: &Observations, rest: &[f64]) -
         let all = count(&view);
         let (with_them, chi, alone) = without_those_alone(covariance, &mut view, rest);
         let n = count(&view);
-        Lack { channel, kind, sigma: beyond(chi, n), excess: chi - n, alone, sigma_with_them: beyond(with_them, all) }
+        Lack {
+            channel,
+            kind,
+            sigma: beyond(chi, n),
+            excess: chi - n,
+            alone,
+            sigma_with_them: beyond(with_them, all),
+        }
     };
     views.into_par_iter().map(each).collect()
 }
 
-/// Chi-squared of a view with and without outlying sections, and these. A section is outlying if its conditional chi-squared given the
-/// others exceeds [`LACK`] standard deviations. The sections are removed from the view.
-fn without_those_alone(covariance: &Covariance, view: &mut View, rest: &[f64]) -> (f64, f64, Vec<usize>) {
+/// Chi-squared of a view with and without outlying sections, and these. A section is outlying if
+/// its conditional chi-squared given the others exceeds [`LACK`] standard deviations. The sections
+/// are removed from the view.
+fn without_those_alone(
+    covariance: &Covariance,
+    view: &mut View,
+    rest: &[f64],
+) -> (f64, f64, Vec<usize>) {
     let own = view.features.len() as f64;
     let most = view.sections.len() / ONE_IN;
     let (mut first, mut alone) = (None, Vec::new());
     loop {
         let rest = part(rest, covariance.size, view);
-        let products = covariance.part(&view.sections, &view.features).products().of(&rest, &rest, alone.len() < most);
-        let (whole, others) = products.split_first().map_or((0.0, &[][..]), |(whole, others)| (whole.0, others));
+        let products = covariance.part(&view.sections, &view.features).products().of(
+            &rest,
+            &rest,
+            alone.len() < most,
+        );
+        let (whole, others) =
+            products.split_first().map_or((0.0, &[][..]), |(whole, others)| (whole.0, others));
         let with_them = *first.get_or_insert(whole);
         let least = others.iter().enumerate().min_by(|a, b| a.1.0.total_cmp(&b.1.0));
         match least {
-            Some((at, left)) if whole - left.0 > own + LACK * (2.0 * own).sqrt() => alone.push(view.sections.remove(at)),
+            Some((at, left)) if whole - left.0 > own + LACK * (2.0 * own).sqrt() => {
+                alone.push(view.sections.remove(at))
+            }
             _ => return (with_them, whole, alone),
         }
     }
@@ -90,14 +128,20 @@ pub fn excess(lack: &[Lack]) -> f64 {
     lack.iter().map(|lack| lack.excess.max(0.0)).sum()
 }
 
-/// The share of the excess that remains, and whether the gap is unexplained: more than half remains, in more than one kind of feature or
-/// channel or far beyond the threshold. One of some forty may exceed the threshold by a little.
+/// The share of the excess that remains, and whether the gap is unexplained: more than half
+/// remains, in more than one kind of feature or channel or far beyond the threshold. One of some
+/// forty may exceed the threshold by a little.
 #[must_use]
 pub fn unexplained(before: &[Lack], after: &[Lack]) -> (f64, bool) {
     let (gap, rest) = (excess(before), excess(after));
     let share = if gap > 0.0 { (rest / gap).clamp(0.0, 1.0) } else { 0.0 };
-    let beyond: Vec<f64> = after.iter().map(|lack| lack.sigma).filter(|sigma| *sigma > LACK).collect();
-    (share, share > MOST_LEFT && (beyond.len() > 1 || beyond.iter().any(|sigma| *sigma > FAR_BEYOND * LACK)))
+    let beyond: Vec<f64> =
+        after.iter().map(|lack| lack.sigma).filter(|sigma| *sigma > LACK).collect();
+    (
+        share,
+        share > MOST_LEFT
+            && (beyond.len() > 1 || beyond.iter().any(|sigma| *sigma > FAR_BEYOND * LACK)),
+    )
 }
 
 /// Drops members that increase the lack of fit, and gives the remaining lack of fit.
@@ -110,7 +154,15 @@ pub fn drop_what_harms(
     before: &[Lack],
 ) -> Vec<Lack> {
     loop {
-        let lack = |chosen: &Chosen| lack_after(&place.covariance, seen, (fitter.candidates, &fitter.masks), &place.difference, chosen);
+        let lack = |chosen: &Chosen| {
+            lack_after(
+                &place.covariance,
+                seen,
+                (fitter.candidates, &fitter.masks),
+                &place.difference,
+                chosen,
+            )
+        };
         let now = lack(chosen);
         let Some(last) = chosen.members.len().checked_sub(1) else { return now };
         let mut without = chosen.clone();
@@ -120,7 +172,11 @@ pub fn drop_what_harms(
         if excess(&now) <= WORSE * excess(&then) + LITTLE {
             return now;
         }
-        let reason = format!("what channels show beyond what is allowed for grows from {:.0} to {:.0}", excess(&then), excess(&now));
+        let reason = format!(
+            "what channels show beyond what is allowed for grows from {:.0} to {:.0}",
+            excess(&then),
+            excess(&now)
+        );
         refused.push(Refused::new(chosen.members[last].clone(), reason));
         *chosen = without;
     }
@@ -128,8 +184,16 @@ pub fn drop_what_harms(
 
 /// The residual of the members, not whitened.
 #[must_use]
-pub fn left(candidates: &[Candidate], masks: &[Mask], difference: &[f64], chosen: &Chosen) -> Vec<f64> {
-    chosen.members.iter().fold(difference.to_vec(), |rest, member| less(&rest, &member.change(candidates, masks)))
+pub fn left(
+    candidates: &[Candidate],
+    masks: &[Mask],
+    difference: &[f64],
+    chosen: &Chosen,
+) -> Vec<f64> {
+    chosen
+        .members
+        .iter()
+        .fold(difference.to_vec(), |rest, member| less(&rest, &member.change(candidates, masks)))
 }
 
 /// Lack of fit of the residual.
@@ -151,14 +215,25 @@ mod tests {
     use crate::diagnose::response::candidate::Node;
     use crate::diagnose::uncertainty::response::ResponseError;
 
-    /// Sixteen sections of nine features of unit variance; a difference of 10 in each feature gives a chi-squared of 900.
+    /// Sixteen sections of nine features of unit variance; a difference of 10 in each feature gives
+    /// a chi-squared of 900.
     #[test]
     fn two_of_sixteen_sections_may_stand_out_alone() {
-        let covariance =
-            Covariance { diagonal: vec![1.0; 16 * 9], inside: Vec::new(), shared: Vec::new(), size: 9, response: ResponseError::default() };
+        let covariance = Covariance {
+            diagonal: vec![1.0; 16 * 9],
+            inside: Vec::new(),
+            shared: Vec::new(),
+            size: 9,
+            response: ResponseError::default(),
+        };
         let lack = |off: &[usize]| {
-            let rest: Vec<f64> = (0..16 * 9).map(|at| if off.contains(&(at / 9)) { 10.0 } else { 0.0 }).collect();
-            let mut view = View { says: String::new(), sections: (0..16).collect(), features: (0..9).collect() };
+            let rest: Vec<f64> =
+                (0..16 * 9).map(|at| if off.contains(&(at / 9)) { 10.0 } else { 0.0 }).collect();
+            let mut view = View {
+                says: String::new(),
+                sections: (0..16).collect(),
+                features: (0..9).collect(),
+            };
             without_those_alone(&covariance, &mut view, &rest)
         };
         assert_eq!(lack(&[]), (0.0, 0.0, vec![]));
@@ -172,9 +247,16 @@ mod tests {
     fn only_what_is_simulated_may_be_wrong() {
         let mut response = ResponseError::default();
         response.each = 0.2;
-        let covariance = Covariance { diagonal: vec![1.0; 2], inside: Vec::new(), shared: Vec::new(), size: 1, response };
+        let covariance = Covariance {
+            diagonal: vec![1.0; 2],
+            inside: Vec::new(),
+            shared: Vec::new(),
+            size: 1,
+            response,
+        };
         let whitener = covariance.whitener();
-        let nodes = vec![Node { size: 0.0, change: Vec::new() }, Node { size: 1.0, change: vec![10.0; 2] }];
+        let nodes =
+            vec![Node { size: 0.0, change: Vec::new() }, Node { size: 1.0, change: vec![10.0; 2] }];
         for (exact, variance) in [(false, 1.0 + 4.0), (true, 1.0)] {
             let candidates = [Candidate { exact, ..Candidate::path("effect", nodes.clone()) }];
             let masks = vec![Mask { confined: None, sections: vec![true; 2], asked_by: None }];
@@ -182,7 +264,11 @@ mod tests {
             let member = fitter.fit(&[10.0; 2], 0, 0).expect("a path");
             let chosen = Chosen { members: vec![member], ..Chosen::none(&[0.0; 2]) };
             let wider = with_room(&covariance, &candidates, &masks, &chosen);
-            assert!(wider.diagonal.iter().all(|seen| (seen - variance).abs() < 1e-9), "{:?}", wider.diagonal);
+            assert!(
+                wider.diagonal.iter().all(|seen| (seen - variance).abs() < 1e-9),
+                "{:?}",
+                wider.diagonal
+            );
         }
     }
 }

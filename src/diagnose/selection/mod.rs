@@ -1,4 +1,5 @@
-//! Which effects are named: the search with simulation of the fitted sizes, and the checks of every member.
+//! Which effects are named: the search with simulation of the fitted sizes, and the checks of every
+//! member.
 
 pub(super) mod calibration;
 pub(super) mod converge;

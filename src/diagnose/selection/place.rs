@@ -1,5 +1,6 @@
-//! Weighing of differences with the tolerances simulated together with members. A vehicle with low damping is sensitive to a stiffness
-//! that has no influence otherwise, and short waves matter less where others are present.
+//! Weighing of differences with the tolerances simulated together with members. A vehicle with low
+//! damping is sensitive to a stiffness that has no influence otherwise, and short waves matter less
+//! where others are present.
 
 use std::sync::Arc;
 
@@ -12,7 +13,8 @@ use crate::diagnose::uncertainty::whiten::{Covariance, Whitener};
 pub struct Place {
     /// The members that are simulated with it: candidate, mask and size.
     pub members: Vec<(usize, usize, f64)>,
-    /// Measured - simulated, without the expected deviation of the tolerances simulated with the members.
+    /// Measured - simulated, without the expected deviation of the tolerances simulated with the
+    /// members.
     pub difference: Vec<f64>,
     pub covariance: Covariance,
     pub whitener: Whitener,
@@ -25,7 +27,13 @@ impl Place {
     #[must_use]
     pub fn new(covariance: Covariance, difference: Vec<f64>) -> Self {
         let whitener = covariance.whitener();
-        Self { members: Vec::new(), z: whitener.apply(&difference), difference, covariance, whitener }
+        Self {
+            members: Vec::new(),
+            z: whitener.apply(&difference),
+            difference,
+            covariance,
+            whitener,
+        }
     }
 
     #[must_use]
@@ -35,13 +43,17 @@ impl Place {
 
     /// Whether it is for these members, of any size.
     fn is_beside(&self, members: &[Fitted]) -> bool {
-        let same = |((candidate, mask, _), member): (&(usize, usize, f64), &Fitted)| (*candidate, *mask) == (member.candidate, member.mask);
+        let same = |((candidate, mask, _), member): (&(usize, usize, f64), &Fitted)| {
+            (*candidate, *mask) == (member.candidate, member.mask)
+        };
         self.members.len() == members.len() && self.members.iter().zip(members).all(same)
     }
 
     /// Whether it is for these members, of about these sizes.
     fn is_near(&self, members: &[Fitted]) -> bool {
-        let near = |((.., size), member): (&(usize, usize, f64), &Fitted)| (size - member.size).abs() <= ALIKE * size.abs();
+        let near = |((.., size), member): (&(usize, usize, f64), &Fitted)| {
+            (size - member.size).abs() <= ALIKE * size.abs()
+        };
         self.is_beside(members) && self.members.iter().zip(members).all(near)
     }
 }

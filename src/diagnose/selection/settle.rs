@@ -1,4 +1,5 @@
-//! Refit of the answer with the tolerances simulated together with it: part of the difference may then be due to a tolerance.
+//! Refit of the answer with the tolerances simulated together with it: part of the difference may
+//! then be due to a tolerance.
 
 use std::sync::Arc;
 
@@ -28,11 +29,16 @@ impl Weighed {
         Self { place, ..self }
     }
 
-    /// A size in sections selected from the data, less the size of the other sections if it has the same sign: the selection is not
-    /// justified by a change common to all sections. The size itself where the sections were not selected from the data.
+    /// A size in sections selected from the data, less the size of the other sections if it has the
+    /// same sign: the selection is not justified by a change common to all sections. The size
+    /// itself where the sections were not selected from the data.
     fn beside_the_others(&self, of: &Candidate, mask: &Mask, size: f64) -> f64 {
         let Some(neutral) = of.neutral().filter(|_| mask.asked_by.is_some()) else { return size };
-        let others = Mask { confined: None, sections: mask.sections.iter().map(|inside| !inside).collect(), asked_by: None };
+        let others = Mask {
+            confined: None,
+            sections: mask.sections.iter().map(|inside| !inside).collect(),
+            asked_by: None,
+        };
         let fitter = Fitter::new(&self.place.whitener, std::slice::from_ref(of), vec![others]);
         let elsewhere = fitter.fit(&self.chosen.rest, 0, 0).map_or(0.0, |fit| fit.size - neutral);
         let here = size - neutral;
@@ -48,7 +54,8 @@ pub struct Settled<'a> {
 }
 
 impl Settled<'_> {
-    /// The refitted members and two weighings: one for the residual, and one for the sizes, without outlying sections.
+    /// The refitted members and two weighings: one for the residual, and one for the sizes, without
+    /// outlying sections.
     pub fn answer(
         &self,
         (candidates, masks): (&mut [Candidate], &[Mask]),
@@ -59,7 +66,13 @@ impl Settled<'_> {
         runs: &mut Runs,
     ) -> (Arc<Place>, Weighed) {
         let lack = |candidates: &[Candidate], now: &Weighed| {
-            lack_after(&now.place.covariance, self.tolerances.workshop.seen, (candidates, masks), &now.place.difference, &now.chosen)
+            lack_after(
+                &now.place.covariance,
+                self.tolerances.workshop.seen,
+                (candidates, masks),
+                &now.place.difference,
+                &now.chosen,
+            )
         };
         let before = refused.len();
         let mut now = self.settle((candidates, masks), first.clone(), bars, refused, runs);
@@ -72,8 +85,9 @@ impl Settled<'_> {
         (beside, self.sized((candidates, masks), now, &left, runs))
     }
 
-    /// Weighs with the tolerances simulated together with the first member, then with the first two, and so on. A member may be replaced
-    /// by a tolerance to which it or another member makes the vehicle sensitive.
+    /// Weighs with the tolerances simulated together with the first member, then with the first
+    /// two, and so on. A member may be replaced by a tolerance to which it or another member makes
+    /// the vehicle sensitive.
     fn settle(
         &self,
         (candidates, masks): (&mut [Candidate], &[Mask]),
@@ -85,11 +99,18 @@ impl Settled<'_> {
         let without = now.place.clone();
         let mut count = 1;
         while count <= now.chosen.members.len() {
-            if let Some(place) = self.tolerances.beside((candidates, masks), &now.chosen.members[..count], runs) {
+            if let Some(place) =
+                self.tolerances.beside((candidates, masks), &now.chosen.members[..count], runs)
+            {
                 now = now.at(place);
             }
             self.refined((candidates, masks), &mut now, runs);
-            while now.chosen.members.get(count).is_some_and(|next| next.evidence < bars.least(&candidates[next.candidate])) {
+            while now
+                .chosen
+                .members
+                .get(count)
+                .is_some_and(|next| next.evidence < bars.least(&candidates[next.candidate]))
+            {
                 let reason = "with the tolerances evaluated together with the effects found before, it has too little evidence";
                 refused.push(Refused::new(now.chosen.members.remove(count), reason));
                 alone_again(candidates, &now.chosen.members);
@@ -99,12 +120,21 @@ impl Settled<'_> {
             let weak = |at: usize| {
                 let (member, of) = (&members[at], &candidates[members[at].candidate]);
                 let contrast = now.beside_the_others(of, &masks[member.mask], member.size);
-                let (away, needed) = ((self.far)(of, contrast), bars.tolerance_sd + masks[member.mask].picked());
-                let from = if masks[member.mask].asked_by.is_some() { " from that of the other sections" } else { "" };
+                let (away, needed) =
+                    ((self.far)(of, contrast), bars.tolerance_sd + masks[member.mask].picked());
+                let from = if masks[member.mask].asked_by.is_some() {
+                    " from that of the other sections"
+                } else {
+                    ""
+                };
                 let reason = match () {
-                    () if member.evidence < bars.least(of) => "it has too little evidence".to_string(),
+                    () if member.evidence < bars.least(of) => {
+                        "it has too little evidence".to_string()
+                    }
                     () if away < needed => {
-                        format!("its value is only {away:.1} declared standard deviations away{from}; {needed:.1} are required")
+                        format!(
+                            "its value is only {away:.1} declared standard deviations away{from}; {needed:.1} are required"
+                        )
                     }
                     () => return None,
                 };
@@ -123,21 +153,34 @@ impl Settled<'_> {
         now
     }
 
-    /// Refits the members with the covariance for sizes: without outlying sections, and without lags that jump to another period between
-    /// sizes.
-    fn sized(&self, (candidates, masks): (&mut [Candidate], &[Mask]), mut now: Weighed, lack: &[Lack], runs: &mut Runs) -> Weighed {
+    /// Refits the members with the covariance for sizes: without outlying sections, and without
+    /// lags that jump to another period between sizes.
+    fn sized(
+        &self,
+        (candidates, masks): (&mut [Candidate], &[Mask]),
+        mut now: Weighed,
+        lack: &[Lack],
+        runs: &mut Runs,
+    ) -> Weighed {
         let (seen, settings) = (self.tolerances.workshop.seen, self.tolerances.settings);
         let mut covariance = now.place.covariance.clone();
         for one in lack {
             let level = one.kind == Kind::Level;
             for (at, feature) in seen.features.iter().enumerate() {
-                if seen.layout.channels[feature.channel].name == one.channel && (feature.kind == Kind::Level) == level {
-                    one.alone.iter().for_each(|section| covariance.diagonal[seen.place(*section, at)] = NOTHING);
+                if seen.layout.channels[feature.channel].name == one.channel
+                    && (feature.kind == Kind::Level) == level
+                {
+                    one.alone.iter().for_each(|section| {
+                        covariance.diagonal[seen.place(*section, at)] = NOTHING
+                    });
                 }
             }
         }
-        for member in now.chosen.members.iter().filter(|member| !candidates[member.candidate].exact) {
-            for (at, feature) in seen.features.iter().enumerate().filter(|(_, feature)| feature.kind == Kind::Lag) {
+        for member in now.chosen.members.iter().filter(|member| !candidates[member.candidate].exact)
+        {
+            for (at, feature) in
+                seen.features.iter().enumerate().filter(|(_, feature)| feature.kind == Kind::Lag)
+            {
                 let sd = settings.groups[seen.layout.channels[feature.channel].group].lag_sd;
                 for place in (0..seen.sections.len()).map(|section| seen.place(section, at)) {
                     if candidates[member.candidate].range_near(member.size, place) > JUMP * sd {
@@ -156,7 +199,8 @@ impl Settled<'_> {
     }
 }
 
-/// Refits the members with their fitted sizes simulated. The last step is a fit, so that the judged sizes are those of the answer.
+/// Refits the members with their fitted sizes simulated. The last step is a fit, so that the judged
+/// sizes are those of the answer.
 pub fn refined(
     workshop: &Workshop<'_>,
     (candidates, masks): (&mut [Candidate], &[Mask]),
@@ -173,11 +217,19 @@ pub fn refined(
 }
 
 /// Simulates the fitted sizes where no close size exists; returns whether there was any.
-pub fn polish(workshop: &Workshop<'_>, candidates: &mut [Candidate], fits: &[Fitted], runs: &mut Runs) -> bool {
+pub fn polish(
+    workshop: &Workshop<'_>,
+    candidates: &mut [Candidate],
+    fits: &[Fitted],
+    runs: &mut Runs,
+) -> bool {
     let mut added = false;
     for member in fits {
         let candidate = &mut candidates[member.candidate];
-        let known = candidate.nodes.iter().any(|node| (node.size - member.size).abs() <= ALIKE * member.size.abs());
+        let known = candidate
+            .nodes
+            .iter()
+            .any(|node| (node.size - member.size).abs() <= ALIKE * member.size.abs());
         if !candidate.discrete && member.size.is_finite() && !known {
             workshop.add_size(candidate, member.size, runs);
             added = true;
@@ -194,23 +246,41 @@ mod tests {
     use crate::diagnose::uncertainty::whiten::Covariance;
     use crate::diagnose::uncertainty::whiten::less;
 
-    /// One feature in each of eight sections, of unit variance: three selected sections have the size 5, the others 2 or -2.
+    /// One feature in each of eight sections, of unit variance: three selected sections have the
+    /// size 5, the others 2 or -2.
     #[test]
     fn what_all_sections_have_is_no_reason_to_choose_some() {
-        let covariance =
-            Covariance { diagonal: vec![1.0; 8], inside: Vec::new(), shared: Vec::new(), size: 1, response: ResponseError::default() };
-        let nodes = [-10.0, 0.0, 10.0].map(|size| Node { size, change: if size == 0.0 { Vec::new() } else { vec![size; 8] } });
+        let covariance = Covariance {
+            diagonal: vec![1.0; 8],
+            inside: Vec::new(),
+            shared: Vec::new(),
+            size: 1,
+            response: ResponseError::default(),
+        };
+        let nodes = [-10.0, 0.0, 10.0].map(|size| Node {
+            size,
+            change: if size == 0.0 { Vec::new() } else { vec![size; 8] },
+        });
         let candidates = [Candidate::path("effect", nodes.to_vec())];
         let size = |others: f64, asked_by: Option<usize>| {
             let difference: Vec<f64> = (0..8).map(|at| if at < 3 { 5.0 } else { others }).collect();
-            let mask = Mask { confined: None, sections: (0..8).map(|at| at < 3).collect(), asked_by };
+            let mask =
+                Mask { confined: None, sections: (0..8).map(|at| at < 3).collect(), asked_by };
             let whitener = covariance.whitener();
-            let member = Fitter::new(&whitener, &candidates, vec![mask.clone()]).fit(&difference, 0, 0).expect("a path");
-            let chosen = Chosen { members: vec![member.clone()], ..Chosen::none(&less(&difference, &member.whitened)) };
-            let weighed = Weighed { place: Arc::new(Place::new(covariance.clone(), difference)), chosen };
+            let member = Fitter::new(&whitener, &candidates, vec![mask.clone()])
+                .fit(&difference, 0, 0)
+                .expect("a path");
+            let chosen = Chosen {
+                members: vec![member.clone()],
+                ..Chosen::none(&less(&difference, &member.whitened))
+            };
+            let weighed =
+                Weighed { place: Arc::new(Place::new(covariance.clone(), difference)), chosen };
             weighed.beside_the_others(&candidates[0], &mask, member.size)
         };
-        for (others, asked_by, wanted) in [(2.0, Some(0), 3.0), (-2.0, Some(0), 5.0), (6.0, Some(0), 0.0), (2.0, None, 5.0)] {
+        for (others, asked_by, wanted) in
+            [(2.0, Some(0), 3.0), (-2.0, Some(0), 5.0), (6.0, Some(0), 0.0), (2.0, None, 5.0)]
+        {
             let found = size(others, asked_by);
             assert!((found - wanted).abs() < 1e-9, "{found} for {wanted}");
         }

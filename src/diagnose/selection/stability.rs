@@ -16,7 +16,8 @@ use crate::effects::Gauss;
 pub struct Stability {
     /// Share of the resamples in which no other effect has more evidence.
     pub first: f64,
-    /// 5 % and 95 % quantiles of the size, each on the side of neutral with more evidence in that resample.
+    /// 5 % and 95 % quantiles of the size, each on the side of neutral with more evidence in that
+    /// resample.
     pub sizes: (f64, f64),
     /// The same, on whichever side fits best by the weighing of sizes.
     pub either_side: (f64, f64),
@@ -31,7 +32,8 @@ impl Stability {
         self.first < FIRST
     }
 
-    /// The sizes that decide whether the effect is significant: on either side of neutral unless the member is certain.
+    /// The sizes that decide whether the effect is significant: on either side of neutral unless
+    /// the member is certain.
     #[must_use]
     pub fn judged(&self) -> (f64, f64) {
         if self.first < SURE { self.either_side } else { self.sizes }
@@ -43,7 +45,8 @@ impl Stability {
         self.instead.iter().find(|(other, _)| *other == candidate).map_or(0.0, |(_, share)| *share)
     }
 
-    /// Whether a candidate is reported together with a member that fails: at least half as often first as the most frequent one.
+    /// Whether a candidate is reported together with a member that fails: at least half as often
+    /// first as the most frequent one.
     #[must_use]
     pub fn as_well(&self, candidate: usize) -> bool {
         let share = self.instead_of(candidate);
@@ -55,7 +58,8 @@ impl Stability {
 /// A fitter, the difference whitened by it, and the members fitted with it.
 pub type Weighing<'a> = (&'a Fitter<'a>, &'a [f64], &'a Chosen);
 
-/// Resamples one member with the others fixed: against its rivals by one weighing, its size by another. Refused candidates are no rivals.
+/// Resamples one member with the others fixed: against its rivals by one weighing, its size by
+/// another. Refused candidates are no rivals.
 #[must_use]
 pub fn stability(
     (fitter, z, chosen): Weighing<'_>,
@@ -66,32 +70,53 @@ pub fn stability(
     seed: u64,
 ) -> Stability {
     let sections = fitter.masks[0].sections.len();
-    let draws: Vec<Vec<f64>> = (0..RESAMPLES).map(|draw| resample(strata, sections, seed.wrapping_add(draw as u64))).collect();
+    let draws: Vec<Vec<f64>> = (0..RESAMPLES)
+        .map(|draw| resample(strata, sections, seed.wrapping_add(draw as u64)))
+        .collect();
     let member = &chosen.members[at];
     let rest = chosen.left_by_others(z, at);
     let effect = |candidate: usize| &fitter.candidates[candidate].effect;
     let fits = fitter.all(&rest).into_iter();
-    let fits = fits.filter(|fit| refused.iter().all(|refused| refused.fitted.candidate != fit.candidate));
-    let near = fits.filter(|fit| fit.evidence >= NEAR * member.evidence && effect(fit.candidate) != effect(member.candidate));
-    let rivals: Vec<(BySection, f64, usize)> =
-        near.filter_map(|fit| Some((fitter.by_section(&rest, fit.candidate, fit.mask)?, fit.fall - fit.evidence, fit.candidate))).collect();
+    let fits =
+        fits.filter(|fit| refused.iter().all(|refused| refused.fitted.candidate != fit.candidate));
+    let near = fits.filter(|fit| {
+        fit.evidence >= NEAR * member.evidence && effect(fit.candidate) != effect(member.candidate)
+    });
+    let rivals: Vec<(BySection, f64, usize)> = near
+        .filter_map(|fit| {
+            Some((
+                fitter.by_section(&rest, fit.candidate, fit.mask)?,
+                fit.fall - fit.evidence,
+                fit.candidate,
+            ))
+        })
+        .collect();
     let own = fitter.by_section(&rest, member.candidate, member.mask);
-    let own_size = sizes.by_section(&sized.left_by_others(sized_z, at), member.candidate, member.mask);
+    let own_size =
+        sizes.by_section(&sized.left_by_others(sized_z, at), member.candidate, member.mask);
     let price = member.fall - member.evidence;
     let drawn: Vec<(Option<usize>, [Option<f64>; 2])> = draws
         .par_iter()
         .map(|times| {
             // If none of its sections is drawn, it explains nothing and has no size.
-            let (fall, side) = own.as_ref().and_then(|own| own.fit(times)).unwrap_or((0.0, member.size));
+            let (fall, side) =
+                own.as_ref().and_then(|own| own.fit(times)).unwrap_or((0.0, member.size));
             // The evidence decides the side of neutral, the weighing of sizes the size.
-            let beside = own_size.as_ref().and_then(|own| own.fit_beside(times, side)).map(|(_, size)| size);
+            let beside =
+                own_size.as_ref().and_then(|own| own.fit_beside(times, side)).map(|(_, size)| size);
             let freely = own_size.as_ref().and_then(|own| own.fit(times)).map(|(_, size)| size);
-            let others = rivals.iter().filter_map(|(rival, cost, candidate)| Some((rival.fit(times)?.0 - cost, *candidate)));
-            let beaten_by = others.filter(|(other, _)| *other > fall - price).max_by(|a, b| a.0.total_cmp(&b.0));
+            let others = rivals.iter().filter_map(|(rival, cost, candidate)| {
+                Some((rival.fit(times)?.0 - cost, *candidate))
+            });
+            let beaten_by = others
+                .filter(|(other, _)| *other > fall - price)
+                .max_by(|a, b| a.0.total_cmp(&b.0));
             (beaten_by.map(|(_, candidate)| candidate), [beside, freely])
         })
         .collect();
-    let share = |of: Option<usize>| drawn.iter().filter(|(by, _)| *by == of).count() as f64 / drawn.len().max(1) as f64;
+    let share = |of: Option<usize>| {
+        drawn.iter().filter(|(by, _)| *by == of).count() as f64 / drawn.len().max(1) as f64
+    };
     let mut instead: Vec<(usize, f64)> = Vec::new();
     for (_, _, candidate) in &rivals {
         if instead.iter().all(|(known, _)| known != candidate) {
@@ -102,7 +127,11 @@ pub fn stability(
     let between = |way: usize| {
         let mut sizes: Vec<f64> = drawn.iter().filter_map(|(_, sizes)| sizes[way]).collect();
         sizes.sort_by(f64::total_cmp);
-        let quantile = |share: f64| sizes.get(((sizes.len() as f64 * share) as usize).min(sizes.len().saturating_sub(1))).copied();
+        let quantile = |share: f64| {
+            sizes
+                .get(((sizes.len() as f64 * share) as usize).min(sizes.len().saturating_sub(1)))
+                .copied()
+        };
         (quantile(0.05).unwrap_or(member.size), quantile(0.95).unwrap_or(member.size))
     };
     Stability { first: share(None), sizes: between(0), either_side: between(1), instead }
@@ -131,11 +160,15 @@ mod tests {
     use crate::diagnose::uncertainty::whiten::less;
 
     fn candidate(effect: &str, change: Vec<f64>) -> Candidate {
-        Candidate::path(effect, vec![Node { size: 0.0, change: Vec::new() }, Node { size: 10.0, change }])
+        Candidate::path(
+            effect,
+            vec![Node { size: 0.0, change: Vec::new() }, Node { size: 10.0, change }],
+        )
     }
 
-    /// One feature in each of 20 sections that an effect changes equally: its size is the mean of the differences, whose bootstrap
-    /// has the standard error sqrt(sum (x - mean)^2) / n (Efron and Tibshirani 1993, eq. 5.12) and is nearly normal.
+    /// One feature in each of 20 sections that an effect changes equally: its size is the mean of
+    /// the differences, whose bootstrap has the standard error sqrt(sum (x - mean)^2) / n (Efron
+    /// and Tibshirani 1993, eq. 5.12) and is nearly normal.
     #[test]
     fn sizes_scatter_like_a_resampled_mean() {
         const SECTIONS: usize = 20;
@@ -147,10 +180,12 @@ mod tests {
             response: ResponseError::default(),
         };
         let whitener = covariance.whitener();
-        let z: Vec<f64> = (0..SECTIONS).map(|at| 5.0 + ((at * 7) % SECTIONS) as f64 * 0.1).collect();
+        let z: Vec<f64> =
+            (0..SECTIONS).map(|at| 5.0 + ((at * 7) % SECTIONS) as f64 * 0.1).collect();
         let mean = z.iter().sum::<f64>() / SECTIONS as f64;
         let error = z.iter().map(|x| (x - mean).powi(2)).sum::<f64>().sqrt() / SECTIONS as f64;
-        // An effect in a single section is never first; a copy of the first effect is never beaten either.
+        // An effect in a single section is never first; a copy of the first effect is never beaten
+        // either.
         let mut once = vec![0.0; SECTIONS];
         once[3] = 10.0;
         let candidates = [candidate("everywhere", vec![10.0; SECTIONS]), candidate("once", once)];
@@ -158,17 +193,27 @@ mod tests {
         let fitter = Fitter::new(&whitener, &candidates, vec![mask]);
         let member = fitter.fit(&z, 0, 0).expect("a path");
         assert!((member.size - mean).abs() < 1e-9, "{}", member.size);
-        let chosen = Chosen { rest: less(&z, &member.whitened), members: vec![member], ..Chosen::none(&z) };
-        let found = stability((&fitter, &z, &chosen), (&fitter, &z, &chosen), 0, &[], &[(0..SECTIONS).collect()], 1);
+        let chosen =
+            Chosen { rest: less(&z, &member.whitened), members: vec![member], ..Chosen::none(&z) };
+        let found = stability(
+            (&fitter, &z, &chosen),
+            (&fitter, &z, &chosen),
+            0,
+            &[],
+            &[(0..SECTIONS).collect()],
+            1,
+        );
         assert_eq!(found.first, 1.0);
         for (bound, away) in [(found.sizes.0, -NINETY * error), (found.sizes.1, NINETY * error)] {
             assert!((bound - mean - away).abs() < 0.25 * away.abs(), "{bound} for {}", mean + away);
         }
     }
 
-    /// A positive size changes two features by (1, 0.6) per unit, a negative one by (0.8, -0.6). For evidence the differences are (4,
-    /// 2.4): the size is 4 in every resample. For the weighing of sizes they are (4, m) with alternating m: the negative side fits better
-    /// where the mean of m in the resample is below -0.207, from (4 + 0.6 m)^2 / 1.36 = (3.2 - 0.6 m)^2, which holds in four of ten.
+    /// A positive size changes two features by (1, 0.6) per unit, a negative one by (0.8, -0.6).
+    /// For evidence the differences are (4, 2.4): the size is 4 in every resample. For the weighing
+    /// of sizes they are (4, m) with alternating m: the negative side fits better where the mean of
+    /// m in the resample is below -0.207, from (4 + 0.6 m)^2 / 1.36 = (3.2 - 0.6 m)^2, which holds
+    /// in four of ten.
     #[test]
     fn evidence_decides_whether_there_is_more_of_it_or_less() {
         const SECTIONS: usize = 20;
@@ -189,21 +234,33 @@ mod tests {
         let candidates = [Candidate::path("either", nodes)];
         let mask = Mask { confined: None, sections: vec![true; SECTIONS], asked_by: None };
         let fitter = Fitter::new(&whitener, &candidates, vec![mask]);
-        let (z, sized) = (all(&|_| [4.0, 2.4]), all(&|at| [4.0, if at % 2 == 0 { 3.0 } else { -3.0 }]));
+        let (z, sized) =
+            (all(&|_| [4.0, 2.4]), all(&|at| [4.0, if at % 2 == 0 { 3.0 } else { -3.0 }]));
         let chosen = |z: &[f64]| {
             let member = fitter.fit(z, 0, 0).expect("a path");
             Chosen { rest: less(z, &member.whitened), members: vec![member], ..Chosen::none(z) }
         };
         let (by_evidence, by_size) = (chosen(&z), chosen(&sized));
-        let found = stability((&fitter, &z, &by_evidence), (&fitter, &sized, &by_size), 0, &[], &[(0..SECTIONS).collect()], 1);
+        let found = stability(
+            (&fitter, &z, &by_evidence),
+            (&fitter, &sized, &by_size),
+            0,
+            &[],
+            &[(0..SECTIONS).collect()],
+            1,
+        );
         assert!((by_evidence.members[0].size - 4.0).abs() < 1e-9 && found.first == 1.0);
-        assert!(found.sizes.0 > 0.0 && found.either_side.0 < 0.0 && found.either_side.1 > 0.0, "{found:?}");
+        assert!(
+            found.sizes.0 > 0.0 && found.either_side.0 < 0.0 && found.either_side.1 > 0.0,
+            "{found:?}"
+        );
         assert_eq!(found.judged(), found.sizes);
         assert_eq!(Stability { first: 0.9, ..found.clone() }.judged(), found.either_side);
     }
 
-    /// All evidence for one effect is in one section, 25 per draw; the other effect has 1.75 in each of the other 19. The first one has
-    /// more where its section is drawn at least twice: 1 - 0.95^20 - 20 * 0.05 * 0.95^19 = 0.264 of the resamples (binomial).
+    /// All evidence for one effect is in one section, 25 per draw; the other effect has 1.75 in
+    /// each of the other 19. The first one has more where its section is drawn at least twice: 1 -
+    /// 0.95^20 - 20 * 0.05 * 0.95^19 = 0.264 of the resamples (binomial).
     #[test]
     fn an_effect_that_one_section_carries_is_not_told_from_one_that_all_others_show() {
         const SECTIONS: usize = 20;
@@ -217,19 +274,41 @@ mod tests {
         let whitener = covariance.whitener();
         let (mut once, mut others) = (vec![0.0; SECTIONS], vec![10.0; SECTIONS]);
         (once[3], others[3]) = (10.0, 0.0);
-        let z: Vec<f64> = (0..SECTIONS).map(|at| if at == 3 { 5.0 } else { 1.75_f64.sqrt() }).collect();
+        let z: Vec<f64> =
+            (0..SECTIONS).map(|at| if at == 3 { 5.0 } else { 1.75_f64.sqrt() }).collect();
         let candidates = [candidate("once", once), candidate("others", others)];
         let mask = Mask { confined: None, sections: vec![true; SECTIONS], asked_by: None };
         let fitter = Fitter::new(&whitener, &candidates, vec![mask]);
         let of = |candidate: usize| {
             let member = fitter.fit(&z, candidate, 0).expect("a path");
-            let chosen = Chosen { rest: less(&z, &member.whitened), members: vec![member], ..Chosen::none(&z) };
-            stability((&fitter, &z, &chosen), (&fitter, &z, &chosen), 0, &[], &[(0..SECTIONS).collect()], 1)
+            let chosen = Chosen {
+                rest: less(&z, &member.whitened),
+                members: vec![member],
+                ..Chosen::none(&z)
+            };
+            stability(
+                (&fitter, &z, &chosen),
+                (&fitter, &z, &chosen),
+                0,
+                &[],
+                &[(0..SECTIONS).collect()],
+                1,
+            )
         };
         let (once, others) = (of(0), of(1));
         let (wanted, error) = (0.264, (0.264 * 0.736 / RESAMPLES as f64).sqrt());
         assert!((once.first - wanted).abs() < 3.0 * error, "{once:?}");
-        assert!(once.fails() && once.as_well(1) && (once.instead_of(1) + once.first - 1.0).abs() < 1e-12, "{once:?}");
-        assert!(!others.fails() && !others.as_well(0) && (others.instead_of(0) - once.first).abs() < 1e-12, "{others:?}");
+        assert!(
+            once.fails()
+                && once.as_well(1)
+                && (once.instead_of(1) + once.first - 1.0).abs() < 1e-12,
+            "{once:?}"
+        );
+        assert!(
+            !others.fails()
+                && !others.as_well(0)
+                && (others.instead_of(0) - once.first).abs() < 1e-12,
+            "{others:?}"
+        );
     }
 }

@@ -1,6 +1,6 @@
-//! Causes outside the catalogue: parameters of the vehicle with a tolerance, each alone and far beyond the declared one. If one of them
-//! explains a gap much better than the answer, the cause is outside the catalogue. If it is only slightly better, the data do not
-//! discriminate.
+//! Causes outside the catalogue: parameters of the vehicle with a tolerance, each alone and far
+//! beyond the declared one. If one of them explains a gap much better than the answer, the cause is
+//! outside the catalogue. If it is only slightly better, the data do not discriminate.
 
 use rayon::prelude::*;
 
@@ -9,7 +9,9 @@ use crate::diagnose::inference::chosen::Chosen;
 use crate::diagnose::inference::fit::{Fitted, Fitter};
 use crate::diagnose::inference::joint::fit;
 use crate::diagnose::inference::sets::refit;
-use crate::diagnose::levels::suspects::{ALIKE, BETTER, BETTER_SHARE, COARSE, FINE, MOST, NEAR, ROUNDS, SAME};
+use crate::diagnose::levels::suspects::{
+    ALIKE, BETTER, BETTER_SHARE, COARSE, FINE, MOST, NEAR, ROUNDS, SAME,
+};
 use crate::diagnose::response::candidate::{Candidate, Node};
 use crate::diagnose::response::mask::Mask;
 use crate::diagnose::response::workshop::Workshop;
@@ -35,13 +37,16 @@ impl Suspect {
     #[must_use]
     pub fn beats(&self) -> bool {
         // One cause in place of several needs no additional share of the evidence.
-        self.evidence > self.answer + if self.of_all { BETTER } else { BETTER.max(BETTER_SHARE * self.answer) }
+        self.evidence
+            > self.answer
+                + if self.of_all { BETTER } else { BETTER.max(BETTER_SHARE * self.answer) }
     }
 }
 
 /// The member or members that a parameter is compared with.
 struct Place {
-    /// The whitened difference without the other members, the change of the first one, and the evidence.
+    /// The whitened difference without the other members, the change of the first one, and the
+    /// evidence.
     rest: Vec<f64>,
     whitened: Vec<f64>,
     answer: f64,
@@ -52,20 +57,32 @@ impl Place {
     /// The strongest member, and all together where there are several.
     fn of(chosen: &Chosen, z: &[f64]) -> Vec<Self> {
         let Some(first) = chosen.members.first() else { return Vec::new() };
-        let strongest = Self { rest: chosen.left_by_others(z, 0), whitened: first.whitened.clone(), answer: first.evidence, of_all: false };
-        let all = Self { rest: z.to_vec(), whitened: first.whitened.clone(), answer: chosen.evidence, of_all: true };
+        let strongest = Self {
+            rest: chosen.left_by_others(z, 0),
+            whitened: first.whitened.clone(),
+            answer: first.evidence,
+            of_all: false,
+        };
+        let all = Self {
+            rest: z.to_vec(),
+            whitened: first.whitened.clone(),
+            answer: chosen.evidence,
+            of_all: true,
+        };
         if chosen.members.len() > 1 { vec![strongest, all] } else { vec![strongest] }
     }
 
     /// Whether a parameter is the same cause as a member. One in place of several never is.
     fn is(&self, fit: &Fitted) -> bool {
         let length = |of: &[f64]| dot(of, of).sqrt();
-        !self.of_all && dot(&fit.whitened, &self.whitened).abs() > SAME * length(&fit.whitened) * length(&self.whitened)
+        !self.of_all
+            && dot(&fit.whitened, &self.whitened).abs()
+                > SAME * length(&fit.whitened) * length(&self.whitened)
     }
 }
 
-/// Tests parameters in place of the strongest member, unless that is an operation on the signals of one channel alone, and in place of all
-/// members. The weighing is that without effects.
+/// Tests parameters in place of the strongest member, unless that is an operation on the signals of
+/// one channel alone, and in place of all members. The weighing is that without effects.
 #[must_use]
 pub fn suspect(
     workshop: &Workshop<'_>,
@@ -102,18 +119,26 @@ pub fn suspect(
         path.nodes.sort_by(|a, b| a.size.total_cmp(&b.size));
     };
     (workshop.trying)("parameters outside the catalogue");
-    let mut coarse: Vec<Candidate> = keys.iter().map(|key| Candidate::of_path(key, keys.len())).collect();
+    let mut coarse: Vec<Candidate> =
+        keys.iter().map(|key| Candidate::of_path(key, keys.len())).collect();
     // All at once, so that many workers have a simulation.
     let made = |path: &mut Candidate| {
         let mut runs = Runs::default();
         simulate(path, &COARSE, &mut runs);
         runs
     };
-    coarse.par_iter_mut().map(made).collect::<Vec<Runs>>().into_iter().for_each(|made| runs.add(made));
+    coarse
+        .par_iter_mut()
+        .map(made)
+        .collect::<Vec<Runs>>()
+        .into_iter()
+        .for_each(|made| runs.add(made));
     let mut best: Option<Suspect> = None;
     for place in Place::of(&now, z) {
-        let mut paths: Vec<(Candidate, Fitted)> =
-            coarse.iter().filter_map(|path| fitted(path, &place).map(|fit| (path.clone(), fit))).collect();
+        let mut paths: Vec<(Candidate, Fitted)> = coarse
+            .iter()
+            .filter_map(|path| fitted(path, &place).map(|fit| (path.clone(), fit)))
+            .collect();
         paths.retain(|(_, fit)| fit.evidence >= NEAR * place.answer);
         paths.sort_by(|a, b| b.1.evidence.total_cmp(&a.1.evidence));
         paths.truncate(MOST);
@@ -128,14 +153,23 @@ pub fn suspect(
             }
         }
         for (path, fit) in paths.into_iter().filter(|(_, fit)| !place.is(fit)) {
-            let suspect = Suspect { key: path.size, factor: fit.size, evidence: fit.evidence, answer: place.answer, of_all: place.of_all };
-            // Of comparable causes the simpler one is preferred: an operation on the signals, or one cause instead of several.
+            let suspect = Suspect {
+                key: path.size,
+                factor: fit.size,
+                evidence: fit.evidence,
+                answer: place.answer,
+                of_all: place.of_all,
+            };
+            // Of comparable causes the simpler one is preferred: an operation on the signals, or
+            // one cause instead of several.
             let near = match place.of_all {
                 true => suspect.evidence > suspect.answer,
                 false => !first.exact && suspect.evidence > suspect.answer + BETTER,
             };
             let share = |of: &Suspect| of.evidence / of.answer;
-            if (suspect.beats() || near) && best.as_ref().is_none_or(|best| share(&suspect) > share(best)) {
+            if (suspect.beats() || near)
+                && best.as_ref().is_none_or(|best| share(&suspect) > share(best))
+            {
                 best = Some(suspect);
             }
         }

@@ -20,10 +20,19 @@ use crate::diagnose::uncertainty::whiten::{Covariance, dot};
 use crate::effects::{Action, Applied};
 use crate::simulate::Plan;
 
-/// A member as a common setting of all simulations: parameters of the simulator, or operations on its signals.
+/// A member as a common setting of all simulations: parameters of the simulator, or operations on
+/// its signals.
 #[must_use]
-pub fn set(workshop: &Workshop<'_>, candidate: &Candidate, masks: &[Mask], member: &Fitted) -> Option<Set> {
-    let effect = workshop.catalogue.effect(&candidate.effect).filter(|effect| !matches!(effect.action, Action::Formulas(_)))?;
+pub fn set(
+    workshop: &Workshop<'_>,
+    candidate: &Candidate,
+    masks: &[Mask],
+    member: &Fitted,
+) -> Option<Set> {
+    let effect = workshop
+        .catalogue
+        .effect(&candidate.effect)
+        .filter(|effect| !matches!(effect.action, Action::Formulas(_)))?;
     if !member.size.is_finite() {
         return None;
     }
@@ -31,7 +40,9 @@ pub fn set(workshop: &Workshop<'_>, candidate: &Candidate, masks: &[Mask], membe
     values.push((candidate.size.clone(), member.size));
     let effects = [Applied { channels: candidate.channels.clone(), ..applied(effect, values) }];
     let simulator = workshop.bench?.simulator.catalogue_name();
-    let plan = Plan::new(workshop.catalogue, &effects, &workshop.seen.sections[0].section, simulator).ok()?;
+    let plan =
+        Plan::new(workshop.catalogue, &effects, &workshop.seen.sections[0].section, simulator)
+            .ok()?;
     Some(Set { plan, sections: (member.mask != 0).then(|| masks[member.mask].sections.clone()) })
 }
 
@@ -48,15 +59,22 @@ pub struct Tolerances<'a> {
 }
 
 impl Tolerances<'_> {
-    /// The weighing with members; nothing where none of them changes the effect of the tolerances, or where a simulation fails.
+    /// The weighing with members; nothing where none of them changes the effect of the tolerances,
+    /// or where a simulation fails.
     #[must_use]
-    pub fn beside(&self, of: (&[Candidate], &[Mask]), members: &[Fitted], runs: &mut Runs) -> Option<Arc<Place>> {
+    pub fn beside(
+        &self,
+        of: (&[Candidate], &[Mask]),
+        members: &[Fitted],
+        runs: &mut Runs,
+    ) -> Option<Arc<Place>> {
         if let Some(known) = self.looked_at().near(members) {
             return Some(known);
         }
         let (covariance, difference) = self.simulated(of, members, runs)?;
         let mut place = Place::new(covariance, difference);
-        place.members = members.iter().map(|member| (member.candidate, member.mask, member.size)).collect();
+        place.members =
+            members.iter().map(|member| (member.candidate, member.mask, member.size)).collect();
         let place = Arc::new(place);
         self.looked_at().push(place.clone());
         Some(place)
@@ -67,8 +85,8 @@ impl Tolerances<'_> {
         self.places.lock().expect("no thread stops with it")
     }
 
-    /// Simulates the tolerances with the members set: covariance, and the difference without the expected deviation. Nothing where no
-    /// member can be set, or where a simulation fails.
+    /// Simulates the tolerances with the members set: covariance, and the difference without the
+    /// expected deviation. Nothing where no member can be set, or where a simulation fails.
     fn simulated(
         &self,
         (candidates, masks): (&[Candidate], &[Mask]),
@@ -76,7 +94,10 @@ impl Tolerances<'_> {
         runs: &mut Runs,
     ) -> Option<(Covariance, Vec<f64>)> {
         let bench = self.workshop.bench?;
-        let added: Vec<Set> = members.iter().filter_map(|member| self.set(&candidates[member.candidate], masks, member)).collect();
+        let added: Vec<Set> = members
+            .iter()
+            .filter_map(|member| self.set(&candidates[member.candidate], masks, member))
+            .collect();
         if added.is_empty() {
             return None;
         }
@@ -85,13 +106,28 @@ impl Tolerances<'_> {
         let there = Bench { set, cache: bench.cache.clone(), ..*bench };
         let base = there.features(&[]).ok()?;
         let matters = self.matter();
-        let again = sensitivities(&there, self.settings, &base, self.value, self.declared, &|at| matters[at], runs);
-        let mut columns: Vec<Sensitivity> =
-            again.into_iter().zip(&self.workshop.ground.columns).filter_map(|(again, first)| again.or(first.clone())).collect();
-        // A tolerance whose size a member of all sections gives is fixed, except for its scatter between sections.
+        let again = sensitivities(
+            &there,
+            self.settings,
+            &base,
+            self.value,
+            self.declared,
+            &|at| matters[at],
+            runs,
+        );
+        let mut columns: Vec<Sensitivity> = again
+            .into_iter()
+            .zip(&self.workshop.ground.columns)
+            .filter_map(|(again, first)| again.or(first.clone()))
+            .collect();
+        // A tolerance whose size a member of all sections gives is fixed, except for its scatter
+        // between sections.
         for member in members.iter().filter(|member| member.mask == 0) {
             let given = candidates[member.candidate].tolerance.as_ref();
-            columns.iter_mut().filter(|column| Some(&column.tolerance) == given).for_each(|column| column.shared = 0.0);
+            columns
+                .iter_mut()
+                .filter(|column| Some(&column.tolerance) == given)
+                .for_each(|column| column.shared = 0.0);
         }
         let mut difference = self.workshop.ground.whole.clone();
         expect(&columns, &mut difference);
@@ -100,7 +136,14 @@ impl Tolerances<'_> {
 
     fn of(&self, columns: &[Sensitivity]) -> Covariance {
         let ground = self.workshop.ground;
-        covariance(self.workshop.seen, self.settings, &ground.simulated, columns, self.declared, Some(&ground.standing))
+        covariance(
+            self.workshop.seen,
+            self.settings,
+            &ground.simulated,
+            columns,
+            self.declared,
+            Some(&ground.standing),
+        )
     }
 
     /// Which columns are relevant.
@@ -110,11 +153,17 @@ impl Tolerances<'_> {
             let z = others.apply(&column.column);
             dot(&z, &z) >= MATTERS * MATTERS
         };
-        self.workshop.ground.columns.iter().map(|column| column.as_ref().is_some_and(long)).collect()
+        self.workshop
+            .ground
+            .columns
+            .iter()
+            .map(|column| column.as_ref().is_some_and(long))
+            .collect()
     }
 
-    /// The settings of a member, or its exchange or inversion of signals: the guiding force of another wheel depends on other tolerances.
-    /// Other operations on the signals do not change the effect of the tolerances.
+    /// The settings of a member, or its exchange or inversion of signals: the guiding force of
+    /// another wheel depends on other tolerances. Other operations on the signals do not change the
+    /// effect of the tolerances.
     fn set(&self, candidate: &Candidate, masks: &[Mask], member: &Fitted) -> Option<Set> {
         let effect = self.workshop.catalogue.effect(&candidate.effect)?;
         let moves = matches!(effect.action, Action::Simulator) || candidate.discrete;
@@ -125,12 +174,18 @@ impl Tolerances<'_> {
 impl Ground {
     /// The weighing without effects, and the covariance of noise and tolerances alone.
     #[must_use]
-    pub fn alone(&self, settings: &Settings, seen: &Observations, admitted: &Declared) -> (Place, Covariance) {
+    pub fn alone(
+        &self,
+        settings: &Settings,
+        seen: &Observations,
+        admitted: &Declared,
+    ) -> (Place, Covariance) {
         let columns: Vec<Sensitivity> = self.columns.iter().flatten().cloned().collect();
         let mut difference = self.whole.clone();
         expect(&columns, &mut difference);
         let declared = |name: &str| admitted.get(name);
-        let with = |standing| covariance(seen, settings, &self.simulated, &columns, &declared, standing);
+        let with =
+            |standing| covariance(seen, settings, &self.simulated, &columns, &declared, standing);
         (Place::new(with(Some(&self.standing)), difference), with(None))
     }
 
@@ -147,8 +202,21 @@ impl Ground {
         let value = |key: &str| value_of(inputs.campaign, key);
         let bench = bench(inputs, seen);
         let (catalogue, trying) = (inputs.catalogue, inputs.trying);
-        let workshop = Workshop { seen, catalogue, bench: bench.as_ref(), ground: self, neutral: &value, trying };
+        let workshop = Workshop {
+            seen,
+            catalogue,
+            bench: bench.as_ref(),
+            ground: self,
+            neutral: &value,
+            trying,
+        };
         let (settings, places) = (inputs.settings, Mutex::new(places));
-        with(&Tolerances { workshop: &workshop, settings, value: &value, declared: &declared, places })
+        with(&Tolerances {
+            workshop: &workshop,
+            settings,
+            value: &value,
+            declared: &declared,
+            places,
+        })
     }
 }

@@ -1,4 +1,5 @@
-//! The `diagnosis` part of a catalogue: features, tolerances, and the allowed discrepancy of the simulation.
+//! The `diagnosis` part of a catalogue: features, tolerances, and the allowed discrepancy of the
+//! simulation.
 
 mod read;
 
@@ -22,11 +23,13 @@ pub struct Settings {
     pub tolerances: Vec<Tolerance>,
     pub discrepancies: Vec<Discrepancy>,
     pub response: Response,
-    /// Share of the campaigns with nothing hidden in which some effect may reach the required evidence by chance.
+    /// Share of the campaigns with nothing hidden in which some effect may reach the required
+    /// evidence by chance.
     pub false_name_rate: f64,
     /// Columns of the section table by which an effect may be confined.
     pub confine: Vec<String>,
-    /// Columns of the section table tested as covariates of the residual; with the prefix `1 / ` the reciprocal.
+    /// Columns of the section table tested as covariates of the residual; with the prefix `1 / `
+    /// the reciprocal.
     pub covariates: Vec<String>,
     /// The column that distinguishes left and right curves, and the value of mirrored sections.
     pub mirror: Option<(String, String)>,
@@ -44,17 +47,20 @@ pub struct Settings {
 /// Relative error of the change that a simulated effect causes: one standard deviation each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {
-    /// Common to all levels, and common to all other features; each other feature has the latter a second time by itself.
+    /// Common to all levels, and common to all other features; each other feature has the latter a
+    /// second time by itself.
     pub levels: f64,
     pub others: f64,
     /// In addition for a group of channels, and for a group in one stratum.
     pub groups: f64,
-    /// Common to all features. It cannot be distinguished from another size of the effect: it widens the interval of the size only.
+    /// Common to all features. It cannot be distinguished from another size of the effect: it
+    /// widens the interval of the size only.
     pub common: f64,
 }
 
 impl Default for Response {
-    /// For a vehicle model (judgement; `common` from campaigns of another code, see the catalogue): levels follow from equilibrium, dynamic content from contact and dampers as well.
+    /// For a vehicle model (judgement; `common` from campaigns of another code, see the catalogue):
+    /// levels follow from equilibrium, dynamic content from contact and dampers as well.
     fn default() -> Self {
         Self { levels: 0.05, others: 0.2, groups: 0.1, common: 0.15 }
     }
@@ -80,7 +86,8 @@ pub struct GroupFeatures {
     pub alike: bool,
     /// Whether the records are compared sample by sample as well.
     pub samples: bool,
-    /// Standard deviation of a level in addition to the scatter of the record, in the unit of the channels.
+    /// Standard deviation of a level in addition to the scatter of the record, in the unit of the
+    /// channels.
     pub level_sd: f64,
     /// Standard deviation of the logarithm of a band's rms.
     pub band_sd: f64,
@@ -111,17 +118,20 @@ pub struct Tolerance {
     pub scales: Vec<String>,
     /// Parameters to which x is added: the factor from the declared unit to theirs.
     pub adds: Vec<(String, f64)>,
-    /// Parameters that are set together as in an alternative model, whose difference counts as one standard deviation.
+    /// Parameters that are set together as in an alternative model, whose difference counts as one
+    /// standard deviation.
     pub sets: Vec<(String, f64)>,
     /// Every parameter of the tolerance, with its place in the catalogue.
     pub named: Vec<(String, Span)>,
-    /// For a quantity that is never negative: its expected value as a share of the declared one; 0 for a quantity of either sign.
+    /// For a quantity that is never negative: its expected value as a share of the declared one; 0
+    /// for a quantity of either sign.
     pub expected: f64,
     /// Whether the deviation differs between sections.
     pub per_section: bool,
     /// Share of a standard deviation that is common to all sections, from 0 to 1.
     pub shared: f64,
-    /// A further standard deviation for the same parameter, independent of the declared one. An effect must exceed both.
+    /// A further standard deviation for the same parameter, independent of the declared one. An
+    /// effect must exceed both.
     pub besides: f64,
     /// Whether each scaled parameter is also tested as a cause outside the catalogue.
     pub suspects: bool,
@@ -179,7 +189,8 @@ pub enum Times {
     Unsigned(f64),
 }
 
-/// A position in the report's terms, with its channels in sections that are not mirrored and in those that are.
+/// A position in the report's terms, with its channels in sections that are not mirrored and in
+/// those that are.
 #[derive(Clone, Debug)]
 pub struct Position {
     pub name: String,
@@ -201,10 +212,16 @@ impl Settings {
     /// All quantities that a campaign may declare, with their units.
     #[must_use]
     pub fn tolerated(&self) -> Vec<(&str, Unit)> {
-        let mut all: Vec<(&str, Unit)> = self.tolerances.iter().map(|one| (one.name.as_str(), one.unit.clone())).collect();
+        let mut all: Vec<(&str, Unit)> =
+            self.tolerances.iter().map(|one| (one.name.as_str(), one.unit.clone())).collect();
         for group in &self.groups {
             all.extend(group.gain.as_deref().map(|name| (name, Unit::one())));
-            all.extend([&group.noise, &group.offset].into_iter().flatten().map(|name| (name.as_str(), group.unit.clone())));
+            all.extend(
+                [&group.noise, &group.offset]
+                    .into_iter()
+                    .flatten()
+                    .map(|name| (name.as_str(), group.unit.clone())),
+            );
         }
         all
     }

@@ -1,6 +1,9 @@
 //! Reads the `diagnosis` part of a catalogue.
 
-use super::{Discrepancy, FeatureKind, GroupFeatures, INVERSE, Moves, Over, Position, Response, Settings, Shape, Times, Tolerance};
+use super::{
+    Discrepancy, FeatureKind, GroupFeatures, INVERSE, Moves, Over, Position, Response, Settings,
+    Shape, Times, Tolerance,
+};
 use crate::diagnose::levels::settings::{FALSE_NAMES, FURTHEST};
 use crate::effects::Catalogue;
 use crate::problem::{Problem, Problems};
@@ -25,10 +28,23 @@ const TOP: [&str; 15] = [
     "invariants",
     "shape",
 ];
-const GROUP: [&str; 14] =
-    ["level", "bands", "alike", "samples", "level sd", "band sd", "gain sd", "lag sd", "noise", "offset", "gain", "axis", "says", "unit"];
+const GROUP: [&str; 14] = [
+    "level", "bands", "alike", "samples", "level sd", "band sd", "gain sd", "lag sd", "noise",
+    "offset", "gain", "axis", "says", "unit",
+];
 const SHAPE: [&str; 3] = ["range", "percentile", "wheel radius"];
-const TOLERANCE: [&str; 10] = ["default", "unit", "expected", "scales", "adds", "sets", "each section", "shared", "besides", "suspects"];
+const TOLERANCE: [&str; 10] = [
+    "default",
+    "unit",
+    "expected",
+    "scales",
+    "adds",
+    "sets",
+    "each section",
+    "shared",
+    "besides",
+    "suspects",
+];
 const RESPONSE: [&str; 4] = ["levels", "others", "groups", "common"];
 const DISCREPANCY: [&str; 7] = ["of", "channels", "sd", "together", "sections", "times", "means"];
 
@@ -39,7 +55,10 @@ impl Settings {
     pub fn read(catalogue: &Catalogue, problems: &mut Problems) -> Option<Self> {
         let before = problems.errors();
         let Some(node) = &catalogue.diagnosis else {
-            let says = format!("the catalogue `{}` has no part `diagnosis`, which lists the features to be compared", catalogue.name);
+            let says = format!(
+                "the catalogue `{}` has no part `diagnosis`, which lists the features to be compared",
+                catalogue.name
+            );
             problems.push(Problem::error("key-missing", says).at(&catalogue.source.span(0..0)));
             return None;
         };
@@ -66,7 +85,9 @@ impl Reader<'_> {
     fn keys(&mut self, node: &Node, known: &[&str]) {
         for (key, _) in node.entries() {
             if !known.contains(&key.text.as_str()) {
-                let problem = Problem::error("unknown-key", format!("there is no key `{}` here", key.text)).at(&key.span);
+                let problem =
+                    Problem::error("unknown-key", format!("there is no key `{}` here", key.text))
+                        .at(&key.span);
                 self.problems.push(problem.suggest(&key.text, known.iter().copied()));
             }
         }
@@ -114,7 +135,9 @@ impl Reader<'_> {
     /// Strictly increasing frequencies in Hz.
     fn rising(&mut self, node: &Node) -> Vec<f64> {
         let found = self.numbers(node);
-        if found.first().is_some_and(|first| *first < 0.0) || found.windows(2).any(|pair| pair[1] <= pair[0]) {
+        if found.first().is_some_and(|first| *first < 0.0)
+            || found.windows(2).any(|pair| pair[1] <= pair[0])
+        {
             self.outside("frequencies in Hz must increase", node);
         }
         found
@@ -154,7 +177,10 @@ impl Reader<'_> {
         for item in items {
             match item.scalar_text() {
                 Some(text) => found.push((text.to_string(), item.span.clone())),
-                None => self.wrong(format!("expected a name or a list of names, found {}", item.kind_in_words()), item),
+                None => self.wrong(
+                    format!("expected a name or a list of names, found {}", item.kind_in_words()),
+                    item,
+                ),
             }
         }
         found
@@ -166,9 +192,15 @@ impl Reader<'_> {
             match self.catalogue.channels(&name) {
                 Some(channels) => found.extend(channels),
                 None => {
-                    let problem =
-                        Problem::error("unknown-channel", format!("`{name}` is neither a group nor a channel of a group")).at(&node.span);
-                    self.problems.push(problem.suggest(&name, self.catalogue.groups.iter().map(|group| group.name.as_str())));
+                    let problem = Problem::error(
+                        "unknown-channel",
+                        format!("`{name}` is neither a group nor a channel of a group"),
+                    )
+                    .at(&node.span);
+                    self.problems.push(problem.suggest(
+                        &name,
+                        self.catalogue.groups.iter().map(|group| group.name.as_str()),
+                    ));
                 }
             }
         }
@@ -179,11 +211,16 @@ impl Reader<'_> {
     fn mirror(&mut self, node: Option<&Node>) -> Option<(Key, String)> {
         let node = node?;
         let only = match node.entries() {
-            [(column, value)] => value.scalar_text().map(|value| (column.clone(), value.to_string())),
+            [(column, value)] => {
+                value.scalar_text().map(|value| (column.clone(), value.to_string()))
+            }
             _ => None,
         };
         if only.is_none() {
-            self.wrong("`mirrored` must be one column and its value, such as `{direction: left}`", node);
+            self.wrong(
+                "`mirrored` must be one column and its value, such as `{direction: left}`",
+                node,
+            );
         }
         only
     }
@@ -204,7 +241,11 @@ impl Reader<'_> {
     fn weights(&mut self, node: &Node) -> Vec<(String, f64)> {
         for (key, _) in node.entries() {
             if !self.catalogue.groups.iter().any(|group| group.channels.contains(&key.text)) {
-                let problem = Problem::error("unknown-channel", format!("`{}` is not a channel of a group", key.text)).at(&key.span);
+                let problem = Problem::error(
+                    "unknown-channel",
+                    format!("`{}` is not a channel of a group", key.text),
+                )
+                .at(&key.span);
                 let known = self.catalogue.groups.iter().flat_map(|group| &group.channels);
                 self.problems.push(problem.suggest(&key.text, known.map(String::as_str)));
             }
@@ -215,8 +256,9 @@ impl Reader<'_> {
     fn response(&mut self, node: &Node) -> Response {
         self.keys(node, &RESPONSE);
         let usual = Response::default();
-        let [levels, others, groups] = [("levels", usual.levels), ("others", usual.others), ("groups", usual.groups)]
-            .map(|(key, usual)| self.spread(node, key, usual));
+        let [levels, others, groups] =
+            [("levels", usual.levels), ("others", usual.others), ("groups", usual.groups)]
+                .map(|(key, usual)| self.spread(node, key, usual));
         let common = self.spread(node, "common", levels.max(others).max(groups));
         Response { levels, others, groups, common }
     }
@@ -235,18 +277,30 @@ impl Reader<'_> {
         if let Some(found) = node.get("alike").filter(|_| alike.len() != 2) {
             self.outside("`alike` must be two frequencies in Hz", found);
         }
-        let (strata, confine, covariates) =
-            (self.placed(node.get("strata")), self.placed(node.get("confine to")), self.placed(node.get("covariates")));
+        let (strata, confine, covariates) = (
+            self.placed(node.get("strata")),
+            self.placed(node.get("confine to")),
+            self.placed(node.get("covariates")),
+        );
         let mirror = self.mirror(node.get("mirrored"));
         let inverse = |name: &str| name.strip_prefix(INVERSE).unwrap_or(name).to_string();
-        let columns = [&strata, &confine, &covariates].into_iter().flatten().map(|(name, span)| (inverse(name), span.clone()));
-        let columns = columns.chain(mirror.iter().map(|(key, _)| (key.text.clone(), key.span.clone()))).collect();
-        let names = |placed: Vec<(String, Span)>| placed.into_iter().map(|(name, _)| name).collect::<Vec<_>>();
+        let columns = [&strata, &confine, &covariates]
+            .into_iter()
+            .flatten()
+            .map(|(name, span)| (inverse(name), span.clone()));
+        let columns = columns
+            .chain(mirror.iter().map(|(key, _)| (key.text.clone(), key.span.clone())))
+            .collect();
+        let names = |placed: Vec<(String, Span)>| {
+            placed.into_iter().map(|(name, _)| name).collect::<Vec<_>>()
+        };
         let mut settings = Settings {
             edges: node.get("bands").map_or(Vec::new(), |bands| self.rising(bands)),
             alike: (alike.first().copied().unwrap_or(0.5), alike.get(1).copied().unwrap_or(8.0)),
             furthest: self.furthest(node),
-            response: node.get("response error").map_or_else(Response::default, |node| self.response(node)),
+            response: node
+                .get("response error")
+                .map_or_else(Response::default, |node| self.response(node)),
             false_name_rate: self.false_name_rate(node),
             confine: names(confine),
             covariates: names(covariates),
@@ -258,13 +312,22 @@ impl Reader<'_> {
         for (key, node) in node.get("groups").map_or(&[][..], Node::entries) {
             self.keys(node, &GROUP);
             if self.catalogue.group(&key.text).is_none() {
-                let problem = Problem::error("unknown-channel", format!("there is no group `{}`", key.text)).at(&key.span);
-                self.problems.push(problem.suggest(&key.text, self.catalogue.groups.iter().map(|group| group.name.as_str())));
+                let problem =
+                    Problem::error("unknown-channel", format!("there is no group `{}`", key.text))
+                        .at(&key.span);
+                self.problems.push(problem.suggest(
+                    &key.text,
+                    self.catalogue.groups.iter().map(|group| group.name.as_str()),
+                ));
                 continue;
             }
             let text = |key: &str| node.get(key).and_then(Node::scalar_text).map(str::to_string);
-            let (bands, most) = (self.number(node, "bands", 0.0), settings.edges.len().saturating_sub(1));
-            if let Some(found) = node.get("bands").filter(|_| bands.fract() != 0.0 || !(0.0..=most as f64).contains(&bands)) {
+            let (bands, most) =
+                (self.number(node, "bands", 0.0), settings.edges.len().saturating_sub(1));
+            if let Some(found) = node
+                .get("bands")
+                .filter(|_| bands.fract() != 0.0 || !(0.0..=most as f64).contains(&bands))
+            {
                 self.outside(format!("`bands` is the number of bands of this group, at most the {most} bands of the catalogue"), found);
             }
             settings.groups.push(GroupFeatures {
@@ -310,7 +373,9 @@ impl Reader<'_> {
             });
         }
         for node in node.get("discrepancies").map_or(&[][..], Node::items) {
-            if let Some(discrepancy) = self.discrepancy(node, settings.edges.len().saturating_sub(1)) {
+            if let Some(discrepancy) =
+                self.discrepancy(node, settings.edges.len().saturating_sub(1))
+            {
                 settings.discrepancies.push(discrepancy);
             }
         }
@@ -320,9 +385,13 @@ impl Reader<'_> {
         }
         for (key, node) in node.get("positions").map_or(&[][..], Node::entries) {
             let (straight, mirrored) = match (node.get("channels"), node.get("mirrored")) {
-                (Some(channels), Some(mirrored)) => (self.channels(channels), self.channels(mirrored)),
+                (Some(channels), Some(mirrored)) => {
+                    (self.channels(channels), self.channels(mirrored))
+                }
                 (Some(channels), None) => (self.channels(channels), self.channels(channels)),
-                (None, None) if node.entries().is_empty() => (self.channels(node), self.channels(node)),
+                (None, None) if node.entries().is_empty() => {
+                    (self.channels(node), self.channels(node))
+                }
                 (None, _) => {
                     let says = format!("the position `{}` needs `channels`", key.text);
                     self.problems.push(Problem::error("key-missing", says).at(&node.span));
@@ -353,7 +422,8 @@ impl Reader<'_> {
     /// Reads a discrepancy; `bands` is the number of bands.
     fn discrepancy(&mut self, node: &Node, bands: usize) -> Option<Discrepancy> {
         self.keys(node, &DISCREPANCY);
-        let word = |key: &str| node.get(key).and_then(Node::scalar_text).unwrap_or_default().to_string();
+        let word =
+            |key: &str| node.get(key).and_then(Node::scalar_text).unwrap_or_default().to_string();
         let feature = match word("of").as_str() {
             "level" => FeatureKind::Level,
             "bands" => FeatureKind::Bands,
@@ -361,13 +431,21 @@ impl Reader<'_> {
             "gain" => FeatureKind::Gain,
             "lag" => FeatureKind::Lag,
             other => {
-                self.wrong(format!("`of` must be level, bands, amplitude, gain or lag, not `{other}`"), node);
+                self.wrong(
+                    format!("`of` must be level, bands, amplitude, gain or lag, not `{other}`"),
+                    node,
+                );
                 return None;
             }
         };
         let Some(channels) = node.get("channels") else {
-            self.problems
-                .push(Problem::error("key-missing", "a discrepancy needs `channels`: groups, or channels with weights").at(&node.span));
+            self.problems.push(
+                Problem::error(
+                    "key-missing",
+                    "a discrepancy needs `channels`: groups, or channels with weights",
+                )
+                .at(&node.span),
+            );
             return None;
         };
         let channels = if channels.entries().is_empty() {
@@ -380,7 +458,10 @@ impl Reader<'_> {
             "group" => Moves::Group,
             "channel" => Moves::Channel,
             other => {
-                self.wrong(format!("`together` must be all, group or channel, not `{other}`"), node);
+                self.wrong(
+                    format!("`together` must be all, group or channel, not `{other}`"),
+                    node,
+                );
                 return None;
             }
         };
@@ -394,7 +475,9 @@ impl Reader<'_> {
             }
         };
         let times = word("times");
-        let radius = times.split_once(" / radius").and_then(|(number, sign)| Some((number.trim().parse::<f64>().ok()?, sign)));
+        let radius = times
+            .split_once(" / radius")
+            .and_then(|(number, sign)| Some((number.trim().parse::<f64>().ok()?, sign)));
         let times = match radius.filter(|(number, _)| number.is_finite()) {
             _ if times.is_empty() => Times::One,
             _ if times == "side" => Times::Side,
@@ -409,13 +492,20 @@ impl Reader<'_> {
             }
         };
         let Some(given) = node.get("sd") else {
-            self.problems.push(Problem::error("key-missing", "a discrepancy needs `sd`, its standard deviation").at(&node.span));
+            self.problems.push(
+                Problem::error("key-missing", "a discrepancy needs `sd`, its standard deviation")
+                    .at(&node.span),
+            );
             return None;
         };
         let sd = self.numbers(given);
         let most = if feature == FeatureKind::Bands { bands } else { 1 };
         if sd.is_empty() || sd.len() > most || sd.iter().any(|sd| *sd < 0.0) {
-            let many = if most == 1 { "one number".to_string() } else { format!("one number, or one for each of the {most} bands") };
+            let many = if most == 1 {
+                "one number".to_string()
+            } else {
+                format!("one number, or one for each of the {most} bands")
+            };
             self.outside(format!("`sd` must be {many}, none of them negative"), given);
         }
         Some(Discrepancy { feature, channels, sd, moves, over, times })
@@ -427,7 +517,10 @@ fn named(node: &Node) -> Vec<(String, Span)> {
     let maps = ["adds", "sets"].into_iter().filter_map(|key| node.get(key)).flat_map(Node::entries);
     let maps = maps.map(|(key, _)| (key.text.clone(), key.span.clone()));
     let scaled = node.get("scales").into_iter().flat_map(Node::items);
-    scaled.filter_map(|item| Some((item.scalar_text()?.to_string(), item.span.clone()))).chain(maps).collect()
+    scaled
+        .filter_map(|item| Some((item.scalar_text()?.to_string(), item.span.clone())))
+        .chain(maps)
+        .collect()
 }
 
 #[cfg(test)]
@@ -449,7 +542,9 @@ diagnosis:
 
     fn read(text: &str) -> (bool, Problems) {
         let (source, mut problems) = (Source::new("effects.yaml", text), Problems::default());
-        let catalogue = crate::effects::read(&source, &crate::library::parent_catalogue, &[], &mut problems).expect("a catalogue");
+        let catalogue =
+            crate::effects::read(&source, &crate::library::parent_catalogue, &[], &mut problems)
+                .expect("a catalogue");
         (Settings::read(&catalogue, &mut problems).is_some(), problems)
     }
 
@@ -480,7 +575,10 @@ diagnosis:
             assert_ne!(text, SOUND);
             let (sound, problems) = read(&text);
             let told = problems.render(false);
-            assert!(!sound && told.contains(says) && told.contains(&format!("effects.yaml:{place}\n")), "{bad}: {told}");
+            assert!(
+                !sound && told.contains(says) && told.contains(&format!("effects.yaml:{place}\n")),
+                "{bad}: {told}"
+            );
         }
     }
 }

@@ -1,4 +1,5 @@
-//! Covariance of the residual without any effect: noise, declared tolerances, and the allowed discrepancy of the model.
+//! Covariance of the residual without any effect: noise, declared tolerances, and the allowed
+//! discrepancy of the model.
 
 use crate::diagnose::features::increments::Increments;
 use crate::diagnose::features::layout::Kind;
@@ -25,12 +26,15 @@ pub struct Sensitivity {
 /// Subtracts the expected deviation of the tolerances from a difference.
 pub fn expect(sensitivities: &[Sensitivity], difference: &mut [f64]) {
     for sensitivity in sensitivities.iter().filter(|sensitivity| sensitivity.expected != 0.0) {
-        difference.iter_mut().zip(&sensitivity.column).for_each(|(difference, column)| *difference -= sensitivity.expected * column);
+        difference
+            .iter_mut()
+            .zip(&sensitivity.column)
+            .for_each(|(difference, column)| *difference -= sensitivity.expected * column);
     }
 }
 
-/// The covariance of `measured - simulated` without any effect. `simulated` are the features of the campaign's simulation. Without
-/// `standing`, noise and tolerances alone are included.
+/// The covariance of `measured - simulated` without any effect. `simulated` are the features of the
+/// campaign's simulation. Without `standing`, noise and tolerances alone are included.
 #[must_use]
 pub fn covariance(
     seen: &Observations,
@@ -42,14 +46,25 @@ pub fn covariance(
 ) -> Covariance {
     let size = seen.features.len();
     let response = ResponseError::new(seen, settings);
-    let mut covariance = Covariance { diagonal: diagonal(seen, settings), inside: Vec::new(), shared: Vec::new(), size, response };
+    let mut covariance = Covariance {
+        diagonal: diagonal(seen, settings),
+        inside: Vec::new(),
+        shared: Vec::new(),
+        size,
+        response,
+    };
     for sensitivity in sensitivities {
         if sensitivity.shared > 0.0 {
-            covariance.shared.push(sensitivity.column.iter().map(|x| sensitivity.shared * x).collect());
+            covariance
+                .shared
+                .push(sensitivity.column.iter().map(|x| sensitivity.shared * x).collect());
         }
         if sensitivity.per_section {
             for section in 0..seen.sections.len() {
-                covariance.inside.push((section, sensitivity.column[section * size..(section + 1) * size].to_vec()));
+                covariance.inside.push((
+                    section,
+                    sensitivity.column[section * size..(section + 1) * size].to_vec(),
+                ));
             }
         }
     }
@@ -91,29 +106,40 @@ fn calibration(
     let size = seen.features.len();
     let mut columns = Vec::new();
     let along = |section: usize, increment: usize, of: fn(&Increments) -> &Vec<f64>| {
-        seen.sections[section].increments.get(channel).and_then(Option::as_ref).map_or(0.0, |increments| of(increments)[increment])
+        seen.sections[section]
+            .increments
+            .get(channel)
+            .and_then(Option::as_ref)
+            .map_or(0.0, |increments| of(increments)[increment])
     };
     let mut push = |of: &dyn Fn(usize, Kind) -> f64| {
         let mut column = vec![0.0; seen.len()];
         for section in 0..seen.sections.len() {
-            for (at, feature) in seen.features.iter().enumerate().filter(|(_, feature)| feature.channel == channel) {
+            for (at, feature) in
+                seen.features.iter().enumerate().filter(|(_, feature)| feature.channel == channel)
+            {
                 column[section * size + at] = of(section * size + at, feature.kind);
             }
         }
         columns.push(column);
     };
-    if let Some(sd) = group.gain.as_deref().and_then(declared).or(group.gain.as_ref().map(|_| GAIN)) {
+    if let Some(sd) = group.gain.as_deref().and_then(declared).or(group.gain.as_ref().map(|_| GAIN))
+    {
         push(&|at, kind| match kind {
             Kind::Level => sd * simulated[at],
             Kind::Band(_) | Kind::Gain => sd,
             Kind::Lag => 0.0,
-            Kind::Increment(increment) => sd * along(at / size, increment, |increments| &increments.signal),
+            Kind::Increment(increment) => {
+                sd * along(at / size, increment, |increments| &increments.signal)
+            }
         });
     }
     if let Some(sd) = group.offset.as_deref().and_then(declared) {
         push(&|at, kind| match kind {
             Kind::Level => sd,
-            Kind::Increment(increment) => sd * along(at / size, increment, |increments| &increments.one),
+            Kind::Increment(increment) => {
+                sd * along(at / size, increment, |increments| &increments.one)
+            }
             _ => 0.0,
         });
     }
@@ -135,15 +161,17 @@ fn diagonal(seen: &Observations, settings: &Settings) -> Vec<f64> {
             variances.push(match feature.kind {
                 Kind::Level => scatter.level + group.level_sd * group.level_sd,
                 Kind::Band(band) => {
-                    // Variance of ln(rms) over a band of width B and a duration T: 1 / (4 B T) for each record; half of it is common to
-                    // both.
+                    // Variance of ln(rms) over a band of width B and a duration T: 1 / (4 B T) for
+                    // each record; half of it is common to both.
                     let width = seen.layout.edges[band + 1] - seen.layout.edges[band];
                     BAND_SCATTER / (width * length).max(0.5) + group.band_sd * group.band_sd
                 }
                 Kind::Gain => group.gain_sd * group.gain_sd + GAIN_SCATTER / length.max(1.0),
                 Kind::Lag if scatter.has_lag => group.lag_sd * group.lag_sd,
                 Kind::Lag => NOTHING,
-                Kind::Increment(_) => observed.increments[feature.channel].as_ref().map_or(NOTHING, |increments| increments.variance),
+                Kind::Increment(_) => observed.increments[feature.channel]
+                    .as_ref()
+                    .map_or(NOTHING, |increments| increments.variance),
             });
         }
     }
@@ -181,18 +209,30 @@ fn discrepant(
                 }
                 values
             };
-            let names: Vec<&str> = members.iter().map(|(channel, _)| seen.layout.channels[*channel].name.as_str()).collect();
+            let names: Vec<&str> = members
+                .iter()
+                .map(|(channel, _)| seen.layout.channels[*channel].name.as_str())
+                .collect();
             let key = format!("{number} {at} {}", names.join(" "));
             match discrepancy.over {
-                Over::Sections => inside.extend((0..seen.sections.len()).map(|section| (section, value(section)))),
-                Over::All => shared.push(Keyed { key, values: (0..seen.sections.len()).flat_map(value).collect() }),
+                Over::Sections => {
+                    inside.extend((0..seen.sections.len()).map(|section| (section, value(section))))
+                }
+                Over::All => shared.push(Keyed {
+                    key,
+                    values: (0..seen.sections.len()).flat_map(value).collect(),
+                }),
                 Over::Strata => {
                     for stratum in strata(seen, settings) {
                         let mut values = vec![0.0; seen.len()];
                         for section in &stratum {
-                            values[section * size..(section + 1) * size].copy_from_slice(&value(*section));
+                            values[section * size..(section + 1) * size]
+                                .copy_from_slice(&value(*section));
                         }
-                        shared.push(Keyed { key: format!("{key} in {}", stratum_of(seen, settings, stratum[0])), values });
+                        shared.push(Keyed {
+                            key: format!("{key} in {}", stratum_of(seen, settings, stratum[0])),
+                            values,
+                        });
                     }
                 }
             }
@@ -203,14 +243,24 @@ fn discrepant(
 /// Channels that are fully correlated, with their weights.
 fn members(seen: &Observations, discrepancy: &Discrepancy) -> Vec<Vec<(usize, f64)>> {
     let number = |name: &str| seen.layout.channels.iter().position(|channel| channel.name == name);
-    let all: Vec<(usize, f64)> = discrepancy.channels.iter().filter_map(|(name, weight)| Some((number(name)?, *weight))).collect();
+    let all: Vec<(usize, f64)> = discrepancy
+        .channels
+        .iter()
+        .filter_map(|(name, weight)| Some((number(name)?, *weight)))
+        .collect();
     match discrepancy.moves {
         Moves::All => vec![all],
         Moves::Channel => all.into_iter().map(|one| vec![one]).collect(),
         Moves::Group => {
-            let mut groups: Vec<usize> = all.iter().map(|(channel, _)| seen.layout.channels[*channel].group).collect();
+            let mut groups: Vec<usize> =
+                all.iter().map(|(channel, _)| seen.layout.channels[*channel].group).collect();
             groups.dedup();
-            let of = |group: usize| all.iter().copied().filter(|(channel, _)| seen.layout.channels[*channel].group == group).collect();
+            let of = |group: usize| {
+                all.iter()
+                    .copied()
+                    .filter(|(channel, _)| seen.layout.channels[*channel].group == group)
+                    .collect()
+            };
             groups.into_iter().map(of).collect()
         }
     }
@@ -218,7 +268,12 @@ fn members(seen: &Observations, discrepancy: &Discrepancy) -> Vec<Vec<(usize, f6
 
 fn times(seen: &Observations, settings: &Settings, times: Times, section: usize) -> f64 {
     let section = &seen.sections[section].section;
-    let over = |number: f64| section.number("radius").filter(|radius| *radius > 0.0).map_or(0.0, |radius| (number / radius).min(2.0));
+    let over = |number: f64| {
+        section
+            .number("radius")
+            .filter(|radius| *radius > 0.0)
+            .map_or(0.0, |radius| (number / radius).min(2.0))
+    };
     match times {
         Times::One => 1.0,
         Times::Side => settings.side(section),

@@ -24,8 +24,8 @@ pub struct Declared {
 impl Declared {
     /// Reads the declared tolerances.
     ///
-    /// Problems: `wrong-kind` for a value that is not a number from 0 on, `unknown-unit`, `unit-mismatch`; a warning for a name that is
-    /// not in the catalogue.
+    /// Problems: `wrong-kind` for a value that is not a number from 0 on, `unknown-unit`,
+    /// `unit-mismatch`; a warning for a name that is not in the catalogue.
     #[must_use]
     pub fn read(campaign: &Campaign, settings: &Settings, problems: &mut Problems) -> Self {
         let known = settings.tolerated();
@@ -33,9 +33,16 @@ impl Declared {
         for fact in campaign.facts.iter().filter(|fact| fact.group == GROUP) {
             declared.any = true;
             let Some((_, unit)) = known.iter().find(|(name, _)| *name == fact.name) else {
-                let says = format!("the catalogue has no tolerance `{}`: the declared value is not used", fact.name);
+                let says = format!(
+                    "the catalogue has no tolerance `{}`: the declared value is not used",
+                    fact.name
+                );
                 let names = known.iter().map(|(name, _)| *name);
-                problems.push(Problem::warning("unknown-tolerance", says).at(&fact.span).suggest(&fact.name, names));
+                problems.push(
+                    Problem::warning("unknown-tolerance", says)
+                        .at(&fact.span)
+                        .suggest(&fact.name, names),
+                );
                 declared.unknown.push(fact.name.clone());
                 continue;
             };
@@ -49,7 +56,8 @@ impl Declared {
         declared
     }
 
-    /// One standard deviation, in the unit of the catalogue; nothing where the campaign declares none.
+    /// One standard deviation, in the unit of the catalogue; nothing where the campaign declares
+    /// none.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<f64> {
         self.values.get(name).copied()
@@ -57,22 +65,32 @@ impl Declared {
 }
 
 fn in_unit(fact: &Fact, wanted: &Unit) -> Result<f64, Problem> {
-    let number = fact.text.trim().parse::<f64>().ok().filter(|number| number.is_finite() && *number >= 0.0);
+    let number =
+        fact.text.trim().parse::<f64>().ok().filter(|number| number.is_finite() && *number >= 0.0);
     let number = number.ok_or_else(|| {
-        let says = format!("the tolerance `{}` is one standard deviation, a number from 0 on, not `{}`", fact.name, fact.text);
+        let says = format!(
+            "the tolerance `{}` is one standard deviation, a number from 0 on, not `{}`",
+            fact.name, fact.text
+        );
         Problem::error("wrong-kind", says)
     })?;
     let text = fact.unit.as_deref().unwrap_or("-");
     let unit = Unit::parse(text).map_err(|unknown| {
-        let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word));
+        let problem =
+            Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word));
         match unknown.near {
             Some(near) => problem.help(format!("did you mean `{near}`?")),
             None => problem,
         }
     })?;
     if unit.dimension != wanted.dimension {
-        let says = format!("the tolerance `{}` is declared in {unit}, the catalogue reads it in {wanted}", fact.name);
-        return Err(Problem::error("unit-mismatch", says).help(format!("write `{} [{wanted}]`", fact.name)));
+        let says = format!(
+            "the tolerance `{}` is declared in {unit}, the catalogue reads it in {wanted}",
+            fact.name
+        );
+        return Err(
+            Problem::error("unit-mismatch", says).help(format!("write `{} [{wanted}]`", fact.name))
+        );
     }
     Ok(wanted.from_si(unit.to_si(number)))
 }
@@ -84,7 +102,13 @@ mod tests {
 
     fn fact(name: &str, unit: Option<&str>, text: &str) -> Fact {
         let span = Source::new("campaign.yaml", "").span(0..0);
-        Fact { group: GROUP.into(), name: name.into(), unit: unit.map(str::to_string), text: text.into(), span }
+        Fact {
+            group: GROUP.into(),
+            name: name.into(),
+            unit: unit.map(str::to_string),
+            text: text.into(),
+            span,
+        }
     }
 
     #[test]

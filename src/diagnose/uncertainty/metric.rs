@@ -1,4 +1,5 @@
-//! A further covariance of low rank beside the allowed difference, in whitened space: the model error of simulated effects.
+//! A further covariance of low rank beside the allowed difference, in whitened space: the model
+//! error of simulated effects.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -21,11 +22,15 @@ fn singular(columns: &DMatrix<f64>) -> Option<(DMatrix<f64>, Vec<f64>)> {
     }
     // Eigenvectors of the small Gram matrix give the left singular vectors.
     let eigen = (columns.transpose() * columns).symmetric_eigen();
-    let kept: Vec<usize> = (0..columns.ncols()).filter(|at| eigen.eigenvalues[*at] > NEGLIGIBLE).collect();
+    let kept: Vec<usize> =
+        (0..columns.ncols()).filter(|at| eigen.eigenvalues[*at] > NEGLIGIBLE).collect();
     if kept.is_empty() {
         return None;
     }
-    let scaled: Vec<DVector<f64>> = kept.iter().map(|at| eigen.eigenvectors.column(*at) / eigen.eigenvalues[*at].sqrt()).collect();
+    let scaled: Vec<DVector<f64>> = kept
+        .iter()
+        .map(|at| eigen.eigenvectors.column(*at) / eigen.eigenvalues[*at].sqrt())
+        .collect();
     let values = kept.iter().map(|at| eigen.eigenvalues[*at].sqrt()).collect();
     Some((columns * DMatrix::from_columns(&scaled), values))
 }
@@ -47,7 +52,10 @@ impl Metric {
     #[must_use]
     pub fn new(columns: &DMatrix<f64>) -> Self {
         let Some((basis, values)) = singular(columns) else { return Self::default() };
-        let shrink = DVector::from_iterator(values.len(), values.iter().map(|s| 1.0 - 1.0 / (1.0 + s * s).sqrt()));
+        let shrink = DVector::from_iterator(
+            values.len(),
+            values.iter().map(|s| 1.0 - 1.0 / (1.0 + s * s).sqrt()),
+        );
         let log_determinant = values.iter().map(|s| (s * s).ln_1p()).sum();
         Self { basis: Some(basis), shrink, log_determinant }
     }

@@ -1,4 +1,5 @@
-//! Allowed difference of measurement and simulation without any effect: noise, tolerances, model discrepancy.
+//! Allowed difference of measurement and simulation without any effect: noise, tolerances, model
+//! discrepancy.
 
 pub mod covariance;
 pub mod declared;

@@ -1,8 +1,9 @@
 //! The model error of a simulated response: a relative error of the change that an effect causes.
 //!
-//! The simulated change `d` of the features with an effect is not exact. Its error is `e_g d` on each group `g` of features, with
-//! independent relative errors `e_g`. Features of a kind have one error in common over the whole campaign; each group of channels has a
-//! further one, and each group of channels in each stratum. An operation on the signals has no such error.
+//! The simulated change `d` of the features with an effect is not exact. Its error is `e_g d` on
+//! each group `g` of features, with independent relative errors `e_g`. Features of a kind have one
+//! error in common over the whole campaign; each group of channels has a further one, and each
+//! group of channels in each stratum. An operation on the signals has no such error.
 
 use crate::diagnose::features::layout::Kind;
 use crate::diagnose::features::observations::Observations;
@@ -34,22 +35,31 @@ impl ResponseError {
     pub fn new(seen: &Observations, settings: &Settings) -> Self {
         let all: Vec<usize> = (0..seen.sections.len()).collect();
         let strata = strata(seen, settings);
-        let mut groups: Vec<usize> = seen.layout.channels.iter().map(|channel| channel.group).collect();
+        let mut groups: Vec<usize> =
+            seen.layout.channels.iter().map(|channel| channel.group).collect();
         groups.sort_unstable();
         groups.dedup();
         let Response { levels, others, groups: further, common: of_all } = settings.response;
         let mut parts = Vec::new();
         for (level, common) in [(true, levels), (false, others)] {
             let features = |group: Option<usize>| -> Vec<usize> {
-                let inside = |channel: usize| group.is_none_or(|group| seen.layout.channels[channel].group == group);
+                let inside = |channel: usize| {
+                    group.is_none_or(|group| seen.layout.channels[channel].group == group)
+                };
                 let kept = seen.features.iter().enumerate();
-                kept.filter(|(_, of)| (of.kind == Kind::Level) == level && inside(of.channel)).map(|(at, _)| at).collect()
+                kept.filter(|(_, of)| (of.kind == Kind::Level) == level && inside(of.channel))
+                    .map(|(at, _)| at)
+                    .collect()
             };
             parts.push(Part { features: features(None), sections: all.clone(), sd: common });
             for group in &groups {
                 let features = features(Some(*group));
                 parts.push(Part { features: features.clone(), sections: all.clone(), sd: further });
-                parts.extend(strata.iter().map(|of| Part { features: features.clone(), sections: of.clone(), sd: further }));
+                parts.extend(strata.iter().map(|of| Part {
+                    features: features.clone(),
+                    sections: of.clone(),
+                    sd: further,
+                }));
             }
         }
         parts.retain(|part| !part.features.is_empty() && !part.sections.is_empty());
@@ -60,7 +70,11 @@ impl ResponseError {
     #[cfg(test)]
     #[must_use]
     pub fn of(parts: &[(&[usize], f64)], sections: usize) -> Self {
-        let part = |(features, sd): &(&[usize], f64)| Part { features: features.to_vec(), sections: (0..sections).collect(), sd: *sd };
+        let part = |(features, sd): &(&[usize], f64)| Part {
+            features: features.to_vec(),
+            sections: (0..sections).collect(),
+            sd: *sd,
+        };
         Self { parts: parts.iter().map(part).collect(), each: 0.0, common: 0.0 }
     }
 
@@ -69,7 +83,9 @@ impl ResponseError {
     pub fn columns(&self, change: &[f64], size: usize) -> Vec<Vec<f64>> {
         let column = |part: &Part| {
             let mut column = vec![0.0; change.len()];
-            for place in part.sections.iter().flat_map(|section| part.features.iter().map(move |feature| section * size + feature)) {
+            for place in part.sections.iter().flat_map(|section| {
+                part.features.iter().map(move |feature| section * size + feature)
+            }) {
                 column[place] = part.sd * change[place];
             }
             column
@@ -83,8 +99,11 @@ impl ResponseError {
         let places = |of: &[usize], kept: &[usize]| -> Vec<usize> {
             kept.iter().enumerate().filter(|(_, old)| of.contains(old)).map(|(at, _)| at).collect()
         };
-        let part =
-            |part: &Part| Part { features: places(&part.features, features), sections: places(&part.sections, sections), sd: part.sd };
+        let part = |part: &Part| Part {
+            features: places(&part.features, features),
+            sections: places(&part.sections, sections),
+            sd: part.sd,
+        };
         let mut parts: Vec<Part> = self.parts.iter().map(part).collect();
         parts.retain(|part| !part.features.is_empty() && !part.sections.is_empty());
         Self { parts, each: self.each, common: self.common }

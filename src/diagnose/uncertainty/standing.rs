@@ -1,9 +1,10 @@
 //! Standing discrepancy of the simulation, estimated from campaigns of known state.
 //!
-//! Every discrepancy common to all sections is a column times a random coefficient of unit variance. A part of that coefficient is the
-//! same in all campaigns with a vehicle (the standing part); the rest varies from campaign to campaign. Campaigns of known state estimate
-//! the standing part. Its mean is subtracted; its remaining covariance and the varying part stay in the covariance (Gauss-Markov; as in
-//! Kennedy and O'Hagan 2001, with a discrepancy of declared form).
+//! Every discrepancy common to all sections is a column times a random coefficient of unit
+//! variance. A part of that coefficient is the same in all campaigns with a vehicle (the standing
+//! part); the rest varies from campaign to campaign. Campaigns of known state estimate the standing
+//! part. Its mean is subtracted; its remaining covariance and the varying part stay in the
+//! covariance (Gauss-Markov; as in Kennedy and O'Hagan 2001, with a discrepancy of declared form).
 
 use std::collections::HashMap;
 
@@ -29,7 +30,8 @@ pub struct Standing {
     root: Option<DMatrix<f64>>,
 }
 
-/// Data of one reference campaign: its covariance without the standing part, the columns, and measured - simulated.
+/// Data of one reference campaign: its covariance without the standing part, the columns, and
+/// measured - simulated.
 #[derive(Debug)]
 pub struct Shown {
     pub covariance: Covariance,
@@ -56,30 +58,46 @@ impl Standing {
             let whitener = shown.covariance.whitener();
             let mut seen = DMatrix::zeros(shown.difference.len(), count);
             for column in &shown.columns {
-                seen.set_column(places[&column.key], &(DVector::from_vec(whitener.apply(&column.values)) * stands));
+                seen.set_column(
+                    places[&column.key],
+                    &(DVector::from_vec(whitener.apply(&column.values)) * stands),
+                );
             }
             precision += seen.tr_mul(&seen);
             pull += seen.tr_mul(&DVector::from_vec(whitener.apply(&shown.difference)));
         }
-        let factored = Cholesky::new_with_substitute(precision, 1e-9).expect("a substitute makes every pivot positive");
+        let factored = Cholesky::new_with_substitute(precision, 1e-9)
+            .expect("a substitute makes every pivot positive");
         let mean = factored.solve(&pull) * stands;
-        let left = factored.inverse() * (stands * stands) + DMatrix::identity(count, count) * (OWN * OWN);
-        let root = Cholesky::new_with_substitute(left, 1e-12).expect("a substitute makes every pivot positive").l();
+        let left =
+            factored.inverse() * (stands * stands) + DMatrix::identity(count, count) * (OWN * OWN);
+        let root = Cholesky::new_with_substitute(left, 1e-12)
+            .expect("a substitute makes every pivot positive")
+            .l();
         Self { places, mean: mean.data.into(), root: Some(root) }
     }
 
     /// Subtracts the mean of the standing part from a difference.
     pub fn take_off(&self, columns: &[Keyed], difference: &mut [f64]) {
-        for (column, at) in columns.iter().filter_map(|column| Some((column, self.places.get(&column.key)?))) {
-            difference.iter_mut().zip(&column.values).for_each(|(difference, value)| *difference -= self.mean[*at] * value);
+        for (column, at) in
+            columns.iter().filter_map(|column| Some((column, self.places.get(&column.key)?)))
+        {
+            difference
+                .iter_mut()
+                .zip(&column.values)
+                .for_each(|(difference, value)| *difference -= self.mean[*at] * value);
         }
     }
 
-    /// The columns, recombined so that their coefficients are again independent and of unit variance.
+    /// The columns, recombined so that their coefficients are again independent and of unit
+    /// variance.
     #[must_use]
     pub fn weighed(&self, columns: Vec<Keyed>) -> Vec<Vec<f64>> {
-        let Some(root) = &self.root else { return columns.into_iter().map(|column| column.values).collect() };
-        let (known, unknown): (Vec<Keyed>, Vec<Keyed>) = columns.into_iter().partition(|column| self.places.contains_key(&column.key));
+        let Some(root) = &self.root else {
+            return columns.into_iter().map(|column| column.values).collect();
+        };
+        let (known, unknown): (Vec<Keyed>, Vec<Keyed>) =
+            columns.into_iter().partition(|column| self.places.contains_key(&column.key));
         let mut all: Vec<Vec<f64>> = unknown.into_iter().map(|column| column.values).collect();
         let Some(first) = known.first() else { return all };
         for number in 0..root.ncols() {

@@ -1,7 +1,8 @@
 //! Factorisation of the covariance, and whitening of differences.
 //!
-//! `C = blockdiag(C_i) + G G'`: one block per section, and columns `G` common to all sections. A difference `r` is whitened to
-//! `z = (I - U (1 - 1/sqrt(1 + S^2)) U') L^-1 r` with `C_i = L_i L_i'` and `L^-1 G = U S V'`, so that `z'z = r' C^-1 r`.
+//! `C = blockdiag(C_i) + G G'`: one block per section, and columns `G` common to all sections. A
+//! difference `r` is whitened to `z = (I - U (1 - 1/sqrt(1 + S^2)) U') L^-1 r` with `C_i = L_i
+//! L_i'` and `L^-1 G = U S V'`, so that `z'z = r' C^-1 r`.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -37,23 +38,37 @@ pub struct Covariance {
 impl Covariance {
     /// Factors the covariance.
     ///
-    /// Variances are kept above a small share of the largest one, so that the blocks are positive definite.
+    /// Variances are kept above a small share of the largest one, so that the blocks are positive
+    /// definite.
     #[must_use]
     pub fn whitener(&self) -> Whitener {
         let sections = self.diagonal.len() / self.size;
         let blocks = (0..sections).map(|section| self.block(section)).collect();
         let (shared, shrink) = (DMatrix::zeros(self.diagonal.len(), 0), DVector::zeros(0));
-        let mut whitener = Whitener { blocks, shared, shrink, size: self.size, response: self.response.clone() };
-        let columns: Vec<DVector<f64>> = self.shared.iter().map(|column| DVector::from_vec(whitener.apply(column))).collect();
+        let mut whitener =
+            Whitener { blocks, shared, shrink, size: self.size, response: self.response.clone() };
+        let columns: Vec<DVector<f64>> =
+            self.shared.iter().map(|column| DVector::from_vec(whitener.apply(column))).collect();
         if !columns.is_empty() {
             let all = DMatrix::from_columns(&columns);
             // Eigenvectors of the small Gram matrix give the left singular vectors.
             let eigen = (all.transpose() * &all).symmetric_eigen();
             let largest = eigen.eigenvalues.max();
-            let kept: Vec<usize> = (0..columns.len()).filter(|i| eigen.eigenvalues[*i] > largest * 1e-12).collect();
-            let scaled: Vec<DVector<f64>> = kept.iter().map(|i| eigen.eigenvectors.column(*i) / eigen.eigenvalues[*i].sqrt()).collect();
-            whitener.shrink = DVector::from_iterator(kept.len(), kept.iter().map(|i| 1.0 - 1.0 / (1.0 + eigen.eigenvalues[*i]).sqrt()));
-            whitener.shared = if kept.is_empty() { whitener.shared } else { all * DMatrix::from_columns(&scaled) };
+            let kept: Vec<usize> =
+                (0..columns.len()).filter(|i| eigen.eigenvalues[*i] > largest * 1e-12).collect();
+            let scaled: Vec<DVector<f64>> = kept
+                .iter()
+                .map(|i| eigen.eigenvectors.column(*i) / eigen.eigenvalues[*i].sqrt())
+                .collect();
+            whitener.shrink = DVector::from_iterator(
+                kept.len(),
+                kept.iter().map(|i| 1.0 - 1.0 / (1.0 + eigen.eigenvalues[*i]).sqrt()),
+            );
+            whitener.shared = if kept.is_empty() {
+                whitener.shared
+            } else {
+                all * DMatrix::from_columns(&scaled)
+            };
         }
         whitener
     }
@@ -63,8 +78,16 @@ impl Covariance {
     /// The covariance of one section, without the common columns.
     fn block(&self, section: usize) -> Cholesky<f64, Dyn> {
         let range = section * self.size..(section + 1) * self.size;
-        let columns: Vec<&[f64]> = self.inside.iter().filter(|(of, _)| *of == section).map(|(_, values)| values.as_slice()).collect();
-        let mut block = DMatrix::from_diagonal(&DVector::from_iterator(self.size, self.diagonal[range].iter().map(|v| v.max(1e-12))));
+        let columns: Vec<&[f64]> = self
+            .inside
+            .iter()
+            .filter(|(of, _)| *of == section)
+            .map(|(_, values)| values.as_slice())
+            .collect();
+        let mut block = DMatrix::from_diagonal(&DVector::from_iterator(
+            self.size,
+            self.diagonal[range].iter().map(|v| v.max(1e-12)),
+        ));
         if !columns.is_empty() {
             let all = DMatrix::from_fn(self.size, columns.len(), |i, j| columns[j][i]);
             block += &all * all.transpose();
@@ -78,7 +101,9 @@ impl Covariance {
         let one = |section: usize| {
             let block = self.block(section);
             let range = section * self.size..(section + 1) * self.size;
-            let mut shared = DMatrix::from_fn(self.size, self.shared.len(), |i, j| self.shared[j][range.start + i]);
+            let mut shared = DMatrix::from_fn(self.size, self.shared.len(), |i, j| {
+                self.shared[j][range.start + i]
+            });
             block.l_dirty().solve_lower_triangular_mut(&mut shared);
             let gram = shared.tr_mul(&shared);
             Inside { block, shared, gram }
@@ -111,19 +136,25 @@ impl Products {
     /// A column, split by section and whitened by each block.
     fn inside(&self, column: &[f64]) -> Vec<DVector<f64>> {
         let one = |(section, inside): (usize, &Inside)| {
-            let mut part = DVector::from_column_slice(&column[section * self.size..(section + 1) * self.size]);
+            let mut part =
+                DVector::from_column_slice(&column[section * self.size..(section + 1) * self.size]);
             inside.block.l_dirty().solve_lower_triangular_mut(&mut part);
             part
         };
         self.sections.iter().enumerate().map(one).collect()
     }
 
-    /// `(a' C^-1 a, a' C^-1 b)` over all sections; with `one_out`, then over all but each section in turn.
+    /// `(a' C^-1 a, a' C^-1 b)` over all sections; with `one_out`, then over all but each section
+    /// in turn.
     #[must_use]
     pub fn of(&self, a: &[f64], b: &[f64], one_out: bool) -> Vec<(f64, f64)> {
         let (a, b) = (self.inside(a), self.inside(b));
         let along = |parts: &[DVector<f64>]| -> Vec<DVector<f64>> {
-            self.sections.iter().zip(parts).map(|(inside, part)| inside.shared.tr_mul(part)).collect()
+            self.sections
+                .iter()
+                .zip(parts)
+                .map(|(inside, part)| inside.shared.tr_mul(part))
+                .collect()
         };
         let (ga, gb) = (along(&a), along(&b));
         let product = |without: Option<usize>| {
@@ -132,10 +163,15 @@ impl Products {
             if let Some(without) = without {
                 gram -= &self.sections[without].gram;
             }
-            let (aa, ab) = kept().fold((0.0, 0.0), |(aa, ab), at| (aa + a[at].dot(&a[at]), ab + a[at].dot(&b[at])));
-            let sum = |parts: &[DVector<f64>]| kept().fold(DVector::zeros(gram.nrows()), |sum, at| sum + &parts[at]);
+            let (aa, ab) = kept()
+                .fold((0.0, 0.0), |(aa, ab), at| (aa + a[at].dot(&a[at]), ab + a[at].dot(&b[at])));
+            let sum = |parts: &[DVector<f64>]| {
+                kept().fold(DVector::zeros(gram.nrows()), |sum, at| sum + &parts[at])
+            };
             let (ga, gb) = (sum(&ga), sum(&gb));
-            let solved = Cholesky::new_with_substitute(gram, 1e-9).expect("a substitute makes every pivot positive").solve(&ga);
+            let solved = Cholesky::new_with_substitute(gram, 1e-9)
+                .expect("a substitute makes every pivot positive")
+                .solve(&ga);
             (aa - solved.dot(&ga), ab - solved.dot(&gb))
         };
         let mut all = vec![product(None)];
@@ -172,11 +208,15 @@ impl Whitener {
         let part = |columns: &[Vec<f64>]| {
             let mut z = DMatrix::from_fn(self.features(), columns.len(), |i, j| columns[j][i]);
             for (section, block) in self.blocks.iter().enumerate() {
-                block.l_dirty().solve_lower_triangular_mut(&mut z.rows_mut(section * self.size, self.size));
+                block
+                    .l_dirty()
+                    .solve_lower_triangular_mut(&mut z.rows_mut(section * self.size, self.size));
             }
             if self.shared.ncols() > 0 {
                 let mut weights = self.shared.transpose() * &z;
-                weights.column_iter_mut().for_each(|mut column| column.component_mul_assign(&self.shrink));
+                weights
+                    .column_iter_mut()
+                    .for_each(|mut column| column.component_mul_assign(&self.shrink));
                 z.gemm(-1.0, &self.shared, &weights, 1.0);
             }
             z
@@ -254,11 +294,15 @@ mod tests {
         };
         let r = [1.0, -2.0, 0.5, 0.7];
         let mut full = DMatrix::from_diagonal(&DVector::from_row_slice(&covariance.diagonal));
-        let mut add = |column: Vec<f64>| full += DVector::from_vec(column.clone()) * DVector::from_vec(column).transpose();
+        let mut add = |column: Vec<f64>| {
+            full += DVector::from_vec(column.clone()) * DVector::from_vec(column).transpose()
+        };
         add(vec![0.5, -1.0, 0.0, 0.0]);
         add(vec![0.0, 0.0, 2.0, 0.3]);
         covariance.shared.iter().for_each(|column| add(column.clone()));
-        let direct = (DVector::from_row_slice(&r).transpose() * full.try_inverse().expect("regular") * DVector::from_row_slice(&r))[0];
+        let direct = (DVector::from_row_slice(&r).transpose()
+            * full.try_inverse().expect("regular")
+            * DVector::from_row_slice(&r))[0];
         let z = covariance.whitener().apply(&r);
         assert!((dot(&z, &z) - direct).abs() < 1e-10 * direct);
         let other = [0.3, 0.1, -2.0, 4.0];

@@ -1,7 +1,7 @@
 //! Parquet and Arrow files: a table each, with units in the metadata of the fields.
 //!
-//! Both readers allocate what a file declares. What it declares is therefore checked before: for Parquet as in a record of a campaign
-//! (`data::record::guard`), for Arrow in `ipc`.
+//! Both readers allocate what a file declares. What it declares is therefore checked before: for
+//! Parquet as in a record of a campaign (`data::record::guard`), for Arrow in `ipc`.
 
 mod ipc;
 mod values;
@@ -12,7 +12,9 @@ use arrow_array::RecordBatch;
 use arrow_ipc::reader::FileReader;
 use arrow_schema::{Field, Schema};
 use parquet::arrow::ProjectionMask;
-use parquet::arrow::arrow_reader::{ArrowReaderMetadata, ArrowReaderOptions, ParquetRecordBatchReaderBuilder};
+use parquet::arrow::arrow_reader::{
+    ArrowReaderMetadata, ArrowReaderOptions, ParquetRecordBatchReaderBuilder,
+};
 use parquet::basic::Type;
 use parquet::file::metadata::ParquetMetaData;
 
@@ -37,12 +39,15 @@ const LONGEST_FACT: usize = 200;
 
 pub(super) fn parquet(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let shown = input.shown;
-    let bad = |place: &str, why: &dyn std::fmt::Display| damaged(Format::Parquet, shown, place, why);
-    guard::footer(footer(input.bytes).map_err(|why| bad("the footer", &why))?).map_err(|why| bad("the footer", &why))?;
+    let bad =
+        |place: &str, why: &dyn std::fmt::Display| damaged(Format::Parquet, shown, place, why);
+    guard::footer(footer(input.bytes).map_err(|why| bad("the footer", &why))?)
+        .map_err(|why| bad("the footer", &why))?;
     let bytes = input.bytes.clone();
-    let metadata = ArrowReaderMetadata::load(&bytes, ArrowReaderOptions::new()).map_err(|error| bad("the footer", &error))?;
-    let rows =
-        usize::try_from(metadata.metadata().file_metadata().num_rows()).map_err(|_| bad("the footer", &"a negative number of rows"))?;
+    let metadata = ArrowReaderMetadata::load(&bytes, ArrowReaderOptions::new())
+        .map_err(|error| bad("the footer", &error))?;
+    let rows = usize::try_from(metadata.metadata().file_metadata().num_rows())
+        .map_err(|_| bad("the footer", &"a negative number of rows"))?;
     let schema = metadata.schema().clone();
     let (mut table, columns) = table(&schema);
     Budget::new(input.bytes.len(), shown).take(columns.len(), rows, "the table")?;
@@ -53,16 +58,25 @@ pub(super) fn parquet(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
         let mask = ProjectionMask::roots(metadata.parquet_schema(), columns.iter().copied());
         pages(input.bytes, metadata.metadata(), &mask).map_err(|(place, why)| bad(&place, &why))?;
         let builder = ParquetRecordBatchReaderBuilder::new_with_metadata(bytes, metadata);
-        let reader = builder.with_projection(mask).with_batch_size(BATCH).build().map_err(|error| bad("the columns", &error))?;
+        let reader = builder
+            .with_projection(mask)
+            .with_batch_size(BATCH)
+            .build()
+            .map_err(|error| bad("the columns", &error))?;
         let (mut found, mut origins) = (0, vec![None; table.channels.len()]);
         table.channels.iter_mut().for_each(|channel| channel.values.reserve_exact(rows));
         for batch in reader {
             let batch = batch.map_err(|error| bad(&format!("row {}", found + 1), &error))?;
-            add(&mut table, &mut origins, &batch).map_err(|why| bad(&format!("row {}", found + 1), &why))?;
+            add(&mut table, &mut origins, &batch)
+                .map_err(|why| bad(&format!("row {}", found + 1), &why))?;
             found += batch.num_rows();
         }
         if found != rows {
-            return Err(bad("the columns", &format!("{rows} rows are declared, {found} are there")).into());
+            return Err(bad(
+                "the columns",
+                &format!("{rows} rows are declared, {found} are there"),
+            )
+            .into());
         }
     }
     finish(table, shown)
@@ -72,7 +86,8 @@ pub(super) fn parquet(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
 const END: usize = 8;
 
 fn footer(bytes: &[u8]) -> Result<&[u8], String> {
-    let Some((body, end)) = bytes.split_last_chunk::<END>().filter(|(_, end)| end[4..] == *b"PAR1") else {
+    let Some((body, end)) = bytes.split_last_chunk::<END>().filter(|(_, end)| end[4..] == *b"PAR1")
+    else {
         return Err("the file does not end as it should".into());
     };
     let length = u32::from_le_bytes([end[0], end[1], end[2], end[3]]) as usize;
@@ -81,14 +96,32 @@ fn footer(bytes: &[u8]) -> Result<&[u8], String> {
 }
 
 /// Checks the pages of the columns that are read. The error has its place.
-fn pages(bytes: &[u8], metadata: &ParquetMetaData, mask: &ProjectionMask) -> Result<(), (String, String)> {
+fn pages(
+    bytes: &[u8],
+    metadata: &ParquetMetaData,
+    mask: &ProjectionMask,
+) -> Result<(), (String, String)> {
     for (group, row_group) in metadata.row_groups().iter().enumerate() {
-        for (leaf, chunk) in row_group.columns().iter().enumerate().filter(|(leaf, _)| mask.leaf_included(*leaf)) {
-            let place = || format!("row group {}, column {} (`{}`)", group + 1, leaf + 1, chunk.column_path().string());
-            let start = chunk.dictionary_page_offset().filter(|at| *at > 0).unwrap_or(chunk.data_page_offset());
-            let part = usize::try_from(start).ok().zip(usize::try_from(chunk.compressed_size()).ok());
+        for (leaf, chunk) in
+            row_group.columns().iter().enumerate().filter(|(leaf, _)| mask.leaf_included(*leaf))
+        {
+            let place = || {
+                format!(
+                    "row group {}, column {} (`{}`)",
+                    group + 1,
+                    leaf + 1,
+                    chunk.column_path().string()
+                )
+            };
+            let start = chunk
+                .dictionary_page_offset()
+                .filter(|at| *at > 0)
+                .unwrap_or(chunk.data_page_offset());
+            let part =
+                usize::try_from(start).ok().zip(usize::try_from(chunk.compressed_size()).ok());
             let part = part.and_then(|(start, size)| bytes.get(start..start.checked_add(size)?));
-            let part = part.ok_or_else(|| (place(), "its values are beyond the file".to_string()))?;
+            let part =
+                part.ok_or_else(|| (place(), "its values are beyond the file".to_string()))?;
             let width = match chunk.column_type() {
                 Type::DOUBLE | Type::INT64 => 8,
                 Type::FLOAT | Type::INT32 => 4,
@@ -106,15 +139,23 @@ pub(super) fn arrow(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let shown = input.shown;
     let bad = |place: &str, why: &dyn std::fmt::Display| damaged(Format::Arrow, shown, place, why);
     let rows = ipc::check(input.bytes, shown)?;
-    let reader = FileReader::try_new(Cursor::new(&input.bytes[..]), None).map_err(|error| bad("the footer", &error))?;
+    let reader = FileReader::try_new(Cursor::new(&input.bytes[..]), None)
+        .map_err(|error| bad("the footer", &error))?;
     let (mut table, columns) = table(&reader.schema());
     Budget::new(input.bytes.len(), shown).take(columns.len(), rows, "the table")?;
     table.rows = rows;
     let schema = reader.schema();
-    table.facts = facts(reader.custom_metadata().iter().chain(schema.metadata()).map(|(key, value)| (key.clone(), value.clone())));
+    table.facts = facts(
+        reader
+            .custom_metadata()
+            .iter()
+            .chain(schema.metadata())
+            .map(|(key, value)| (key.clone(), value.clone())),
+    );
     drop(reader);
     if input.want == Want::Values {
-        let reader = FileReader::try_new(Cursor::new(&input.bytes[..]), Some(columns)).map_err(|error| bad("the footer", &error))?;
+        let reader = FileReader::try_new(Cursor::new(&input.bytes[..]), Some(columns))
+            .map_err(|error| bad("the footer", &error))?;
         let mut origins = vec![None; table.channels.len()];
         for (index, batch) in reader.enumerate() {
             let place = format!("batch {}", index + 1);
@@ -136,9 +177,16 @@ fn table(schema: &Schema) -> (Table, Vec<usize>) {
         }
         columns.push(index);
         let (name, unit) = name_and_unit_of(field);
-        let comment = ["comment", "description"].iter().find_map(|key| field.metadata().get(*key)).cloned();
+        let comment =
+            ["comment", "description"].iter().find_map(|key| field.metadata().get(*key)).cloned();
         let unit = unit.or_else(|| values::is_time(field.data_type()).then(|| "s".into()));
-        table.channels.push(Channel { name, unit, comment, values: Vec::new(), place: Place { column: index + 1, span: None } });
+        table.channels.push(Channel {
+            name,
+            unit,
+            comment,
+            values: Vec::new(),
+            place: Place { column: index + 1, span: None },
+        });
     }
     (table, columns)
 }
@@ -146,24 +194,35 @@ fn table(schema: &Schema) -> (Table, Vec<usize>) {
 /// The unit in the metadata, or else in brackets after the name.
 fn name_and_unit_of(field: &Field) -> (String, Option<String>) {
     match UNITS.iter().find_map(|key| field.metadata().get(*key)) {
-        Some(unit) => (field.name().clone(), Some(unit.trim().to_string()).filter(|unit| !unit.is_empty())),
+        Some(unit) => {
+            (field.name().clone(), Some(unit.trim().to_string()).filter(|unit| !unit.is_empty()))
+        }
         None => name_and_unit(field.name()),
     }
 }
 
 fn add(table: &mut Table, origins: &mut [Option<i64>], batch: &RecordBatch) -> Result<(), String> {
     if batch.num_columns() != table.channels.len() {
-        return Err(format!("{} columns in place of {}", batch.num_columns(), table.channels.len()));
+        return Err(format!(
+            "{} columns in place of {}",
+            batch.num_columns(),
+            table.channels.len()
+        ));
     }
     for ((channel, origin), column) in table.channels.iter_mut().zip(origins).zip(batch.columns()) {
-        values::add(&mut channel.values, column.as_ref(), origin).map_err(|why| format!("`{}`: {why}", channel.name))?;
+        values::add(&mut channel.values, column.as_ref(), origin)
+            .map_err(|why| format!("`{}`: {why}", channel.name))?;
     }
     Ok(())
 }
 
 fn facts(pairs: impl Iterator<Item = (String, String)>) -> Vec<(String, String)> {
     let mut facts: Vec<(String, String)> = pairs
-        .filter(|(key, value)| !NOT_FACTS.contains(&key.as_str()) && value.len() <= LONGEST_FACT && key.len() <= LONGEST_FACT)
+        .filter(|(key, value)| {
+            !NOT_FACTS.contains(&key.as_str())
+                && value.len() <= LONGEST_FACT
+                && key.len() <= LONGEST_FACT
+        })
         .collect();
     facts.sort();
     facts
@@ -171,7 +230,9 @@ fn facts(pairs: impl Iterator<Item = (String, String)>) -> Vec<(String, String)>
 
 fn finish(table: Table, shown: &str) -> Result<Read, Vec<Problem>> {
     if table.channels.is_empty() {
-        return Err(Problem::error("no-numbers", format!("`{shown}` has no columns of numbers")).into());
+        return Err(
+            Problem::error("no-numbers", format!("`{shown}` has no columns of numbers")).into()
+        );
     }
     Ok(Read { tables: vec![table], facts: Vec::new() })
 }

@@ -2,20 +2,26 @@
 
 use arrow_array::cast::AsArray;
 use arrow_array::types::{
-    ArrowPrimitiveType, DurationMicrosecondType, DurationMillisecondType, DurationNanosecondType, DurationSecondType, Float16Type,
-    Float32Type, Float64Type, Int8Type, Int16Type, Int32Type, Int64Type, TimestampMicrosecondType, TimestampMillisecondType,
-    TimestampNanosecondType, TimestampSecondType, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
+    ArrowPrimitiveType, DurationMicrosecondType, DurationMillisecondType, DurationNanosecondType,
+    DurationSecondType, Float16Type, Float32Type, Float64Type, Int8Type, Int16Type, Int32Type,
+    Int64Type, TimestampMicrosecondType, TimestampMillisecondType, TimestampNanosecondType,
+    TimestampSecondType, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
 };
 use arrow_array::{Array, PrimitiveArray};
 use arrow_schema::{DataType, TimeUnit};
 
 /// Whether a type is read as numbers, or why not.
 pub(super) fn readable(kind: &DataType) -> Result<(), String> {
-    use DataType::{Boolean, Duration, Float16, Float32, Float64, Int8, Int16, Int32, Int64, Timestamp, UInt8, UInt16, UInt32, UInt64};
+    use DataType::{
+        Boolean, Duration, Float16, Float32, Float64, Int8, Int16, Int32, Int64, Timestamp, UInt8,
+        UInt16, UInt32, UInt64,
+    };
     match kind {
         Boolean | Float16 | Float32 | Float64 | Timestamp(..) | Duration(_) => Ok(()),
         Int8 | Int16 | Int32 | Int64 | UInt8 | UInt16 | UInt32 | UInt64 => Ok(()),
-        DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View => Err("its cells are text".into()),
+        DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View => {
+            Err("its cells are text".into())
+        }
         other => Err(format!("its type {other} is not read")),
     }
 }
@@ -25,9 +31,13 @@ pub(super) fn is_time(kind: &DataType) -> bool {
     matches!(kind, DataType::Timestamp(..) | DataType::Duration(_))
 }
 
-/// Adds the values of a column; NaN where it has none. Times are counted from the first of the file, which `origin` keeps: as
-/// nanoseconds since 1970 they have more digits than a double.
-pub(super) fn add(to: &mut Vec<f64>, column: &dyn Array, origin: &mut Option<i64>) -> Result<(), String> {
+/// Adds the values of a column; NaN where it has none. Times are counted from the first of the
+/// file, which `origin` keeps: as nanoseconds since 1970 they have more digits than a double.
+pub(super) fn add(
+    to: &mut Vec<f64>,
+    column: &dyn Array,
+    origin: &mut Option<i64>,
+) -> Result<(), String> {
     macro_rules! plain {
         ($type:ty) => {
             primitive::<$type>(to, column, |value| value as f64)
@@ -69,7 +79,12 @@ pub(super) fn add(to: &mut Vec<f64>, column: &dyn Array, origin: &mut Option<i64
         DataType::Timestamp(TimeUnit::Microsecond, _) => times!(TimestampMicrosecondType, 1e6),
         DataType::Timestamp(TimeUnit::Nanosecond, _) => times!(TimestampNanosecondType, 1e9),
         DataType::Boolean => {
-            to.extend(column.as_boolean().iter().map(|value| value.map_or(f64::NAN, |yes| f64::from(u8::from(yes)))));
+            to.extend(
+                column
+                    .as_boolean()
+                    .iter()
+                    .map(|value| value.map_or(f64::NAN, |yes| f64::from(u8::from(yes)))),
+            );
             Some(())
         }
         _ => None,
@@ -77,7 +92,11 @@ pub(super) fn add(to: &mut Vec<f64>, column: &dyn Array, origin: &mut Option<i64
     .ok_or_else(|| format!("values of the type {}", column.data_type()))
 }
 
-fn primitive<T: ArrowPrimitiveType>(to: &mut Vec<f64>, column: &dyn Array, number: impl Fn(T::Native) -> f64) -> Option<()> {
+fn primitive<T: ArrowPrimitiveType>(
+    to: &mut Vec<f64>,
+    column: &dyn Array,
+    number: impl Fn(T::Native) -> f64,
+) -> Option<()> {
     let column: &PrimitiveArray<T> = column.as_primitive_opt()?;
     if column.null_count() == 0 {
         to.extend(column.values().iter().map(|value| number(*value)));

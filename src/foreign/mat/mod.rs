@@ -35,8 +35,7 @@ enum Value {
 /// Depth to which structs and cells are read; records have three or four levels.
 const DEEPEST: usize = 16;
 
-const OBJECT: &str =
-    "an object of MATLAB (table, timeseries, string); save it as a struct, for example with `table2struct(T, 'ToScalar', true)`";
+const OBJECT: &str = "an object of MATLAB (table, timeseries, string); save it as a struct, for example with `table2struct(T, 'ToScalar', true)`";
 
 pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let mut budget = Budget::new(input.bytes.len(), input.shown);

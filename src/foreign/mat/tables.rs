@@ -1,14 +1,26 @@
 //! Variables of MATLAB as tables of channels.
 //!
-//! Four layouts are read: a matrix with a list of names; vectors of the same length; a list of structs with a name and a vector each;
-//! and structs of these. Other variables are facts, if they are short, or left out.
+//! Four layouts are read: a matrix with a list of names; vectors of the same length; a list of
+//! structs with a name and a vector each; and structs of these. Other variables are facts, if they
+//! are short, or left out.
 
 use super::super::{Channel, Place, Read, Table};
 use super::Value;
 use crate::problem::Problem;
 
-/// Fields with the sampling rate in Hz, and with the step in seconds, as toolboxes name them. The names are compared in lower case.
-const RATES: &[&str] = &["fs", "f_s", "fa", "rate", "samplerate", "sample_rate", "sampling_rate", "samplingrate", "abtastrate"];
+/// Fields with the sampling rate in Hz, and with the step in seconds, as toolboxes name them. The
+/// names are compared in lower case.
+const RATES: &[&str] = &[
+    "fs",
+    "f_s",
+    "fa",
+    "rate",
+    "samplerate",
+    "sample_rate",
+    "sampling_rate",
+    "samplingrate",
+    "abtastrate",
+];
 const STEPS: &[&str] = &["dt", "ts", "step", "increment", "wf_increment", "abtastzeit"];
 
 /// Beginnings of the fields with units.
@@ -27,7 +39,13 @@ pub(super) fn of(variables: Fields, shown: &str) -> Result<Read, Vec<Problem>> {
     for (name, value) in variables {
         match value {
             // Units of the vectors beside it.
-            Value::Structs(elements) if is_units(&name) && elements.iter().flatten().all(|(_, value)| matches!(value, Value::Text(_))) => {
+            Value::Structs(elements)
+                if is_units(&name)
+                    && elements
+                        .iter()
+                        .flatten()
+                        .all(|(_, value)| matches!(value, Value::Text(_))) =>
+            {
                 loose.push((name, Value::Structs(elements)));
             }
             Value::Structs(elements) => add_structs(&name, elements, &mut read),
@@ -35,13 +53,24 @@ pub(super) fn of(variables: Fields, shown: &str) -> Result<Read, Vec<Problem>> {
         }
     }
     if let Some(table) = table(String::new(), loose, &mut read.tables) {
-        if table.channels.is_empty() { read.facts.extend(table.facts) } else { read.tables.insert(0, table) }
+        if table.channels.is_empty() {
+            read.facts.extend(table.facts)
+        } else {
+            read.tables.insert(0, table)
+        }
         // What was left out of a file without any table is told below.
     }
     if read.tables.iter().all(|table| table.channels.is_empty()) {
-        let left: Vec<String> =
-            read.tables.iter().flat_map(|table| &table.left_out).map(|(name, why)| format!("`{name}`: {why}")).take(3).collect();
-        let says = format!("`{shown}` has no channels: neither vectors of numbers nor a matrix with a list of names");
+        let left: Vec<String> = read
+            .tables
+            .iter()
+            .flat_map(|table| &table.left_out)
+            .map(|(name, why)| format!("`{name}`: {why}"))
+            .take(3)
+            .collect();
+        let says = format!(
+            "`{shown}` has no channels: neither vectors of numbers nor a matrix with a list of names"
+        );
         let problem = Problem::error("no-numbers", says);
         return Err(if left.is_empty() { problem } else { problem.help(left.join("; ")) }.into());
     }
@@ -77,7 +106,8 @@ fn table(name: String, fields: Fields, others: &mut Vec<Table>) -> Option<Table>
         leave_out(fields.into_iter().filter(|(name, _)| !used.contains(name)), &mut table);
         return Some(table);
     }
-    let (nested, flat): (Fields, Fields) = fields.into_iter().partition(|(_, value)| matches!(value, Value::Structs(_)));
+    let (nested, flat): (Fields, Fields) =
+        fields.into_iter().partition(|(_, value)| matches!(value, Value::Structs(_)));
     let units = nested.iter().find(|(name, _)| is_units(name)).cloned();
     for (field, value) in nested {
         let Value::Structs(elements) = value else { continue };
@@ -115,26 +145,36 @@ fn texts(value: &Value) -> Option<Vec<String>> {
                 _ => None,
             })
             .collect(),
-        Value::Text(text) if text.contains('\n') => Some(text.lines().map(|line| line.trim().to_string()).collect()),
+        Value::Text(text) if text.contains('\n') => {
+            Some(text.lines().map(|line| line.trim().to_string()).collect())
+        }
         _ => None,
     }
 }
 
-/// A matrix with a list of names as long as it has columns, or else rows: its channels, and the fields that they are made of.
+/// A matrix with a list of names as long as it has columns, or else rows: its channels, and the
+/// fields that they are made of.
 fn matrix(fields: &Fields) -> Option<(Vec<Channel>, Vec<String>)> {
     let data = fields.iter().filter_map(|(name, value)| match value {
-        Value::Numbers { rows, columns, values } if *rows > 1 || *columns > 1 => Some((name, *rows, *columns, values)),
+        Value::Numbers { rows, columns, values } if *rows > 1 || *columns > 1 => {
+            Some((name, *rows, *columns, values))
+        }
         _ => None,
     });
     let (data, rows, columns, values) = data.max_by_key(|(.., values)| values.len())?;
-    let lists: Vec<(&String, Vec<String>)> = fields.iter().filter_map(|(name, value)| texts(value).map(|texts| (name, texts))).collect();
-    let (names_field, names) = lists.iter().find(|(name, list)| !is_units(name) && (list.len() == columns || list.len() == rows))?;
+    let lists: Vec<(&String, Vec<String>)> =
+        fields.iter().filter_map(|(name, value)| texts(value).map(|texts| (name, texts))).collect();
+    let (names_field, names) = lists
+        .iter()
+        .find(|(name, list)| !is_units(name) && (list.len() == columns || list.len() == rows))?;
     let count = names.len();
     let units = lists.iter().find(|(name, list)| is_units(name) && list.len() == count);
     let by_column = count == columns;
     let channel = |index: usize| Channel {
         name: names[index].trim().to_string(),
-        unit: units.map(|(_, units)| units[index].trim().to_string()).filter(|unit| !unit.is_empty()),
+        unit: units
+            .map(|(_, units)| units[index].trim().to_string())
+            .filter(|unit| !unit.is_empty()),
         comment: None,
         values: if by_column {
             values[index * rows..(index + 1) * rows].to_vec()
@@ -161,7 +201,8 @@ fn listed(elements: &[Fields]) -> Option<Vec<Channel>> {
             Value::Numbers { rows, columns, values } if *rows == 1 || *columns == 1 => Some(values),
             _ => None,
         });
-        let values = values.max_by_key(|values| values.len()).filter(|values| values.len() > 1)?.clone();
+        let values =
+            values.max_by_key(|values| values.len()).filter(|values| values.len() > 1)?.clone();
         let place = Place { column: index + 1, span: None };
         Some(Channel {
             name: text(false).filter(|name| !name.is_empty())?,
@@ -171,13 +212,21 @@ fn listed(elements: &[Fields]) -> Option<Vec<Channel>> {
             place,
         })
     };
-    elements.iter().enumerate().map(channel).collect::<Option<Vec<_>>>().filter(|channels| !channels.is_empty())
+    elements
+        .iter()
+        .enumerate()
+        .map(channel)
+        .collect::<Option<Vec<_>>>()
+        .filter(|channels| !channels.is_empty())
 }
 
 /// Vectors, each a channel; those that are not of the most frequent length are left out.
 fn vectors(fields: Fields, units: Option<&Value>, table: &mut Table) {
-    let lengths: Vec<usize> =
-        fields.iter().filter_map(|(_, value)| length(value)).chain(table.channels.iter().map(|channel| channel.values.len())).collect();
+    let lengths: Vec<usize> = fields
+        .iter()
+        .filter_map(|(_, value)| length(value))
+        .chain(table.channels.iter().map(|channel| channel.values.len()))
+        .collect();
     let count = |length: usize| lengths.iter().filter(|other| **other == length).count();
     let rows = lengths.iter().copied().max_by_key(|length| (count(*length), *length));
     let texts: Vec<(String, String)> = fields
@@ -197,18 +246,31 @@ fn vectors(fields: Fields, units: Option<&Value>, table: &mut Table) {
             }),
             _ => None,
         };
-        let beside = || texts.iter().find(|(field, _)| ["_unit", "_units", "_einheit"].iter().any(|end| *field == format!("{name}{end}")));
+        let beside = || {
+            texts.iter().find(|(field, _)| {
+                ["_unit", "_units", "_einheit"].iter().any(|end| *field == format!("{name}{end}"))
+            })
+        };
         of_struct.or_else(|| beside().map(|(_, unit)| unit.clone())).filter(|unit| !unit.is_empty())
     };
     let mut rest = Vec::new();
     for (name, value) in fields {
         match value {
-            Value::Numbers { rows: high, columns: wide, values } if length_of(high, wide).is_some() && length_of(high, wide) == rows => {
+            Value::Numbers { rows: high, columns: wide, values }
+                if length_of(high, wide).is_some() && length_of(high, wide) == rows =>
+            {
                 let parts = values.len() / rows.unwrap_or(1).max(1);
                 for (index, part) in values.chunks(rows.unwrap_or(1).max(1)).enumerate() {
-                    let name = if parts > 1 { format!("{name}({})", index + 1) } else { name.clone() };
+                    let name =
+                        if parts > 1 { format!("{name}({})", index + 1) } else { name.clone() };
                     let place = Place { column: table.channels.len() + 1, span: None };
-                    table.channels.push(Channel { unit: unit_of(&name), name, comment: None, values: part.to_vec(), place });
+                    table.channels.push(Channel {
+                        unit: unit_of(&name),
+                        name,
+                        comment: None,
+                        values: part.to_vec(),
+                        place,
+                    });
                 }
             }
             other => rest.push((name, other)),
@@ -217,7 +279,8 @@ fn vectors(fields: Fields, units: Option<&Value>, table: &mut Table) {
     leave_out(rest.into_iter(), table);
 }
 
-/// Number of samples of a vector, or of the columns of a matrix that is higher than wide; `None` for a single number.
+/// Number of samples of a vector, or of the columns of a matrix that is higher than wide; `None`
+/// for a single number.
 fn length(value: &Value) -> Option<usize> {
     match value {
         Value::Numbers { rows, columns, .. } => length_of(*rows, *columns),
@@ -254,7 +317,9 @@ fn facts(fields: &Fields, table: &mut Table) {
     for (name, value) in fields {
         let lower = name.to_lowercase();
         match value {
-            Value::Text(text) if text.len() <= LONGEST_FACT && !text.is_empty() => table.facts.push((name.clone(), text.clone())),
+            Value::Text(text) if text.len() <= LONGEST_FACT && !text.is_empty() => {
+                table.facts.push((name.clone(), text.clone()))
+            }
             Value::Numbers { values, .. } if (1..=MOST_NUMBERS).contains(&values.len()) => {
                 let words: Vec<String> = values.iter().map(f64::to_string).collect();
                 table.facts.push((name.clone(), words.join(" ")));
@@ -300,15 +365,29 @@ mod tests {
         table
             .channels
             .iter()
-            .map(|channel| format!("{} {} {:?}", channel.name, channel.unit.as_deref().unwrap_or("?"), channel.values))
+            .map(|channel| {
+                format!(
+                    "{} {} {:?}",
+                    channel.name,
+                    channel.unit.as_deref().unwrap_or("?"),
+                    channel.values
+                )
+            })
             .collect()
     }
 
     #[test]
     fn a_matrix_with_names_may_lie_either_way() {
-        for data in [numbers(3, 2), Value::Numbers { rows: 2, columns: 3, values: vec![0.0, 3.0, 1.0, 4.0, 2.0, 5.0] }] {
-            let element =
-                fields(vec![("names", cells(&["t", "y"])), ("units", cells(&["s", "kN"])), ("data", data), ("fs", numbers(1, 1))]);
+        for data in [
+            numbers(3, 2),
+            Value::Numbers { rows: 2, columns: 3, values: vec![0.0, 3.0, 1.0, 4.0, 2.0, 5.0] },
+        ] {
+            let element = fields(vec![
+                ("names", cells(&["t", "y"])),
+                ("units", cells(&["s", "kN"])),
+                ("data", data),
+                ("fs", numbers(1, 1)),
+            ]);
             let tables = read(vec![("S01", Value::Structs(vec![element]))]);
             assert_eq!(described(&tables[0]), ["t s [0.0, 1.0, 2.0]", "y kN [3.0, 4.0, 5.0]"]);
             assert_eq!((tables[0].name.as_str(), tables[0].facts.len()), ("S01", 1));
@@ -327,18 +406,26 @@ mod tests {
             ("z", numbers(1, 7)),
         ]);
         assert_eq!(described(&tables[0]), ["t s [0.0, 1.0, 2.0]", "y kN [0.0, 1.0, 2.0]"]);
-        assert_eq!(tables[0].left_out.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["z"]);
+        assert_eq!(
+            tables[0].left_out.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
+            ["z"]
+        );
     }
 
     #[test]
     fn lists_of_structs_are_channels() {
-        let element = |name: &str| fields(vec![("Name", text(name)), ("Unit", text("kN")), ("Data", numbers(1, 3))]);
+        let element = |name: &str| {
+            fields(vec![("Name", text(name)), ("Unit", text("kN")), ("Data", numbers(1, 3))])
+        };
         let tables = read(vec![("Y", Value::Structs(vec![element("a"), element("b")]))]);
         assert_eq!(described(&tables[0]), ["a kN [0.0, 1.0, 2.0]", "b kN [0.0, 1.0, 2.0]"]);
     }
 
     #[test]
     fn a_file_without_channels_is_refused() {
-        assert!(of(fields(vec![("a", text("x"))]), "f").is_err_and(|problems| problems[0].code == "no-numbers"));
+        assert!(
+            of(fields(vec![("a", text("x"))]), "f")
+                .is_err_and(|problems| problems[0].code == "no-numbers")
+        );
     }
 }

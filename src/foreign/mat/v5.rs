@@ -1,7 +1,7 @@
 //! The format of MATLAB 5 to 7 (MathWorks, "MAT-File Format", version 5).
 //!
-//! An element is a tag (type, number of bytes) and data; a matrix is an element of elements. Sizes are checked against the bytes that
-//! are there before anything is allocated.
+//! An element is a tag (type, number of bytes) and data; a matrix is an element of elements. Sizes
+//! are checked against the bytes that are there before anything is allocated.
 
 use std::io::Read;
 
@@ -45,7 +45,10 @@ const NUMERIC: std::ops::RangeInclusive<u8> = 6..=15;
 type Reason = String;
 
 /// The variables of a file in their order.
-pub(super) fn variables(input: &Input<'_>, budget: &mut Budget<'_>) -> Result<Vec<(String, Value)>, Problem> {
+pub(super) fn variables(
+    input: &Input<'_>,
+    budget: &mut Budget<'_>,
+) -> Result<Vec<(String, Value)>, Problem> {
     let shown = input.shown;
     let bad = |place: String, why: &str| damaged(Format::Mat, shown, &place, why);
     let big = input.bytes.get(126..128) == Some(b"MI");
@@ -53,7 +56,11 @@ pub(super) fn variables(input: &Input<'_>, budget: &mut Budget<'_>) -> Result<Ve
     let mut found = Vec::new();
     let mut unpacked = 0usize;
     while !rest.bytes.is_empty() {
-        let place = format!("variable {} (byte {})", found.len() + 1, input.bytes.len() - rest.bytes.len() + 1);
+        let place = format!(
+            "variable {} (byte {})",
+            found.len() + 1,
+            input.bytes.len() - rest.bytes.len() + 1
+        );
         // Some writers fill the end with zeros.
         if rest.bytes.iter().all(|byte| *byte == 0) {
             break;
@@ -72,17 +79,29 @@ pub(super) fn variables(input: &Input<'_>, budget: &mut Budget<'_>) -> Result<Ve
                 let mut element = Bytes { bytes: &inflated, big };
                 let (kind, data) = element.element(true).map_err(|why| bad(place.clone(), &why))?;
                 if kind != MATRIX {
-                    return Err(bad(place, &format!("an element of type {kind} in place of an array")));
+                    return Err(bad(
+                        place,
+                        &format!("an element of type {kind} in place of an array"),
+                    ));
                 }
                 matrix = Bytes { bytes: data, big };
             }
-            other => return Err(bad(place, &format!("an element of type {other} in place of an array"))),
+            other => {
+                return Err(bad(
+                    place,
+                    &format!("an element of type {other} in place of an array"),
+                ));
+            }
         }
         let mut names = String::new();
-        let (name, value) = array(matrix, 0, budget, &mut names, &place).map_err(|why| match why {
-            Failure::Budget(problem) => problem,
-            Failure::Reason(why) => bad(if names.is_empty() { place.clone() } else { format!("{place}, `{names}`") }, &why),
-        })?;
+        let (name, value) =
+            array(matrix, 0, budget, &mut names, &place).map_err(|why| match why {
+                Failure::Budget(problem) => problem,
+                Failure::Reason(why) => bad(
+                    if names.is_empty() { place.clone() } else { format!("{place}, `{names}`") },
+                    &why,
+                ),
+            })?;
         // MATLAB keeps functions and objects in a variable without a name.
         if !name.is_empty() {
             found.push((name, value));
@@ -120,7 +139,13 @@ impl From<Reason> for Failure {
 }
 
 /// The name and value of an array. `names` keeps the path to a failure.
-fn array(mut bytes: Bytes<'_>, depth: usize, budget: &mut Budget<'_>, names: &mut String, place: &str) -> Result<(String, Value), Failure> {
+fn array(
+    mut bytes: Bytes<'_>,
+    depth: usize,
+    budget: &mut Budget<'_>,
+    names: &mut String,
+    place: &str,
+) -> Result<(String, Value), Failure> {
     if depth > DEEPEST {
         return Err(format!("cells or structs nested more than {DEEPEST} deep").into());
     }
@@ -130,13 +155,19 @@ fn array(mut bytes: Bytes<'_>, depth: usize, budget: &mut Budget<'_>, names: &mu
     }
     let big = bytes.big;
     let (_, flags) = bytes.element(true)?;
-    let word = Bytes { bytes: flags, big }.u32().ok_or("the flags of the array are not complete")?;
+    let word =
+        Bytes { bytes: flags, big }.u32().ok_or("the flags of the array are not complete")?;
     let (class, complex) = (word as u8, word & 0x0800 != 0);
-    if matches!(class, 16..=18) || !(NUMERIC.contains(&class) || matches!(class, CELL | STRUCT | CHAR | SPARSE | 3)) {
+    if matches!(class, 16..=18)
+        || !(NUMERIC.contains(&class) || matches!(class, CELL | STRUCT | CHAR | SPARSE | 3))
+    {
         return Ok((names_of_object(bytes), Value::Other(OBJECT)));
     }
     let (kind, sizes) = bytes.element(true)?;
-    let sizes: Vec<usize> = numbers(kind, sizes, big)?.into_iter().map(|size| if size >= 0.0 { size as usize } else { 0 }).collect();
+    let sizes: Vec<usize> = numbers(kind, sizes, big)?
+        .into_iter()
+        .map(|size| if size >= 0.0 { size as usize } else { 0 })
+        .collect();
     let count = sizes.iter().try_fold(1usize, |product, size| product.checked_mul(*size));
     let count = count.ok_or("the declared size of the array is beyond any memory")?;
     let rows = sizes.first().copied().unwrap_or(0);
@@ -168,10 +199,14 @@ fn array(mut bytes: Bytes<'_>, depth: usize, budget: &mut Budget<'_>, names: &mu
         _ if complex => Value::Other("complex numbers; save their parts as arrays of their own"),
         _ => {
             let (kind, data) = bytes.element(true)?;
-            let size = size_of(kind).ok_or_else(|| format!("numbers of the unknown type {kind}"))?;
+            let size =
+                size_of(kind).ok_or_else(|| format!("numbers of the unknown type {kind}"))?;
             if data.len() / size != count || data.len() % size != 0 {
                 let has = data.len() / size;
-                return Err(format!("the array is declared with {rows} x {columns} values and holds {has}").into());
+                return Err(format!(
+                    "the array is declared with {rows} x {columns} values and holds {has}"
+                )
+                .into());
             }
             budget.take(1, count, place).map_err(Failure::Budget)?;
             Value::Numbers { rows, columns, values: numbers(kind, data, big)? }
@@ -206,7 +241,10 @@ fn structs(
         return Err(format!("a length of {length} for names of fields").into());
     }
     let fields: Vec<String> = list.chunks(length).map(latin).collect();
-    let total = fields.len().checked_mul(count).ok_or("the declared size of the struct is beyond any memory")?;
+    let total = fields
+        .len()
+        .checked_mul(count)
+        .ok_or("the declared size of the struct is beyond any memory")?;
     bytes.holds(total, 8, "fields")?;
     if fields.is_empty() {
         return Ok(vec![Vec::new(); count.min(1)]);
@@ -218,7 +256,10 @@ fn structs(
             let before = names.len();
             names.push_str(&format!(".{field}"));
             let (_, data) = bytes.element(true)?;
-            element.push((field.clone(), array(Bytes { bytes: data, big }, depth + 1, budget, names, place)?.1));
+            element.push((
+                field.clone(),
+                array(Bytes { bytes: data, big }, depth + 1, budget, names, place)?.1,
+            ));
             names.truncate(before);
         }
         found.push(element);
@@ -239,7 +280,8 @@ fn text(bytes: &mut Bytes<'_>, rows: usize, columns: usize) -> Result<String, Re
     let code = |number: f64| char::from_u32(number as u32).unwrap_or('\u{fffd}');
     let letters: Vec<char> = match kind {
         UTF16 | UINT16 if rows == 1 => {
-            let units: Vec<u16> = numbers(UINT16, data, big)?.into_iter().map(|unit| unit as u16).collect();
+            let units: Vec<u16> =
+                numbers(UINT16, data, big)?.into_iter().map(|unit| unit as u16).collect();
             char::decode_utf16(units).map(|letter| letter.unwrap_or('\u{fffd}')).collect()
         }
         UTF8 => String::from_utf8_lossy(data).chars().collect(),
@@ -251,9 +293,14 @@ fn text(bytes: &mut Bytes<'_>, rows: usize, columns: usize) -> Result<String, Re
         return Ok(letters.into_iter().collect());
     }
     if letters.len() != rows.saturating_mul(columns) {
-        return Err(format!("a text is declared with {rows} x {columns} letters and holds {}", letters.len()));
+        return Err(format!(
+            "a text is declared with {rows} x {columns} letters and holds {}",
+            letters.len()
+        ));
     }
-    let line = |row: usize| -> String { letters.iter().skip(row).step_by(rows).collect::<String>().trim_end().to_string() };
+    let line = |row: usize| -> String {
+        letters.iter().skip(row).step_by(rows).collect::<String>().trim_end().to_string()
+    };
     Ok((0..rows).map(line).collect::<Vec<_>>().join("\n"))
 }
 
@@ -321,11 +368,17 @@ impl<'a> Bytes<'a> {
             let size = (tag >> 16) as usize;
             let (data, rest) = self.bytes.split_at_checked(4).ok_or_else(cut)?;
             self.bytes = rest;
-            return Ok((tag & 0xffff, data.get(..size).ok_or_else(|| format!("a small element of {size} bytes"))?));
+            return Ok((
+                tag & 0xffff,
+                data.get(..size).ok_or_else(|| format!("a small element of {size} bytes"))?,
+            ));
         }
         let size = self.u32().ok_or_else(cut)? as usize;
         if size > self.bytes.len() {
-            return Err(format!("an element is declared with {size} bytes; {} are left", self.bytes.len()));
+            return Err(format!(
+                "an element is declared with {size} bytes; {} are left",
+                self.bytes.len()
+            ));
         }
         let (data, rest) = self.bytes.split_at(size);
         let padding = if padded { size.next_multiple_of(8) - size } else { 0 };
@@ -336,7 +389,10 @@ impl<'a> Bytes<'a> {
     /// Refuses a number of parts that the bytes cannot hold.
     fn holds(&self, count: usize, each: usize, what: &str) -> Result<(), Reason> {
         if count > self.bytes.len() / each {
-            return Err(format!("{count} {what} are declared; the file has bytes for {}", self.bytes.len() / each));
+            return Err(format!(
+                "{count} {what} are declared; the file has bytes for {}",
+                self.bytes.len() / each
+            ));
         }
         Ok(())
     }

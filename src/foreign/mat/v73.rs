@@ -1,4 +1,5 @@
-//! MATLAB 7.3: an HDF5 file in which groups are structs, and cells and struct arrays are references.
+//! MATLAB 7.3: an HDF5 file in which groups are structs, and cells and struct arrays are
+//! references.
 
 use std::collections::HashMap;
 
@@ -40,7 +41,8 @@ pub(super) fn variables(input: &Input<'_>, budget: &mut Budget<'_>) -> Result<Fi
         .with_max_read_bytes(most)
         .with_max_object_header_bytes(1 << 20);
     let bad = |place: &str, error: Error| damaged(Format::Mat, shown, place, error);
-    let file = Hdf5File::from_bytes_with_options(input.bytes, options).map_err(|error| bad("the header", error))?;
+    let file = Hdf5File::from_bytes_with_options(input.bytes, options)
+        .map_err(|error| bad("the header", error))?;
     // The library of the HDF Group refuses such a file; this reader would read what is there.
     let end = file.superblock().eof_address;
     if end > input.bytes.len() as u64 {
@@ -75,7 +77,11 @@ impl Reader<'_, '_> {
 
     fn count(&mut self, path: &str) -> Result<(), Problem> {
         self.objects += 1;
-        if self.objects > MOST_OBJECTS { Err(self.bad(path, "it has too many objects")) } else { Ok(()) }
+        if self.objects > MOST_OBJECTS {
+            Err(self.bad(path, "it has too many objects"))
+        } else {
+            Ok(())
+        }
     }
 
     /// A group is a struct.
@@ -106,12 +112,19 @@ impl Reader<'_, '_> {
         if depth > DEEPEST {
             return Err(self.bad(path, format!("cells nested more than {DEEPEST} deep")));
         }
-        let attribute = |name: &str| set.attributes().into_iter().find(|attribute| attribute.name == name);
-        let class = attribute("MATLAB_class").and_then(|class| class.read_string().ok()).unwrap_or_default();
+        let attribute =
+            |name: &str| set.attributes().into_iter().find(|attribute| attribute.name == name);
+        let class = attribute("MATLAB_class")
+            .and_then(|class| class.read_string().ok())
+            .unwrap_or_default();
         let empty = attribute("MATLAB_empty").is_some();
         let shape = set.shape().to_vec();
-        let count = shape.iter().try_fold(1u64, |product, size| product.checked_mul(*size)).and_then(|count| usize::try_from(count).ok());
-        let count = count.ok_or_else(|| self.bad(path, "the declared size is beyond any memory"))?;
+        let count = shape
+            .iter()
+            .try_fold(1u64, |product, size| product.checked_mul(*size))
+            .and_then(|count| usize::try_from(count).ok());
+        let count =
+            count.ok_or_else(|| self.bad(path, "the declared size is beyond any memory"))?;
         if empty || count == 0 {
             return Ok(if class == "char" {
                 Value::Text(String::new())
@@ -123,14 +136,19 @@ impl Reader<'_, '_> {
         match set.dtype() {
             Datatype::Reference { .. } => {
                 let bytes = set.read_raw_bytes().map_err(|error| self.bad(path, error))?;
-                let addresses = bytes.as_chunks::<8>().0.iter().map(|bytes| u64::from_le_bytes(*bytes));
+                let addresses =
+                    bytes.as_chunks::<8>().0.iter().map(|bytes| u64::from_le_bytes(*bytes));
                 let mut cells = Vec::new();
                 for (index, address) in addresses.enumerate() {
                     let Some(target) = self.targets.get(&address).cloned() else {
                         cells.push(Value::Other(OBJECT));
                         continue;
                     };
-                    cells.push(self.value(&target, &format!("{path}{{{}}}", index + 1), depth + 1)?);
+                    cells.push(self.value(
+                        &target,
+                        &format!("{path}{{{}}}", index + 1),
+                        depth + 1,
+                    )?);
                 }
                 Ok(Value::Cells(cells))
             }
@@ -138,18 +156,27 @@ impl Reader<'_, '_> {
                 let values = self.numbers(set, path)?;
                 if class == "char" {
                     let units: Vec<u16> = values.iter().map(|unit| *unit as u16).collect();
-                    return Ok(Value::Text(char::decode_utf16(units).map(|letter| letter.unwrap_or('\u{fffd}')).collect()));
+                    return Ok(Value::Text(
+                        char::decode_utf16(units)
+                            .map(|letter| letter.unwrap_or('\u{fffd}'))
+                            .collect(),
+                    ));
                 }
-                // HDF5 stores the last dimension without gaps, MATLAB the first: the sizes are in reverse order.
+                // HDF5 stores the last dimension without gaps, MATLAB the first: the sizes are in
+                // reverse order.
                 let rows = usize::try_from(shape.last().copied().unwrap_or(1)).unwrap_or(count);
                 Ok(Value::Numbers { rows, columns: count / rows.max(1), values })
             }
             Datatype::String { .. } | Datatype::VarLen { .. } => match set.read_strings() {
-                Ok(texts) if texts.len() == 1 => Ok(Value::Text(texts.into_iter().next().unwrap_or_default())),
+                Ok(texts) if texts.len() == 1 => {
+                    Ok(Value::Text(texts.into_iter().next().unwrap_or_default()))
+                }
                 Ok(texts) => Ok(Value::Cells(texts.into_iter().map(Value::Text).collect())),
                 Err(error) => Err(self.bad(path, error)),
             },
-            Datatype::Compound { .. } => Ok(Value::Other("complex numbers or a compound; save its parts as arrays of their own")),
+            Datatype::Compound { .. } => Ok(Value::Other(
+                "complex numbers or a compound; save its parts as arrays of their own",
+            )),
             _ => Ok(Value::Other(OBJECT)),
         }
     }
@@ -158,7 +185,12 @@ impl Reader<'_, '_> {
         let bytes = set.read_native_bytes().map_err(|error| self.bad(path, error))?;
         macro_rules! each {
             ($type:ty) => {
-                bytes.as_chunks::<{ size_of::<$type>() }>().0.iter().map(|bytes| <$type>::from_ne_bytes(*bytes) as f64).collect()
+                bytes
+                    .as_chunks::<{ size_of::<$type>() }>()
+                    .0
+                    .iter()
+                    .map(|bytes| <$type>::from_ne_bytes(*bytes) as f64)
+                    .collect()
             };
         }
         Ok(match set.dtype() {
@@ -172,7 +204,9 @@ impl Reader<'_, '_> {
             Datatype::FixedPoint { size: 4, .. } => each!(u32),
             Datatype::FixedPoint { size: 8, signed: true, .. } => each!(i64),
             Datatype::FixedPoint { size: 8, .. } => each!(u64),
-            other => return Err(self.bad(path, format!("numbers of the type {other:?} are not read"))),
+            other => {
+                return Err(self.bad(path, format!("numbers of the type {other:?} are not read")));
+            }
         })
     }
 }
@@ -193,6 +227,12 @@ fn transposed(fields: &Fields) -> Option<Vec<Fields>> {
     if !lists.iter().all(|list| list.len() == count) || lists.iter().all(only_texts) {
         return None;
     }
-    let element = |index: usize| fields.iter().zip(&lists).map(|((name, _), list)| (name.clone(), list[index].clone())).collect();
+    let element = |index: usize| {
+        fields
+            .iter()
+            .zip(&lists)
+            .map(|((name, _), list)| (name.clone(), list[index].clone()))
+            .collect()
+    };
     Some((0..count).map(element).collect())
 }

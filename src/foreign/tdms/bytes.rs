@@ -71,7 +71,9 @@ pub(super) fn numbers(kind: u32, data: &[u8], big: bool) -> Option<Vec<f64>> {
             .iter()
             .map(|bytes| {
                 let mut time = Bytes::new(bytes, big);
-                time.time().map_or(f64::NAN, |(seconds, fraction)| seconds.saturating_sub(EPOCH) as f64 + fraction)
+                time.time().map_or(f64::NAN, |(seconds, fraction)| {
+                    seconds.saturating_sub(EPOCH) as f64 + fraction
+                })
             })
             .collect(),
         _ => return None,
@@ -99,7 +101,9 @@ impl Property {
         match self {
             Self::Number(number) => number.to_string(),
             Self::Text(text) => text.clone(),
-            Self::Time(seconds, fraction) => format!("{:.6} s since 1970-01-01 UTC", *seconds as f64 + fraction),
+            Self::Time(seconds, fraction) => {
+                format!("{:.6} s since 1970-01-01 UTC", *seconds as f64 + fraction)
+            }
         }
     }
 }
@@ -117,8 +121,10 @@ impl<'a> Bytes<'a> {
     }
 
     pub fn take(&mut self, count: usize) -> Result<&'a [u8], String> {
-        let (taken, rest) =
-            self.bytes.split_at_checked(count).ok_or_else(|| format!("{count} bytes are declared, {} are left", self.bytes.len()))?;
+        let (taken, rest) = self
+            .bytes
+            .split_at_checked(count)
+            .ok_or_else(|| format!("{count} bytes are declared, {} are left", self.bytes.len()))?;
         self.bytes = rest;
         Ok(taken)
     }
@@ -145,7 +151,8 @@ impl<'a> Bytes<'a> {
         Ok(String::from_utf8_lossy(self.take(length)?).into_owned())
     }
 
-    /// Seconds since 1904 and a part of a second, which comes first in a file of little-endian numbers.
+    /// Seconds since 1904 and a part of a second, which comes first in a file of little-endian
+    /// numbers.
     fn time(&mut self) -> Result<(i64, f64), String> {
         let (seconds, fraction) = if self.big {
             let seconds = self.u64()?;
@@ -166,8 +173,12 @@ impl<'a> Bytes<'a> {
             let (seconds, fraction) = self.time()?;
             return Ok(Property::Time(seconds.saturating_sub(EPOCH), fraction));
         }
-        let size = size_of(kind).ok_or_else(|| format!("a property of the unknown type {kind:#x}"))?;
+        let size =
+            size_of(kind).ok_or_else(|| format!("a property of the unknown type {kind:#x}"))?;
         let numbers = numbers(kind, self.take(size)?, self.big);
-        numbers.and_then(|numbers| numbers.first().copied()).map(Property::Number).ok_or_else(|| "a property that is not a number".into())
+        numbers
+            .and_then(|numbers| numbers.first().copied())
+            .map(Property::Number)
+            .ok_or_else(|| "a property that is not a number".into())
     }
 }

@@ -4,14 +4,18 @@ use indexmap::IndexMap;
 
 use super::bytes::Property;
 
-/// Most scales and coefficients of a channel; a card has one or two scales and a polynomial of the third degree.
+/// Most scales and coefficients of a channel; a card has one or two scales and a polynomial of the
+/// third degree.
 const MOST: usize = 16;
 
 /// Applies the scales of a channel, unless its values are scaled.
 ///
 /// # Errors
 /// A kind of scale that is not known: the values would be wrong.
-pub(super) fn apply(properties: &IndexMap<String, Property>, values: &mut [f64]) -> Result<(), String> {
+pub(super) fn apply(
+    properties: &IndexMap<String, Property>,
+    values: &mut [f64],
+) -> Result<(), String> {
     let number = |name: String| properties.get(&name).and_then(Property::number);
     let text = |name: String| match properties.get(&name) {
         Some(Property::Text(text)) => Some(text.as_str()),
@@ -36,17 +40,26 @@ pub(super) fn apply(properties: &IndexMap<String, Property>, values: &mut [f64])
         match kind {
             "Linear" => {
                 let slope = number(name("Linear_Slope")).ok_or("its linear scale has no slope")?;
-                let intercept = number(name("Linear_Y_Intercept")).ok_or("its linear scale has no intercept")?;
+                let intercept = number(name("Linear_Y_Intercept"))
+                    .ok_or("its linear scale has no intercept")?;
                 values.iter_mut().for_each(|value| *value = slope * *value + intercept);
             }
             "Polynomial" => {
                 let size = number(name("Polynomial_Coefficients_Size")).unwrap_or(4.0) as usize;
-                let coefficients: Option<Vec<f64>> =
-                    (0..size.min(MOST)).map(|at| number(name(&format!("Polynomial_Coefficients[{at}]")))).collect();
+                let coefficients: Option<Vec<f64>> = (0..size.min(MOST))
+                    .map(|at| number(name(&format!("Polynomial_Coefficients[{at}]"))))
+                    .collect();
                 let coefficients = coefficients.ok_or("its polynomial lacks a coefficient")?;
-                values.iter_mut().for_each(|value| *value = coefficients.iter().rev().fold(0.0, |sum, factor| sum * *value + factor));
+                values.iter_mut().for_each(|value| {
+                    *value =
+                        coefficients.iter().rev().fold(0.0, |sum, factor| sum * *value + factor)
+                });
             }
-            other => return Err(format!("its raw values need a scale of the type `{other}`; save them scaled")),
+            other => {
+                return Err(format!(
+                    "its raw values need a scale of the type `{other}`; save them scaled"
+                ));
+            }
         }
     }
     Ok(())
@@ -57,8 +70,10 @@ mod tests {
     use super::*;
 
     fn properties(list: &[(&str, f64)], kind: &str) -> IndexMap<String, Property> {
-        let mut all: IndexMap<String, Property> =
-            list.iter().map(|(name, value)| ((*name).to_string(), Property::Number(*value))).collect();
+        let mut all: IndexMap<String, Property> = list
+            .iter()
+            .map(|(name, value)| ((*name).to_string(), Property::Number(*value)))
+            .collect();
         all.insert("NI_Scale[0]_Scale_Type".into(), Property::Text(kind.into()));
         all.insert("NI_Number_Of_Scales".into(), Property::Number(1.0));
         all.insert("NI_Scaling_Status".into(), Property::Text("unscaled".into()));
@@ -68,7 +83,10 @@ mod tests {
     #[test]
     fn scales_are_applied_or_refused() {
         let mut values = [1.0, 2.0];
-        let linear = properties(&[("NI_Scale[0]_Linear_Slope", 2.0), ("NI_Scale[0]_Linear_Y_Intercept", -1.0)], "Linear");
+        let linear = properties(
+            &[("NI_Scale[0]_Linear_Slope", 2.0), ("NI_Scale[0]_Linear_Y_Intercept", -1.0)],
+            "Linear",
+        );
         assert_eq!((apply(&linear, &mut values), values), (Ok(()), [1.0, 3.0]));
         let list = [
             ("NI_Scale[0]_Polynomial_Coefficients_Size", 3.0),
@@ -76,7 +94,10 @@ mod tests {
             ("NI_Scale[0]_Polynomial_Coefficients[1]", 0.0),
             ("NI_Scale[0]_Polynomial_Coefficients[2]", 2.0),
         ];
-        assert_eq!((apply(&properties(&list, "Polynomial"), &mut values), values), (Ok(()), [3.0, 19.0]));
+        assert_eq!(
+            (apply(&properties(&list, "Polynomial"), &mut values), values),
+            (Ok(()), [3.0, 19.0])
+        );
         assert!(apply(&properties(&[], "Thermocouple"), &mut values).is_err());
         assert_eq!(apply(&IndexMap::new(), &mut values), Ok(()));
     }

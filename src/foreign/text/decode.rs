@@ -11,19 +11,27 @@ use crate::source::Source;
 ///
 /// # Errors
 /// `encoding`.
-pub(super) fn text<'a>(bytes: &'a [u8], said: Option<&str>, shown: &str) -> Result<(Cow<'a, str>, &'static str), Problem> {
+pub(super) fn text<'a>(
+    bytes: &'a [u8],
+    said: Option<&str>,
+    shown: &str,
+) -> Result<(Cow<'a, str>, &'static str), Problem> {
     if bytes.starts_with(&[0xff, 0xfe, 0, 0]) || bytes.starts_with(&[0, 0, 0xfe, 0xff]) {
-        return Err(Problem::error("encoding", format!("`{shown}` is UTF-32 text")).help("save it as UTF-8"));
+        return Err(Problem::error("encoding", format!("`{shown}` is UTF-32 text"))
+            .help("save it as UTF-8"));
     }
     let encoding = match said {
         Some(label) => Encoding::for_label(label.as_bytes()).ok_or_else(|| {
-            let known = ["utf-8", "windows-1252", "iso-8859-15", "utf-16le", "utf-16be", "windows-1250"];
-            Problem::error("encoding", format!("`{label}` is not a known encoding")).suggest(label, known)
+            let known =
+                ["utf-8", "windows-1252", "iso-8859-15", "utf-16le", "utf-16be", "windows-1250"];
+            Problem::error("encoding", format!("`{label}` is not a known encoding"))
+                .suggest(label, known)
         })?,
         None => match wide(bytes) {
             Some(wide) => wide,
             None if std::str::from_utf8(bytes).is_ok() => UTF_8,
-            // Measuring systems on Windows write it. It has a character for every byte, so that it never fails.
+            // Measuring systems on Windows write it. It has a character for every byte, so that it
+            // never fails.
             None => WINDOWS_1252,
         },
     };
@@ -36,9 +44,12 @@ pub(super) fn text<'a>(bytes: &'a [u8], said: Option<&str>, shown: &str) -> Resu
         let end = text[at..].find('\n').map_or(text.len(), |after| at + after);
         let (from, to) = around(&text[start..end], at - start);
         let excerpt = Source::excerpt(shown, &text[start + from..start + to], line);
-        return Err(Problem::error("encoding", format!("`{shown}` has bytes that are not {}", used.name()))
-            .at(&excerpt.span(at - start - from..at - start - from + '\u{fffd}'.len_utf8()))
-            .help("name the encoding of the file, for example `windows-1252`, or save it as UTF-8"));
+        return Err(Problem::error(
+            "encoding",
+            format!("`{shown}` has bytes that are not {}", used.name()),
+        )
+        .at(&excerpt.span(at - start - from..at - start - from + '\u{fffd}'.len_utf8()))
+        .help("name the encoding of the file, for example `windows-1252`, or save it as UTF-8"));
     }
     Ok((text, used.name()))
 }
@@ -95,7 +106,10 @@ mod tests {
     #[test]
     fn what_is_not_of_the_encoding_has_a_place() {
         let problem = read(b"a\nb\xb2", Some("utf-8")).expect_err("not UTF-8");
-        assert_eq!((problem.code, problem.at.map(|at| at.to_string())), ("encoding", Some("f:2:2".into())));
+        assert_eq!(
+            (problem.code, problem.at.map(|at| at.to_string())),
+            ("encoding", Some("f:2:2".into()))
+        );
         assert!(read(b"a", Some("utf-9")).is_err_and(|problem| problem.help.is_some()));
         assert!(read(b"\xff\xfe\0\0a\0\0\0", None).is_err());
     }

@@ -35,7 +35,10 @@ pub(super) struct Line<'a> {
 pub(super) fn lines(text: &str) -> Vec<Line<'_>> {
     let old = !text.contains('\n');
     let split = text.split(if old { '\r' } else { '\n' });
-    split.enumerate().map(|(at, line)| Line { number: at + 1, text: line.strip_suffix('\r').unwrap_or(line) }).collect()
+    split
+        .enumerate()
+        .map(|(at, line)| Line { number: at + 1, text: line.strip_suffix('\r').unwrap_or(line) })
+        .collect()
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,10 +55,14 @@ pub(super) fn split(line: &str, separator: Separator) -> Vec<Range<usize>> {
     let mut from = 0;
     match separator {
         Separator::Blanks => {
-            while let Some(start) = line[from..].find(|c: char| !c.is_whitespace()).map(|at| from + at) {
+            while let Some(start) =
+                line[from..].find(|c: char| !c.is_whitespace()).map(|at| from + at)
+            {
                 let end = match line[start..].strip_prefix('"').and_then(|rest| rest.find('"')) {
                     Some(close) => start + close + 2,
-                    None => line[start..].find(char::is_whitespace).map_or(line.len(), |at| start + at),
+                    None => {
+                        line[start..].find(char::is_whitespace).map_or(line.len(), |at| start + at)
+                    }
                 };
                 cells.push(trim(line, start..end));
                 from = end;
@@ -102,7 +109,11 @@ fn trim(line: &str, place: Range<usize>) -> Range<usize> {
     };
     let place = inner(place);
     let text = &line[place.clone()];
-    if text.len() >= 2 && text.starts_with('"') && text.ends_with('"') { inner(place.start + 1..place.end - 1) } else { place }
+    if text.len() >= 2 && text.starts_with('"') && text.ends_with('"') {
+        inner(place.start + 1..place.end - 1)
+    } else {
+        place
+    }
 }
 
 /// Beginnings of comments that are recognised without being named.
@@ -124,8 +135,10 @@ const SAMPLE_BYTES: usize = 1 << 20;
 
 /// Detects what was not said, from lines in the middle of the file, where there is no header.
 pub(super) fn detect(lines: &[Line<'_>], options: &Options) -> Option<Dialect> {
-    let from =
-        options.header_lines.map_or_else(|| (lines.len() / 2).min(lines.len().saturating_sub(SAMPLE)), |count| count.min(lines.len()));
+    let from = options.header_lines.map_or_else(
+        || (lines.len() / 2).min(lines.len().saturating_sub(SAMPLE)),
+        |count| count.min(lines.len()),
+    );
     let mut bytes = 0;
     let sample: Vec<&str> = lines[from..]
         .iter()
@@ -139,7 +152,13 @@ pub(super) fn detect(lines: &[Line<'_>], options: &Options) -> Option<Dialect> {
         .collect();
     let separators = match options.separator {
         Some(said) => vec![said],
-        None => vec![Separator::Mark(';'), Separator::Mark('\t'), Separator::Mark(','), Separator::Mark('|'), Separator::Blanks],
+        None => vec![
+            Separator::Mark(';'),
+            Separator::Mark('\t'),
+            Separator::Mark(','),
+            Separator::Mark('|'),
+            Separator::Blanks,
+        ],
     };
     let decimals = match options.decimal {
         Some(said) => vec![said],
@@ -147,10 +166,16 @@ pub(super) fn detect(lines: &[Line<'_>], options: &Options) -> Option<Dialect> {
     };
     let mut best: Option<(f64, Dialect)> = None;
     for separator in separators {
-        for decimal in decimals.iter().copied().filter(|decimal| separator != Separator::Mark(*decimal)) {
-            let rows: Vec<(usize, f64)> = sample.iter().filter_map(|line| weigh(line, separator, decimal)).collect();
-            let Some(columns) = most_frequent(rows.iter().map(|(cells, _)| *cells)) else { continue };
-            let score: f64 = rows.iter().filter(|(cells, _)| *cells == columns).map(|(_, weight)| weight).sum();
+        for decimal in
+            decimals.iter().copied().filter(|decimal| separator != Separator::Mark(*decimal))
+        {
+            let rows: Vec<(usize, f64)> =
+                sample.iter().filter_map(|line| weigh(line, separator, decimal)).collect();
+            let Some(columns) = most_frequent(rows.iter().map(|(cells, _)| *cells)) else {
+                continue;
+            };
+            let score: f64 =
+                rows.iter().filter(|(cells, _)| *cells == columns).map(|(_, weight)| weight).sum();
             if best.is_none_or(|(before, _)| score > before) {
                 best = Some((score, Dialect { separator, decimal, columns }));
             }
@@ -159,7 +184,8 @@ pub(super) fn detect(lines: &[Line<'_>], options: &Options) -> Option<Dialect> {
     best.map(|(_, dialect)| dialect)
 }
 
-/// Number of cells of a row of numbers, and its weight: the more of its cells are numbers, the better fits the dialect.
+/// Number of cells of a row of numbers, and its weight: the more of its cells are numbers, the
+/// better fits the dialect.
 fn weigh(line: &str, separator: Separator, decimal: char) -> Option<(usize, f64)> {
     let mut cells = split(line, separator);
     // A separator at the end of the line.
@@ -170,8 +196,8 @@ fn weigh(line: &str, separator: Separator, decimal: char) -> Option<(usize, f64)
     Some((cells.len(), (numbers * numbers) as f64 / cells.len() as f64))
 }
 
-/// Number of cells that are numbers, time stamps or empty, if a row can be one of numbers: at least one number or time, and half of
-/// the cells.
+/// Number of cells that are numbers, time stamps or empty, if a row can be one of numbers: at least
+/// one number or time, and half of the cells.
 pub(super) fn numbers_among(line: &str, cells: &[Range<usize>], decimal: char) -> Option<usize> {
     let (mut numbers, mut empty) = (0, 0);
     for cell in cells {
@@ -196,7 +222,8 @@ mod tests {
     use super::*;
 
     fn found(text: &str) -> Option<(String, char, usize)> {
-        detect(&lines(text), &Options::default()).map(|dialect| (dialect.separator.words(), dialect.decimal, dialect.columns))
+        detect(&lines(text), &Options::default())
+            .map(|dialect| (dialect.separator.words(), dialect.decimal, dialect.columns))
     }
 
     #[test]
@@ -220,8 +247,9 @@ mod tests {
 
     #[test]
     fn cells_have_their_places() {
-        let cells =
-            |line: &str, separator| -> Vec<String> { split(line, separator).into_iter().map(|cell| line[cell].to_string()).collect() };
+        let cells = |line: &str, separator| -> Vec<String> {
+            split(line, separator).into_iter().map(|cell| line[cell].to_string()).collect()
+        };
         let semicolon = Separator::Mark(';');
         assert_eq!(cells("a; \"b;c\" ;;d ", semicolon), ["a", "b;c", "", "d"]);
         assert_eq!(cells("\"a", semicolon), ["\"a"]);

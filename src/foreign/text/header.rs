@@ -25,14 +25,24 @@ pub(super) struct Header {
 ///
 /// # Errors
 /// `header-line`.
-pub(super) fn read(text: &Text<'_>, before: &[Line<'_>], dialect: Dialect) -> Result<Header, Problem> {
+pub(super) fn read(
+    text: &Text<'_>,
+    before: &[Line<'_>],
+    dialect: Dialect,
+) -> Result<Header, Problem> {
     let mut header = Header::default();
     let options = text.options;
-    let comments: Vec<(Line<'_>, &str)> = before.iter().filter_map(|line| Some((*line, dialect::comment(line.text, options)?))).collect();
+    let comments: Vec<(Line<'_>, &str)> = before
+        .iter()
+        .filter_map(|line| Some((*line, dialect::comment(line.text, options)?)))
+        .collect();
     header.facts.extend(comments.iter().filter_map(|(_, said)| fact(said)).take(MOST_FACTS));
     let rows: Vec<Line<'_>> = before
         .iter()
-        .filter(|line| dialect::comment(line.text, options).is_none() && cells(line.text, dialect).len() == dialect.columns)
+        .filter(|line| {
+            dialect::comment(line.text, options).is_none()
+                && cells(line.text, dialect).len() == dialect.columns
+        })
         .filter(|line| cells(line.text, dialect).iter().any(|cell| !cell.is_empty()))
         .copied()
         .collect();
@@ -45,7 +55,8 @@ pub(super) fn read(text: &Text<'_>, before: &[Line<'_>], dialect: Dialect) -> Re
     let names = match options.names_line {
         Some(number) => Some(said(text, before, number, "names", dialect)?),
         None => {
-            let mut above = rows.iter().rev().filter(|row| units.is_none_or(|units| row.number < units.number));
+            let mut above =
+                rows.iter().rev().filter(|row| units.is_none_or(|units| row.number < units.number));
             // A row of numbers has no names, unless there is no other.
             let last = above.clone().next();
             above.find(|row| has_words(row.text, dialect)).or(last).copied()
@@ -55,10 +66,13 @@ pub(super) fn read(text: &Text<'_>, before: &[Line<'_>], dialect: Dialect) -> Re
         header.columns = headings(text, names, dialect);
     } else if let Some(columns) = listed(text, &comments, dialect.columns) {
         header.columns = columns;
-    } else if let Some(columns) = comments.iter().rev().find_map(|(line, said)| commented(text, *line, said, dialect)) {
+    } else if let Some(columns) =
+        comments.iter().rev().find_map(|(line, said)| commented(text, *line, said, dialect))
+    {
         header.columns = columns;
     } else {
-        let numbered = |column: usize| Heading { name: format!("column {column}"), ..Heading::default() };
+        let numbered =
+            |column: usize| Heading { name: format!("column {column}"), ..Heading::default() };
         header.columns = (1..=dialect.columns).map(numbered).collect();
         header.facts.push(("names".into(), "none in the file; columns are numbered".into()));
     }
@@ -72,7 +86,12 @@ pub(super) fn read(text: &Text<'_>, before: &[Line<'_>], dialect: Dialect) -> Re
         for (column, cell) in header.columns.iter_mut().zip(cells(row.text, dialect)) {
             let more = row.text[cell].trim();
             if !more.is_empty() {
-                column.comment = Some(column.comment.take().map_or_else(|| more.into(), |before| format!("{before}, {more}")));
+                column.comment = Some(
+                    column
+                        .comment
+                        .take()
+                        .map_or_else(|| more.into(), |before| format!("{before}, {more}")),
+                );
             }
         }
     }
@@ -86,11 +105,16 @@ const LONGEST_FACT: usize = 200;
 
 /// `Section: S01`, `Fahrzeug = Wagen 5`.
 fn fact(line: &str) -> Option<(String, String)> {
-    let line = line.trim().trim_start_matches(['#', '%', '!', '*', '/']).trim().trim_end_matches([';', ',', '\t']);
+    let line = line
+        .trim()
+        .trim_start_matches(['#', '%', '!', '*', '/'])
+        .trim()
+        .trim_end_matches([';', ',', '\t']);
     let (name, value) = line.split_once([':', '=']).or_else(|| line.split_once([';', '\t']))?;
     let (name, value) = (name.trim().trim_matches('"'), value.trim().trim_matches(['"', ';']));
     let short = !name.is_empty() && !value.is_empty() && line.len() <= LONGEST_FACT;
-    (short && !name.starts_with(|c: char| c.is_ascii_digit()) && numbered(line).is_none()).then(|| (name.into(), value.into()))
+    (short && !name.starts_with(|c: char| c.is_ascii_digit()) && numbered(line).is_none())
+        .then(|| (name.into(), value.into()))
 }
 
 /// Cells of a header line; a separator at its end makes no cell if there is one too many.
@@ -103,22 +127,39 @@ fn cells(line: &str, dialect: Dialect) -> Vec<std::ops::Range<usize>> {
 }
 
 /// A line that was named by its number.
-fn said<'a>(text: &Text<'_>, before: &[Line<'a>], number: usize, what: &str, dialect: Dialect) -> Result<Line<'a>, Problem> {
+fn said<'a>(
+    text: &Text<'_>,
+    before: &[Line<'a>],
+    number: usize,
+    what: &str,
+    dialect: Dialect,
+) -> Result<Line<'a>, Problem> {
     let Some(line) = before.iter().find(|line| line.number == number) else {
-        let says = format!("line {number} of `{}` is not before the numbers; it was said to have the {what}", text.shown);
+        let says = format!(
+            "line {number} of `{}` is not before the numbers; it was said to have the {what}",
+            text.shown
+        );
         let last = before.last().map_or(0, |line| line.number);
-        return Err(Problem::error("header-line", says).help(format!("the numbers begin in line {}", last + 1)));
+        return Err(Problem::error("header-line", says)
+            .help(format!("the numbers begin in line {}", last + 1)));
     };
     let found = cells(line.text, dialect).len();
     if found == dialect.columns {
         return Ok(*line);
     }
-    let says = format!("line {number}, said to have the {what}, has {found} cells; the rows of numbers have {}", dialect.columns);
+    let says = format!(
+        "line {number}, said to have the {what}, has {found} cells; the rows of numbers have {}",
+        dialect.columns
+    );
     Err(Problem::error("header-line", says).at(&at(text.shown, *line, 0..line.text.len())))
 }
 
 /// The line of units: said, or the last line of the header if most of its cells are units.
-fn line_of_units<'a>(text: &Text<'_>, rows: &[Line<'a>], dialect: Dialect) -> Result<Option<Line<'a>>, Problem> {
+fn line_of_units<'a>(
+    text: &Text<'_>,
+    rows: &[Line<'a>],
+    dialect: Dialect,
+) -> Result<Option<Line<'a>>, Problem> {
     match text.options.units_line {
         Some(0) => return Ok(None),
         Some(number) => return said(text, rows, number, "units", dialect).map(Some),
@@ -138,7 +179,10 @@ fn are_units(line: &str, dialect: Dialect) -> bool {
 /// Whether at least half of the cells that are filled are units.
 pub(in crate::foreign) fn most_are_units<'a>(cells: impl Iterator<Item = &'a str>) -> bool {
     let filled: Vec<&str> = cells.filter(|cell| !cell.trim().is_empty()).collect();
-    let known = filled.iter().filter(|cell| unbracketed(cell).is_some_and(|unit| Unit::parse(&unit).is_ok())).count();
+    let known = filled
+        .iter()
+        .filter(|cell| unbracketed(cell).is_some_and(|unit| Unit::parse(&unit).is_ok()))
+        .count();
     // `1` is a unit, but a line of numbers only is a row.
     let worded = filled.iter().any(|cell| cell.parse::<f64>().is_err());
     worded && 2 * known >= filled.len()
@@ -148,7 +192,10 @@ pub(in crate::foreign) fn most_are_units<'a>(cells: impl Iterator<Item = &'a str
 pub(in crate::foreign) fn unbracketed(text: &str) -> Option<String> {
     let text = text.trim();
     let inside = text.strip_prefix('[').and_then(|text| text.strip_suffix(']'));
-    let inside = inside.or_else(|| text.strip_prefix('(').and_then(|text| text.strip_suffix(')'))).unwrap_or(text).trim();
+    let inside = inside
+        .or_else(|| text.strip_prefix('(').and_then(|text| text.strip_suffix(')')))
+        .unwrap_or(text)
+        .trim();
     (!inside.is_empty()).then(|| inside.to_string())
 }
 
@@ -161,7 +208,8 @@ pub(in crate::foreign) fn name_and_unit(text: &str) -> (String, Option<String>) 
     {
         return (name.trim().to_string(), unbracketed(unit));
     }
-    let round = text.rsplit_once('(').and_then(|(name, rest)| Some((name, rest.strip_suffix(')')?)));
+    let round =
+        text.rsplit_once('(').and_then(|(name, rest)| Some((name, rest.strip_suffix(')')?)));
     let parts = round.or_else(|| text.rsplit_once(" / ")).or_else(|| text.rsplit_once(" in "));
     if let Some((name, unit)) = parts
         && !name.trim().is_empty()
@@ -182,14 +230,25 @@ fn headings(text: &Text<'_>, line: Line<'_>, dialect: Dialect) -> Vec<Heading> {
 }
 
 /// The names after a comment mark: `# time Y Q`.
-fn commented(text: &Text<'_>, line: Line<'_>, said: &str, dialect: Dialect) -> Option<Vec<Heading>> {
+fn commented(
+    text: &Text<'_>,
+    line: Line<'_>,
+    said: &str,
+    dialect: Dialect,
+) -> Option<Vec<Heading>> {
     let start = line.text.len() - said.len();
     let found = cells(said, dialect);
-    let words = found.len() == dialect.columns && found.iter().all(|cell| said[cell.clone()].contains(|c: char| c.is_alphabetic()));
+    let words = found.len() == dialect.columns
+        && found.iter().all(|cell| said[cell.clone()].contains(|c: char| c.is_alphabetic()));
     words.then(|| {
         let heading = |cell: std::ops::Range<usize>| {
             let (name, unit) = name_and_unit(&said[cell.clone()]);
-            Heading { name, unit, comment: None, span: Some(at(text.shown, line, start + cell.start..start + cell.end)) }
+            Heading {
+                name,
+                unit,
+                comment: None,
+                span: Some(at(text.shown, line, start + cell.start..start + cell.end)),
+            }
         };
         found.into_iter().map(heading).collect()
     })
@@ -216,7 +275,12 @@ fn listed(text: &Text<'_>, comments: &[(Line<'_>, &str)], columns: usize) -> Opt
             name = first.trim().to_string();
         }
         let start = line.text.rfind(rest).unwrap_or(0);
-        found.push(Heading { name, unit, comment: None, span: Some(at(text.shown, *line, start..start + rest.len())) });
+        found.push(Heading {
+            name,
+            unit,
+            comment: None,
+            span: Some(at(text.shown, *line, start..start + rest.len())),
+        });
     }
     (found.len() == columns).then_some(found)
 }
@@ -239,7 +303,8 @@ mod tests {
 
     #[test]
     fn names_are_told_from_units() {
-        let owned = |(name, unit): (&str, Option<&str>)| (name.to_string(), unit.map(str::to_string));
+        let owned =
+            |(name, unit): (&str, Option<&str>)| (name.to_string(), unit.map(str::to_string));
         for (text, parts) in [
             ("Y_1R [kN]", ("Y_1R", Some("kN"))),
             ("a[0] [m/s²]", ("a[0]", Some("m/s²"))),

@@ -45,25 +45,43 @@ struct Text<'a> {
 pub(super) fn read(input: &Input<'_>, format: Format) -> Result<Read, Vec<Problem>> {
     let (shown, options) = (input.shown, input.options);
     if let Some(mark) = options.decimal.filter(|mark| !matches!(mark, '.' | ',')) {
-        return Err(vec![Problem::error("dialect", format!("`{mark}` is not a decimal mark")).help("write `.` or `,`")]);
+        return Err(vec![
+            Problem::error("dialect", format!("`{mark}` is not a decimal mark"))
+                .help("write `.` or `,`"),
+        ]);
     }
-    if options.separator.is_some_and(|separator| options.decimal.is_some_and(|mark| separator == Separator::Mark(mark))) {
-        return Err(vec![Problem::error("dialect", "the separator and the decimal mark are the same")]);
+    if options.separator.is_some_and(|separator| {
+        options.decimal.is_some_and(|mark| separator == Separator::Mark(mark))
+    }) {
+        return Err(vec![Problem::error(
+            "dialect",
+            "the separator and the decimal mark are the same",
+        )]);
     }
     let (content, encoding) = decode::text(input.bytes, options.encoding.as_deref(), shown)?;
     let lines = dialect::lines(&content);
     if let Some(line) = lines.iter().find(|line| line.text.len() > LONGEST_LINE) {
-        let says = format!("line {} of `{shown}` has more than {} MB", line.number, LONGEST_LINE >> 20);
-        return Err(vec![Problem::error("line-too-long", says).at(&at(shown, *line, 0..0)).help("export one line per sample")]);
+        let says =
+            format!("line {} of `{shown}` has more than {} MB", line.number, LONGEST_LINE >> 20);
+        return Err(vec![
+            Problem::error("line-too-long", says)
+                .at(&at(shown, *line, 0..0))
+                .help("export one line per sample"),
+        ]);
     }
     let text = Text { shown, options };
-    let mut dialect = dialect::detect(&lines, options).ok_or_else(|| vec![no_numbers(&text, &lines)])?;
+    let mut dialect =
+        dialect::detect(&lines, options).ok_or_else(|| vec![no_numbers(&text, &lines)])?;
     let start = first_row(&text, &lines, dialect).ok_or_else(|| vec![no_numbers(&text, &lines)])?;
     let (before, rows) = lines.split_at(start);
     dialect.columns += usize::from(last_is_empty(&text, before, rows, dialect));
     let header = header::read(&text, before, dialect)?;
     Budget::new(input.bytes.len(), shown).take(dialect.columns, rows.len(), "the table")?;
-    let mut table = Table { facts: header.facts, first_row: rows.first().map_or(1, |line| line.number), ..Table::default() };
+    let mut table = Table {
+        facts: header.facts,
+        first_row: rows.first().map_or(1, |line| line.number),
+        ..Table::default()
+    };
     values::read(&text, rows, dialect, header.columns, &mut table)?;
     let facts = vec![
         ("encoding".into(), encoding.into()),
@@ -79,12 +97,20 @@ pub(super) fn read(input: &Input<'_>, format: Format) -> Result<Read, Vec<Proble
 fn first_row(text: &Text<'_>, lines: &[Line<'_>], dialect: Dialect) -> Option<usize> {
     let options = text.options;
     if let Some(count) = options.header_lines {
-        return lines.get(count..)?.iter().position(|line| is_row(text, *line)).map(|at| count + at);
+        return lines
+            .get(count..)?
+            .iter()
+            .position(|line| is_row(text, *line))
+            .map(|at| count + at);
     }
     let after = options.names_line.max(options.units_line).unwrap_or(0);
     lines.iter().position(|line| {
         let cells = dialect::split(line.text, dialect.separator);
-        let count = if cells.last().is_some_and(Range::is_empty) { cells.len() - 1..=cells.len() } else { cells.len()..=cells.len() };
+        let count = if cells.last().is_some_and(Range::is_empty) {
+            cells.len() - 1..=cells.len()
+        } else {
+            cells.len()..=cells.len()
+        };
         line.number > after
             && is_row(text, *line)
             && count.contains(&dialect.columns)
@@ -92,13 +118,20 @@ fn first_row(text: &Text<'_>, lines: &[Line<'_>], dialect: Dialect) -> Option<us
     })
 }
 
-/// Whether the last column has a name and no values: a separator at the end of the rows is then not one too many.
-fn last_is_empty(text: &Text<'_>, before: &[Line<'_>], rows: &[Line<'_>], dialect: Dialect) -> bool {
+/// Whether the last column has a name and no values: a separator at the end of the rows is then not
+/// one too many.
+fn last_is_empty(
+    text: &Text<'_>,
+    before: &[Line<'_>],
+    rows: &[Line<'_>],
+    dialect: Dialect,
+) -> bool {
     let wider = |line: &Line<'_>| {
         let cells = dialect::split(line.text, dialect.separator);
         (cells.len() == dialect.columns + 1).then(|| cells.last().is_some_and(Range::is_empty))
     };
-    let named = before.iter().filter(|line| is_row(text, **line)).any(|line| wider(line) == Some(false));
+    let named =
+        before.iter().filter(|line| is_row(text, **line)).any(|line| wider(line) == Some(false));
     named && rows.first().and_then(wider) == Some(true)
 }
 
@@ -112,7 +145,9 @@ fn no_numbers(text: &Text<'_>, lines: &[Line<'_>]) -> Problem {
     let problem = Problem::error("no-numbers", says)
         .help("check whether this is the right file; say separator, decimal mark and number of header lines if they are unusual");
     match lines.iter().find(|line| is_row(text, **line)) {
-        Some(line) => problem.at(&at(text.shown, *line, 0..line.text.len())).label("the first line"),
+        Some(line) => {
+            problem.at(&at(text.shown, *line, 0..line.text.len())).label("the first line")
+        }
         None => problem,
     }
 }

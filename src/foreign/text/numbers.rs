@@ -26,7 +26,9 @@ pub(super) fn read(text: &str, decimal: char) -> Cell {
     let comma = decimal == ',';
     if text.ends_with(|c: char| c.is_ascii_alphabetic() || c == ')') {
         match text.to_ascii_lowercase().trim_start_matches(['-', '+']) {
-            "nan" | "nan(ind)" | "1.#ind" | "1.#qnan" | "n/a" | "#n/a" => return Cell::Number(f64::NAN),
+            "nan" | "nan(ind)" | "1.#ind" | "1.#qnan" | "n/a" | "#n/a" => {
+                return Cell::Number(f64::NAN);
+            }
             "inf" | "infinity" | "1.#inf" => return Cell::NotFinite,
             _ => {}
         }
@@ -45,7 +47,8 @@ pub(super) fn read(text: &str, decimal: char) -> Cell {
             _ => {}
         }
     }
-    let numeric = plain.iter().all(|byte| matches!(byte, b'0'..=b'9' | b'.' | b'-' | b'+' | b'E' | b'e'));
+    let numeric =
+        plain.iter().all(|byte| matches!(byte, b'0'..=b'9' | b'.' | b'-' | b'+' | b'E' | b'e'));
     // With a comma, a number does not end in it: `1,` is a cell with a separator.
     let open = comma && plain.ends_with(b".");
     match fast_float2::parse::<f64, _>(&*plain) {
@@ -60,7 +63,8 @@ fn finite(number: f64) -> Cell {
     if number.is_infinite() { Cell::NotFinite } else { Cell::Number(number) }
 }
 
-/// `1.234,5`, `1 234,5`, `1'234.5`, `1.234.567`: groups of three digits with a mark that is not the decimal mark.
+/// `1.234,5`, `1 234,5`, `1'234.5`, `1.234.567`: groups of three digits with a mark that is not the
+/// decimal mark.
 fn thousands(text: &str, decimal: char) -> bool {
     let text = text.trim_start_matches(['-', '+']);
     let (whole, fraction) = match text.split_once(decimal) {
@@ -103,14 +107,24 @@ mod tests {
             assert!(matches!(read(text, '.'), Cell::Number(number) if number.is_nan()), "{text}");
         }
         assert_eq!(read("", '.'), Cell::Empty);
-        assert_eq!((read("inf", '.'), read("1e999", '.'), read("-Infinity", ',')), (Cell::NotFinite, Cell::NotFinite, Cell::NotFinite));
+        assert_eq!(
+            (read("inf", '.'), read("1e999", '.'), read("-Infinity", ',')),
+            (Cell::NotFinite, Cell::NotFinite, Cell::NotFinite)
+        );
     }
 
     #[test]
     fn what_is_not_a_number() {
-        for (text, decimal) in
-            [("1,5", '.'), ("1.5", ','), ("1,", ','), ("abc", '.'), ("12:30", '.'), ("1 2", '.'), ("0x1F", '.'), ("d", '.')]
-        {
+        for (text, decimal) in [
+            ("1,5", '.'),
+            ("1.5", ','),
+            ("1,", ','),
+            ("abc", '.'),
+            ("12:30", '.'),
+            ("1 2", '.'),
+            ("0x1F", '.'),
+            ("d", '.'),
+        ] {
             assert_eq!(read(text, decimal), Cell::Other, "{text}");
         }
         assert_eq!(read(&"1".repeat(100), '.'), Cell::Other);
@@ -118,9 +132,14 @@ mod tests {
 
     #[test]
     fn thousands_are_not_guessed() {
-        for (text, decimal) in
-            [("1.234,5", ','), ("1,234.5", '.'), ("1 234,56", ','), ("-1'234.5", '.'), ("1.234.567", ','), ("1,234,567", '.')]
-        {
+        for (text, decimal) in [
+            ("1.234,5", ','),
+            ("1,234.5", '.'),
+            ("1 234,56", ','),
+            ("-1'234.5", '.'),
+            ("1.234.567", ','),
+            ("1,234,567", '.'),
+        ] {
             assert_eq!(read(text, decimal), Cell::Thousands, "{text}");
         }
         for (text, decimal) in [("1.23,5", ','), ("12345.6,7", '.')] {

@@ -62,14 +62,17 @@ pub(super) fn read(text: &str) -> Option<Stamp> {
 }
 
 fn date(text: &str) -> Option<Date> {
-    let mark = text.chars().find(|c| !c.is_ascii_digit()).filter(|c| matches!(c, '-' | '/' | '.'))?;
+    let mark =
+        text.chars().find(|c| !c.is_ascii_digit()).filter(|c| matches!(c, '-' | '/' | '.'))?;
     let mut parts = [0; 3];
     let mut words = text.split(mark);
     let mut year_first = false;
     for (at, part) in parts.iter_mut().enumerate() {
         let word = words.next()?;
         let is_year = word.len() == 4 && (at == 0 || at == 2 && !year_first);
-        if !word.bytes().all(|byte| byte.is_ascii_digit()) || !(is_year || matches!(word.len(), 1 | 2)) {
+        if !word.bytes().all(|byte| byte.is_ascii_digit())
+            || !(is_year || matches!(word.len(), 1 | 2))
+        {
             return None;
         }
         year_first |= at == 0 && is_year;
@@ -82,7 +85,8 @@ fn date(text: &str) -> Option<Date> {
     words.next().is_none().then_some(Date { parts, mark, year_first })
 }
 
-/// `12:01`, `12:01:02`, `12:01:02.345`, `12:01:02,345`, `1:01:02 PM`, `12:01:02Z`, `12:01:02+02:00`.
+/// `12:01`, `12:01:02`, `12:01:02.345`, `12:01:02,345`, `1:01:02 PM`, `12:01:02Z`,
+/// `12:01:02+02:00`.
 fn clock(text: &str) -> Option<i64> {
     let lower = text.to_ascii_lowercase();
     let (text, half) = match (lower.strip_suffix("am"), lower.strip_suffix("pm")) {
@@ -128,7 +132,8 @@ fn zone(text: &str) -> Option<(&str, i64)> {
         4 => digits.split_at_checked(2)?,
         _ => return None,
     };
-    let offset = (hours.parse::<i64>().ok()? * 60 + minutes.parse::<i64>().ok()?) * 60 * NANOSECONDS;
+    let offset =
+        (hours.parse::<i64>().ok()? * 60 + minutes.parse::<i64>().ok()?) * 60 * NANOSECONDS;
     Some((text[..at].trim_end(), if text[at..].starts_with('-') { -offset } else { offset }))
 }
 
@@ -184,7 +189,8 @@ pub(super) fn days(date: &Date, order: DateOrder) -> Option<i64> {
     if !YEARS.contains(&year) || !(1..=length).contains(&day) {
         return None;
     }
-    // Days before a month of a year that begins in March (Fliegel and Van Flandern 1968 use the same device).
+    // Days before a month of a year that begins in March (Fliegel and Van Flandern 1968 use the
+    // same device).
     let (year, month) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
     let before = 365 * year + year.div_euclid(4) - year.div_euclid(100) + year.div_euclid(400);
     Some(before + (153 * month + 2) / 5 + day - 1 - 719_468)
@@ -217,22 +223,45 @@ mod tests {
             ("12:01:02.005", 43_262.005),
             ("1:00", 3600.0),
         ] {
-            // Nanoseconds since 1970 have more digits than a double; the reader subtracts before it converts.
+            // Nanoseconds since 1970 have more digits than a double; the reader subtracts before it
+            // converts.
             assert!(seconds(text).is_some_and(|found| (found - value).abs() < 1e-6), "{text}");
         }
-        for text in ["1.5", "13.05.24", "2024-02-30", "25:00", "12:60", "12:1:2:3", "a12:00", "1-2", "2024-05-13T", "12:00:00.x"] {
+        for text in [
+            "1.5",
+            "13.05.24",
+            "2024-02-30",
+            "25:00",
+            "12:60",
+            "12:1:2:3",
+            "a12:00",
+            "1-2",
+            "2024-05-13T",
+            "12:00:00.x",
+        ] {
             assert_eq!(seconds(text), None, "{text}");
         }
     }
 
     #[test]
     fn an_ambiguous_order_is_not_guessed() {
-        let dates = |texts: &[&str]| -> Vec<Date> { texts.iter().filter_map(|text| read(text)?.date).collect() };
+        let dates = |texts: &[&str]| -> Vec<Date> {
+            texts.iter().filter_map(|text| read(text)?.date).collect()
+        };
         let none = Options::default();
         assert_eq!(order(&dates(&["03/04/2024", "04/04/2024"]), &none), Err(()));
-        assert_eq!(order(&dates(&["03/04/2024", "03/04/2024"]), &none), Ok(DateOrder::DayMonthYear));
-        assert_eq!(order(&dates(&["03/13/2024", "03/04/2024"]), &none), Ok(DateOrder::MonthDayYear));
+        assert_eq!(
+            order(&dates(&["03/04/2024", "03/04/2024"]), &none),
+            Ok(DateOrder::DayMonthYear)
+        );
+        assert_eq!(
+            order(&dates(&["03/13/2024", "03/04/2024"]), &none),
+            Ok(DateOrder::MonthDayYear)
+        );
         let said = Options { dates: Some(DateOrder::MonthDayYear), ..Options::default() };
-        assert_eq!(order(&dates(&["03/04/2024", "04/04/2024"]), &said), Ok(DateOrder::MonthDayYear));
+        assert_eq!(
+            order(&dates(&["03/04/2024", "04/04/2024"]), &said),
+            Ok(DateOrder::MonthDayYear)
+        );
     }
 }

@@ -38,7 +38,9 @@ pub(super) fn read(
     for line in rows.iter().filter(|line| super::is_row(text, **line)) {
         let found: Result<(), Problem> = row(text, *line, dialect).and_then(|cells| {
             let mut each = columns.iter_mut().zip(&headings).zip(cells);
-            each.try_for_each(|((column, heading), cell)| add(text, column, heading, *line, cell, dialect.decimal))
+            each.try_for_each(|((column, heading), cell)| {
+                add(text, column, heading, *line, cell, dialect.decimal)
+            })
         });
         if let Err(problem) = found {
             if problems.len() < SHOWN { problems.push(problem) } else { more += 1 }
@@ -46,7 +48,10 @@ pub(super) fn read(
     }
     if more > 0 {
         let word = if more == 1 { "problem" } else { "problems" };
-        problems.push(Problem::error("more-problems", format!("and {more} more {word} in `{}`", text.shown)));
+        problems.push(Problem::error(
+            "more-problems",
+            format!("and {more} more {word} in `{}`", text.shown),
+        ));
     }
     if !problems.is_empty() {
         return Err(problems);
@@ -75,28 +80,45 @@ fn row(text: &Text<'_>, line: Line<'_>, dialect: Dialect) -> Result<Vec<Range<us
         Some(extra) => extra.start..line.text.len(),
         None => cells.last().cloned().unwrap_or(0..0),
     };
-    let label = if cells.len() > dialect.columns { "beyond the last column" } else { "the last value" };
-    let says = format!("the row has {} values; the rows of this file have {}", cells.len(), dialect.columns);
+    let label =
+        if cells.len() > dialect.columns { "beyond the last column" } else { "the last value" };
+    let says = format!(
+        "the row has {} values; the rows of this file have {}",
+        cells.len(),
+        dialect.columns
+    );
     Err(Problem::error("ragged-row", says).at(&at(text.shown, line, place)).label(label))
 }
 
 /// Cells of fixed width, which may touch: `-1.500000E+03-1.380000E+03`.
 fn fixed(line: &str, dialect: Dialect) -> Option<Vec<Range<usize>>> {
     let length = line.trim_end().len();
-    if dialect.separator != dialect::Separator::Blanks || length == 0 || !length.is_multiple_of(dialect.columns) || !line.is_ascii() {
+    if dialect.separator != dialect::Separator::Blanks
+        || length == 0
+        || !length.is_multiple_of(dialect.columns)
+        || !line.is_ascii()
+    {
         return None;
     }
     let width = length / dialect.columns;
     let cells = (0..dialect.columns).map(|column| {
         let cell = &line[column * width..(column + 1) * width];
         let start = column * width + cell.len() - cell.trim_start().len();
-        (matches!(numbers::read(cell.trim(), dialect.decimal), numbers::Cell::Number(_))).then(|| start..start + cell.trim().len())
+        (matches!(numbers::read(cell.trim(), dialect.decimal), numbers::Cell::Number(_)))
+            .then(|| start..start + cell.trim().len())
     });
     cells.collect()
 }
 
 /// Adds a cell to a column.
-fn add(text: &Text<'_>, column: &mut Column, heading: &Heading, line: Line<'_>, cell: Range<usize>, decimal: char) -> Result<(), Problem> {
+fn add(
+    text: &Text<'_>,
+    column: &mut Column,
+    heading: &Heading,
+    line: Line<'_>,
+    cell: Range<usize>,
+    decimal: char,
+) -> Result<(), Problem> {
     let word = &line.text[cell.clone()];
     if let Column::Unknown(empty) = column {
         match numbers::read(word, decimal) {
@@ -116,7 +138,11 @@ fn add(text: &Text<'_>, column: &mut Column, heading: &Heading, line: Line<'_>, 
         Column::Stamps(found) => {
             let stamp = if word.is_empty() { Some(None) } else { stamps::read(word).map(Some) };
             let Some(stamp) = stamp else {
-                let says = format!("`{}`: `{}` is not a time stamp as in the rows before", heading.name, shortened(word));
+                let says = format!(
+                    "`{}`: `{}` is not a time stamp as in the rows before",
+                    heading.name,
+                    shortened(word)
+                );
                 return Err(Problem::error("not-a-number", says).at(&at(text.shown, line, cell)));
             };
             found.push(stamp);
@@ -131,26 +157,45 @@ fn add(text: &Text<'_>, column: &mut Column, heading: &Heading, line: Line<'_>, 
                 found.push(f64::NAN);
                 return Ok(());
             }
-            numbers::Cell::Thousands => {
-                ("thousands", "has marks between its thousands", "export the numbers without them: they cannot be told from decimal marks")
-            }
-            numbers::Cell::NotFinite => ("not-finite", "is not a finite number", "leave the cell empty where there is no value"),
-            numbers::Cell::Other if word.matches([',', '.']).count() == 1 => {
-                ("decimal-comma", "has another decimal mark than the rows before", "name the decimal mark, or export the file again")
-            }
-            numbers::Cell::Other => ("not-a-number", "is not a number", "name the mark of comments or the number of header lines"),
+            numbers::Cell::Thousands => (
+                "thousands",
+                "has marks between its thousands",
+                "export the numbers without them: they cannot be told from decimal marks",
+            ),
+            numbers::Cell::NotFinite => (
+                "not-finite",
+                "is not a finite number",
+                "leave the cell empty where there is no value",
+            ),
+            numbers::Cell::Other if word.matches([',', '.']).count() == 1 => (
+                "decimal-comma",
+                "has another decimal mark than the rows before",
+                "name the decimal mark, or export the file again",
+            ),
+            numbers::Cell::Other => (
+                "not-a-number",
+                "is not a number",
+                "name the mark of comments or the number of header lines",
+            ),
         },
     };
-    Err(Problem::error(code, format!("`{}`: `{}` {fact}", heading.name, shortened(word))).at(&at(text.shown, line, cell)).help(help))
+    Err(Problem::error(code, format!("`{}`: `{}` {fact}", heading.name, shortened(word)))
+        .at(&at(text.shown, line, cell))
+        .help(help))
 }
 
 /// A cell for a message; it can be as long as the line.
 fn shortened(word: &str) -> String {
     const MOST: usize = 40;
-    if word.chars().count() <= MOST { word.to_string() } else { word.chars().take(MOST).chain(['…']).collect() }
+    if word.chars().count() <= MOST {
+        word.to_string()
+    } else {
+        word.chars().take(MOST).chain(['…']).collect()
+    }
 }
 
-/// Columns of numbers and times as channels. `cell`: the text and the place of a cell, by its column and row.
+/// Columns of numbers and times as channels. `cell`: the text and the place of a cell, by its
+/// column and row.
 fn finish(
     text: &Text<'_>,
     columns: Vec<Column>,
@@ -159,8 +204,11 @@ fn finish(
     table: &mut Table,
 ) -> Result<(), Problem> {
     // A date in one column and the time of the day in another belong together.
-    let has_clock = columns.iter().any(|column| matches!(column, Column::Stamps(found) if only_clock(found)));
-    let day = columns.iter().position(|column| matches!(column, Column::Stamps(found) if has_clock && only_dates(found)));
+    let has_clock =
+        columns.iter().any(|column| matches!(column, Column::Stamps(found) if only_clock(found)));
+    let day = columns.iter().position(
+        |column| matches!(column, Column::Stamps(found) if has_clock && only_dates(found)),
+    );
     let days: Option<Vec<Option<Stamp>>> = day.and_then(|at| match &columns[at] {
         Column::Stamps(found) => Some(found.clone()),
         _ => None,
@@ -178,11 +226,16 @@ fn finish(
                 let of_dates = day.filter(|_| dated.is_some()).unwrap_or(index);
                 if let Some(days) = dated {
                     for (stamp, day) in stamps.iter_mut().zip(days) {
-                        *stamp = stamp.zip(*day).map(|(stamp, day)| Stamp { date: day.date, clock: stamp.clock });
+                        *stamp = stamp
+                            .zip(*day)
+                            .map(|(stamp, day)| Stamp { date: day.date, clock: stamp.clock });
                     }
                 }
                 let ambiguous = || {
-                    let says = format!("the dates of `{}` can be read with the day or with the month first", heading.name);
+                    let says = format!(
+                        "the dates of `{}` can be read with the day or with the month first",
+                        heading.name
+                    );
                     let problem = Problem::error("date-order", says)
                         .help("state the order in the mapping: `format: {dates: dmy}` or `format: {dates: mdy}`");
                     match &heading.span {
@@ -192,15 +245,25 @@ fn finish(
                 };
                 let values = seconds(text, &stamps).ok_or_else(ambiguous)?;
                 // Without a date of the calendar, a stamp has no value.
-                let wrong = stamps.iter().zip(&values).position(|(stamp, value)| stamp.is_some() && value.is_nan());
+                let wrong = stamps
+                    .iter()
+                    .zip(&values)
+                    .position(|(stamp, value)| stamp.is_some() && value.is_nan());
                 if let Some((written, span)) = wrong.and_then(|row| cell(of_dates, row)) {
-                    let says = format!("`{}`: `{written}` has no date of the calendar", heading.name);
+                    let says =
+                        format!("`{}`: `{written}` has no date of the calendar", heading.name);
                     return Err(Problem::error("not-a-date", says).at(&span));
                 }
-                (values, Some("s".to_string()), Some("seconds from the first time stamp".to_string()))
+                (
+                    values,
+                    Some("s".to_string()),
+                    Some("seconds from the first time stamp".to_string()),
+                )
             }
             Column::Text(first) => {
-                table.left_out.push((heading.name, format!("its cells are text, such as `{first}`")));
+                table
+                    .left_out
+                    .push((heading.name, format!("its cells are text, such as `{first}`")));
                 continue;
             }
             Column::Unknown(_) => {
@@ -211,7 +274,10 @@ fn finish(
         table.channels.push(Channel { name: heading.name, unit, comment, values, place });
     }
     if table.channels.is_empty() {
-        return Err(Problem::error("no-numbers", format!("`{}` has no column of numbers", text.shown)));
+        return Err(Problem::error(
+            "no-numbers",
+            format!("`{}` has no column of numbers", text.shown),
+        ));
     }
     Ok(())
 }
@@ -232,7 +298,9 @@ fn seconds(text: &Text<'_>, stamps: &[Option<Stamp>]) -> Option<Vec<f64>> {
     let values = stamps.iter().map(|stamp| {
         let Some(stamp) = stamp else { return f64::NAN };
         let clock = stamp.clock.unwrap_or(0);
-        let Some(day) = stamp.date.map_or(Some(0), |date| stamps::days(&date, order)) else { return f64::NAN };
+        let Some(day) = stamp.date.map_or(Some(0), |date| stamps::days(&date, order)) else {
+            return f64::NAN;
+        };
         // A time of the day alone goes back at midnight.
         if stamp.date.is_none() && before.is_some_and(|before| before - clock > DAY / 2) {
             nights += 1;
@@ -246,8 +314,14 @@ fn seconds(text: &Text<'_>, stamps: &[Option<Stamp>]) -> Option<Vec<f64>> {
 
 /// Texts as seconds from the first of them, if all that are filled are time stamps.
 #[cfg(feature = "foreign")]
-pub(in crate::foreign) fn stamps_from_first(cells: &[&str], options: &super::Options, shown: &str) -> Option<Vec<f64>> {
-    let read = |cell: &&str| if cell.trim().is_empty() { Some(None) } else { stamps::read(cell.trim()).map(Some) };
+pub(in crate::foreign) fn stamps_from_first(
+    cells: &[&str],
+    options: &super::Options,
+    shown: &str,
+) -> Option<Vec<f64>> {
+    let read = |cell: &&str| {
+        if cell.trim().is_empty() { Some(None) } else { stamps::read(cell.trim()).map(Some) }
+    };
     let found: Option<Vec<Option<Stamp>>> = cells.iter().map(read).collect();
     seconds(&Text { shown, options }, &found.filter(|found| found.iter().any(Option::is_some))?)
 }

@@ -24,13 +24,20 @@ const ABOVE: f64 = 1.03;
 
 /// Letters and digits in lower case; `*` and `.` stand for derivatives and are kept.
 fn plain(name: &str) -> String {
-    name.to_lowercase().chars().filter(|letter| letter.is_alphanumeric() || *letter == '*').collect()
+    name.to_lowercase()
+        .chars()
+        .filter(|letter| letter.is_alphanumeric() || *letter == '*')
+        .collect()
 }
 
 /// Whether a foreign name is known for a channel.
 fn is_name_of(convention: &Convention, foreign: &str, channel: &str) -> bool {
     let foreign = plain(foreign);
-    let known = convention.names.iter().find(|(name, _)| name == channel).map_or(&[][..], |(_, others)| others);
+    let known = convention
+        .names
+        .iter()
+        .find(|(name, _)| name == channel)
+        .map_or(&[][..], |(_, others)| others);
     plain(channel) == foreign || known.iter().any(|other| plain(other) == foreign)
 }
 
@@ -40,7 +47,12 @@ fn named<'a>(looks: &'a [Look], convention: &Convention, channel: &str) -> Vec<&
 }
 
 /// The channel of time or distance: by name, else by content.
-pub fn axis<'a>(looks: &'a [Look], convention: &Convention, name: &str, dimension: Dimension) -> (Option<&'a Look>, String) {
+pub fn axis<'a>(
+    looks: &'a [Look],
+    convention: &Convention,
+    name: &str,
+    dimension: Dimension,
+) -> (Option<&'a Look>, String) {
     let fits = |look: &&&Look| look.unit.as_ref().is_some_and(|unit| unit.dimension == dimension);
     let named = named(looks, convention, name);
     if let [one, ..] = named.iter().filter(fits).collect::<Vec<_>>()[..] {
@@ -57,7 +69,8 @@ pub fn axis<'a>(looks: &'a [Look], convention: &Convention, name: &str, dimensio
         let even = if one.even { " in even steps" } else { "" };
         return (Some(one), format!("by name; increases{even}"));
     }
-    let content: Vec<&Look> = looks.iter().filter(|look| fits(&look)).filter(|look| look.increases).collect();
+    let content: Vec<&Look> =
+        looks.iter().filter(|look| fits(&look)).filter(|look| look.increases).collect();
     match content[..] {
         [one] => (Some(one), format!("by content: the only {} that increases", words(dimension))),
         _ => (None, String::new()),
@@ -67,9 +80,22 @@ pub fn axis<'a>(looks: &'a [Look], convention: &Convention, name: &str, dimensio
 /// The channel of the speed.
 pub fn speed<'a>(looks: &'a [Look], convention: &Convention) -> (Option<&'a Look>, String) {
     let speed = Dimension::LENGTH / Dimension::TIME;
-    let all: Vec<&Look> = looks.iter().filter(|look| look.unit.as_ref().is_some_and(|unit| unit.dimension == speed)).collect();
-    let without = || looks.iter().find(|look| look.unit_text.is_empty() && is_name_of(convention, &look.name, "speed"));
-    match (all.iter().copied().find(|look| is_name_of(convention, &look.name, "speed")).or_else(without), &all[..]) {
+    let all: Vec<&Look> = looks
+        .iter()
+        .filter(|look| look.unit.as_ref().is_some_and(|unit| unit.dimension == speed))
+        .collect();
+    let without = || {
+        looks
+            .iter()
+            .find(|look| look.unit_text.is_empty() && is_name_of(convention, &look.name, "speed"))
+    };
+    match (
+        all.iter()
+            .copied()
+            .find(|look| is_name_of(convention, &look.name, "speed"))
+            .or_else(without),
+        &all[..],
+    ) {
         (Some(one), _) => (Some(one), "by name".into()),
         (None, [one]) => (Some(one), "by content: the only speed".into()),
         _ => (None, String::new()),
@@ -82,50 +108,75 @@ fn words(dimension: Dimension) -> String {
 
 /// Median of the means of steady channels of a dimension in SI, with their number.
 fn common_mean(looks: &[Look], dimension: Dimension, within: f64) -> Option<(f64, usize)> {
-    let steady =
-        |look: &&Look| look.mean.abs() > STEADY * look.deviation && look.unit.as_ref().is_some_and(|unit| unit.dimension == dimension);
-    let mut means: Vec<f64> = looks.iter().filter(steady).filter_map(|look| Some(look.unit.as_ref()?.to_si(look.mean))).collect();
+    let steady = |look: &&Look| {
+        look.mean.abs() > STEADY * look.deviation
+            && look.unit.as_ref().is_some_and(|unit| unit.dimension == dimension)
+    };
+    let mut means: Vec<f64> = looks
+        .iter()
+        .filter(steady)
+        .filter_map(|look| Some(look.unit.as_ref()?.to_si(look.mean)))
+        .collect();
     means.sort_by(f64::total_cmp);
     let median = *means.get(means.len() / 2)?;
-    let near = means.iter().filter(|mean| (1.0 / within..=within).contains(&(*mean / median))).count();
+    let near =
+        means.iter().filter(|mean| (1.0 / within..=within).contains(&(*mean / median))).count();
     Some((median, near))
 }
 
-/// One guess for each channel that is needed, and for each other one of the convention that a file has; in the order of the
-/// convention.
+/// One guess for each channel that is needed, and for each other one of the convention that a file
+/// has; in the order of the convention.
 pub fn guesses(looks: &[Look], needs: &[&ChannelNeed], convention: &Convention) -> Vec<Guess> {
     let mut guesses: Vec<Guess> = needs.iter().map(|need| one(looks, need, convention)).collect();
     let axes = ["time", "distance", "speed"];
-    for (name, _) in
-        convention.names.iter().filter(|(name, _)| !axes.contains(&name.as_str()) && !needs.iter().any(|need| need.column == *name))
-    {
+    for (name, _) in convention.names.iter().filter(|(name, _)| {
+        !axes.contains(&name.as_str()) && !needs.iter().any(|need| need.column == *name)
+    }) {
         if let [look] = named(looks, convention, name)[..] {
-            let reasons = vec!["by name; the protocol does not need it".to_string(), look.in_words()];
-            guesses.push(Guess { channel: name.clone(), from: Some(look.name.clone()), candidates: Vec::new(), reasons });
+            let reasons =
+                vec!["by name; the protocol does not need it".to_string(), look.in_words()];
+            guesses.push(Guess {
+                channel: name.clone(),
+                from: Some(look.name.clone()),
+                candidates: Vec::new(),
+                reasons,
+            });
         }
     }
-    let place = |guess: &Guess| convention.names.iter().position(|(name, _)| *name == guess.channel).unwrap_or(usize::MAX);
+    let place = |guess: &Guess| {
+        convention.names.iter().position(|(name, _)| *name == guess.channel).unwrap_or(usize::MAX)
+    };
     guesses.sort_by_key(place);
     for group in &convention.opposite {
         let look = |guesses: &[Guess], name: &str| {
             let guess = guesses.iter().find(|guess| guess.channel == name)?;
             looks.iter().find(|look| Some(&look.name) == guess.from.as_ref())
         };
-        let pairs: Vec<(&String, &Look, &Look)> =
-            group.pairs.iter().filter_map(|(right, left)| Some((left, look(&guesses, right)?, look(&guesses, left)?))).collect();
-        // One pair with equal signs leaves the sign of all open: a file has one convention, and not every pair shows it.
+        let pairs: Vec<(&String, &Look, &Look)> = group
+            .pairs
+            .iter()
+            .filter_map(|(right, left)| Some((left, look(&guesses, right)?, look(&guesses, left)?)))
+            .collect();
+        // One pair with equal signs leaves the sign of all open: a file has one convention, and not
+        // every pair shows it.
         if pairs.iter().all(|(_, first, second)| first.mean * second.mean <= 0.0) {
             continue;
         }
         for (left, first, second) in pairs {
-            let Some(guess) = guesses.iter_mut().find(|guess| guess.channel == *left) else { continue };
+            let Some(guess) = guesses.iter_mut().find(|guess| guess.channel == *left) else {
+                continue;
+            };
             let name = &second.name;
-            let sign = if first.mean * second.mean > 0.0 { "the sign of" } else { "the sign opposite to" };
+            let sign =
+                if first.mean * second.mean > 0.0 { "the sign of" } else { "the sign opposite to" };
             guess.from = None;
             guess.candidates.push(name.clone());
             guess.reasons.insert(0, format!("{name}, or with the other sign: -{name}"));
             let (mean, other, unit) = (short(second.mean), short(first.mean), &second.unit_text);
-            guess.reasons.push(format!("its mean {mean} {unit} has {sign} {} ({other} {unit}); {}", first.name, group.title));
+            guess.reasons.push(format!(
+                "its mean {mean} {unit} has {sign} {} ({other} {unit}); {}",
+                first.name, group.title
+            ));
         }
     }
     guesses
@@ -134,9 +185,18 @@ pub fn guesses(looks: &[Look], needs: &[&ChannelNeed], convention: &Convention) 
 fn one(looks: &[Look], need: &ChannelNeed, convention: &Convention) -> Guess {
     let found = named(looks, convention, &need.column);
     let names = found.iter().map(|look| look.name.clone()).collect::<Vec<_>>();
-    let open = |reasons: Vec<String>| Guess { channel: need.column.clone(), from: None, candidates: names.clone(), reasons };
-    let taken =
-        |look: &Look, reasons| Guess { channel: need.column.clone(), from: Some(look.name.clone()), candidates: Vec::new(), reasons };
+    let open = |reasons: Vec<String>| Guess {
+        channel: need.column.clone(),
+        from: None,
+        candidates: names.clone(),
+        reasons,
+    };
+    let taken = |look: &Look, reasons| Guess {
+        channel: need.column.clone(),
+        from: Some(look.name.clone()),
+        candidates: Vec::new(),
+        reasons,
+    };
     let wanted = Unit::parse(&need.unit).ok();
     let [look] = found[..] else {
         let mut reasons = Vec::new();
@@ -161,23 +221,39 @@ fn one(looks: &[Look], need: &ChannelNeed, convention: &Convention) -> Guess {
         return taken(look, reasons);
     };
     if unit.dimension != wanted.dimension {
-        reasons.push(format!("{unit} is {}; {} is needed", unit.dimension.in_words(), wanted.dimension.in_words()));
+        reasons.push(format!(
+            "{unit} is {}; {} is needed",
+            unit.dimension.in_words(),
+            wanted.dimension.in_words()
+        ));
         return taken(look, reasons);
     }
     for group in convention.common.iter().filter(|group| group.channels.contains(&need.column)) {
-        let Some((median, near)) = common_mean(looks, wanted.dimension, group.within) else { continue };
+        let Some((median, near)) = common_mean(looks, wanted.dimension, group.within) else {
+            continue;
+        };
         let ratio = unit.to_si(look.mean) / median;
         if near < group.channels.len() {
             continue;
         }
         if (1.0 / group.within..=group.within).contains(&ratio) {
-            reasons.push(format!("by content: its mean is common to {near} channels, {}", group.title));
+            reasons.push(format!(
+                "by content: its mean is common to {near} channels, {}",
+                group.title
+            ));
             if ratio > ABOVE && !group.above.is_empty() {
-                reasons.push(format!("{:.0} % above the median: {}", 100.0 * (ratio - 1.0), group.above));
+                reasons.push(format!(
+                    "{:.0} % above the median: {}",
+                    100.0 * (ratio - 1.0),
+                    group.above
+                ));
             }
         } else {
             reasons.insert(0, look.name.clone());
-            reasons.push(format!("BUT its mean is {:.2} times that of the {near} channels with a common mean ({})", ratio, group.title));
+            reasons.push(format!(
+                "BUT its mean is {:.2} times that of the {near} channels with a common mean ({})",
+                ratio, group.title
+            ));
             return open(reasons);
         }
     }
@@ -194,11 +270,17 @@ fn by_content(looks: &[Look], need: &ChannelNeed, convention: &Convention) -> Op
     }
     let alike = looks.iter().filter(|look| {
         look.unit.as_ref().is_some_and(|unit| {
-            unit.dimension == wanted.dimension && (1.0 / group.within..=group.within).contains(&(unit.to_si(look.mean) / median))
+            unit.dimension == wanted.dimension
+                && (1.0 / group.within..=group.within).contains(&(unit.to_si(look.mean) / median))
         })
     });
     let names: Vec<&str> = alike.map(|look| look.name.as_str()).collect();
-    Some(format!("by content, one of {} ({}; mean {} {wanted})", names.join(", "), group.title, short(wanted.from_si(median))))
+    Some(format!(
+        "by content, one of {} ({}; mean {} {wanted})",
+        names.join(", "),
+        group.title,
+        short(wanted.from_si(median))
+    ))
 }
 
 #[cfg(test)]
@@ -226,32 +308,60 @@ mod tests {
     }
 
     fn need(column: &str, unit: &str) -> ChannelNeed {
-        ChannelNeed { record: "measured", column: column.into(), channel: None, unit: unit.into(), required: true, users: Users::default() }
+        ChannelNeed {
+            record: "measured",
+            column: column.into(),
+            channel: None,
+            unit: unit.into(),
+            required: true,
+            users: Users::default(),
+        }
     }
 
     fn convention() -> Convention {
         Convention {
-            names: vec![("Q_1R".into(), vec!["ST1 Q re".into()]), ("Y_1L".into(), vec!["ST1 Y li".into()])],
+            names: vec![
+                ("Q_1R".into(), vec!["ST1 Q re".into()]),
+                ("Y_1L".into(), vec!["ST1 Y li".into()]),
+            ],
             common: vec![crate::import::mapping::Common {
                 title: "vertical".into(),
                 channels: vec!["Q_1R".into(), "Q_1L".into()],
                 within: 1.5,
                 above: "outer".into(),
             }],
-            opposite: vec![crate::import::mapping::Opposite { title: "guiding".into(), pairs: vec![("Y_1R".into(), "Y_1L".into())] }],
+            opposite: vec![crate::import::mapping::Opposite {
+                title: "guiding".into(),
+                pairs: vec![("Y_1R".into(), "Y_1L".into())],
+            }],
             ..Convention::default()
         }
     }
 
     #[test]
     fn names_and_contents_agree_or_the_place_is_open() {
-        let looks = [look("st1 q RE", "kN", 60.0), look("Q 1L", "N", 50_000.0), look("Y_1R", "kN", 2.0), look("ST1 Y li", "kN", 1.5)];
-        let needs = [need("Q_1R", "kN"), need("Q_1L", "kN"), need("Y_1R", "kN"), need("Y_1L", "kN"), need("az_I", "m/s^2")];
+        let looks = [
+            look("st1 q RE", "kN", 60.0),
+            look("Q 1L", "N", 50_000.0),
+            look("Y_1R", "kN", 2.0),
+            look("ST1 Y li", "kN", 1.5),
+        ];
+        let needs = [
+            need("Q_1R", "kN"),
+            need("Q_1L", "kN"),
+            need("Y_1R", "kN"),
+            need("Y_1L", "kN"),
+            need("az_I", "m/s^2"),
+        ];
         let found = guesses(&looks, &needs.iter().collect::<Vec<_>>(), &convention());
         let from: Vec<Option<&str>> = found.iter().map(|guess| guess.from.as_deref()).collect();
-        // In the order of the convention. The sign of the left guiding force is open, and there is no acceleration.
+        // In the order of the convention. The sign of the left guiding force is open, and there is
+        // no acceleration.
         assert_eq!(from, [Some("st1 q RE"), None, Some("Q 1L"), Some("Y_1R"), None]);
-        assert!(found[0].reasons.iter().any(|reason| reason.contains("common to 2 channels")), "{found:?}");
+        assert!(
+            found[0].reasons.iter().any(|reason| reason.contains("common to 2 channels")),
+            "{found:?}"
+        );
         assert!(found[1].reasons[0].contains("-ST1 Y li"), "{found:?}");
     }
 
@@ -259,16 +369,30 @@ mod tests {
     fn axes_without_a_unit_are_known_by_name() {
         let names = |list: &[&str]| list.iter().map(ToString::to_string).collect::<Vec<_>>();
         let convention = Convention {
-            names: vec![("time".into(), names(&["Zeit", "t"])), ("distance".into(), names(&["Weg", "s"])), ("speed".into(), names(&["v"]))],
+            names: vec![
+                ("time".into(), names(&["Zeit", "t"])),
+                ("distance".into(), names(&["Weg", "s"])),
+                ("speed".into(), names(&["v"])),
+            ],
             ..Convention::default()
         };
         let rising = |name: &str| Look { increases: true, even: true, ..look(name, "", 1.0) };
         let looks = [look("v", "", 20.0), rising("Zeit"), rising("s"), rising("n")];
-        let of = |name: &str, dimension| axis(&looks, &convention, name, dimension).0.map(|look| look.name.as_str());
-        assert_eq!((of("time", Dimension::TIME), of("distance", Dimension::LENGTH)), (Some("Zeit"), Some("s")));
+        let of = |name: &str, dimension| {
+            axis(&looks, &convention, name, dimension).0.map(|look| look.name.as_str())
+        };
+        assert_eq!(
+            (of("time", Dimension::TIME), of("distance", Dimension::LENGTH)),
+            (Some("Zeit"), Some("s"))
+        );
         assert_eq!(speed(&looks, &convention).0.map(|look| look.name.as_str()), Some("v"));
         // A channel that does not increase is no axis, whatever it is called.
-        assert_eq!(axis(&[look("t", "", 1.0)], &convention, "time", Dimension::TIME).0.map(|look| look.name.as_str()), None);
+        assert_eq!(
+            axis(&[look("t", "", 1.0)], &convention, "time", Dimension::TIME)
+                .0
+                .map(|look| look.name.as_str()),
+            None
+        );
     }
 
     #[test]
@@ -278,7 +402,14 @@ mod tests {
         wrong[0].mean = 6.0;
         let found = guesses(&wrong, &[&need("Q_1R", "kN")], &convention());
         assert_eq!(found[0].from, None, "{found:?}");
-        let unnamed = guesses(&[look("x", "kN", 60.0), look("y", "kN", 58.0)], &[&need("Q_1R", "kN")], &convention());
-        assert!(unnamed[0].reasons.iter().any(|reason| reason.contains("one of x, y")), "{unnamed:?}");
+        let unnamed = guesses(
+            &[look("x", "kN", 60.0), look("y", "kN", 58.0)],
+            &[&need("Q_1R", "kN")],
+            &convention(),
+        );
+        assert!(
+            unnamed[0].reasons.iter().any(|reason| reason.contains("one of x, y")),
+            "{unnamed:?}"
+        );
     }
 }

@@ -32,14 +32,23 @@ pub fn look(number: usize, table: &Table) -> Vec<Look> {
         .channels
         .iter()
         .map(|channel| {
-            let there: Vec<f64> = channel.values.iter().copied().filter(|value| value.is_finite()).collect();
+            let there: Vec<f64> =
+                channel.values.iter().copied().filter(|value| value.is_finite()).collect();
             let n = there.len().max(1) as f64;
             let mean = there.iter().sum::<f64>() / n;
-            let deviation = (there.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / n).sqrt();
-            let increases = there.len() > 1 && there.len() == channel.values.len() && there.windows(2).all(|pair| pair[1] > pair[0]);
-            let (first, last) = (there.first().copied().unwrap_or(0.0), there.last().copied().unwrap_or(0.0));
+            let deviation =
+                (there.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / n).sqrt();
+            let increases = there.len() > 1
+                && there.len() == channel.values.len()
+                && there.windows(2).all(|pair| pair[1] > pair[0]);
+            let (first, last) =
+                (there.first().copied().unwrap_or(0.0), there.last().copied().unwrap_or(0.0));
             let step = (last - first) / (n - 1.0).max(1.0);
-            let even = increases && there.iter().enumerate().all(|(at, value)| (value - (first + step * at as f64)).abs() <= EVEN * step);
+            let even = increases
+                && there
+                    .iter()
+                    .enumerate()
+                    .all(|(at, value)| (value - (first + step * at as f64)).abs() <= EVEN * step);
             let unit_text = channel.unit.as_deref().unwrap_or("").trim().to_string();
             Look {
                 table: number,
@@ -64,11 +73,19 @@ pub fn look(number: usize, table: &Table) -> Vec<Look> {
 impl Look {
     /// `N; 200 Hz, 1794 rows; -3200 to 5100, mean 1130`
     pub fn in_words(&self) -> String {
-        let unit = if self.unit_text.is_empty() { "no unit".to_string() } else { self.unit_text.clone() };
-        let rate = self.rate.map_or_else(|| "rate not known".to_string(), |rate| format!("{} Hz", short(rate)));
-        let missing = if self.missing == 0 { String::new() } else { format!(", {} without a value", self.missing) };
-        let comment =
-            self.comment.as_ref().map_or_else(String::new, |comment| format!("; \"{}\"", comment.trim().replace(['\n', '\r'], " ")));
+        let unit =
+            if self.unit_text.is_empty() { "no unit".to_string() } else { self.unit_text.clone() };
+        let rate = self
+            .rate
+            .map_or_else(|| "rate not known".to_string(), |rate| format!("{} Hz", short(rate)));
+        let missing = if self.missing == 0 {
+            String::new()
+        } else {
+            format!(", {} without a value", self.missing)
+        };
+        let comment = self.comment.as_ref().map_or_else(String::new, |comment| {
+            format!("; \"{}\"", comment.trim().replace(['\n', '\r'], " "))
+        });
         if self.missing == self.rows {
             return format!("{unit}; {rate}, {} rows, no values{comment}", self.rows);
         }

@@ -1,5 +1,6 @@
-//! A mapping proposed from the files themselves: every channel with what was found in it, guesses with their reasons as comments, and
-//! `?` where a person must decide. A draft with open places does not pass the import.
+//! A mapping proposed from the files themselves: every channel with what was found in it, guesses
+//! with their reasons as comments, and `?` where a person must decide. A draft with open places
+//! does not pass the import.
 //!
 //! | file | content |
 //! |---|---|
@@ -83,13 +84,27 @@ fn from_folder(path: &str, folder: &Path) -> String {
     }
     let parts = |path: &Path| -> Option<Vec<String>> {
         let parts = path.components().filter(|part| *part != Component::CurDir);
-        parts.map(|part| if part == Component::ParentDir { None } else { Some(part.as_os_str().to_string_lossy().into_owned()) }).collect()
+        parts
+            .map(|part| {
+                if part == Component::ParentDir {
+                    None
+                } else {
+                    Some(part.as_os_str().to_string_lossy().into_owned())
+                }
+            })
+            .collect()
     };
     // A path that leads upwards is made absolute first; without a working folder it stays as it is.
     let absolute = |path: &Path| std::path::absolute(path).ok();
     let both = match (parts(Path::new(path)), parts(folder)) {
-        (Some(path), Some(of)) if Path::new(&path.join("/")).is_absolute() == folder.is_absolute() => Some((path, of)),
-        _ => absolute(Path::new(path)).zip(absolute(folder)).and_then(|(path, folder)| parts(&path).zip(parts(&folder))),
+        (Some(path), Some(of))
+            if Path::new(&path.join("/")).is_absolute() == folder.is_absolute() =>
+        {
+            Some((path, of))
+        }
+        _ => absolute(Path::new(path))
+            .zip(absolute(folder))
+            .and_then(|(path, folder)| parts(&path).zip(parts(&folder))),
     };
     let Some((path_parts, folder_parts)) = both else { return path.to_string() };
     let same = path_parts.iter().zip(&folder_parts).take_while(|(one, other)| one == other).count();
@@ -104,7 +119,8 @@ pub fn relative_to(groups: &mut [Group], folder: &Path) {
 
 /// Format and channels of a file; tables with the same channels count once.
 fn key(file: &File) -> Vec<String> {
-    let mut tables: Vec<String> = file.tables.iter().filter(|table| !table.channels.is_empty()).map(names).collect();
+    let mut tables: Vec<String> =
+        file.tables.iter().filter(|table| !table.channels.is_empty()).map(names).collect();
     tables.dedup();
     std::iter::once(file.format.word().to_string()).chain(tables).collect()
 }
@@ -115,13 +131,22 @@ fn names(table: &Table) -> String {
 
 fn group(paths: &[&Path]) -> Result<Group, Vec<Problem>> {
     let first = foreign::read(paths[0], &paths[0].display().to_string(), &Options::default())?;
-    let shown: Vec<String> = paths.iter().map(|path| path.display().to_string().replace('\\', "/")).collect();
-    let used: Vec<&Table> = first.tables.iter().filter(|table| !table.channels.is_empty() && table.rows > 1).collect();
+    let shown: Vec<String> =
+        paths.iter().map(|path| path.display().to_string().replace('\\', "/")).collect();
+    let used: Vec<&Table> =
+        first.tables.iter().filter(|table| !table.channels.is_empty() && table.rows > 1).collect();
     let alike = used.len() > 1 && used.iter().all(|table| names(table) == names(used[0]));
     let (files, table, sections, tables) = match (&shown[..], alike) {
-        ([one], true) => (one.clone(), Some("{section}".to_string()), used.iter().map(|table| table.name.clone()).collect(), 1),
+        ([one], true) => (
+            one.clone(),
+            Some("{section}".to_string()),
+            used.iter().map(|table| table.name.clone()).collect(),
+            1,
+        ),
         ([one], false) => {
-            let stem = paths[0].file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+            let stem = paths[0]
+                .file_stem()
+                .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
             (one.clone(), None, vec![stem], used.len())
         }
         _ => {
@@ -129,8 +154,22 @@ fn group(paths: &[&Path]) -> Result<Group, Vec<Problem>> {
             (pattern, None, sections, used.len())
         }
     };
-    let looks = used.iter().take(tables).enumerate().flat_map(|(number, table)| look(number, table)).collect();
-    Ok(Group { kind: side(&shown[0]), files, table, sections, first_path: shown[0].clone(), tables, looks, first })
+    let looks = used
+        .iter()
+        .take(tables)
+        .enumerate()
+        .flat_map(|(number, table)| look(number, table))
+        .collect();
+    Ok(Group {
+        kind: side(&shown[0]),
+        files,
+        table,
+        sections,
+        first_path: shown[0].clone(),
+        tables,
+        looks,
+        first,
+    })
 }
 
 /// Words in a path that say which side it is.
@@ -145,7 +184,8 @@ const SIDES: [(&str, RecordKind); 6] = [
 
 fn side(path: &str) -> Option<RecordKind> {
     let lower = path.to_lowercase();
-    let found: Vec<RecordKind> = SIDES.iter().filter(|(word, _)| lower.contains(word)).map(|(_, kind)| *kind).collect();
+    let found: Vec<RecordKind> =
+        SIDES.iter().filter(|(word, _)| lower.contains(word)).map(|(_, kind)| *kind).collect();
     found.first().copied().filter(|first| found.iter().all(|kind| kind == first))
 }
 
@@ -154,9 +194,12 @@ fn pattern(paths: &[String]) -> (String, Vec<String>) {
     let first: Vec<char> = paths[0].chars().collect();
     let all: Vec<Vec<char>> = paths.iter().map(|path| path.chars().collect()).collect();
     let shortest = all.iter().map(Vec::len).min().unwrap_or(0);
-    let mut before = (0..shortest).take_while(|&at| all.iter().all(|path| path[at] == first[at])).count();
+    let mut before =
+        (0..shortest).take_while(|&at| all.iter().all(|path| path[at] == first[at])).count();
     let from_end = |path: &[char], at: usize| path[path.len() - 1 - at];
-    let mut after = (0..shortest - before).take_while(|&at| all.iter().all(|path| from_end(path, at) == from_end(&first, at))).count();
+    let mut after = (0..shortest - before)
+        .take_while(|&at| all.iter().all(|path| from_end(path, at) == from_end(&first, at)))
+        .count();
     while before > 0 && first[before - 1].is_alphanumeric() {
         before -= 1;
     }
@@ -165,7 +208,10 @@ fn pattern(paths: &[String]) -> (String, Vec<String>) {
     }
     let text = |part: &[char]| part.iter().collect::<String>();
     let sections = all.iter().map(|path| text(&path[before..path.len() - after])).collect();
-    (format!("{}{{section}}{}", text(&first[..before]), text(&first[first.len() - after..])), sections)
+    (
+        format!("{}{{section}}{}", text(&first[..before]), text(&first[first.len() - after..])),
+        sections,
+    )
 }
 
 #[cfg(test)]
@@ -174,13 +220,17 @@ mod tests {
 
     #[test]
     fn what_differs_is_the_section() {
-        let of = |paths: &[&str]| pattern(&paths.iter().map(ToString::to_string).collect::<Vec<_>>());
+        let of =
+            |paths: &[&str]| pattern(&paths.iter().map(ToString::to_string).collect::<Vec<_>>());
         assert_eq!(
             of(&["raw/Messung_S01.csv", "raw/Messung_S06.csv"]),
             ("raw/Messung_{section}.csv".into(), vec!["S01".into(), "S06".into()])
         );
         assert_eq!(of(&["S1.dat", "S11.dat"]).1, ["S1", "S11"]);
-        assert_eq!(of(&["a/x.csv", "b/x.csv"]), ("{section}/x.csv".into(), vec!["a".into(), "b".into()]));
+        assert_eq!(
+            of(&["a/x.csv", "b/x.csv"]),
+            ("{section}/x.csv".into(), vec!["a".into(), "b".into()])
+        );
         let from = |path: &str, folder: &str| from_folder(path, Path::new(folder));
         assert_eq!(from("raw/a.csv", ""), "raw/a.csv");
         assert_eq!(from("raw/a.csv", "raw"), "a.csv");

@@ -15,7 +15,8 @@ pub struct Term {
     pub reversed: bool,
 }
 
-/// `Y_1L: -ST1 Y li`, or with more: `Y_1L: {from: ST1 Y li, unit: N, factor: -1.02, offset: 0.3 kN}`.
+/// `Y_1L: -ST1 Y li`, or with more: `Y_1L: {from: ST1 Y li, unit: N, factor: -1.02, offset: 0.3
+/// kN}`.
 #[derive(Clone, Debug)]
 pub struct ChannelMap {
     pub name: Spanned<String>,
@@ -53,23 +54,38 @@ pub(super) fn read(reader: &mut Reader<'_>, node: &Node) -> Option<Channels> {
         return Some(Channels::AsNamed);
     }
     let Value::Map(entries) = &node.value else {
-        let problem = Problem::error("wrong-kind", format!("`channels` must be a map of channels, not {}", node.kind_in_words()));
-        reader.problems.push(problem.at(&node.span).help(format!("write `channels: {AS_NAMED}` if every channel keeps its name")));
+        let problem = Problem::error(
+            "wrong-kind",
+            format!("`channels` must be a map of channels, not {}", node.kind_in_words()),
+        );
+        reader.problems.push(
+            problem
+                .at(&node.span)
+                .help(format!("write `channels: {AS_NAMED}` if every channel keeps its name")),
+        );
         return None;
     };
-    let maps: Vec<ChannelMap> = entries.iter().filter_map(|(key, node)| channel_map(reader, key, node)).collect();
+    let maps: Vec<ChannelMap> =
+        entries.iter().filter_map(|(key, node)| channel_map(reader, key, node)).collect();
     // A sum may use a channel that is also mapped alone; two single channels from one are a slip.
     let single = |map: &ChannelMap| map.terms.len() == 1;
     for (number, map) in maps.iter().enumerate().filter(|(_, map)| single(map)) {
         let same = |first: &&ChannelMap| {
             let table = |map: &ChannelMap| map.table.as_ref().map(|table| table.value.clone());
-            single(first) && first.terms[0].name.value == map.terms[0].name.value && table(first) == table(map)
+            single(first)
+                && first.terms[0].name.value == map.terms[0].name.value
+                && table(first) == table(map)
         };
         if let Some(first) = maps[..number].iter().find(same) {
-            let says = format!("`{}` is mapped twice: to `{}` and to `{}`", map.terms[0].name.value, first.name.value, map.name.value);
-            reader
-                .problems
-                .push(Problem::error("mapped-twice", says).at(&map.terms[0].name.span).also(&first.terms[0].name.span, "the first"));
+            let says = format!(
+                "`{}` is mapped twice: to `{}` and to `{}`",
+                map.terms[0].name.value, first.name.value, map.name.value
+            );
+            reader.problems.push(
+                Problem::error("mapped-twice", says)
+                    .at(&map.terms[0].name.span)
+                    .also(&first.terms[0].name.span, "the first"),
+            );
         }
     }
     Some(Channels::Maps(maps))
@@ -78,7 +94,15 @@ pub(super) fn read(reader: &mut Reader<'_>, node: &Node) -> Option<Channels> {
 /// One entry. A leading `-` reverses the sign of a channel.
 pub(super) fn channel_map(reader: &mut Reader<'_>, key: &Key, node: &Node) -> Option<ChannelMap> {
     let name = Spanned::new(key.text.clone(), key.span.clone());
-    let plain = |terms| ChannelMap { name: name.clone(), terms, table: None, unit: None, factor: 1.0, offset: None, written_in: None };
+    let plain = |terms| ChannelMap {
+        name: name.clone(),
+        terms,
+        table: None,
+        unit: None,
+        factor: 1.0,
+        offset: None,
+        written_in: None,
+    };
     if !matches!(node.value, Value::Map(_)) {
         let written = reader.text_of(node, &key.text)?;
         return Some(plain(vec![term(written)]));
@@ -89,11 +113,19 @@ pub(super) fn channel_map(reader: &mut Reader<'_>, key: &Key, node: &Node) -> Op
         (Some(from), true) => terms.push(term(from)),
         (None, false) => {}
         (Some(from), false) => {
-            reader.fault("contradiction", format!("`{}` is stated by `from` and by `sum of`", key.text), &from.span);
+            reader.fault(
+                "contradiction",
+                format!("`{}` is stated by `from` and by `sum of`", key.text),
+                &from.span,
+            );
             return None;
         }
         (None, true) => {
-            let problem = Problem::error("key-missing", format!("`{}` has no `from`: the channel in the file", key.text)).at(&node.span);
+            let problem = Problem::error(
+                "key-missing",
+                format!("`{}` has no `from`: the channel in the file", key.text),
+            )
+            .at(&node.span);
             reader.problems.push(problem);
             return None;
         }
@@ -119,25 +151,40 @@ pub(super) fn channel_map(reader: &mut Reader<'_>, key: &Key, node: &Node) -> Op
             stated.value.dimension.in_words(),
             written.value.dimension.in_words()
         );
-        reader.problems.push(Problem::error("unit-mismatch", says).at(&written.span).also(&stated.span, "in the file"));
+        reader.problems.push(
+            Problem::error("unit-mismatch", says)
+                .at(&written.span)
+                .also(&stated.span, "in the file"),
+        );
     }
     Some(ChannelMap { table, unit: stated, factor, offset, written_in, ..plain(terms) })
 }
 
-/// An offset must state its unit: it is added in the campaign, where the unit may be another than in the file.
+/// An offset must state its unit: it is added in the campaign, where the unit may be another than
+/// in the file.
 fn offset(reader: &mut Reader<'_>, node: &Node) -> Option<Spanned<(f64, Unit)>> {
     let written = reader.text(node, "offset")?;
     if written.value.contains(',')
-        && let Err(number::Refused { says, help: Some(help) }) = number::read(&written.value, &Unit::one())
+        && let Err(number::Refused { says, help: Some(help) }) =
+            number::read(&written.value, &Unit::one())
     {
-        reader.problems.push(Problem::error("wrong-number", format!("`offset`: {says}")).at(&written.span).help(help));
+        reader.problems.push(
+            Problem::error("wrong-number", format!("`offset`: {says}"))
+                .at(&written.span)
+                .help(help),
+        );
         return None;
     }
-    let at = written.value.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c))).unwrap_or(written.value.len());
+    let at = written
+        .value
+        .find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c)))
+        .unwrap_or(written.value.len());
     let unit = written.value[at..].trim();
     if unit.is_empty() {
         let problem = Problem::error("unit-missing", "the offset has no unit").at(&written.span);
-        reader.problems.push(problem.help(format!("write it, for instance `{} kN`", written.value)));
+        reader
+            .problems
+            .push(problem.help(format!("write it, for instance `{} kN`", written.value)));
         return None;
     }
     let unit = reader.unit(&Spanned::new(unit.to_string(), written.span.clone()))?;
@@ -164,8 +211,10 @@ fn term(written: Spanned<String>) -> Term {
 impl ChannelMap {
     /// `-1.02 (ST1 Y li) + 0.3 kN`, for the account of what was done.
     pub fn in_words(&self) -> String {
-        let one = |term: &Term| format!("{}{}", if term.reversed { "-" } else { "" }, term.name.value);
-        let mut words = self.terms.iter().map(one).collect::<Vec<_>>().join(" + ").replace("+ -", "- ");
+        let one =
+            |term: &Term| format!("{}{}", if term.reversed { "-" } else { "" }, term.name.value);
+        let mut words =
+            self.terms.iter().map(one).collect::<Vec<_>>().join(" + ").replace("+ -", "- ");
         if self.factor != 1.0 {
             words = format!("{} ({words})", self.factor);
         }

@@ -1,5 +1,5 @@
-//! Conventions: how channels are called, and which are exchanged when the other end of the vehicle leads. They are data: a shipped
-//! file, a file of the user, or a block of the mapping.
+//! Conventions: how channels are called, and which are exchanged when the other end of the vehicle
+//! leads. They are data: a shipped file, a file of the user, or a block of the mapping.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -88,19 +88,34 @@ pub fn find(name: &Spanned<String>, folder: &Path, problems: &mut Problems) -> O
 
 fn shipped(name: &str) -> Result<Arc<Source>, Problem> {
     let found = library::CONVENTIONS.iter().find(|shipped| shipped.name == name);
-    found.map(|shipped| Source::new(format!("conventions/{name}.yaml"), shipped.text)).ok_or_else(|| {
-        let problem = Problem::error("no-such-convention", format!("there is no file and no shipped convention `{name}`"));
-        problem.suggest(name, library::CONVENTIONS.iter().map(|shipped| shipped.name))
-    })
+    found.map(|shipped| Source::new(format!("conventions/{name}.yaml"), shipped.text)).ok_or_else(
+        || {
+            let problem = Problem::error(
+                "no-such-convention",
+                format!("there is no file and no shipped convention `{name}`"),
+            );
+            problem.suggest(name, library::CONVENTIONS.iter().map(|shipped| shipped.name))
+        },
+    )
 }
 
 fn convention(reader: &mut Reader<'_>, tree: &Node) -> Convention {
-    reader.keys(tree, &["convention", "title", "names", "common mean", "opposite mean", "turning"], "a convention");
-    let name = reader.need_text(tree, "convention", "its name").map_or_else(String::new, |name| name.value);
+    reader.keys(
+        tree,
+        &["convention", "title", "names", "common mean", "opposite mean", "turning"],
+        "a convention",
+    );
+    let name = reader
+        .need_text(tree, "convention", "its name")
+        .map_or_else(String::new, |name| name.value);
     let mut names = Vec::new();
     for (key, node) in tree.get("names").map_or(&[][..], Node::entries) {
         let list = match &node.value {
-            Value::List(items) => items.iter().filter_map(|item| reader.text_of(item, &key.text)).map(|text| text.value).collect(),
+            Value::List(items) => items
+                .iter()
+                .filter_map(|item| reader.text_of(item, &key.text))
+                .map(|text| text.value)
+                .collect(),
             _ => reader.text_of(node, &key.text).into_iter().map(|text| text.value).collect(),
         };
         names.push((key.text.clone(), list));
@@ -113,7 +128,9 @@ fn convention(reader: &mut Reader<'_>, tree: &Node) -> Convention {
             reader.fault("wrong-kind", "`within` must be a factor above 1", &node.span);
         }
         common.push(Common {
-            title: reader.need_text(node, "title", "what the group is").map_or_else(String::new, |text| text.value),
+            title: reader
+                .need_text(node, "title", "what the group is")
+                .map_or_else(String::new, |text| text.value),
             channels: reader.texts(node, "channels").into_iter().map(|text| text.value).collect(),
             within: within.unwrap_or(1.0),
             above: reader.text(node, "above").map_or_else(String::new, |text| text.value),
@@ -124,11 +141,14 @@ fn convention(reader: &mut Reader<'_>, tree: &Node) -> Convention {
         reader.keys(node, &["title", "pairs"], "a group with opposite means");
         let pairs = node.get("pairs").map_or(&[][..], Node::entries);
         opposite.push(Opposite {
-            title: reader.need_text(node, "title", "what the group is").map_or_else(String::new, |text| text.value),
+            title: reader
+                .need_text(node, "title", "what the group is")
+                .map_or_else(String::new, |text| text.value),
             pairs: pairs.iter().map(|(key, node)| (key.text.clone(), node.raw.clone())).collect(),
         });
     }
-    let turning = tree.get("turning").map(|node| Turning { from: name.clone(), ..block(reader, node) });
+    let turning =
+        tree.get("turning").map(|node| Turning { from: name.clone(), ..block(reader, node) });
     Convention { name, names, common, opposite, turning }
 }
 
@@ -140,7 +160,11 @@ pub(super) fn turning(reader: &mut Reader<'_>, node: &Node, folder: &Path) -> Op
     let named = reader.text_of(node, "turning")?;
     let found = find(&named, folder, reader.problems)?;
     if found.turning.is_none() {
-        reader.fault("key-missing", format!("the convention `{}` states no `turning`", named.value), &named.span);
+        reader.fault(
+            "key-missing",
+            format!("the convention `{}` states no `turning`", named.value),
+            &named.span,
+        );
     }
     found.turning
 }
@@ -152,7 +176,10 @@ fn block(reader: &mut Reader<'_>, node: &Node) -> Turning {
         let Some(other) = reader.text_of(value, &key.text) else { continue };
         let taken = |name: &str| exchange.iter().any(|(one, two)| one == name || two == name);
         if taken(&key.text) || taken(&other.value) || key.text == other.value {
-            let says = format!("`{}` and `{}`: a channel is exchanged with one other channel", key.text, other.value);
+            let says = format!(
+                "`{}` and `{}`: a channel is exchanged with one other channel",
+                key.text, other.value
+            );
             reader.fault("mapped-twice", says, &other.span);
             continue;
         }

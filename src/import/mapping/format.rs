@@ -6,8 +6,17 @@ use crate::problem::Problem;
 use crate::source::Spanned;
 use crate::yaml::Node;
 
-pub(super) const KEYS: [&str; 9] =
-    ["form", "separator", "decimal", "encoding", "header lines", "line of names", "line of units", "comment", "dates"];
+pub(super) const KEYS: [&str; 9] = [
+    "form",
+    "separator",
+    "decimal",
+    "encoding",
+    "header lines",
+    "line of names",
+    "line of units",
+    "comment",
+    "dates",
+];
 /// Separators that are written as words.
 const WORDS: [(&str, Separator); 5] = [
     ("comma", Separator::Mark(',')),
@@ -25,7 +34,10 @@ pub(super) fn read(reader: &mut Reader<'_>, node: &Node) -> Options {
     options.form = word(reader, node, "form", Format::from_word, &Format::ALL.map(Format::word));
     let separator = |text: &str| {
         let mut letters = text.chars();
-        let single = letters.next().filter(|letter| letters.next().is_none() && !letter.is_alphanumeric()).map(Separator::Mark);
+        let single = letters
+            .next()
+            .filter(|letter| letters.next().is_none() && !letter.is_alphanumeric())
+            .map(Separator::Mark);
         WORDS.iter().find(|(word, _)| *word == text).map(|(_, separator)| *separator).or(single)
     };
     options.separator = word(reader, node, "separator", separator, &WORDS.map(|(word, _)| word));
@@ -44,7 +56,13 @@ pub(super) fn read(reader: &mut Reader<'_>, node: &Node) -> Options {
     options
 }
 
-fn word<T>(reader: &mut Reader<'_>, node: &Node, key: &str, read: impl Fn(&str) -> Option<T>, known: &[&str]) -> Option<T> {
+fn word<T>(
+    reader: &mut Reader<'_>,
+    node: &Node,
+    key: &str,
+    read: impl Fn(&str) -> Option<T>,
+    known: &[&str],
+) -> Option<T> {
     let Spanned { value, span } = reader.text(node, key)?;
     let found = read(&value);
     if found.is_none() {

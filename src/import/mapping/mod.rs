@@ -1,4 +1,5 @@
-//! A mapping: what the channels of foreign records are in a campaign, as an engineer states it in a YAML file.
+//! A mapping: what the channels of foreign records are in a campaign, as an engineer states it in a
+//! YAML file.
 
 pub mod agree;
 mod channels;

@@ -37,14 +37,26 @@ impl Reader<'_> {
     }
 
     /// As [`Self::keys`], with what is to be said of keys that stand elsewhere.
-    pub fn keys_or(&mut self, node: &Node, known: &[&str], what: &str, elsewhere: impl Fn(&Key, &Node) -> Option<String>) -> bool {
+    pub fn keys_or(
+        &mut self,
+        node: &Node,
+        known: &[&str],
+        what: &str,
+        elsewhere: impl Fn(&Key, &Node) -> Option<String>,
+    ) -> bool {
         if !matches!(node.value, Value::Map(_)) {
-            self.fault("wrong-kind", format!("{what} must be a map of keys and values, not {}", node.kind_in_words()), &node.span);
+            self.fault(
+                "wrong-kind",
+                format!("{what} must be a map of keys and values, not {}", node.kind_in_words()),
+                &node.span,
+            );
             return false;
         }
         for (key, value) in node.entries() {
             if !known.contains(&key.text.as_str()) {
-                let problem = Problem::error("unknown-key", format!("{what} has no key `{}`", key.text)).at(&key.span);
+                let problem =
+                    Problem::error("unknown-key", format!("{what} has no key `{}`", key.text))
+                        .at(&key.span);
                 self.problems.push(match elsewhere(key, value) {
                     Some(help) => problem.help(help),
                     None => problem.suggest(&key.text, known.iter().copied()),
@@ -56,12 +68,23 @@ impl Reader<'_> {
 
     pub fn text_of(&mut self, node: &Node, key: &str) -> Option<Spanned<String>> {
         match node.scalar_text().map(str::trim) {
-            Some(text) if !text.is_empty() => Some(Spanned::new(text.to_string(), node.span.clone())),
+            Some(text) if !text.is_empty() => {
+                Some(Spanned::new(text.to_string(), node.span.clone()))
+            }
             _ => {
-                let problem = Problem::error("wrong-kind", format!("`{key}` must be text, not {}", node.kind_in_words())).at(&node.span);
+                let problem = Problem::error(
+                    "wrong-kind",
+                    format!("`{key}` must be text, not {}", node.kind_in_words()),
+                )
+                .at(&node.span);
                 // `{section}` alone is a map for YAML.
-                let braces = matches!(node.entries(), [(_, value)] if matches!(value.value, Value::Null));
-                self.problems.push(if braces { problem.help(slips::quoted(key, node.span.text())) } else { problem });
+                let braces =
+                    matches!(node.entries(), [(_, value)] if matches!(value.value, Value::Null));
+                self.problems.push(if braces {
+                    problem.help(slips::quoted(key, node.span.text()))
+                } else {
+                    problem
+                });
                 None
             }
         }
@@ -74,7 +97,8 @@ impl Reader<'_> {
 
     pub fn need_text(&mut self, node: &Node, key: &str, means: &str) -> Option<Spanned<String>> {
         if node.get(key).is_none() {
-            let problem = Problem::error("key-missing", format!("`{key}` is missing: {means}")).at(&node.span.part(0..0));
+            let problem = Problem::error("key-missing", format!("`{key}` is missing: {means}"))
+                .at(&node.span.part(0..0));
             self.problems.push(problem.help(format!("write `{key}: ...`")));
             return None;
         }
@@ -99,14 +123,24 @@ impl Reader<'_> {
     pub fn number_of(&mut self, node: &Node, key: &str, unit: &Unit) -> Option<f64> {
         let written = self.text_of(node, key)?;
         match number::read(&written.value, unit) {
-            Ok(read) if read.unit_stated || unit.dimension == Unit::one().dimension => Some(read.si),
+            Ok(read) if read.unit_stated || unit.dimension == Unit::one().dimension => {
+                Some(read.si)
+            }
             Ok(_) => {
-                let problem = Problem::error("unit-missing", format!("`{key}` has no unit; it is {}", unit.dimension.in_words()));
-                self.problems.push(problem.at(&written.span).help(format!("write `{} {unit}`, if that is meant", written.value)));
+                let problem = Problem::error(
+                    "unit-missing",
+                    format!("`{key}` has no unit; it is {}", unit.dimension.in_words()),
+                );
+                self.problems.push(
+                    problem
+                        .at(&written.span)
+                        .help(format!("write `{} {unit}`, if that is meant", written.value)),
+                );
                 None
             }
             Err(refused) => {
-                let problem = Problem::error("wrong-number", format!("`{key}`: {}", refused.says)).at(&written.span);
+                let problem = Problem::error("wrong-number", format!("`{key}`: {}", refused.says))
+                    .at(&written.span);
                 self.problems.push(match refused.help {
                     Some(help) => problem.help(help),
                     None => problem,
@@ -119,7 +153,11 @@ impl Reader<'_> {
     pub fn unit(&mut self, written: &Spanned<String>) -> Option<Unit> {
         Unit::parse(&written.value)
             .map_err(|unknown| {
-                let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word)).at(&written.span);
+                let problem = Problem::error(
+                    "unknown-unit",
+                    format!("`{}` is not a known unit", unknown.word),
+                )
+                .at(&written.span);
                 self.problems.push(match unknown.near {
                     Some(near) => problem.help(format!("did you mean `{near}`?")),
                     None => problem,

@@ -31,16 +31,21 @@ impl Sections {
     }
 
     pub fn columns(&self) -> impl Iterator<Item = &str> {
-        self.table.iter().flat_map(|(_, table)| table.columns.iter().map(|column| column.name.as_str()))
+        self.table
+            .iter()
+            .flat_map(|(_, table)| table.columns.iter().map(|column| column.name.as_str()))
     }
 
-    /// Placeholders of a path must be known: `{section}`, of runs `{run}`, or a column of the table of sections.
+    /// Placeholders of a path must be known: `{section}`, of runs `{run}`, or a column of the table
+    /// of sections.
     pub(super) fn check_placeholders(&self, written: &Spanned<String>, reader: &mut Reader<'_>) {
         for name in placeholders(&written.value) {
             if name != self.word && !self.has_column(name) {
                 let says = match self.word {
                     "run" => format!("`{{{name}}}` is not `{{run}}`"),
-                    word => format!("`{{{name}}}` is neither `{{{word}}}` nor a column of the table of sections"),
+                    word => format!(
+                        "`{{{name}}}` is neither `{{{word}}}` nor a column of the table of sections"
+                    ),
                 };
                 let problem = Problem::error("unknown-placeholder", says);
                 let known = std::iter::once(self.word).chain(self.columns());
@@ -64,13 +69,17 @@ impl Sections {
     /// # Errors
     /// Of the column; the cell is empty.
     pub fn number(&self, section: &str, column: &str) -> Result<f64, Problem> {
-        let (_, table) =
-            self.table.as_ref().ok_or_else(|| Problem::error("no-sections", "there is no table of sections").at(&self.span))?;
-        let numbers = table.numbers(table.need_column(column)?, Some(metre().dimension)).map_err(|mut problems| problems.swap_remove(0))?;
+        let (_, table) = self.table.as_ref().ok_or_else(|| {
+            Problem::error("no-sections", "there is no table of sections").at(&self.span)
+        })?;
+        let numbers = table
+            .numbers(table.need_column(column)?, Some(metre().dimension))
+            .map_err(|mut problems| problems.swap_remove(0))?;
         let row = table.row_named(section);
         row.and_then(|row| numbers.get(row).copied().flatten()).ok_or_else(|| {
             let place = self.cell(section, column).map_or(&self.span, |cell| &cell.span);
-            Problem::error("not-a-number", format!("{} `{section}` has no `{column}`", self.word)).at(place)
+            Problem::error("not-a-number", format!("{} `{section}` has no `{column}`", self.word))
+                .at(place)
         })
     }
 
@@ -90,7 +99,11 @@ impl Sections {
                 rest = after;
                 continue;
             };
-            out.push_str(if name == self.word { section } else { self.cell(section, name).map_or("", |cell| cell.value.as_str()) });
+            out.push_str(if name == self.word {
+                section
+            } else {
+                self.cell(section, name).map_or("", |cell| cell.value.as_str())
+            });
             rest = after;
         }
         out + rest
@@ -99,22 +112,35 @@ impl Sections {
 
 pub(super) fn read(reader: &mut Reader<'_>, tree: &Node, folder: &Path) -> Option<Sections> {
     let Some(node) = tree.get("sections") else {
-        let problem =
-            Problem::error("key-missing", "`sections` is missing: the table of sections, or their names").at(&tree.span.part(0..0));
+        let problem = Problem::error(
+            "key-missing",
+            "`sections` is missing: the table of sections, or their names",
+        )
+        .at(&tree.span.part(0..0));
         reader.problems.push(problem.help("write `sections: sections.csv`, or `sections: [S01, S02]` where whole records are evaluated"));
         return None;
     };
     if let Value::List(items) = &node.value {
-        let names: Vec<Cell> = items.iter().filter_map(|item| reader.text_of(item, "sections")).collect();
+        let names: Vec<Cell> =
+            items.iter().filter_map(|item| reader.text_of(item, "sections")).collect();
         let before = reader.problems.errors();
         for (number, name) in names.iter().enumerate() {
             if let Some(first) = names[..number].iter().find(|first| first.value == name.value) {
-                let problem = Problem::error("duplicate-name", format!("two sections are called `{}`", name.value)).at(&name.span);
+                let problem = Problem::error(
+                    "duplicate-name",
+                    format!("two sections are called `{}`", name.value),
+                )
+                .at(&name.span);
                 reader.problems.push(problem.also(&first.span, "the first of them"));
             }
         }
         check(reader.problems, &names);
-        return (reader.problems.errors() == before).then_some(Sections { table: None, names, span: node.span.clone(), word: NAME });
+        return (reader.problems.errors() == before).then_some(Sections {
+            table: None,
+            names,
+            span: node.span.clone(),
+            word: NAME,
+        });
     }
     let written = reader.text_of(node, "sections")?;
     let path = folder.join(&written.value);
@@ -138,9 +164,14 @@ pub(super) fn read(reader: &mut Reader<'_>, tree: &Node, folder: &Path) -> Optio
 /// Names become names of files.
 pub(super) fn check(problems: &mut Problems, names: &[Cell]) {
     for name in names {
-        let bad = name.value.contains(['/', '\\', ':']) || name.value.starts_with('.') || name.value.chars().any(char::is_control);
+        let bad = name.value.contains(['/', '\\', ':'])
+            || name.value.starts_with('.')
+            || name.value.chars().any(char::is_control);
         if bad || name.value.is_empty() || name.value.len() > 200 {
-            let says = format!("`{}` becomes the name of a file and must not contain `/`, `\\` or `:` or begin with a point", name.value);
+            let says = format!(
+                "`{}` becomes the name of a file and must not contain `/`, `\\` or `:` or begin with a point",
+                name.value
+            );
             problems.push(Problem::error("path-outside", says).at(&name.span));
         }
     }
@@ -149,8 +180,12 @@ pub(super) fn check(problems: &mut Problems, names: &[Cell]) {
 /// A section that the mapping names must exist.
 pub(super) fn known(reader: &mut Reader<'_>, sections: &Sections, name: &str, span: &Span) {
     if !sections.names.is_empty() && !sections.names.iter().any(|known| known.value == name) {
-        let problem = Problem::error("unknown-section", format!("there is no {} `{name}`", sections.word)).at(span);
-        reader.problems.push(problem.suggest(name, sections.names.iter().map(|known| known.value.as_str())));
+        let problem =
+            Problem::error("unknown-section", format!("there is no {} `{name}`", sections.word))
+                .at(span);
+        reader
+            .problems
+            .push(problem.suggest(name, sections.names.iter().map(|known| known.value.as_str())));
     }
 }
 

@@ -4,11 +4,13 @@ use crate::problem::{Problem, Problems};
 use crate::source::{Source, Span};
 use crate::yaml::{Key, Node, Value};
 
-/// `{offset: 0,3 kN}` is a map with a key `3 kN` for YAML. The comma is told, and the number is read as it was meant, so that nothing else
-/// is said of it.
+/// `{offset: 0,3 kN}` is a map with a key `3 kN` for YAML. The comma is told, and the number is
+/// read as it was meant, so that nothing else is said of it.
 pub(super) fn decimal_commas(node: Node, problems: &mut Problems) -> Node {
     let value = match node.value {
-        Value::List(items) => Value::List(items.into_iter().map(|item| decimal_commas(item, problems)).collect()),
+        Value::List(items) => {
+            Value::List(items.into_iter().map(|item| decimal_commas(item, problems)).collect())
+        }
         Value::Map(entries) => {
             let mut mended: Vec<(Key, Node)> = Vec::new();
             for (key, value) in entries {
@@ -16,10 +18,21 @@ pub(super) fn decimal_commas(node: Node, problems: &mut Problems) -> Node {
                     Some((number, whole)) if is_rest(&key, &value) && is_whole(whole) => {
                         let text = format!("{}.{}", whole.raw, key.text);
                         let span = whole.span.to(&key.span);
-                        let says =
-                            format!("`{}: {},{}` has a decimal comma; numbers are written with a point", number.text, whole.raw, key.text);
-                        problems.push(Problem::error("decimal-comma", says).at(&span).help(format!("write `{}: {text}`", number.text)));
-                        *whole = Node { value: Value::Text(text.clone()), raw: text, span, exact: false };
+                        let says = format!(
+                            "`{}: {},{}` has a decimal comma; numbers are written with a point",
+                            number.text, whole.raw, key.text
+                        );
+                        problems.push(
+                            Problem::error("decimal-comma", says)
+                                .at(&span)
+                                .help(format!("write `{}: {text}`", number.text)),
+                        );
+                        *whole = Node {
+                            value: Value::Text(text.clone()),
+                            raw: text,
+                            span,
+                            exact: false,
+                        };
                     }
                     _ => mended.push((key, decimal_commas(value, problems))),
                 }
@@ -32,12 +45,15 @@ pub(super) fn decimal_commas(node: Node, problems: &mut Problems) -> Node {
 }
 
 fn is_rest(key: &Key, value: &Node) -> bool {
-    key.text.starts_with(|letter: char| letter.is_ascii_digit()) && matches!(value.value, Value::Null)
+    key.text.starts_with(|letter: char| letter.is_ascii_digit())
+        && matches!(value.value, Value::Null)
 }
 
 fn is_whole(node: &Node) -> bool {
     let digits = node.raw.trim_start_matches(['+', '-']);
-    node.scalar_text().is_some() && !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit())
+    node.scalar_text().is_some()
+        && !digits.is_empty()
+        && digits.bytes().all(|byte| byte.is_ascii_digit())
 }
 
 /// Help for a line such as `files: {section}.csv`, at which YAML stops.
@@ -69,8 +85,12 @@ mod tests {
         let mut problems = Problems::default();
         let source = Source::new("m", "a: {offset: 0,3 kN, factor: -1,02}\nb: {S01: 1, S02: }\n");
         let tree = decimal_commas(yaml::load(&source, &mut problems).expect("YAML"), &mut problems);
-        let entry = |key: &str| tree.get("a").and_then(|node| node.get(key)).map(|node| node.raw.clone());
-        assert_eq!((entry("offset").as_deref(), entry("factor").as_deref()), (Some("0.3 kN"), Some("-1.02")));
+        let entry =
+            |key: &str| tree.get("a").and_then(|node| node.get(key)).map(|node| node.raw.clone());
+        assert_eq!(
+            (entry("offset").as_deref(), entry("factor").as_deref()),
+            (Some("0.3 kN"), Some("-1.02"))
+        );
         let said: Vec<_> = problems.0.iter().filter_map(|problem| problem.help.clone()).collect();
         assert_eq!(said, ["write `offset: 0.3 kN`", "write `factor: -1.02`"]);
         assert_eq!(tree.get("b").map_or(0, |node| node.entries().len()), 2);

@@ -19,7 +19,13 @@ pub enum Stated {
 }
 
 /// `69.02 m`; `{fact: x_start, unit: m}`; `{column: chainage}`; `{S01: 69.02 m, S06: 113 m}`.
-pub(super) fn read(reader: &mut Reader<'_>, node: &Node, key: &str, unit: &Unit, sections: &Sections) -> Option<Stated> {
+pub(super) fn read(
+    reader: &mut Reader<'_>,
+    node: &Node,
+    key: &str,
+    unit: &Unit,
+    sections: &Sections,
+) -> Option<Stated> {
     let Value::Map(entries) = &node.value else {
         return reader.number_of(node, key, unit).map(Stated::Number);
     };
@@ -29,7 +35,11 @@ pub(super) fn read(reader: &mut Reader<'_>, node: &Node, key: &str, unit: &Unit,
         let written = reader.need_text(node, "unit", "the unit of the fact")?;
         let stated = reader.unit(&written)?;
         if stated.dimension != unit.dimension {
-            let says = format!("`{key}` is {}, and {stated} is {}", unit.dimension.in_words(), stated.dimension.in_words());
+            let says = format!(
+                "`{key}` is {}, and {stated} is {}",
+                unit.dimension.in_words(),
+                stated.dimension.in_words()
+            );
             reader.fault("unit-mismatch", says, &written.span);
             return None;
         }
@@ -39,8 +49,13 @@ pub(super) fn read(reader: &mut Reader<'_>, node: &Node, key: &str, unit: &Unit,
         reader.keys(node, &["column"], &format!("`{key}` from the table of sections"));
         let column = reader.text(node, "column")?;
         if !sections.has_column(&column.value) {
-            let problem = Problem::error("unknown-column", format!("the table of sections has no column `{}`", column.value));
-            reader.problems.push(problem.at(&column.span).suggest(&column.value, sections.columns()));
+            let problem = Problem::error(
+                "unknown-column",
+                format!("the table of sections has no column `{}`", column.value),
+            );
+            reader
+                .problems
+                .push(problem.at(&column.span).suggest(&column.value, sections.columns()));
             return None;
         }
         return Some(Stated::Column(column));
@@ -58,10 +73,17 @@ impl Stated {
     ///
     /// # Errors
     /// The fact or the cell is missing, or is no number.
-    pub fn of(&self, section: &str, sections: &Sections, facts: &[(String, String)]) -> Result<Option<f64>, Problem> {
+    pub fn of(
+        &self,
+        section: &str,
+        sections: &Sections,
+        facts: &[(String, String)],
+    ) -> Result<Option<f64>, Problem> {
         match self {
             Self::Number(value) => Ok(Some(*value)),
-            Self::BySection(values) => Ok(values.iter().find(|(name, _)| name == section).map(|(_, value)| *value)),
+            Self::BySection(values) => {
+                Ok(values.iter().find(|(name, _)| name == section).map(|(_, value)| *value))
+            }
             Self::Column(column) => {
                 if sections.cell(section, &column.value).is_some_and(|cell| cell.value.is_empty()) {
                     return Ok(None);
@@ -70,13 +92,26 @@ impl Stated {
             }
             Self::Fact(name, unit) => {
                 let Some((_, text)) = facts.iter().find(|(known, _)| *known == name.value) else {
-                    let problem =
-                        Problem::error("unknown-fact", format!("{} `{section}`: the file states no `{}`", sections.word, name.value));
-                    return Err(problem.at(&name.span).suggest(&name.value, facts.iter().map(|(known, _)| known.as_str())));
+                    let problem = Problem::error(
+                        "unknown-fact",
+                        format!(
+                            "{} `{section}`: the file states no `{}`",
+                            sections.word, name.value
+                        ),
+                    );
+                    return Err(problem
+                        .at(&name.span)
+                        .suggest(&name.value, facts.iter().map(|(known, _)| known.as_str())));
                 };
                 number::read(text, unit).map(|read| Some(read.si)).map_err(|refused| {
-                    Problem::error("wrong-number", format!("{} `{section}`, `{}`: {}", sections.word, name.value, refused.says))
-                        .at(&name.span)
+                    Problem::error(
+                        "wrong-number",
+                        format!(
+                            "{} `{section}`, `{}`: {}",
+                            sections.word, name.value, refused.says
+                        ),
+                    )
+                    .at(&name.span)
                 })
             }
         }

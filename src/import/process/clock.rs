@@ -10,10 +10,11 @@ use crate::metrics::{resample, sinc};
 use crate::problem::Problem;
 use crate::units::{Dimension, Unit};
 
-/// A rate within this share of another is the same: rates are rounded, and clocks differ by less than 0.01 %.
+/// A rate within this share of another is the same: rates are rounded, and clocks differ by less
+/// than 0.01 %.
 pub const SAME_RATE: f64 = 1e-3;
-/// Largest deviation of a time from even steps, as a share of a step, for a filter to apply. Times rounded to milliseconds at 200 Hz
-/// deviate by a tenth.
+/// Largest deviation of a time from even steps, as a share of a step, for a filter to apply. Times
+/// rounded to milliseconds at 200 Hz deviate by a tenth.
 const EVEN: f64 = 0.2;
 
 /// The times of a table in s, increasing, and its rate.
@@ -48,29 +49,50 @@ impl Clock {
 }
 
 /// The times of a table, with the shift and the drift of the mapping.
-pub fn clock(of: &Of<'_>, table: &Table, alone: bool, facts: &[(String, String)]) -> Result<Clock, Problem> {
+pub fn clock(
+    of: &Of<'_>,
+    table: &Table,
+    alone: bool,
+    facts: &[(String, String)],
+) -> Result<Clock, Problem> {
     let time = &of.side.time;
     let named = |name: &str| table.channels.iter().find(|channel| channel.name == name);
-    let which = if table.name.is_empty() { String::new() } else { format!(", table `{}`", table.name) };
+    let which =
+        if table.name.is_empty() { String::new() } else { format!(", table `{}`", table.name) };
     let found = time.from.iter().find_map(|name| named(&name.value).map(|channel| (name, channel)));
     let mut factor = 1.0;
     let mut times = match (found, time.from.first()) {
         (Some((name, channel)), _) => {
             let text = channel.unit.as_deref().map(str::trim).filter(|text| !text.is_empty());
-            let stated = text.and_then(|text| of.side.units.iter().find(|(known, _)| known == text).map(|(_, unit)| unit.clone()));
-            let unit = time.unit.as_ref().map(|unit| unit.value.clone()).or(stated).or_else(|| Unit::parse(text?).ok());
+            let stated = text.and_then(|text| {
+                of.side.units.iter().find(|(known, _)| known == text).map(|(_, unit)| unit.clone())
+            });
+            let unit = time
+                .unit
+                .as_ref()
+                .map(|unit| unit.value.clone())
+                .or(stated)
+                .or_else(|| Unit::parse(text?).ok());
             let Some(unit) = unit.filter(|unit| unit.dimension == Dimension::TIME) else {
-                let unit = text.map_or_else(|| "no unit".to_string(), |text| format!("the unit `{text}`"));
-                let problem =
-                    Problem::error("unit-missing", format!("`{}`{which}: the time `{}` has {unit}", of.shown, name.value)).at(&name.span);
-                return Err(problem.help(format!("write its unit: `time: {{from: {}, unit: s}}`", name.value)));
+                let unit =
+                    text.map_or_else(|| "no unit".to_string(), |text| format!("the unit `{text}`"));
+                let problem = Problem::error(
+                    "unit-missing",
+                    format!("`{}`{which}: the time `{}` has {unit}", of.shown, name.value),
+                )
+                .at(&name.span);
+                return Err(problem
+                    .help(format!("write its unit: `time: {{from: {}, unit: s}}`", name.value)));
             };
             factor = unit.factor;
             channel.values.iter().map(|value| unit.to_si(*value)).collect::<Vec<f64>>()
         }
         (None, Some(first)) => {
             let known = table.channels.iter().map(|channel| channel.name.as_str());
-            let problem = Problem::error("unknown-channel", format!("`{}`{which} has no channel `{}`", of.shown, first.value));
+            let problem = Problem::error(
+                "unknown-channel",
+                format!("`{}`{which} has no channel `{}`", of.shown, first.value),
+            );
             let problem = problem.at(&first.span);
             let near = problem.clone().suggest(&first.value, known.clone());
             return Err(match near.near {
@@ -82,11 +104,18 @@ pub fn clock(of: &Of<'_>, table: &Table, alone: bool, facts: &[(String, String)]
         (None, None) => {
             let Some(rate) = time.rate.or(table.rate).filter(|rate| *rate > 0.0 && alone) else {
                 let says = match alone {
-                    true => format!("`{}`{which} states neither a time nor a sampling rate", of.shown),
-                    false => format!("`{}`: the channels are in several tables, and the mapping does not say what their time is", of.shown),
+                    true => {
+                        format!("`{}`{which} states neither a time nor a sampling rate", of.shown)
+                    }
+                    false => format!(
+                        "`{}`: the channels are in several tables, and the mapping does not say what their time is",
+                        of.shown
+                    ),
                 };
                 let problem = Problem::error("time-missing", says).at(&time.span);
-                return Err(problem.help("write `time: NAME`, the channel of the time, or `time: {rate: 200 Hz}`"));
+                return Err(problem.help(
+                    "write `time: NAME`, the channel of the time, or `time: {rate: 200 Hz}`",
+                ));
             };
             (0..table.rows).map(|row| row as f64 / rate).collect()
         }
@@ -94,24 +123,53 @@ pub fn clock(of: &Of<'_>, table: &Table, alone: bool, facts: &[(String, String)]
     increasing(of, table, &times, &which)?;
     // Before a shift, which would hide that the stamps are rounded.
     let Steps { usual, gaps, uneven, .. } = checks::steps(&times, factor);
-    let gaps = gaps.first().map(|&at| Gaps { row: table.first_row + at, from: times[at], to: times[at + 1], count: gaps.len() });
-    let shift = time.shift.as_ref().map(|shift| shift.of(of.section, &of.mapping.sections, facts)).transpose()?.flatten().unwrap_or(0.0);
+    let gaps = gaps.first().map(|&at| Gaps {
+        row: table.first_row + at,
+        from: times[at],
+        to: times[at + 1],
+        count: gaps.len(),
+    });
+    let shift = time
+        .shift
+        .as_ref()
+        .map(|shift| shift.of(of.section, &of.mapping.sections, facts))
+        .transpose()?
+        .flatten()
+        .unwrap_or(0.0);
     times.iter_mut().for_each(|at| *at = *at / (1.0 + time.drift) + shift);
     let (first, last) = (times[0], times[times.len() - 1]);
-    let rate = if gaps.is_some() { (1.0 + time.drift) / usual } else { (times.len() - 1) as f64 / (last - first) };
-    let even = times.iter().enumerate().all(|(at, time)| (time - (first + at as f64 / rate)).abs() * rate <= EVEN);
+    let rate = if gaps.is_some() {
+        (1.0 + time.drift) / usual
+    } else {
+        (times.len() - 1) as f64 / (last - first)
+    };
+    let even = times
+        .iter()
+        .enumerate()
+        .all(|(at, time)| (time - (first + at as f64 / rate)).abs() * rate <= EVEN);
     Ok(Clock { times, rate, even, uneven: uneven.is_some() || gaps.is_some(), gaps })
 }
 
 fn increasing(of: &Of<'_>, table: &Table, times: &[f64], which: &str) -> Result<(), Problem> {
     if times.len() < 2 {
-        return Err(Problem::error("too-short", format!("`{}`{which} has {} samples", of.shown, times.len())).at(&of.side.files.span));
+        return Err(Problem::error(
+            "too-short",
+            format!("`{}`{which} has {} samples", of.shown, times.len()),
+        )
+        .at(&of.side.files.span));
     }
-    let Some(at) = (0..times.len()).find(|&at| !times[at].is_finite() || (at > 0 && times[at] <= times[at - 1])) else { return Ok(()) };
+    let Some(at) = (0..times.len())
+        .find(|&at| !times[at].is_finite() || (at > 0 && times[at] <= times[at - 1]))
+    else {
+        return Ok(());
+    };
     let row = table.first_row + at;
     let is = if times[at].is_finite() { "does not increase" } else { "has no value" };
-    let problem =
-        Problem::error("time-not-increasing", format!("`{}`{which}: the time {is} in row {row}", of.shown)).at(&of.side.time.span);
+    let problem = Problem::error(
+        "time-not-increasing",
+        format!("`{}`{which}: the time {is} in row {row}", of.shown),
+    )
+    .at(&of.side.time.span);
     Err(match rounded(times) {
         Some(rate) => problem.help(format!(
             "the stamps are rounded, so that several samples have the same; state the rate of the recorder: `time: {{rate: {rate} Hz}}`"
@@ -120,7 +178,8 @@ fn increasing(of: &Of<'_>, table: &Table, times: &[f64], which: &str) -> Result<
     })
 }
 
-/// The rate of a record whose stamps are rounded so coarsely that samples have the same one, in Hz: of every ten samples one at least.
+/// The rate of a record whose stamps are rounded so coarsely that samples have the same one, in Hz:
+/// of every ten samples one at least.
 fn rounded(times: &[f64]) -> Option<f64> {
     const SAMPLES_FOR_EACH: usize = 10;
     let stamps: Vec<f64> = times.iter().copied().filter(|time| time.is_finite()).collect();
@@ -130,7 +189,8 @@ fn rounded(times: &[f64]) -> Option<f64> {
         return None;
     }
     // Whole stretches of equal stamps: the first and the last may be cut.
-    let starts: Vec<usize> = (0..steps.len()).filter(|at| steps[*at] > 0.0).map(|at| at + 1).collect();
+    let starts: Vec<usize> =
+        (0..steps.len()).filter(|at| steps[*at] > 0.0).map(|at| at + 1).collect();
     let (first, last) = (*starts.first()?, *starts.last()?);
     let rate = (last - first) as f64 / (stamps[last] - stamps[first]);
     (rate.is_finite() && rate > 0.0).then(|| checks::whole(short(rate).parse().unwrap_or(rate)))
@@ -149,7 +209,8 @@ fn same_rate(one: f64, other: f64) -> bool {
     (one / other - 1.0).abs() <= SAME_RATE
 }
 
-/// The grid inside a span: the samples of the base table, or even steps of a wanted rate, also where its samples are uneven.
+/// The grid inside a span: the samples of the base table, or even steps of a wanted rate, also
+/// where its samples are uneven.
 pub fn grid(base: &Clock, wanted: Option<f64>, (start, end): (f64, f64)) -> Option<Grid> {
     /// Rounding of times, in s.
     const ROUNDING: f64 = 1e-9;
@@ -157,11 +218,16 @@ pub fn grid(base: &Clock, wanted: Option<f64>, (start, end): (f64, f64)) -> Opti
         None => {
             let from = base.times.partition_point(|time| *time < start - ROUNDING);
             let to = base.times.partition_point(|time| *time <= end + ROUNDING);
-            (from + 1 < to).then(|| Grid { times: base.times[from..to].to_vec(), rate: base.rate, rows: Some(from..to) })
+            (from + 1 < to).then(|| Grid {
+                times: base.times[from..to].to_vec(),
+                rate: base.rate,
+                rows: Some(from..to),
+            })
         }
         Some(rate) => {
             let steps = ((end - start) * rate + 1e-6).floor();
-            // A step that is wrong by orders of magnitude gives an error instead of filling the memory.
+            // A step that is wrong by orders of magnitude gives an error instead of filling the
+            // memory.
             (1.0..1e8).contains(&steps).then(|| Grid {
                 times: (0..=steps as usize).map(|at| start + at as f64 / rate).collect(),
                 rate,
@@ -183,7 +249,8 @@ pub enum How {
 
 /// How the channels of a table come to the points of the grid.
 ///
-/// A slow channel is interpolated linearly; one of the same rate as well if only its steps are uneven.
+/// A slow channel is interpolated linearly; one of the same rate as well if only its steps are
+/// uneven.
 pub fn way(clock: &Clock, is_base: bool, grid: &Grid) -> How {
     let uneven = || grid.rows.is_none() && clock.uneven && same_rate(clock.rate, grid.rate);
     match &grid.rows {
@@ -197,23 +264,38 @@ pub fn way(clock: &Clock, is_base: bool, grid: &Grid) -> How {
 ///
 /// # Errors
 /// A reason, to follow the name of the channel.
-pub fn on_grid(values: &[f64], clock: &Clock, is_base: bool, grid: &Grid, axis: bool) -> Result<(Vec<f64>, How), String> {
+pub fn on_grid(
+    values: &[f64],
+    clock: &Clock,
+    is_base: bool,
+    grid: &Grid,
+    axis: bool,
+) -> Result<(Vec<f64>, How), String> {
     if let Some(rows) = grid.rows.as_ref().filter(|_| is_base) {
         return Ok((values[rows.clone()].to_vec(), How::AsRecorded));
     }
     if axis || way(clock, is_base, grid) == How::Linear {
         let (first, last) = (clock.times[0], clock.times[clock.times.len() - 1]);
         let points: Vec<f64> = grid.times.iter().map(|time| time.clamp(first, last)).collect();
-        return resample::interpolate(&clock.times, values, &points).map(|values| (values, How::Linear)).map_err(|error| error.to_string());
+        return resample::interpolate(&clock.times, values, &points)
+            .map(|values| (values, How::Linear))
+            .map_err(|error| error.to_string());
     }
     if !clock.even {
-        return Err("has uneven steps in time and cannot be resampled; export it with a constant rate".into());
+        return Err(
+            "has uneven steps in time and cannot be resampled; export it with a constant rate"
+                .into(),
+        );
     }
     if let Some(at) = values.iter().position(|value| !value.is_finite()) {
         return Err(format!("has no value in sample {}, and cannot be filtered", at + 1));
     }
     let last = (values.len() - 1) as f64;
-    let points: Vec<f64> = grid.times.iter().map(|time| ((time - clock.times[0]) * clock.rate).clamp(0.0, last)).collect();
+    let points: Vec<f64> = grid
+        .times
+        .iter()
+        .map(|time| ((time - clock.times[0]) * clock.rate).clamp(0.0, last))
+        .collect();
     sinc::interpolate(values, &points, grid.rate / clock.rate)
         .map(|values| (values, How::Filtered))
         .ok_or_else(|| "is too short to be resampled".into())
@@ -224,7 +306,13 @@ mod tests {
     use super::*;
 
     fn clock(rate: f64, samples: usize) -> Clock {
-        Clock { times: (0..samples).map(|at| at as f64 / rate).collect(), rate, even: true, uneven: false, gaps: None }
+        Clock {
+            times: (0..samples).map(|at| at as f64 / rate).collect(),
+            rate,
+            even: true,
+            uneven: false,
+            gaps: None,
+        }
     }
 
     #[test]
@@ -240,9 +328,15 @@ mod tests {
         let fast = clock(1000.0, 2001);
         let (found, how) = on_grid(&vec![2.0; 2001], &fast, false, &grid, false).expect("inside");
         assert!(how == How::Filtered && found.iter().all(|value| (value - 2.0).abs() < 1e-12));
-        assert_eq!(on_grid(&vec![1.0; 401], &base, true, &grid, false).map(|(_, how)| how), Ok(How::AsRecorded));
+        assert_eq!(
+            on_grid(&vec![1.0; 401], &base, true, &grid, false).map(|(_, how)| how),
+            Ok(How::AsRecorded)
+        );
         let uneven = Clock { even: false, ..clock(1000.0, 2001) };
-        assert!(on_grid(&vec![2.0; 2001], &uneven, false, &grid, false).is_err_and(|says| says.contains("uneven")));
+        assert!(
+            on_grid(&vec![2.0; 2001], &uneven, false, &grid, false)
+                .is_err_and(|says| says.contains("uneven"))
+        );
     }
 
     #[test]
@@ -252,7 +346,10 @@ mod tests {
         assert_eq!((other.times.len(), other.rows), (401, None));
         // The same rate within a thousandth is kept as recorded.
         assert_eq!(grid(&base, Some(600.1), (0.0, 2.0)).and_then(|grid| grid.rows), Some(0..1201));
-        assert!(grid(&base, Some(1e12), (0.0, 2.0)).is_none() && grid(&base, None, (5.0, 6.0)).is_none());
+        assert!(
+            grid(&base, Some(1e12), (0.0, 2.0)).is_none()
+                && grid(&base, None, (5.0, 6.0)).is_none()
+        );
     }
 
     #[test]
@@ -262,16 +359,28 @@ mod tests {
         base.uneven = true;
         assert!(grid(&base, None, (0.0, 2.0)).is_some_and(|grid| grid.rows.is_some()));
         let even = grid(&base, Some(200.0), (0.1, 1.9)).expect("a grid");
-        assert_eq!((even.times.len(), even.rows.clone(), way(&base, true, &even)), (361, None, How::Linear));
+        assert_eq!(
+            (even.times.len(), even.rows.clone(), way(&base, true, &even)),
+            (361, None, How::Linear)
+        );
         let line: Vec<f64> = base.times.iter().map(|time| 3.0 * time).collect();
         let (found, _) = on_grid(&line, &base, true, &even, false).expect("inside");
-        assert!(found.iter().zip(&even.times).all(|(value, time)| (value - 3.0 * time).abs() < 1e-12));
+        assert!(
+            found.iter().zip(&even.times).all(|(value, time)| (value - 3.0 * time).abs() < 1e-12)
+        );
     }
 
     #[test]
     fn rounded_stamps_tell_the_rate() {
-        let stamps = |rate: f64, to: f64| (0..2000).map(|at| (f64::from(at) / rate / to + 1e-9).floor() * to).collect::<Vec<f64>>();
-        assert_eq!((rounded(&stamps(200.0, 1.0)), rounded(&stamps(300.0, 0.01))), (Some(200.0), Some(300.0)));
+        let stamps = |rate: f64, to: f64| {
+            (0..2000)
+                .map(|at| (f64::from(at) / rate / to + 1e-9).floor() * to)
+                .collect::<Vec<f64>>()
+        };
+        assert_eq!(
+            (rounded(&stamps(200.0, 1.0)), rounded(&stamps(300.0, 0.01))),
+            (Some(200.0), Some(300.0))
+        );
         let mut twice = stamps(200.0, 0.005);
         twice[7] = twice[6];
         assert_eq!((rounded(&twice), rounded(&[1.0; 20])), (None, None));

@@ -1,4 +1,5 @@
-//! The distance of a record: from a channel, a speed or a trigger, and its match with the track file.
+//! The distance of a record: from a channel, a speed or a trigger, and its match with the track
+//! file.
 
 use super::clock::Clock;
 use super::find::{Found, Of, find};
@@ -32,7 +33,11 @@ pub fn curve(
         let Some(start) = start else { return Ok((0.0, String::new())) };
         let value = start.of(of.section, &of.mapping.sections, facts)?;
         let Some(value) = value else {
-            return Err(Problem::error("start-missing", format!("no `start` is stated for {}", of.called())).at(&of.side.span));
+            return Err(Problem::error(
+                "start-missing",
+                format!("no `start` is stated for {}", of.called()),
+            )
+            .at(&of.side.span));
         };
         Ok((value, format!(" from {value} m ({})", start.from_where())))
     };
@@ -45,13 +50,20 @@ pub fn curve(
             Ok(Curve { clock, values, table: Some(found.table), says })
         }
         Distance::Speed { speed, start } => {
-            let per_second = Unit { text: "m/s".into(), factor: 1.0, dimension: Dimension::LENGTH / Dimension::TIME };
+            let per_second = Unit {
+                text: "m/s".into(),
+                factor: 1.0,
+                dimension: Dimension::LENGTH / Dimension::TIME,
+            };
             let (found, values) = values(of, speed, tables, Some(&per_second))?;
             let clock = need(of, clocks, found)?;
             let (start, from) = start_of(start)?;
             let mut values = along::integral(&clock.times, &values).unwrap_or_default();
             values.iter_mut().for_each(|value| *value += start);
-            let says = format!("distance = integral of {} over time (trapezoidal rule){from}", speed.in_words());
+            let says = format!(
+                "distance = integral of {} over time (trapezoidal rule){from}",
+                speed.in_words()
+            );
             Ok(Curve { clock, values, table: Some(found.table), says })
         }
         Distance::Trigger { channel, every, threshold, start } => {
@@ -62,7 +74,9 @@ pub fn curve(
             let (low, high) = signal
                 .iter()
                 .filter(|value| value.is_finite())
-                .fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(*value), high.max(*value)));
+                .fold((f64::MAX, f64::MIN), |(low, high), value| {
+                    (low.min(*value), high.max(*value))
+                });
             let level = threshold.unwrap_or((low + high) / 2.0);
             let times = crossings(&clock.times, &signal, level);
             if times.len() < 2 {
@@ -72,7 +86,9 @@ pub fn curve(
                     channel.terms[0].name.value,
                     times.len()
                 );
-                return Err(Problem::error("no-pulses", says).at(&channel.terms[0].name.span).help("state the level: `threshold`"));
+                return Err(Problem::error("no-pulses", says)
+                    .at(&channel.terms[0].name.span)
+                    .help("state the level: `threshold`"));
             }
             let (start, from) = start_of(start)?;
             let values = (0..times.len()).map(|pulse| start + pulse as f64 * every).collect();
@@ -87,11 +103,9 @@ pub fn curve(
 }
 
 fn need(of: &Of<'_>, clocks: &[Option<Clock>], found: Found<'_>) -> Result<Clock, Problem> {
-    clocks
-        .get(found.table)
-        .cloned()
-        .flatten()
-        .ok_or_else(|| Problem::error("time-missing", format!("`{}` has no time", of.shown)).at(&of.side.time.span))
+    clocks.get(found.table).cloned().flatten().ok_or_else(|| {
+        Problem::error("time-missing", format!("`{}` has no time", of.shown)).at(&of.side.time.span)
+    })
 }
 
 /// The channels of a file that a channel of the campaign is made of, all in one table.
@@ -104,7 +118,12 @@ pub struct Source<'a> {
 
 impl<'a> Source<'a> {
     /// Finds the channels and their units.
-    pub fn find(of: &Of<'_>, map: &ChannelMap, tables: &[&'a Table], wanted: Option<&Unit>) -> Result<Self, Problem> {
+    pub fn find(
+        of: &Of<'_>,
+        map: &ChannelMap,
+        tables: &[&'a Table],
+        wanted: Option<&Unit>,
+    ) -> Result<Self, Problem> {
         let mut source: Option<Self> = None;
         for term in &map.terms {
             let found = find(of, tables, &term.name, map.table.as_ref())?;
@@ -119,7 +138,8 @@ impl<'a> Source<'a> {
             }
             source.terms.push((found.channel, unit, if term.reversed { -1.0 } else { 1.0 }));
         }
-        source.ok_or_else(|| Problem::error("key-missing", "no channel is stated").at(&map.name.span))
+        source
+            .ok_or_else(|| Problem::error("key-missing", "no channel is stated").at(&map.name.span))
     }
 
     /// The values in SI.
@@ -141,7 +161,12 @@ impl<'a> Source<'a> {
 }
 
 /// The values of a channel in SI in its own table, and where the first of its terms is.
-pub fn values<'a>(of: &Of<'_>, map: &ChannelMap, tables: &[&'a Table], wanted: Option<&Unit>) -> Result<(Found<'a>, Vec<f64>), Problem> {
+pub fn values<'a>(
+    of: &Of<'_>,
+    map: &ChannelMap,
+    tables: &[&'a Table],
+    wanted: Option<&Unit>,
+) -> Result<(Found<'a>, Vec<f64>), Problem> {
     let source = Source::find(of, map, tables, wanted)?;
     Ok((source.first, source.values(map)))
 }
@@ -158,13 +183,14 @@ fn crossings(times: &[f64], signal: &[f64], level: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Smallest correlation of the matched channels with the track for the match to count. Curvature of a sound record agrees with the
-/// track file to 0.95 and more.
+/// Smallest correlation of the matched channels with the track for the match to count. Curvature of
+/// a sound record agrees with the track file to 0.95 and more.
 const LEAST_CORRELATION: f64 = 0.8;
 /// Steps of the search up to its largest move; the search refines the best one by a factor of five.
 const STEPS: f64 = 100.0;
 
-/// The move that is to be added to the distance of a record for its channels to agree with the track file, and what was found.
+/// The move that is to be added to the distance of a record for its channels to agree with the
+/// track file, and what was found.
 pub fn matched(
     of: &Of<'_>,
     wanted: &Match,
@@ -174,13 +200,22 @@ pub fn matched(
 ) -> Result<(f64, String), Vec<Problem>> {
     let mapping = of.mapping;
     let Some(pattern) = &mapping.track else {
-        let problem =
-            Problem::error("key-missing", "a distance is matched with the track file, and the mapping names none").at(&wanted.span);
+        let problem = Problem::error(
+            "key-missing",
+            "a distance is matched with the track file, and the mapping names none",
+        )
+        .at(&wanted.span);
         return Err(vec![problem.help("write `track: track/{section}.csv`")]);
     };
     let (path, shown) = mapping.place(&mapping.sections.fill(&pattern.value, of.section));
     let mut columns = vec![Wanted::new("distance", Dimension::LENGTH)];
-    columns.extend(wanted.channels.iter().zip(units).map(|(map, unit)| Wanted::new(map.name.value.as_str(), unit.dimension)));
+    columns.extend(
+        wanted
+            .channels
+            .iter()
+            .zip(units)
+            .map(|(map, unit)| Wanted::new(map.name.value.as_str(), unit.dimension)),
+    );
     let track = read_record(&path, &shown, &columns)?;
     let at = &track.columns[0].values;
     let estimate = |channels: &[Vec<f64>], search: &Search| {
@@ -192,7 +227,8 @@ pub fn matched(
         let pairs: Vec<Pair<'_>> = both.map(pair).collect();
         synchronise::estimate(&pairs, search)
     };
-    let ends = |axis: &[f64]| (axis.first().copied().unwrap_or(0.0), axis.last().copied().unwrap_or(0.0));
+    let ends =
+        |axis: &[f64]| (axis.first().copied().unwrap_or(0.0), axis.last().copied().unwrap_or(0.0));
     let ((track_start, track_end), (start, end)) = (ends(at), ends(distance));
     // The record must cover the range compared at every move.
     let search = Search {
@@ -201,18 +237,31 @@ pub fn matched(
         farthest: wanted.within,
         step: wanted.within / STEPS,
     };
-    let names = wanted.channels.iter().map(|map| map.name.value.as_str()).collect::<Vec<_>>().join(", ");
-    let none = |says: String| Err(vec![Problem::error("no-match", format!("{}: {says}", of.called())).at(&wanted.span)]);
+    let names =
+        wanted.channels.iter().map(|map| map.name.value.as_str()).collect::<Vec<_>>().join(", ");
+    let none = |says: String| {
+        Err(vec![Problem::error("no-match", format!("{}: {says}", of.called())).at(&wanted.span)])
+    };
     let opposite = |map: &ChannelMap| {
-        let says = format!("{}: `{}` of the record has the sign opposite to the track file", of.called(), map.name.value);
+        let says = format!(
+            "{}: `{}` of the record has the sign opposite to the track file",
+            of.called(),
+            map.name.value
+        );
         let (name, term) = (&map.name.value, &map.terms[0].name);
-        vec![Problem::error("no-match", says).at(&term.span).help(format!("reverse it: `{name}: -{}`", term.value))]
+        vec![
+            Problem::error("no-match", says)
+                .at(&term.span)
+                .help(format!("reverse it: `{name}: -{}`", term.value)),
+        ]
     };
     let found = estimate(channels, &search);
     if found.is_none_or(|found| found.correlation < LEAST_CORRELATION) {
-        let reversed: Vec<Vec<f64>> = channels.iter().map(|channel| channel.iter().map(|value| -value).collect()).collect();
+        let reversed: Vec<Vec<f64>> =
+            channels.iter().map(|channel| channel.iter().map(|value| -value).collect()).collect();
         if let Some(map) = wanted.channels.first()
-            && estimate(&reversed, &search).is_some_and(|found| found.correlation >= LEAST_CORRELATION)
+            && estimate(&reversed, &search)
+                .is_some_and(|found| found.correlation >= LEAST_CORRELATION)
         {
             return Err(opposite(map));
         }
@@ -230,11 +279,19 @@ pub fn matched(
     }
     // Of several channels, one may be reversed.
     let moved: Vec<f64> = distance.iter().map(|at| at + shift).collect();
-    for (map, (column, channel)) in wanted.channels.iter().zip(track.columns[1..].iter().zip(channels)) {
-        let inside: Vec<f64> = at.iter().copied().filter(|at| (moved[0]..=moved[moved.len() - 1]).contains(at)).collect();
+    for (map, (column, channel)) in
+        wanted.channels.iter().zip(track.columns[1..].iter().zip(channels))
+    {
+        let inside: Vec<f64> = at
+            .iter()
+            .copied()
+            .filter(|at| (moved[0]..=moved[moved.len() - 1]).contains(at))
+            .collect();
         let of_track = resample::interpolate(at, &column.values, &inside).unwrap_or_default();
         let of_record = resample::interpolate(&moved, channel, &inside).unwrap_or_default();
-        if statistics::correlation(&of_track, &of_record).is_some_and(|correlation| correlation < 0.0) {
+        if statistics::correlation(&of_track, &of_record)
+            .is_some_and(|correlation| correlation < 0.0)
+        {
             return Err(opposite(map));
         }
     }

@@ -41,19 +41,34 @@ impl<'a> Of<'a> {
     pub fn tables(&self) -> Result<Vec<&'a Table>, Problem> {
         let Some(pattern) = &self.side.table else { return Ok(self.file.tables.iter().collect()) };
         let wanted = self.mapping.sections.fill(&pattern.value, self.section);
-        let found: Vec<&Table> = self.file.tables.iter().filter(|table| table.name == wanted).collect();
+        let found: Vec<&Table> =
+            self.file.tables.iter().filter(|table| table.name == wanted).collect();
         if found.is_empty() {
-            let problem = Problem::error("unknown-table", format!("`{}` has no table `{wanted}`", self.shown)).at(&pattern.span);
-            return Err(problem.suggest(&wanted, self.file.tables.iter().map(|table| table.name.as_str())));
+            let problem = Problem::error(
+                "unknown-table",
+                format!("`{}` has no table `{wanted}`", self.shown),
+            )
+            .at(&pattern.span);
+            return Err(
+                problem.suggest(&wanted, self.file.tables.iter().map(|table| table.name.as_str()))
+            );
         }
         Ok(found)
     }
 
-    /// The unit of the numbers of a channel, which must be of the dimension of the campaign's channel, if that is known.
-    pub fn unit(&self, map: &ChannelMap, name: &Spanned<String>, channel: &Channel, wanted: Option<&Unit>) -> Result<Unit, Problem> {
+    /// The unit of the numbers of a channel, which must be of the dimension of the campaign's
+    /// channel, if that is known.
+    pub fn unit(
+        &self,
+        map: &ChannelMap,
+        name: &Spanned<String>,
+        channel: &Channel,
+        wanted: Option<&Unit>,
+    ) -> Result<Unit, Problem> {
         if let Some(unit) = &map.unit {
             return checked(&unit.value, wanted, || {
-                Problem::error("unit-mismatch", mismatch(&map.name.value, &unit.value, wanted)).at(&unit.span)
+                Problem::error("unit-mismatch", mismatch(&map.name.value, &unit.value, wanted))
+                    .at(&unit.span)
             });
         }
         let text = channel.unit.as_deref().map(str::trim).filter(|text| !text.is_empty());
@@ -61,14 +76,25 @@ impl<'a> Of<'a> {
             if wanted.is_some_and(|wanted| wanted.dimension == Dimension::ONE) {
                 return Ok(Unit::one());
             }
-            let problem = Problem::error("unit-missing", format!("`{}` states no unit of `{}`", self.shown, name.value)).at(&name.span);
+            let problem = Problem::error(
+                "unit-missing",
+                format!("`{}` states no unit of `{}`", self.shown, name.value),
+            )
+            .at(&name.span);
             let example = wanted.map_or_else(|| "...".to_string(), |unit| unit.text.clone());
-            return Err(problem.help(format!("write it: `{}: {{from: {}, unit: {example}}}`", map.name.value, name.value)));
+            return Err(problem.help(format!(
+                "write it: `{}: {{from: {}, unit: {example}}}`",
+                map.name.value, name.value
+            )));
         };
-        let stated = self.side.units.iter().find(|(known, _)| known == text).map(|(_, unit)| unit.clone());
+        let stated =
+            self.side.units.iter().find(|(known, _)| known == text).map(|(_, unit)| unit.clone());
         let unit = stated.map_or_else(|| Unit::parse(text), Ok).map_err(|unknown| {
-            let problem = Problem::error("unknown-unit", format!("`{}`: the unit `{text}` of `{}` is not known", self.shown, name.value))
-                .at(&name.span);
+            let problem = Problem::error(
+                "unknown-unit",
+                format!("`{}`: the unit `{text}` of `{}` is not known", self.shown, name.value),
+            )
+            .at(&name.span);
             let near = unknown.near.map_or_else(|| "...".to_string(), str::to_string);
             problem.help(format!("say what it means: `units: {{\"{text}\": {near}}}`"))
         })?;
@@ -90,27 +116,56 @@ impl<'a> Of<'a> {
 }
 
 /// The channel with a name, in the one table that has it.
-pub fn find<'a>(of: &Of<'_>, tables: &[&'a Table], name: &Spanned<String>, table: Option<&Spanned<String>>) -> Result<Found<'a>, Problem> {
-    let wanted = table.map(|table| (of.mapping.sections.fill(&table.value, of.section), &table.span));
-    if let Some((wanted, span)) = wanted.as_ref().filter(|(wanted, _)| !tables.iter().any(|table| table.name == *wanted)) {
-        let problem = Problem::error("unknown-table", format!("`{}` has no table `{wanted}`", of.shown)).at(span);
+pub fn find<'a>(
+    of: &Of<'_>,
+    tables: &[&'a Table],
+    name: &Spanned<String>,
+    table: Option<&Spanned<String>>,
+) -> Result<Found<'a>, Problem> {
+    let wanted =
+        table.map(|table| (of.mapping.sections.fill(&table.value, of.section), &table.span));
+    if let Some((wanted, span)) =
+        wanted.as_ref().filter(|(wanted, _)| !tables.iter().any(|table| table.name == *wanted))
+    {
+        let problem =
+            Problem::error("unknown-table", format!("`{}` has no table `{wanted}`", of.shown))
+                .at(span);
         return Err(problem.suggest(wanted, tables.iter().map(|table| table.name.as_str())));
     }
     let within = |table: &Table| wanted.as_ref().is_none_or(|(wanted, _)| table.name == *wanted);
     let mut found: Vec<Found<'a>> = Vec::new();
     for (number, table) in tables.iter().enumerate().filter(|(_, table)| within(table)) {
-        found.extend(table.channels.iter().filter(|channel| channel.name == name.value).map(|channel| Found { table: number, channel }));
+        found.extend(
+            table
+                .channels
+                .iter()
+                .filter(|channel| channel.name == name.value)
+                .map(|channel| Found { table: number, channel }),
+        );
     }
     match found[..] {
         [one] => Ok(one),
         [] => {
-            let left_out = tables.iter().flat_map(|table| &table.left_out).find(|(known, _)| *known == name.value);
+            let left_out = tables
+                .iter()
+                .flat_map(|table| &table.left_out)
+                .find(|(known, _)| *known == name.value);
             if let Some((_, why)) = left_out {
-                return Err(Problem::error("no-channel", format!("`{}` of `{}` is no channel: {why}", name.value, of.shown)).at(&name.span));
+                return Err(Problem::error(
+                    "no-channel",
+                    format!("`{}` of `{}` is no channel: {why}", name.value, of.shown),
+                )
+                .at(&name.span));
             }
-            let known =
-                tables.iter().filter(|table| within(table)).flat_map(|table| table.channels.iter().map(|channel| channel.name.as_str()));
-            let problem = Problem::error("unknown-channel", format!("`{}` has no channel `{}`", of.shown, name.value)).at(&name.span);
+            let known = tables
+                .iter()
+                .filter(|table| within(table))
+                .flat_map(|table| table.channels.iter().map(|channel| channel.name.as_str()));
+            let problem = Problem::error(
+                "unknown-channel",
+                format!("`{}` has no channel `{}`", of.shown, name.value),
+            )
+            .at(&name.span);
             Err(nearest_or_first(problem, &name.value, known))
         }
         [first, second, ..] => {
@@ -120,14 +175,21 @@ pub fn find<'a>(of: &Of<'_>, tables: &[&'a Table], name: &Spanned<String>, table
             Err(if one == two {
                 problem.help("export it with a name of its own")
             } else {
-                problem.help(format!("say which: `{{from: {}, table: {one}}}`, or `table: {two}`", name.value))
+                problem.help(format!(
+                    "say which: `{{from: {}, table: {one}}}`, or `table: {two}`",
+                    name.value
+                ))
             })
         }
     }
 }
 
 /// Names the channel that may be meant, else the first ones of the file.
-pub fn nearest_or_first<'a>(problem: Problem, name: &str, known: impl Iterator<Item = &'a str>) -> Problem {
+pub fn nearest_or_first<'a>(
+    problem: Problem,
+    name: &str,
+    known: impl Iterator<Item = &'a str>,
+) -> Problem {
     /// Channels that are named.
     const SHOWN: usize = 12;
     let known: Vec<&str> = known.collect();
@@ -136,10 +198,17 @@ pub fn nearest_or_first<'a>(problem: Problem, name: &str, known: impl Iterator<I
         return problem;
     }
     let more = known.len().saturating_sub(SHOWN);
-    problem.help(format!("its first channels are {}, and there are {more} more", known[..known.len() - more].join(", ")))
+    problem.help(format!(
+        "its first channels are {}, and there are {more} more",
+        known[..known.len() - more].join(", ")
+    ))
 }
 
-fn checked(unit: &Unit, wanted: Option<&Unit>, problem: impl FnOnce() -> Problem) -> Result<Unit, Problem> {
+fn checked(
+    unit: &Unit,
+    wanted: Option<&Unit>,
+    problem: impl FnOnce() -> Problem,
+) -> Result<Unit, Problem> {
     match wanted {
         Some(wanted) if wanted.dimension != unit.dimension => Err(problem()),
         _ => Ok(unit.clone()),
@@ -147,6 +216,7 @@ fn checked(unit: &Unit, wanted: Option<&Unit>, problem: impl FnOnce() -> Problem
 }
 
 fn mismatch(name: &str, unit: &Unit, wanted: Option<&Unit>) -> String {
-    let is = wanted.map_or_else(String::new, |wanted| format!("{} ({wanted})", wanted.dimension.in_words()));
+    let is = wanted
+        .map_or_else(String::new, |wanted| format!("{} ({wanted})", wanted.dimension.in_words()));
     format!("`{name}` is {is}, and {unit} is {}", unit.dimension.in_words())
 }

@@ -1,4 +1,5 @@
-//! From a foreign file to the record of a section: what the mapping states, in a fixed order, each step told with its numbers.
+//! From a foreign file to the record of a section: what the mapping states, in a fixed order, each
+//! step told with its numbers.
 //!
 //! | file | content |
 //! |---|---|
@@ -53,25 +54,31 @@ const MOST_TOLD: usize = 8;
 /// Makes the record of a section.
 ///
 /// # Errors
-/// `unknown-table`, `unknown-channel`, `ambiguous-channel`, `no-channel`, `unit-missing`, `unknown-unit`, `unit-mismatch`,
-/// `time-missing`, `time-not-increasing`, `too-short`, `no-common-time`, `uneven-time`, `sum-of-tables`, `no-pulses`, `no-match`,
-/// `not-finite`, `axis-not-increasing`, `outside-record`; of stated values `unknown-fact`, `wrong-number`.
+/// `unknown-table`, `unknown-channel`, `ambiguous-channel`, `no-channel`, `unit-missing`,
+/// `unknown-unit`, `unit-mismatch`, `time-missing`, `time-not-increasing`, `too-short`,
+/// `no-common-time`, `uneven-time`, `sum-of-tables`, `no-pulses`, `no-match`, `not-finite`,
+/// `axis-not-increasing`, `outside-record`; of stated values `unknown-fact`, `wrong-number`.
 pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
     let one = |problem: Problem| vec![problem];
     let tables = of.tables().map_err(one)?;
-    let facts: Vec<(String, String)> = tables.iter().flat_map(|table| &table.facts).chain(&of.file.facts).cloned().collect();
+    let facts: Vec<(String, String)> =
+        tables.iter().flat_map(|table| &table.facts).chain(&of.file.facts).cloned().collect();
     let maps = maps(of, &tables)?;
     let (lacks, lacked) = missing(of, &maps);
     if !lacks.is_empty() {
         return Err(lacks);
     }
-    // Where every channel is; its values are made one after the other below, so that only those of one channel are in memory twice.
+    // Where every channel is; its values are made one after the other below, so that only those of
+    // one channel are in memory twice.
     let mut faults = Vec::new();
     let mut sources: Vec<(Source<'_>, Unit)> = Vec::new();
     for map in &maps {
         let target = of.target(map);
         let found = Source::find(of, map, &tables, target.as_ref()).and_then(|source| {
-            let own = target.map_or_else(|| of.unit(map, &map.terms[0].name, source.first.channel, None).map(plainly), Ok)?;
+            let own = target.map_or_else(
+                || of.unit(map, &map.terms[0].name, source.first.channel, None).map(plainly),
+                Ok,
+            )?;
             Ok((source, own))
         });
         match found {
@@ -86,15 +93,28 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
     let used = || sources.iter().map(|(source, _)| source.first.table);
     let matched: Vec<(usize, Vec<f64>, Unit)> = match &of.side.matched {
         None => Vec::new(),
-        Some(wanted) => wanted.channels.iter().map(|map| values_for_match(of, map, &tables)).collect::<Result<_, _>>().map_err(one)?,
+        Some(wanted) => wanted
+            .channels
+            .iter()
+            .map(|map| values_for_match(of, map, &tables))
+            .collect::<Result<_, _>>()
+            .map_err(one)?,
     };
     let used_or_matched = || used().chain(matched.iter().map(|(table, ..)| *table));
     let base = most_used(used(), &tables);
     let clocks = clocks(of, &tables, &facts, used_or_matched()).map_err(one)?;
-    let curve =
-        of.side.distance.as_ref().map(|distance| distance::curve(of, distance, &tables, &clocks, &facts)).transpose().map_err(one)?;
+    let curve = of
+        .side
+        .distance
+        .as_ref()
+        .map(|distance| distance::curve(of, distance, &tables, &clocks, &facts))
+        .transpose()
+        .map_err(one)?;
     let Some(base_clock) = clocks.get(base).and_then(Option::as_ref) else {
-        return Err(vec![Problem::error("time-missing", format!("`{}` has no time", of.shown)).at(&of.side.time.span)]);
+        return Err(vec![
+            Problem::error("time-missing", format!("`{}` has no time", of.shown))
+                .at(&of.side.time.span),
+        ]);
     };
     let mut steps = Vec::new();
     let span = span(&clocks, used_or_matched(), curve.as_ref().map(|curve| &curve.clock));
@@ -105,10 +125,18 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
         return Err(vec![problem]);
     }
     let Some(grid) = grid(base_clock, rate, span) else {
-        let says = format!("{}: the channels of `{}` have no time in common ({} s to {} s)", of.called(), of.shown, span.0, span.1);
+        let says = format!(
+            "{}: the channels of `{}` have no time in common ({} s to {} s)",
+            of.called(),
+            of.shown,
+            span.0,
+            span.1
+        );
         return Err(vec![Problem::error("no-common-time", says).at(&of.side.time.span)]);
     };
-    let unfit = times::faults(of, &tables, &clocks, (base, &grid), &|table| used().any(|used| used == table));
+    let unfit = times::faults(of, &tables, &clocks, (base, &grid), &|table| {
+        used().any(|used| used == table)
+    });
     if !unfit.is_empty() {
         return Err(unfit);
     }
@@ -117,14 +145,22 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
     let (mut sampled, mut columns) = (Vec::new(), Vec::new());
     for (map, (source, unit)) in maps.iter().zip(&sources) {
         let table = source.first.table;
-        match clocks[table].as_ref().map(|clock| on_grid(&source.values(map), clock, table == base, &grid, false)) {
+        match clocks[table]
+            .as_ref()
+            .map(|clock| on_grid(&source.values(map), clock, table == base, &grid, false))
+        {
             Some(Ok((values, how))) => {
                 sampled.push((how, table));
                 let values = Values::keep(values, of.store).map_err(one)?;
                 columns.push(Column { name: map.name.value.clone(), unit: unit.clone(), values });
             }
-            Some(Err(why)) => faults
-                .push(Problem::error("uneven-time", format!("{}: `{}` {why}", of.called(), map.name.value)).at(&map.terms[0].name.span)),
+            Some(Err(why)) => faults.push(
+                Problem::error(
+                    "uneven-time",
+                    format!("{}: `{}` {why}", of.called(), map.name.value),
+                )
+                .at(&map.terms[0].name.span),
+            ),
             None => {}
         }
     }
@@ -137,8 +173,12 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
     if let Some(curve) = curve {
         let as_recorded = curve.table == Some(base);
         let along = on_grid(&curve.values, &curve.clock, as_recorded, &grid, true);
-        let (mut values, how) =
-            along.map_err(|why| vec![Problem::error("uneven-time", format!("{}: the distance {why}", of.called())).at(&of.side.span)])?;
+        let (mut values, how) = along.map_err(|why| {
+            vec![
+                Problem::error("uneven-time", format!("{}: the distance {why}", of.called()))
+                    .at(&of.side.span),
+            ]
+        })?;
         let linear = if how == How::Linear && curve.table.is_some() {
             format!(", interpolated linearly from {} Hz", short(curve.clock.rate))
         } else {
@@ -153,11 +193,14 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
     Ok(made)
 }
 
-/// A channel that the protocol does not know is written in the unit that other channels of its dimension have by the protocol.
+/// A channel that the protocol does not know is written in the unit that other channels of its
+/// dimension have by the protocol.
 fn of_their_dimension(of: &Of<'_>, maps: &[ChannelMap], sources: &mut [(Source<'_>, Unit)]) {
     let known: Vec<Unit> = maps.iter().filter_map(|map| of.target(map)).collect();
     for (map, (_, unit)) in maps.iter().zip(sources) {
-        if let (None, Some(other)) = (of.target(map), known.iter().find(|other| other.dimension == unit.dimension)) {
+        if let (None, Some(other)) =
+            (of.target(map), known.iter().find(|other| other.dimension == unit.dimension))
+        {
             *unit = other.clone();
         }
     }
@@ -166,7 +209,10 @@ fn of_their_dimension(of: &Of<'_>, maps: &[ChannelMap], sources: &mut [(Source<'
 /// A unit of a file as it is written in campaigns: `m/s^2` for `m/s²`.
 fn plainly(unit: Unit) -> Unit {
     let powers = [("⁻¹", "^-1"), ("⁻²", "^-2"), ("²", "^2"), ("³", "^3")];
-    Unit { text: powers.iter().fold(unit.text, |text, (power, plain)| text.replace(power, plain)), ..unit }
+    Unit {
+        text: powers.iter().fold(unit.text, |text, (power, plain)| text.replace(power, plain)),
+        ..unit
+    }
 }
 
 /// The channels, written out where they keep their names.
@@ -180,16 +226,28 @@ fn maps(of: &Of<'_>, tables: &[&Table]) -> Result<Vec<ChannelMap>, Vec<Problem>>
                     || matches!(&of.side.distance, Some(super::mapping::Distance::Channel(map)) if map.terms.iter().any(|term| term.name.value == name))
             };
             let channels = tables.iter().flat_map(|table| &table.channels);
-            let named = channels.filter(|channel| !axis(&channel.name) && !is_second_axis(of, &channel.name));
+            let named = channels
+                .filter(|channel| !axis(&channel.name) && !is_second_axis(of, &channel.name));
             let maps: Vec<ChannelMap> = named
                 .map(|channel| {
                     let name = Spanned::new(channel.name.clone(), span.clone());
                     let terms = vec![Term { name: name.clone(), reversed: false }];
-                    ChannelMap { name, terms, table: None, unit: None, factor: 1.0, offset: None, written_in: None }
+                    ChannelMap {
+                        name,
+                        terms,
+                        table: None,
+                        unit: None,
+                        factor: 1.0,
+                        offset: None,
+                        written_in: None,
+                    }
                 })
                 .collect();
             if maps.is_empty() {
-                return Err(vec![Problem::error("no-channel", format!("`{}` has no channels", of.shown)).at(&span)]);
+                return Err(vec![
+                    Problem::error("no-channel", format!("`{}` has no channels", of.shown))
+                        .at(&span),
+                ]);
             }
             Ok(maps)
         }
@@ -208,25 +266,43 @@ fn left_out(of: &Of<'_>, tables: &[&Table], steps: &mut Vec<String>) {
         Some(Distance::Channel(map)) => map.terms.iter().any(|term| term.name.value == name),
         _ => false,
     };
-    let is_axis = |name: &str| of.side.time.from.iter().any(|time| time.value == name) || source(name);
-    for name in ["time", "distance"].into_iter().filter(|name| of.side.channels.maps().is_none() && is_second_axis(of, name)) {
-        if !is_axis(name) && tables.iter().any(|table| table.channels.iter().any(|channel| channel.name == name)) {
-            steps.push(format!("the channel `{name}` of the file is left out: the mapping states another {name}"));
+    let is_axis =
+        |name: &str| of.side.time.from.iter().any(|time| time.value == name) || source(name);
+    for name in ["time", "distance"]
+        .into_iter()
+        .filter(|name| of.side.channels.maps().is_none() && is_second_axis(of, name))
+    {
+        if !is_axis(name)
+            && tables.iter().any(|table| table.channels.iter().any(|channel| channel.name == name))
+        {
+            steps.push(format!(
+                "the channel `{name}` of the file is left out: the mapping states another {name}"
+            ));
         }
     }
 }
 
-/// Channels that the protocol needs and a file does not have, where all channels keep their names: errors and warnings.
+/// Channels that the protocol needs and a file does not have, where all channels keep their names:
+/// errors and warnings.
 fn missing(of: &Of<'_>, maps: &[ChannelMap]) -> (Vec<Problem>, Vec<Problem>) {
-    let (Channels::AsNamed, Some(needs)) = (&of.side.channels, of.needs) else { return (Vec::new(), Vec::new()) };
+    let (Channels::AsNamed, Some(needs)) = (&of.side.channels, of.needs) else {
+        return (Vec::new(), Vec::new());
+    };
     let names: Vec<&str> = maps.iter().map(|map| map.name.value.as_str()).collect();
     let is_error = |problem: &Problem| problem.severity == Severity::Error;
     agree::as_named((of.mapping, of.side), needs, &names, of.shown).into_iter().partition(is_error)
 }
 
-fn values_for_match(of: &Of<'_>, map: &ChannelMap, tables: &[&Table]) -> Result<(usize, Vec<f64>, Unit), Problem> {
-    let target =
-        map.written_in.as_ref().map(|unit| unit.value.clone()).or_else(|| agree::unit_needed(&map.name.value, RecordKind::Track, of.needs));
+fn values_for_match(
+    of: &Of<'_>,
+    map: &ChannelMap,
+    tables: &[&Table],
+) -> Result<(usize, Vec<f64>, Unit), Problem> {
+    let target = map
+        .written_in
+        .as_ref()
+        .map(|unit| unit.value.clone())
+        .or_else(|| agree::unit_needed(&map.name.value, RecordKind::Track, of.needs));
     let (found, values) = distance::values(of, map, tables, target.as_ref())?;
     let unit = of.unit(map, &map.terms[0].name, found.channel, target.as_ref())?;
     Ok((found.table, values, unit))
@@ -236,7 +312,9 @@ fn values_for_match(of: &Of<'_>, map: &ChannelMap, tables: &[&Table]) -> Result<
 fn most_used(used: impl Iterator<Item = usize>, tables: &[&Table]) -> usize {
     let mut counts = vec![0_usize; tables.len()];
     used.for_each(|table| counts[table] += 1);
-    (0..tables.len()).max_by_key(|&table| (counts[table], tables[table].rows, std::cmp::Reverse(table))).unwrap_or(0)
+    (0..tables.len())
+        .max_by_key(|&table| (counts[table], tables[table].rows, std::cmp::Reverse(table)))
+        .unwrap_or(0)
 }
 
 /// The clocks of the tables that are used, with those of the distance.
@@ -249,17 +327,30 @@ fn clocks(
     use super::mapping::Distance;
     let mut wanted = vec![false; tables.len()];
     used.for_each(|table| wanted[table] = true);
-    if let Some(Distance::Channel(map) | Distance::Speed { speed: map, .. } | Distance::Trigger { channel: map, .. }) = &of.side.distance {
+    if let Some(
+        Distance::Channel(map)
+        | Distance::Speed { speed: map, .. }
+        | Distance::Trigger { channel: map, .. },
+    ) = &of.side.distance
+    {
         for term in &map.terms {
             wanted[find::find(of, tables, &term.name, map.table.as_ref())?.table] = true;
         }
     }
     let alone = wanted.iter().filter(|wanted| **wanted).count() == 1;
-    tables.iter().zip(wanted).map(|(table, wanted)| wanted.then(|| clock(of, table, alone, facts)).transpose()).collect()
+    tables
+        .iter()
+        .zip(wanted)
+        .map(|(table, wanted)| wanted.then(|| clock(of, table, alone, facts)).transpose())
+        .collect()
 }
 
 /// The time that all used tables cover.
-fn span(clocks: &[Option<Clock>], used: impl Iterator<Item = usize>, curve: Option<&Clock>) -> (f64, f64) {
+fn span(
+    clocks: &[Option<Clock>],
+    used: impl Iterator<Item = usize>,
+    curve: Option<&Clock>,
+) -> (f64, f64) {
     let ends = |clock: &Clock| (clock.times[0], clock.times[clock.times.len() - 1]);
     let all = used.filter_map(|table| clocks.get(table)?.as_ref()).chain(curve).map(ends);
     all.fold((f64::MIN, f64::MAX), |(start, end), (first, last)| (start.max(first), end.min(last)))
@@ -267,7 +358,14 @@ fn span(clocks: &[Option<Clock>], used: impl Iterator<Item = usize>, curve: Opti
 
 /// Exchanges channels and signs in a section that was run with the other end leading.
 fn turn(of: &Of<'_>, columns: &mut [Column], steps: &mut Vec<String>) {
-    let Some(turning) = of.mapping.turning.as_ref().filter(|_| of.side.turned.has(of.section, &of.mapping.sections)) else { return };
+    let Some(turning) = of
+        .mapping
+        .turning
+        .as_ref()
+        .filter(|_| of.side.turned.has(of.section, &of.mapping.sections))
+    else {
+        return;
+    };
     let partner = |columns: &[Column], at: usize| {
         let partner = turning.partner(&columns[at].name);
         columns.iter().position(|column| column.name == partner).filter(|other| *other != at)
@@ -307,17 +405,32 @@ fn along_track(
     if let Some(wanted) = &of.side.matched {
         let mut channels = Vec::new();
         for (table, values, _) in matched {
-            let sampled = clocks[*table].as_ref().map(|clock| on_grid(values, clock, *table == base, grid, true));
+            let sampled = clocks[*table]
+                .as_ref()
+                .map(|clock| on_grid(values, clock, *table == base, grid, true));
             let values = sampled.unwrap_or_else(|| Err("has no time".into()));
-            channels
-                .push(values.map_err(|why| vec![Problem::error("uneven-time", format!("the channel matched {why}")).at(&wanted.span)])?.0);
+            channels.push(
+                values
+                    .map_err(|why| {
+                        vec![
+                            Problem::error("uneven-time", format!("the channel matched {why}"))
+                                .at(&wanted.span),
+                        ]
+                    })?
+                    .0,
+            );
         }
         let units: Vec<Unit> = matched.iter().map(|(.., unit)| unit.clone()).collect();
         let (shift, says) = distance::matched(of, wanted, values, &channels, &units)?;
         values.iter_mut().for_each(|value| *value += shift);
         steps.push(says);
     }
-    let offset = of.side.offsets.as_ref().map(|offsets| offsets.of(of.section, &of.mapping.sections, facts)).transpose();
+    let offset = of
+        .side
+        .offsets
+        .as_ref()
+        .map(|offsets| offsets.of(of.section, &of.mapping.sections, facts))
+        .transpose();
     if let Some(offset) = offset.map_err(|problem| vec![problem])?.flatten() {
         values.iter_mut().for_each(|value| *value += offset);
         steps.push(format!("{offset:+} m added to the distance (synchronisation)"));
@@ -326,18 +439,30 @@ fn along_track(
 }
 
 /// Cuts the record, checks that its axes increase and that all values are there.
-fn finish(of: &Of<'_>, grid: Grid, at: Option<Vec<f64>>, channels: Vec<Column>, mut steps: Vec<String>) -> Result<Made, Vec<Problem>> {
-    let unit = |text: &str, dimension: Dimension| Unit { text: text.into(), factor: 1.0, dimension };
+fn finish(
+    of: &Of<'_>,
+    grid: Grid,
+    at: Option<Vec<f64>>,
+    channels: Vec<Column>,
+    mut steps: Vec<String>,
+) -> Result<Made, Vec<Problem>> {
+    let unit =
+        |text: &str, dimension: Dimension| Unit { text: text.into(), factor: 1.0, dimension };
     let as_recorded = grid.rows.is_some();
     let (mut times, mut at, mut channels) = (grid.times, at, channels);
     let extent = of.mapping.sections.extent(of.section).filter(|_| at.is_some());
     let mut warnings = Vec::new();
     if let (Some((start, end)), Some(margin), Some(values)) = (extent, of.mapping.margin, &mut at) {
-        let inside: Vec<usize> = (0..values.len()).filter(|&row| (start - margin..=end + margin).contains(&values[row])).collect();
+        let inside: Vec<usize> = (0..values.len())
+            .filter(|&row| (start - margin..=end + margin).contains(&values[row]))
+            .collect();
         let (Some(&first), Some(&last)) = (inside.first(), inside.last()) else {
             return Err(vec![outside(of, (start, end), values)]);
         };
-        steps.push(format!("cut to {margin} m before and after the section, {} rows", last + 1 - first));
+        steps.push(format!(
+            "cut to {margin} m before and after the section, {} rows",
+            last + 1 - first
+        ));
         times = times[first..=last].to_vec();
         *values = values[first..=last].to_vec();
         channels.iter_mut().for_each(|column| column.values.cut(first..last + 1));
@@ -345,7 +470,11 @@ fn finish(of: &Of<'_>, grid: Grid, at: Option<Vec<f64>>, channels: Vec<Column>, 
     warnings.extend(times::warning(of, &times).filter(|_| as_recorded));
     let time_of = |row: usize| short(times[row]);
     let mut faults = Vec::new();
-    let mut columns = vec![Column { name: "time".into(), unit: unit("s", Dimension::TIME), values: Values::Held(times.clone()) }];
+    let mut columns = vec![Column {
+        name: "time".into(),
+        unit: unit("s", Dimension::TIME),
+        values: Values::Held(times.clone()),
+    }];
     columns.extend(at.clone().map(|values| Column {
         name: "distance".into(),
         unit: unit("m", Dimension::LENGTH),
@@ -367,11 +496,9 @@ fn finish(of: &Of<'_>, grid: Grid, at: Option<Vec<f64>>, channels: Vec<Column>, 
                 .maps()
                 .and_then(|maps| maps.iter().find(|map| map.name.value == column.name))
                 .map_or(&of.side.span, |map| &map.name.span);
-            faults.push(
-                Problem::error("not-finite", says)
-                    .at(place)
-                    .help("repair the record, leave the channel out, or cut the record: `margin: 60 m`"),
-            );
+            faults.push(Problem::error("not-finite", says).at(place).help(
+                "repair the record, leave the channel out, or cut the record: `margin: 60 m`",
+            ));
         }
     }
     if let Some(values) = at.filter(|_| faults.is_empty()) {
@@ -390,7 +517,9 @@ fn finish(of: &Of<'_>, grid: Grid, at: Option<Vec<f64>>, channels: Vec<Column>, 
                 "cut off the standstill: `margin: 60 m`"
             };
             faults.push(Problem::error("axis-not-increasing", says).at(&of.side.span).help(help));
-        } else if let Some((start, end)) = extent.filter(|(start, end)| *start < values[0] || *end > values[values.len() - 1]) {
+        } else if let Some((start, end)) =
+            extent.filter(|(start, end)| *start < values[0] || *end > values[values.len() - 1])
+        {
             let mut problem = outside(of, (start, end), &values);
             problem.severity = Severity::Warning;
             warnings.push(problem);
@@ -405,7 +534,9 @@ fn finish(of: &Of<'_>, grid: Grid, at: Option<Vec<f64>>, channels: Vec<Column>, 
 }
 
 fn outside(of: &Of<'_>, (start, end): (f64, f64), values: &[f64]) -> Problem {
-    let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(*value), high.max(*value)));
+    let (low, high) = values
+        .iter()
+        .fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(*value), high.max(*value)));
     let says = format!(
         "{}, {} to {} m, is not inside its {}, {} to {} m",
         of.called(),
@@ -415,15 +546,21 @@ fn outside(of: &Of<'_>, (start, end): (f64, f64), values: &[f64]) -> Problem {
         short(low),
         short(high)
     );
-    let place = of.mapping.sections.cell(of.section, "start").map_or(&of.side.span, |cell| &cell.span);
-    Problem::error("outside-record", says).at(place).help("check start and unit of the distance, and the table of sections")
+    let place =
+        of.mapping.sections.cell(of.section, "start").map_or(&of.side.span, |cell| &cell.span);
+    Problem::error("outside-record", says)
+        .at(place)
+        .help("check start and unit of the distance, and the table of sections")
 }
 
 fn few(mut faults: Vec<Problem>) -> Vec<Problem> {
     let more = faults.len().saturating_sub(MOST_TOLD);
     if more > 0 {
         faults.truncate(MOST_TOLD);
-        faults.push(Problem::error("more-problems", format!("{more} more channels have such a fault")));
+        faults.push(Problem::error(
+            "more-problems",
+            format!("{more} more channels have such a fault"),
+        ));
     }
     faults
 }

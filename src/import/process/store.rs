@@ -1,4 +1,5 @@
-//! Values of a column: in memory, or in a file without a name, in which those of a long run wait until they are written.
+//! Values of a column: in memory, or in a file without a name, in which those of a long run wait
+//! until they are written.
 
 use std::borrow::Cow;
 use std::io;
@@ -10,7 +11,8 @@ use crate::problem::Problem;
 
 /// Bytes of a number in the file.
 const WIDTH: usize = size_of::<f64>();
-/// Rows that are looked at or written at a time: 80 s at 200 Hz, as in a row group of a Parquet record.
+/// Rows that are looked at or written at a time: 80 s at 200 Hz, as in a row group of a Parquet
+/// record.
 pub const BLOCK: usize = 1 << 14;
 
 /// The file, and where the next column begins in it.
@@ -140,7 +142,9 @@ impl Values {
 }
 
 fn failed(error: &io::Error) -> Problem {
-    let says = format!("the values of a run cannot be kept in a temporary file of the output folder: {error}");
+    let says = format!(
+        "the values of a run cannot be kept in a temporary file of the output folder: {error}"
+    );
     Problem::error("write-failed", says).help("it needs 16 bytes for each value of both records")
 }
 
@@ -164,12 +168,18 @@ mod tests {
         for range in [0..count, 5..6, BLOCK - 1..BLOCK + 2, count - 3..count + 9, 7..7] {
             assert_eq!(bits(&stored, range.clone()), bits(&held, range));
         }
-        assert_eq!((stored.missing().expect("read"), held.missing().expect("read")), (Some((BLOCK + 1, 1)), Some((BLOCK + 1, 1))));
+        assert_eq!(
+            (stored.missing().expect("read"), held.missing().expect("read")),
+            (Some((BLOCK + 1, 1)), Some((BLOCK + 1, 1)))
+        );
         for values in [&mut stored, &mut held] {
             values.reverse();
             values.cut(3..BLOCK);
         }
         assert_eq!((bits(&stored, 0..count), stored.len()), (bits(&held, 0..count), BLOCK - 3));
-        assert_eq!((bits(&other, 9..10), other.missing().expect("read")), (vec![1.0_f64.to_bits()], None));
+        assert_eq!(
+            (bits(&other, 9..10), other.missing().expect("read")),
+            (vec![1.0_f64.to_bits()], None)
+        );
     }
 }

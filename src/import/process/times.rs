@@ -9,13 +9,20 @@ use crate::import::mapping::{ChannelMap, Distance};
 use crate::problem::Problem;
 use crate::source::{Span, Spanned};
 
-/// Most samples that are made for each one of the file. Interpolation adds nothing to a record but its size.
+/// Most samples that are made for each one of the file. Interpolation adds nothing to a record but
+/// its size.
 const MOST_FINER: f64 = 20.0;
 
-/// A rate that is no rate of these records: so high that they would fill the memory, or so low that no two samples are left.
+/// A rate that is no rate of these records: so high that they would fill the memory, or so low that
+/// no two samples are left.
 ///
 /// Problems: `out-of-range`.
-pub fn impossible(of: &Of<'_>, rate: &Spanned<f64>, base: &Clock, (start, end): (f64, f64)) -> Option<Problem> {
+pub fn impossible(
+    of: &Of<'_>,
+    rate: &Spanned<f64>,
+    base: &Clock,
+    (start, end): (f64, f64),
+) -> Option<Problem> {
     let asked = short(rate.value);
     let (says, help) = if rate.value > MOST_FINER * base.rate {
         let says = format!(
@@ -26,7 +33,12 @@ pub fn impossible(of: &Of<'_>, rate: &Spanned<f64>, base: &Clock, (start, end): 
         );
         (says, "a rate above that of the file adds nothing to the records")
     } else if end > start && (end - start) * rate.value < 1.0 {
-        let says = format!("{}: a rate of {asked} Hz leaves no two samples of the {} s of `{}`", of.called(), short(end - start), of.shown);
+        let says = format!(
+            "{}: a rate of {asked} Hz leaves no two samples of the {} s of `{}`",
+            of.called(),
+            short(end - start),
+            of.shown
+        );
         (says, "write the rate of the records, such as `200 Hz`")
     } else {
         return None;
@@ -34,11 +46,13 @@ pub fn impossible(of: &Of<'_>, rate: &Spanned<f64>, base: &Clock, (start, end): 
     Some(Problem::error("out-of-range", says).at(&rate.span).help(help))
 }
 
-/// Times that do not allow what is asked for: a value in a gap would be invented, and a filter needs even steps.
+/// Times that do not allow what is asked for: a value in a gap would be invented, and a filter
+/// needs even steps.
 ///
 /// Problems: `gap`, `uneven-time`.
 ///
-/// `has_channels`: whether channels of the campaign are made of a table, and not only an axis, which is never filtered.
+/// `has_channels`: whether channels of the campaign are made of a table, and not only an axis,
+/// which is never filtered.
 pub fn faults(
     of: &Of<'_>,
     tables: &[&Table],
@@ -53,11 +67,21 @@ pub fn faults(
         let Some(clock) = clock else { continue };
         let is_base = number == base;
         let way = way(clock, is_base, grid);
-        let file = if table.name.is_empty() { of.shown.to_string() } else { format!("{}`, table `{}", of.shown, table.name) };
+        let file = if table.name.is_empty() {
+            of.shown.to_string()
+        } else {
+            format!("{}`, table `{}", of.shown, table.name)
+        };
         match &clock.gaps {
-            Some(gaps) if way != How::AsRecorded => faults.push(gap(of, gaps, clock, &file, "resampled", at)),
-            Some(gaps) if from_speed => faults.push(gap(of, gaps, clock, &file, "integrated to a distance", at)),
-            None if way == How::Filtered && !clock.even && has_channels(number) => faults.push(uneven(of, clock, &file, grid.rate, at)),
+            Some(gaps) if way != How::AsRecorded => {
+                faults.push(gap(of, gaps, clock, &file, "resampled", at))
+            }
+            Some(gaps) if from_speed => {
+                faults.push(gap(of, gaps, clock, &file, "integrated to a distance", at))
+            }
+            None if way == How::Filtered && !clock.even && has_channels(number) => {
+                faults.push(uneven(of, clock, &file, grid.rate, at))
+            }
             _ => {}
         }
     }
@@ -81,12 +105,20 @@ fn gap(of: &Of<'_>, gaps: &Gaps, clock: &Clock, file: &str, done: &str, at: &Spa
         short(checks::whole(clock.rate)),
     );
     let help = match word {
-        "run" => "split the file there, and import the parts before and after it as runs of their own",
-        _ => "split the file there, and import the part that the section is in; or export the record without interruption",
+        "run" => {
+            "split the file there, and import the parts before and after it as runs of their own"
+        }
+        _ => {
+            "split the file there, and import the part that the section is in; or export the record without interruption"
+        }
     };
     let problem = Problem::error("gap", says).at(at);
     // No whole sample is missing in a step that is shorter than two.
-    if (gaps.to - gaps.from) * clock.rate < 2.0 { problem.help(stated(mean_rate(&clock.times), help)) } else { problem.help(help) }
+    if (gaps.to - gaps.from) * clock.rate < 2.0 {
+        problem.help(stated(mean_rate(&clock.times), help))
+    } else {
+        problem.help(help)
+    }
 }
 
 fn mean_rate(times: &[f64]) -> f64 {
@@ -100,32 +132,46 @@ fn uneven(of: &Of<'_>, clock: &Clock, file: &str, rate: f64, at: &Span) -> Probl
         extent(&clock.times),
         short(rate)
     );
-    Problem::error("uneven-time", says).at(at).help(stated(clock.rate, "export the record with a constant rate"))
+    Problem::error("uneven-time", says)
+        .at(at)
+        .help(stated(clock.rate, "export the record with a constant rate"))
 }
 
-/// The record of a campaign has even steps; otherwise `certify` refuses it. A gap is told by the check of the campaign.
+/// The record of a campaign has even steps; otherwise `certify` refuses it. A gap is told by the
+/// check of the campaign.
 pub fn warning(of: &Of<'_>, times: &[f64]) -> Option<Problem> {
     if times.len() < 3 {
         return None;
     }
     let Steps { rate, gaps, uneven, .. } = checks::steps(times, 1.0);
     uneven.filter(|_| gaps.is_empty())?;
-    let says = format!("{}: the time of `{}` has steps of {}; an evaluation needs even steps", of.called(), of.shown, extent(times));
+    let says = format!(
+        "{}: the time of `{}` has steps of {}; an evaluation needs even steps",
+        of.called(),
+        of.shown,
+        extent(times)
+    );
     let rate = short(checks::whole(rate));
-    let help = stated(checks::whole(rate.parse().unwrap_or(0.0)), &format!("interpolate to even steps: `rate: {rate} Hz` beside `time`"));
+    let help = stated(
+        checks::whole(rate.parse().unwrap_or(0.0)),
+        &format!("interpolate to even steps: `rate: {rate} Hz` beside `time`"),
+    );
     Some(Problem::warning("uneven-time", says).at(&of.side.time.span).help(help))
 }
 
 /// What to do about uneven stamps.
 fn stated(rate: f64, otherwise: &str) -> String {
     let rate = short(checks::whole(rate));
-    format!("if the recorder sampled evenly and only the stamps are inexact, state its rate: `time: {{rate: {rate} Hz}}`; else {otherwise}")
+    format!(
+        "if the recorder sampled evenly and only the stamps are inexact, state its rate: `time: {{rate: {rate} Hz}}`; else {otherwise}"
+    )
 }
 
 /// `0.0041 s to 0.0062 s`
 fn extent(times: &[f64]) -> String {
     let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
-    let (least, most) = steps.fold((f64::MAX, f64::MIN), |(least, most), step| (least.min(step), most.max(step)));
+    let (least, most) =
+        steps.fold((f64::MAX, f64::MIN), |(least, most), step| (least.min(step), most.max(step)));
     format!("{} s to {} s", step_in_words(least), step_in_words(most))
 }
 
@@ -189,8 +235,16 @@ pub fn told_tables(
                 .map(|(map, _)| map.name.value.as_str())
                 .collect();
             let (false, Some(clock)) = (names.is_empty(), &clocks[number]) else { continue };
-            let way = if how == How::Linear { "interpolated linearly" } else { "filtered and interpolated (windowed sinc)" };
-            let table = if table.name.is_empty() { String::new() } else { format!(" (table `{}`)", table.name) };
+            let way = if how == How::Linear {
+                "interpolated linearly"
+            } else {
+                "filtered and interpolated (windowed sinc)"
+            };
+            let table = if table.name.is_empty() {
+                String::new()
+            } else {
+                format!(" (table `{}`)", table.name)
+            };
             steps.push(format!("{} {way} from {} Hz{table}", names.join(", "), short(clock.rate)));
         }
     }

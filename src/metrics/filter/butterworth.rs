@@ -1,7 +1,8 @@
-//! Butterworth design: analogue prototype, frequency transformation, bilinear transformation, pairing into sections.
+//! Butterworth design: analogue prototype, frequency transformation, bilinear transformation,
+//! pairing into sections.
 //!
-//! The variable of the analogue plane is scaled so that the bilinear transformation is z = (1 + s) / (1 - s), and a
-//! frequency f is at tan(pi f / sampling rate).
+//! The variable of the analogue plane is scaled so that the bilinear transformation is z = (1 + s)
+//! / (1 - s), and a frequency f is at tan(pi f / sampling rate).
 
 use std::f64::consts::PI;
 
@@ -20,7 +21,8 @@ pub(super) struct Design {
     pub time_constant: f64,
 }
 
-/// Edges of the response after pre-warping, moved if both passes together are to have their -3 dB points there.
+/// Edges of the response after pre-warping, moved if both passes together are to have their -3 dB
+/// points there.
 #[derive(Clone, Copy)]
 enum Target {
     LowPass { edge: f64 },
@@ -29,13 +31,19 @@ enum Target {
     BandStop { width: f64, centre: f64 },
 }
 
-pub(super) fn design(band: Band, order: usize, sampling_rate: f64, both_passes: bool) -> Result<Design, DesignError> {
+pub(super) fn design(
+    band: Band,
+    order: usize,
+    sampling_rate: f64,
+    both_passes: bool,
+) -> Result<Design, DesignError> {
     if !(1..=HIGHEST_ORDER).contains(&order) {
         return Err(DesignError::Order { order });
     }
     let target = target(band, order, sampling_rate, both_passes)?;
     let (gain, mut poles) = poles(target, order);
-    // Order of SciPy: poles nearest to the unit circle last, so that the signal they amplify was attenuated before.
+    // Order of SciPy: poles nearest to the unit circle last, so that the signal they amplify was
+    // attenuated before.
     poles.sort_by(|left, right| left.radius().total_cmp(&right.radius()));
     let sections: Vec<Section> = sections(target, order, &poles);
     let time_constant = poles.iter().map(Poles::time_constant).fold(0.0, f64::max);
@@ -46,7 +54,12 @@ pub(super) fn design(band: Band, order: usize, sampling_rate: f64, both_passes: 
     }
 }
 
-fn target(band: Band, order: usize, sampling_rate: f64, both_passes: bool) -> Result<Target, DesignError> {
+fn target(
+    band: Band,
+    order: usize,
+    sampling_rate: f64,
+    both_passes: bool,
+) -> Result<Target, DesignError> {
     if !(sampling_rate.is_finite() && sampling_rate > 0.0) {
         return Err(DesignError::SamplingRate { sampling_rate });
     }
@@ -59,9 +72,14 @@ fn target(band: Band, order: usize, sampling_rate: f64, both_passes: bool) -> Re
     };
     let edges = |low: f64, high: f64| {
         let (warped_low, warped_high) = (warped(low)?, warped(high)?);
-        if low < high && warped_low < warped_high { Ok((warped_low, warped_high)) } else { Err(DesignError::Edges { low, high }) }
+        if low < high && warped_low < warped_high {
+            Ok((warped_low, warped_high))
+        } else {
+            Err(DesignError::Edges { low, high })
+        }
     };
-    // Two passes have a gain of 1/sqrt(2) where one has 2^(-1/4), that is where (w / edge)^(2 order) = sqrt(2) - 1.
+    // Two passes have a gain of 1/sqrt(2) where one has 2^(-1/4), that is where (w / edge)^(2
+    // order) = sqrt(2) - 1.
     let widen = if both_passes { (2_f64.sqrt() - 1.0).powf(-0.5 / order as f64) } else { 1.0 };
     Ok(match band {
         Band::LowPass(frequency) => Target::LowPass { edge: warped(frequency)? * widen },
@@ -85,7 +103,8 @@ fn poles(target: Target, order: usize) -> (f64, Vec<Poles>) {
         gain *= numerator / poles.product();
         all.push(poles);
     };
-    // Prototype poles exp(i angle) in the upper half plane; each stands for itself and its conjugate.
+    // Prototype poles exp(i angle) in the upper half plane; each stands for itself and its
+    // conjugate.
     for k in 0..order / 2 {
         let (sine, cosine) = (PI * (2 * k + 1) as f64 / (2 * order) as f64).sin_cos();
         let pole = Complex { re: -sine, im: cosine };
@@ -111,19 +130,26 @@ fn poles(target: Target, order: usize) -> (f64, Vec<Poles>) {
             Target::LowPass { edge } => place(Poles::Single(-edge), edge),
             Target::HighPass { edge } => place(Poles::Single(-edge), 1.0),
             Target::BandPass { width, centre } => place(around_real(width, centre), width),
-            Target::BandStop { width, centre } => place(around_real(width, centre), 1.0 + centre * centre),
+            Target::BandStop { width, centre } => {
+                place(around_real(width, centre), 1.0 + centre * centre)
+            }
         }
     }
     (gain, all)
 }
 
-/// Roots of s^2 - 2 half s + centre^2: the poles that the band transformation makes of a pole. The smaller root follows from the
-/// product, as the difference loses digits in a wide band.
+/// Roots of s^2 - 2 half s + centre^2: the poles that the band transformation makes of a pole. The
+/// smaller root follows from the product, as the difference loses digits in a wide band.
 fn around(half: Complex, centre: f64) -> [Complex; 2] {
-    let square = Complex { re: half.re * half.re - half.im * half.im - centre * centre, im: 2.0 * half.re * half.im };
+    let square = Complex {
+        re: half.re * half.re - half.im * half.im - centre * centre,
+        im: 2.0 * half.re * half.im,
+    };
     let root = square.sqrt();
-    let (plus, minus) =
-        (Complex { re: half.re + root.re, im: half.im + root.im }, Complex { re: half.re - root.re, im: half.im - root.im });
+    let (plus, minus) = (
+        Complex { re: half.re + root.re, im: half.im + root.im },
+        Complex { re: half.re - root.re, im: half.im - root.im },
+    );
     let large = if plus.square() > minus.square() { plus } else { minus };
     let scale = centre * centre / large.square();
     [large, Complex { re: large.re * scale, im: -large.im * scale }]
@@ -154,11 +180,18 @@ fn sections(target: Target, order: usize, poles: &[Poles]) -> Vec<Section> {
                 (Target::LowPass { .. }, _) => (2.0, 1.0),
                 (Target::HighPass { .. }, Poles::Single(_)) => (-1.0, 0.0),
                 (Target::HighPass { .. }, _) => (-2.0, 1.0),
-                (Target::BandStop { centre, .. }, _) => (-2.0 * (1.0 - centre * centre) / (1.0 + centre * centre), 1.0),
+                (Target::BandStop { centre, .. }, _) => {
+                    (-2.0 * (1.0 - centre * centre) / (1.0 + centre * centre), 1.0)
+                }
                 (Target::BandPass { .. }, _) => {
                     let mut nearest = || {
-                        let at_plus_one = left_at_minus_one == 0 || (left_at_plus_one > 0 && poles.outer().0 > 0.0);
-                        let left = if at_plus_one { &mut left_at_plus_one } else { &mut left_at_minus_one };
+                        let at_plus_one = left_at_minus_one == 0
+                            || (left_at_plus_one > 0 && poles.outer().0 > 0.0);
+                        let left = if at_plus_one {
+                            &mut left_at_plus_one
+                        } else {
+                            &mut left_at_minus_one
+                        };
                         *left -= 1;
                         if at_plus_one { 1.0 } else { -1.0 }
                     };

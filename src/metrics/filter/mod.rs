@@ -1,4 +1,5 @@
-//! Butterworth filters and transfer functions, forward and backward or in one pass, as second-order sections.
+//! Butterworth filters and transfer functions, forward and backward or in one pass, as second-order
+//! sections.
 //!
 //! Agrees with SciPy's `butter(..., output="sos")`, `sosfiltfilt` and `sosfilt`.
 
@@ -26,7 +27,8 @@ pub enum Band {
 /// Direction and initial state of the filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Forward and backward: no delay, twice the attenuation. Ends are extended by an odd reflection.
+    /// Forward and backward: no delay, twice the attenuation. Ends are extended by an odd
+    /// reflection.
     Zero,
     /// One pass, from the steady state of the first value.
     Causal,
@@ -34,7 +36,8 @@ pub enum Phase {
     CausalFromRest,
 }
 
-/// Which filter has its -3 dB points at the stated frequencies. The two differ only for [`Phase::Zero`].
+/// Which filter has its -3 dB points at the stated frequencies. The two differ only for
+/// [`Phase::Zero`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cutoff {
     /// The filter as applied, both passes together.
@@ -59,26 +62,41 @@ pub struct Filter {
 impl Filter {
     /// Butterworth filter for signals at `sampling_rate` in Hz.
     ///
-    /// `order` counts the poles of a low-pass or high-pass, and the poles per edge of a band-pass or band-stop, of one pass.
-    /// With [`Cutoff::AsApplied`] and [`Phase::Zero`] the pre-warped frequencies are moved so that the -3 dB points of both
-    /// passes together lie at the stated ones; a band keeps its centre.
+    /// `order` counts the poles of a low-pass or high-pass, and the poles per edge of a band-pass
+    /// or band-stop, of one pass. With [`Cutoff::AsApplied`] and [`Phase::Zero`] the pre-warped
+    /// frequencies are moved so that the -3 dB points of both passes together lie at the stated
+    /// ones; a band keeps its centre.
     ///
     /// # Errors
-    /// An order outside 1 to 20; a frequency not between 0 and half the sampling rate; a lower edge not below the upper one; edges
-    /// so close to 0 or to half the sampling rate that the sections would be unstable in double precision.
-    pub fn design(band: Band, order: usize, sampling_rate: f64, phase: Phase, cutoff: Cutoff) -> Result<Self, DesignError> {
+    /// An order outside 1 to 20; a frequency not between 0 and half the sampling rate; a lower edge
+    /// not below the upper one; edges so close to 0 or to half the sampling rate that the sections
+    /// would be unstable in double precision.
+    pub fn design(
+        band: Band,
+        order: usize,
+        sampling_rate: f64,
+        phase: Phase,
+        cutoff: Cutoff,
+    ) -> Result<Self, DesignError> {
         let both_passes = phase == Phase::Zero && cutoff == Cutoff::AsApplied;
         let design = butterworth::design(band, order, sampling_rate, both_passes)?;
         Ok(Self::of(design, sampling_rate, phase))
     }
 
-    /// Filter by poles and zeros for signals at `sampling_rate` in Hz. With [`Phase::Zero`], both passes use the function: its
-    /// magnitude is squared, except for the gain, which is that of both passes together.
+    /// Filter by poles and zeros for signals at `sampling_rate` in Hz. With [`Phase::Zero`], both
+    /// passes use the function: its magnitude is squared, except for the gain, which is that of
+    /// both passes together.
     ///
     /// # Errors
-    /// Poles not above 0 Hz; more zeros than poles; a gain not above zero; a pre-warped frequency not below half the sampling rate;
-    /// poles that cannot be distinguished from the unit circle in double precision.
-    pub fn transfer(function: &TransferFunction, sampling_rate: f64, phase: Phase, warping: Warping) -> Result<Self, DesignError> {
+    /// Poles not above 0 Hz; more zeros than poles; a gain not above zero; a pre-warped frequency
+    /// not below half the sampling rate; poles that cannot be distinguished from the unit circle in
+    /// double precision.
+    pub fn transfer(
+        function: &TransferFunction,
+        sampling_rate: f64,
+        phase: Phase,
+        warping: Warping,
+    ) -> Result<Self, DesignError> {
         let gain = if phase == Phase::Zero { function.gain.sqrt() } else { function.gain };
         let of_one_pass = TransferFunction { gain, ..*function };
         Ok(Self::of(transfer::design(&of_one_pass, sampling_rate, warping)?, sampling_rate, phase))
@@ -86,10 +104,22 @@ impl Filter {
 
     fn of(design: butterworth::Design, sampling_rate: f64, phase: Phase) -> Self {
         // SciPy's rule: three times the number of taps, a first-order section having one fewer.
-        let first_order = design.sections.iter().filter(|section| section.b2 == 0.0 && section.a2 == 0.0).count();
-        let padding = if phase == Phase::Zero { 3 * (2 * design.sections.len() + 1 - first_order) } else { 0 };
+        let first_order =
+            design.sections.iter().filter(|section| section.b2 == 0.0 && section.a2 == 0.0).count();
+        let padding = if phase == Phase::Zero {
+            3 * (2 * design.sections.len() + 1 - first_order)
+        } else {
+            0
+        };
         let time_constant = design.time_constant / sampling_rate;
-        Self { phase, gain: design.gain, sections: design.sections, padding, sampling_rate, time_constant }
+        Self {
+            phase,
+            gain: design.gain,
+            sections: design.sections,
+            padding,
+            sampling_rate,
+            time_constant,
+        }
     }
 
     /// The filtered signal, with the same length.
@@ -104,8 +134,8 @@ impl Filter {
         Ok(filtered)
     }
 
-    /// The filtered signals, identical to those of [`Self::apply`] to the last bit, but several times faster: neighbouring signals
-    /// of equal length are filtered together.
+    /// The filtered signals, identical to those of [`Self::apply`] to the last bit, but several
+    /// times faster: neighbouring signals of equal length are filtered together.
     ///
     /// # Errors
     /// A signal not longer than the extension of its ends.
@@ -125,7 +155,9 @@ impl Filter {
                 [a] => filtered.extend(self.run([a], &mut Vec::new())),
                 [a, b] => filtered.extend(self.run([a, b], &mut Vec::new())),
                 // Four lanes take as long as three; the last signal is filtered twice.
-                [a, b, c, ..] => filtered.extend(self.run([a, b, c, c], &mut fours_at_work).into_iter().take(3)),
+                [a, b, c, ..] => {
+                    filtered.extend(self.run([a, b, c, c], &mut fours_at_work).into_iter().take(3))
+                }
             }
         }
         Ok(filtered)
@@ -134,19 +166,22 @@ impl Filter {
     /// Amplitude ratio of the filter as applied at a frequency in Hz; 1 in the pass band.
     pub fn gain(&self, frequency: f64) -> f64 {
         let angle = std::f64::consts::TAU * frequency / self.sampling_rate;
-        let pass: f64 = self.gain * self.sections.iter().map(|section| section.magnitude(angle)).product::<f64>();
+        let pass: f64 = self.gain
+            * self.sections.iter().map(|section| section.magnitude(angle)).product::<f64>();
         if self.phase == Phase::Zero { pass * pass } else { pass }
     }
 
-    /// Time, in s, in which the slowest part of a transient falls to 1/e, from the pole nearest to the unit circle.
+    /// Time, in s, in which the slowest part of a transient falls to 1/e, from the pole nearest to
+    /// the unit circle.
     pub fn time_constant(&self) -> f64 {
         self.time_constant
     }
 
-    /// Time, in s, in which the slowest part of a transient falls to 1 %. A record should extend this far beyond the part that is
-    /// evaluated, at both ends for [`Phase::Zero`].
+    /// Time, in s, in which the slowest part of a transient falls to 1 %. A record should extend
+    /// this far beyond the part that is evaluated, at both ends for [`Phase::Zero`].
     ///
-    /// This is an estimate: 4.6 time constants of the slowest pole. The transient of a particular record may be shorter.
+    /// This is an estimate: 4.6 time constants of the slowest pole. The transient of a particular
+    /// record may be shorter.
     pub fn settling_time(&self) -> f64 {
         self.time_constant * 100_f64.ln()
     }
@@ -156,7 +191,8 @@ impl Filter {
         self.padding + 1
     }
 
-    /// The sections of one pass as rows `[b0, b1, b2, 1, a1, a2]`, the gain in the first, as SciPy gives them.
+    /// The sections of one pass as rows `[b0, b1, b2, 1, a1, a2]`, the gain in the first, as SciPy
+    /// gives them.
     pub fn sections(&self) -> Vec<[f64; 6]> {
         let mut gain = self.gain;
         self.sections
@@ -204,16 +240,27 @@ pub enum DesignError {
 impl fmt::Display for DesignError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::Order { order } => write!(f, "the order of a filter must be from 1 to {}, this is {order}", butterworth::HIGHEST_ORDER),
-            Self::SamplingRate { sampling_rate } => write!(f, "the sampling rate {sampling_rate} Hz is not a positive number"),
+            Self::Order { order } => write!(
+                f,
+                "the order of a filter must be from 1 to {}, this is {order}",
+                butterworth::HIGHEST_ORDER
+            ),
+            Self::SamplingRate { sampling_rate } => {
+                write!(f, "the sampling rate {sampling_rate} Hz is not a positive number")
+            }
             Self::Frequency { frequency, sampling_rate } => write!(
                 f,
                 "the filter's frequency {frequency} Hz does not lie between 0 and half the sampling rate, {} Hz",
                 rounded(sampling_rate / 2.0)
             ),
-            Self::Edges { low, high } => write!(f, "the band's lower edge {low} Hz is not below its upper edge {high} Hz"),
+            Self::Edges { low, high } => {
+                write!(f, "the band's lower edge {low} Hz is not below its upper edge {high} Hz")
+            }
             Self::Degenerate { order, sampling_rate } => {
-                write!(f, "a filter of order {order} with these frequencies cannot be computed at a sampling rate of {sampling_rate} Hz")
+                write!(
+                    f,
+                    "a filter of order {order} with these frequencies cannot be computed at a sampling rate of {sampling_rate} Hz"
+                )
             }
         }
     }

@@ -15,7 +15,10 @@ impl Poles {
         match *self {
             Self::Conjugate(s) => {
                 let below = s.distance_to_one();
-                (-2.0 * (1.0 - s.square()) / below, Complex { re: -s.re, im: s.im }.distance_to_one() / below)
+                (
+                    -2.0 * (1.0 - s.square()) / below,
+                    Complex { re: -s.re, im: s.im }.distance_to_one() / below,
+                )
             }
             Self::Real(one, two) => {
                 let (one, two) = (bilinear(one), bilinear(two));
@@ -54,7 +57,8 @@ impl Poles {
         self.outer().1
     }
 
-    /// Number of samples in which the slowest pole decays to 1/e: -1 / ln |z|, without loss of digits near |z| = 1.
+    /// Number of samples in which the slowest pole decays to 1/e: -1 / ln |z|, without loss of
+    /// digits near |z| = 1.
     pub(super) fn time_constant(&self) -> f64 {
         let samples = |s: Complex| -2.0 / (4.0 * s.re / s.distance_to_one()).ln_1p();
         let real = |s: f64| samples(Complex { re: s, im: 0.0 });

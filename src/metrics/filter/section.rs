@@ -9,7 +9,8 @@ pub(super) struct Section {
     pub a2: f64,
 }
 
-/// Relative error of a gain by rounding beyond which a filter is refused: far below what a record is known to.
+/// Relative error of a gain by rounding beyond which a filter is refused: far below what a record
+/// is known to.
 const LARGEST_ERROR: f64 = 1e-4;
 
 /// The steady state of a section for a constant input of 1, and its output.
@@ -29,12 +30,14 @@ impl Section {
     pub(super) fn magnitude(&self, angle: f64) -> f64 {
         let (sine, cosine) = angle.sin_cos();
         let (sine_2, cosine_2) = (2.0 * angle).sin_cos();
-        let along = |c1: f64, c2: f64| (1.0 + c1 * cosine + c2 * cosine_2).hypot(c1 * sine + c2 * sine_2);
+        let along =
+            |c1: f64, c2: f64| (1.0 + c1 * cosine + c2 * cosine_2).hypot(c1 * sine + c2 * sine_2);
         along(self.b1, self.b2) / along(self.a1, self.a2)
     }
 
-    /// Whether both poles are inside the unit circle (Jury criterion), and far enough from it: near it, `1 + a1 + a2` is the difference
-    /// of nearly equal numbers, and the gain has its relative rounding error.
+    /// Whether both poles are inside the unit circle (Jury criterion), and far enough from it: near
+    /// it, `1 + a1 + a2` is the difference of nearly equal numbers, and the gain has its relative
+    /// rounding error.
     pub(super) fn is_stable(&self) -> bool {
         const LEAST: f64 = f64::EPSILON / LARGEST_ERROR;
         self.a2.abs() < 1.0 && 1.0 + self.a1 + self.a2 > LEAST && 1.0 - self.a1 + self.a2 > 0.0

@@ -1,18 +1,24 @@
 //! Runs the sections over signals. Most of the computing time is spent here.
 //!
-//! A recursion depends on its own previous value, so that a single signal leaves most of a processor idle. Therefore up to four
-//! signals are stored side by side, sample by sample, and up to four sections are applied in one sweep. The compiler turns the
-//! signals into vector instructions, and the processor overlaps the sections. Each signal gets the same operations in the same
-//! order as alone.
+//! A recursion depends on its own previous value, so that a single signal leaves most of a
+//! processor idle. Therefore up to four signals are stored side by side, sample by sample, and up
+//! to four sections are applied in one sweep. The compiler turns the signals into vector
+//! instructions, and the processor overlaps the sections. Each signal gets the same operations in
+//! the same order as alone.
 
 use super::{Filter, Phase, section::Section};
 
-/// Number of rows copied between the signals and the lanes at a time; they fit in the first-level cache.
+/// Number of rows copied between the signals and the lanes at a time; they fit in the first-level
+/// cache.
 const ROWS: usize = 64;
 
 impl Filter {
     /// Signals of equal length, longer than the padding. `samples` is working memory.
-    pub(super) fn run<const LANES: usize>(&self, signals: [&[f64]; LANES], samples: &mut Vec<[f64; LANES]>) -> [Vec<f64>; LANES] {
+    pub(super) fn run<const LANES: usize>(
+        &self,
+        signals: [&[f64]; LANES],
+        samples: &mut Vec<[f64; LANES]>,
+    ) -> [Vec<f64>; LANES] {
         self.lay_out(signals, samples);
         let from = match self.phase {
             Phase::Zero | Phase::Causal => samples[0],
@@ -33,8 +39,13 @@ impl Filter {
         filtered
     }
 
-    /// The signals side by side, with both ends reflected about their end points, multiplied by the gain of all passes.
-    fn lay_out<const LANES: usize>(&self, signals: [&[f64]; LANES], samples: &mut Vec<[f64; LANES]>) {
+    /// The signals side by side, with both ends reflected about their end points, multiplied by the
+    /// gain of all passes.
+    fn lay_out<const LANES: usize>(
+        &self,
+        signals: [&[f64]; LANES],
+        samples: &mut Vec<[f64; LANES]>,
+    ) {
         let gain = if self.phase == Phase::Zero { self.gain * self.gain } else { self.gain };
         let length = signals[0].len();
         samples.clear();
@@ -60,7 +71,11 @@ impl Filter {
 }
 
 /// One pass of all sections, in place, forward or backward, from the steady state of `level`.
-fn sweep_all<const LANES: usize, const BACKWARD: bool>(sections: &[Section], samples: &mut [[f64; LANES]], mut level: [f64; LANES]) {
+fn sweep_all<const LANES: usize, const BACKWARD: bool>(
+    sections: &[Section],
+    samples: &mut [[f64; LANES]],
+    mut level: [f64; LANES],
+) {
     let (fours, rest) = sections.as_chunks::<4>();
     for four in fours {
         level = sweep_some::<LANES, 4, BACKWARD>(four, samples, level);
@@ -95,7 +110,12 @@ fn sweep_some<const LANES: usize, const SECTIONS: usize, const BACKWARD: bool>(
 }
 
 /// Direct form II transposed.
-fn sweep<const LANES: usize, const SECTIONS: usize, const BACKWARD: bool, const ENDS_IN_ONE: bool>(
+fn sweep<
+    const LANES: usize,
+    const SECTIONS: usize,
+    const BACKWARD: bool,
+    const ENDS_IN_ONE: bool,
+>(
     sections: &[Section; SECTIONS],
     samples: &mut [[f64; LANES]],
     mut states: [[[f64; LANES]; 2]; SECTIONS],

@@ -1,6 +1,7 @@
 //! A filter given by poles and zeros: the bilinear transformation of an analogue transfer function.
 //!
-//! Frequency weightings of vibration (ISO 2631-1, EN 12299, ISO 8041) are products of such functions.
+//! Frequency weightings of vibration (ISO 2631-1, EN 12299, ISO 8041) are products of such
+//! functions.
 
 use std::f64::consts::PI;
 
@@ -20,8 +21,9 @@ pub enum Roots {
     Two { frequency: f64, quality: f64 },
 }
 
-/// gain x zeros(s) / poles(s), which tends to the gain at low frequencies. Zeros at 0 Hz are s/w or (s/w)^2 with the w of the
-/// poles; with as many zeros as poles, the function then tends to the gain at high frequencies.
+/// gain x zeros(s) / poles(s), which tends to the gain at low frequencies. Zeros at 0 Hz are s/w or
+/// (s/w)^2 with the w of the poles; with as many zeros as poles, the function then tends to the
+/// gain at high frequencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransferFunction {
     pub poles: Roots,
@@ -30,8 +32,8 @@ pub struct TransferFunction {
     pub gain: f64,
 }
 
-/// Frequencies of the poles and zeros after the bilinear transformation, which compresses all frequencies below half the sampling
-/// rate.
+/// Frequencies of the poles and zeros after the bilinear transformation, which compresses all
+/// frequencies below half the sampling rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Warping {
     /// As stated; each frequency is pre-warped.
@@ -51,7 +53,8 @@ impl Roots {
         if matches!(self, Self::One(_)) { 1 } else { 2 }
     }
 
-    /// The poles in the plane in which z = (1 + s)/(1 - s), with a frequency placed at `at` on its axis.
+    /// The poles in the plane in which z = (1 + s)/(1 - s), with a frequency placed at `at` on its
+    /// axis.
     fn placed(self, at: f64) -> Poles {
         match self {
             Self::One(_) => Poles::Single(-at),
@@ -70,13 +73,19 @@ impl Roots {
     }
 }
 
-pub(super) fn design(function: &TransferFunction, sampling_rate: f64, warping: Warping) -> Result<Design, DesignError> {
+pub(super) fn design(
+    function: &TransferFunction,
+    sampling_rate: f64,
+    warping: Warping,
+) -> Result<Design, DesignError> {
     if !(sampling_rate.is_finite() && sampling_rate > 0.0) {
         return Err(DesignError::SamplingRate { sampling_rate });
     }
     let TransferFunction { poles, zeros, gain } = *function;
     let place = |frequency: f64| match warping {
-        Warping::PreWarped if frequency >= sampling_rate / 2.0 => Err(DesignError::Frequency { frequency, sampling_rate }),
+        Warping::PreWarped if frequency >= sampling_rate / 2.0 => {
+            Err(DesignError::Frequency { frequency, sampling_rate })
+        }
         Warping::PreWarped => Ok((PI * frequency / sampling_rate).tan()),
         Warping::Plain => Ok(PI * frequency / sampling_rate),
     };
@@ -97,7 +106,8 @@ pub(super) fn design(function: &TransferFunction, sampling_rate: f64, warping: W
         let scale = if zeros.frequency() == 0.0 { at } else { at_zeros };
         of_gain *= placed.product() / scale.powi(zeros.count());
     }
-    // Poles in excess of the zeros have zeros at infinity, which the transformation moves to z = -1.
+    // Poles in excess of the zeros have zeros at infinity, which the transformation moves to z =
+    // -1.
     for _ in 0..poles.count() - zeros.map_or(0, Roots::count) {
         (b1, b2) = (b1 + 1.0, b2 + b1);
     }

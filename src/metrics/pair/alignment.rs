@@ -8,16 +8,19 @@ use crate::metrics::statistics;
 const GRID: f64 = 256.0;
 /// Largest shift, as a share of the compared range, so that most of the range is always compared.
 const FARTHEST: f64 = 0.25;
-/// If the largest correlation is below this, the signals are not related at any shift. For unrelated ranges of 250 m with
-/// wavelengths of 10 m (25 waves), the largest correlation at about 50 independent shifts is seldom above 0.5.
+/// If the largest correlation is below this, the signals are not related at any shift. For
+/// unrelated ranges of 250 m with wavelengths of 10 m (25 waves), the largest correlation at about
+/// 50 independent shifts is seldom above 0.5.
 const FOLLOWS: f64 = 0.5;
 
-/// Shift to be added to the measured axis for the largest correlation with the simulated signal, in the unit of the axis.
+/// Shift to be added to the measured axis for the largest correlation with the simulated signal, in
+/// the unit of the axis.
 ///
 /// The correlation is computed over the overlap, for every shift up to a quarter of the range.
 ///
 /// # Errors
-/// The signals are not related at any shift; the best shift is at the end of the search range; an axis that does not increase.
+/// The signals are not related at any shift; the best shift is at the end of the search range; an
+/// axis that does not increase.
 pub fn shift(axis: &[f64], simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     check(simulated, measured)?;
     let no_axis = || Undefined::because("the axis does not increase");
@@ -27,10 +30,16 @@ pub fn shift(axis: &[f64], simulated: &[f64], measured: &[f64]) -> Result<f64, U
     let on_grid = |signal: &[f64]| interpolate(axis, signal, &grid).map_err(|_| no_axis());
     let (s, m) = (on_grid(simulated)?, on_grid(measured)?);
     let most = (FARTHEST * GRID) as usize;
-    // Ahead: the measured signal has at a smaller coordinate the value that the simulated signal has at a larger one.
+    // Ahead: the measured signal has at a smaller coordinate the value that the simulated signal
+    // has at a larger one.
     let ahead = |lag: usize| statistics::correlation(&s[lag..], &m[..m.len() - lag]);
     let behind = |lag: usize| statistics::correlation(&s[..s.len() - lag], &m[lag..]);
-    let all: Vec<f64> = (1..=most).rev().map(behind).chain((0..=most).map(ahead)).map(|found| found.unwrap_or(f64::NEG_INFINITY)).collect();
+    let all: Vec<f64> = (1..=most)
+        .rev()
+        .map(behind)
+        .chain((0..=most).map(ahead))
+        .map(|found| found.unwrap_or(f64::NEG_INFINITY))
+        .collect();
     let best = (0..all.len()).fold(0, |best, at| if all[at] > all[best] { at } else { best });
     if all[best] < FOLLOWS {
         return Err(Undefined::because("the signals are not correlated at any shift"));
@@ -44,7 +53,8 @@ pub fn shift(axis: &[f64], simulated: &[f64], measured: &[f64]) -> Result<f64, U
     Ok((best as f64 - most as f64 + refined) * step)
 }
 
-/// Correlation of the measured signal with the simulated one in reverse order; near 1 if one of the records is mirrored.
+/// Correlation of the measured signal with the simulated one in reverse order; near 1 if one of the
+/// records is mirrored.
 ///
 /// # Errors
 /// A signal is constant.
@@ -53,15 +63,16 @@ pub fn mirrored_correlation(simulated: &[f64], measured: &[f64]) -> Result<f64, 
     super::correlation(&mirrored, measured)
 }
 
-/// Drift of the measured signal from the simulated one between the first and the last sample, in the unit of the signals: the
-/// change of the regression line of measured minus simulated.
+/// Drift of the measured signal from the simulated one between the first and the last sample, in
+/// the unit of the signals: the change of the regression line of measured minus simulated.
 ///
 /// # Errors
 /// Fewer than two samples.
 pub fn drift(axis: &[f64], simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     check(simulated, measured)?;
     let difference: Vec<f64> = measured.iter().zip(simulated).map(|(m, s)| m - s).collect();
-    let line = statistics::regression(axis, &difference).ok_or_else(|| Undefined::because("there are fewer than two samples"))?;
+    let line = statistics::regression(axis, &difference)
+        .ok_or_else(|| Undefined::because("there are fewer than two samples"))?;
     let length = axis.last().unwrap_or(&0.0) - axis.first().unwrap_or(&0.0);
     Ok(line.slope * length)
 }
@@ -73,7 +84,9 @@ mod tests {
     use super::*;
 
     fn track(x: f64) -> f64 {
-        (TAU * x / 7.3).sin() + 0.6 * (TAU * x / 19.1 + 1.0).sin() + 0.4 * (TAU * x / 31.7 + 2.0).cos()
+        (TAU * x / 7.3).sin()
+            + 0.6 * (TAU * x / 19.1 + 1.0).sin()
+            + 0.4 * (TAU * x / 31.7 + 2.0).cos()
     }
 
     /// A measured coordinate that is 3.2 m too small shows at x the simulated value at x + 3.2 m.
@@ -95,7 +108,9 @@ mod tests {
         let mut state = 7_u64;
         let noise: Vec<f64> = (0..1000)
             .map(|_| {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                state = state
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1_442_695_040_888_963_407);
                 (state >> 33) as f64
             })
             .collect();
@@ -116,7 +131,8 @@ mod tests {
     fn a_line_added_is_the_drift() {
         let axis: Vec<f64> = (0..=200).map(f64::from).collect();
         let simulated: Vec<f64> = axis.iter().map(|x| track(*x)).collect();
-        let measured: Vec<f64> = axis.iter().zip(&simulated).map(|(x, s)| s + 4.0 + 0.01 * x).collect();
+        let measured: Vec<f64> =
+            axis.iter().zip(&simulated).map(|(x, s)| s + 4.0 + 0.01 * x).collect();
         assert!((drift(&axis, &simulated, &measured).expect("a line") - 2.0).abs() < 1e-9);
     }
 }

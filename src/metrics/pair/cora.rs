@@ -1,7 +1,8 @@
 //! Ratings in the manner of CORA (correlation and analysis), each from 0 to 1 (best). Unverified.
 //!
-//! After the description by Gehre, Gades and Wernicke, "Objective rating of signals using test and simulation responses", ESV 2009,
-//! and that of Altair HyperGraph. The program CORA was not to hand: no number here is checked against it.
+//! After the description by Gehre, Gades and Wernicke, "Objective rating of signals using test and
+//! simulation responses", ESV 2009, and that of Altair HyperGraph. The program CORA was not to
+//! hand: no number here is checked against it.
 
 use super::lag::{Agreement, best_shift, overlap};
 use super::{Energies, Undefined, check, iso18571_corridor};
@@ -14,7 +15,8 @@ const PROGRESSION: i32 = 10;
 /// Shifts rated 1 and 0, as shares of the interval.
 const NO_SHIFT: f64 = 0.01;
 const WORST_SHIFT: f64 = 0.12;
-/// Weights of progression, size and phase in the rating by cross-correlation; this and that of the corridor count alike.
+/// Weights of progression, size and phase in the rating by cross-correlation; this and that of the
+/// corridor count alike.
 const WEIGHTS: [f64; 3] = [0.5, 0.25, 0.25];
 
 /// Rating by the corridors, with the widths of ISO/TS 18571.
@@ -55,7 +57,11 @@ pub fn cora_phase(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined>
 /// As [`cora_progression`].
 pub fn cora_total(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     let Ratings { progression, size, phase } = Ratings::of(simulated, measured)?;
-    let by_correlation: f64 = [progression, size, phase].iter().zip(WEIGHTS).map(|(rating, weight)| rating * weight).sum();
+    let by_correlation: f64 = [progression, size, phase]
+        .iter()
+        .zip(WEIGHTS)
+        .map(|(rating, weight)| rating * weight)
+        .sum();
     Ok((cora_corridor(simulated, measured)? + by_correlation) / 2.0)
 }
 
@@ -77,11 +83,13 @@ impl Ratings {
             .map_err(|_| Undefined::because("one of the signals is zero throughout"))?;
         let (s, m) = overlap(simulated, measured, shift);
         let energies = Energies::of(s, m)?;
-        let cosine = sum_of_pairs(s, m, |s, m| s * m) / (energies.simulated * energies.measured).sqrt();
+        let cosine =
+            sum_of_pairs(s, m, |s, m| s * m) / (energies.simulated * energies.measured).sqrt();
         let share = shift.unsigned_abs() as f64 / (simulated.len() - 1) as f64;
         Ok(Self {
             progression: ((cosine.clamp(-1.0, 1.0) + 1.0) / 2.0).powi(PROGRESSION),
-            size: energies.simulated.min(energies.measured) / energies.simulated.max(energies.measured),
+            size: energies.simulated.min(energies.measured)
+                / energies.simulated.max(energies.measured),
             phase: ((WORST_SHIFT - share) / (WORST_SHIFT - NO_SHIFT)).clamp(0.0, 1.0),
         })
     }

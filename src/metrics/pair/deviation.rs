@@ -9,7 +9,8 @@ use crate::metrics::{
 /// Root mean square of simulation minus measurement, in the unit of the signals.
 ///
 /// # Errors
-/// Signals of different length, without samples, or with a sample that is not finite. This applies to every metric of this module.
+/// Signals of different length, without samples, or with a sample that is not finite. This applies
+/// to every metric of this module.
 pub fn root_mean_square_error(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     let energies = Energies::of(simulated, measured)?;
     Ok((energies.difference / simulated.len() as f64).sqrt())
@@ -21,14 +22,23 @@ pub fn root_mean_square_error(simulated: &[f64], measured: &[f64]) -> Result<f64
 /// The measurement is constant.
 pub fn relative_to_range(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     let error = root_mean_square_error(simulated, measured)?;
-    let (low, high) = measured.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)));
-    if high > low { Ok(error / (high - low)) } else { Err(Undefined::because("the measured signal is constant")) }
+    let (low, high) =
+        measured.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| {
+            (low.min(value), high.max(value))
+        });
+    if high > low {
+        Ok(error / (high - low))
+    } else {
+        Err(Undefined::because("the measured signal is constant"))
+    }
 }
 
-/// Root mean square of the simulation over that of the measurement; each may have samples of its own.
+/// Root mean square of the simulation over that of the measurement; each may have samples of its
+/// own.
 ///
 /// # Errors
-/// The measurement is zero throughout; a signal without samples, or with a sample that is not finite.
+/// The measurement is zero throughout; a signal without samples, or with a sample that is not
+/// finite.
 pub fn rms_ratio(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     super::check_values(simulated, measured)?;
     let of = |signal: &[f64]| statistics::rms(signal).ok_or_else(too_large);
@@ -45,7 +55,8 @@ pub fn rms_ratio(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> 
 /// A signal is constant.
 pub fn correlation(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     check(simulated, measured)?;
-    statistics::correlation(simulated, measured).ok_or_else(|| Undefined::because("one of the signals is constant"))
+    statistics::correlation(simulated, measured)
+        .ok_or_else(|| Undefined::because("one of the signals is constant"))
 }
 
 /// Misfit of Kraft et al.: `sum (s - m)^2 / min(sum s^2, sum m^2)`.
@@ -71,7 +82,8 @@ pub fn kraft_misfit_root(simulated: &[f64], measured: &[f64]) -> Result<f64, Und
     kraft_misfit(simulated, measured).map(f64::sqrt)
 }
 
-/// Weighted integrated factor: 1 for equal signals, 0 for signals of opposite sign throughout. It is symmetric.
+/// Weighted integrated factor: 1 for equal signals, 0 for signals of opposite sign throughout. It
+/// is symmetric.
 ///
 /// `1 - sqrt(sum max(m^2, s^2) (1 - max(0, m s) / max(m^2, s^2))^2 / sum max(m^2, s^2))`
 ///
@@ -89,7 +101,11 @@ pub fn weighted_integrated_factor(simulated: &[f64], measured: &[f64]) -> Result
         if larger == 0.0 { 0.0 } else { larger * (1.0 - (s * m).max(0.0) / larger).powi(2) }
     });
     let factor = 1.0 - (missing / whole).sqrt();
-    if factor.is_finite() { Ok(factor) } else { Err(Undefined::because("the sum of the squares of the samples overflows")) }
+    if factor.is_finite() {
+        Ok(factor)
+    } else {
+        Err(Undefined::because("the sum of the squares of the samples overflows"))
+    }
 }
 
 /// Mean residual of the analysis of variance, divided by the largest magnitude of the measurement.
@@ -118,7 +134,9 @@ pub fn anova_standard_deviation(simulated: &[f64], measured: &[f64]) -> Result<f
 fn residuals(simulated: &[f64], measured: &[f64]) -> Result<Vec<f64>, Undefined> {
     check(simulated, measured)?;
     match statistics::peak_magnitude(measured) {
-        Some(peak) if peak > 0.0 => Ok(simulated.iter().zip(measured).map(|(s, m)| (s - m) / peak).collect()),
+        Some(peak) if peak > 0.0 => {
+            Ok(simulated.iter().zip(measured).map(|(s, m)| (s - m) / peak).collect())
+        }
         _ => Err(Undefined::because("the measured signal is zero throughout")),
     }
 }

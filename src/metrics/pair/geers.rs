@@ -1,16 +1,18 @@
 //! Magnitude, phase and comprehensive errors: Sprague and Geers, Geers (1984), Russell.
 //!
-//! Sources: Geers, "An objective error measure for the comparison of calculated and measured transient response histories",
-//! Shock and Vibration Bulletin 54 (1984); Sprague and Geers, "A spectral-element method for modelling cavitation in transient
-//! fluid-structure interaction", Int. J. Numer. Meth. Eng. 60 (2004); Russell, "Error measures for comparing transient data",
-//! Proc. 68th Shock and Vibration Symposium (1997).
+//! Sources: Geers, "An objective error measure for the comparison of calculated and measured
+//! transient response histories", Shock and Vibration Bulletin 54 (1984); Sprague and Geers, "A
+//! spectral-element method for modelling cavitation in transient fluid-structure interaction", Int.
+//! J. Numer. Meth. Eng. 60 (2004); Russell, "Error measures for comparing transient data", Proc.
+//! 68th Shock and Vibration Symposium (1997).
 
 use std::f64::consts::PI;
 
 use super::{Energies, Undefined};
 use crate::metrics::sum::sum_of_pairs;
 
-/// Sprague and Geers magnitude error: `sqrt(sum s^2 / sum m^2) - 1`. Negative if the simulation is smaller.
+/// Sprague and Geers magnitude error: `sqrt(sum s^2 / sum m^2) - 1`. Negative if the simulation is
+/// smaller.
 ///
 /// # Errors
 /// The measurement is zero throughout.
@@ -18,8 +20,8 @@ pub fn sprague_geers_magnitude(simulated: &[f64], measured: &[f64]) -> Result<f6
     magnitude(&Energies::of(simulated, measured)?)
 }
 
-/// Sprague and Geers phase error: the angle between the signals divided by pi, `acos(sum s m / sqrt(sum s^2 sum m^2)) / pi`, in [0,
-/// 1].
+/// Sprague and Geers phase error: the angle between the signals divided by pi, `acos(sum s m /
+/// sqrt(sum s^2 sum m^2)) / pi`, in [0, 1].
 ///
 /// # Errors
 /// A signal is zero throughout.
@@ -44,7 +46,8 @@ pub fn geers_phase(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined
     Ok(one_less_cosine(angle(simulated, measured, &Energies::of(simulated, measured)?)?))
 }
 
-/// Comprehensive error of Geers (1984), from the magnitude error of Sprague and Geers and the phase error of 1984.
+/// Comprehensive error of Geers (1984), from the magnitude error of Sprague and Geers and the phase
+/// error of 1984.
 ///
 /// # Errors
 /// A signal is zero throughout.
@@ -53,7 +56,8 @@ pub fn geers_comprehensive(simulated: &[f64], measured: &[f64]) -> Result<f64, U
     Ok(magnitude(&energies)?.hypot(one_less_cosine(angle(simulated, measured, &energies)?)))
 }
 
-/// Russell's magnitude error: `sign(r) log10(1 + |r|)`, `r = (S - M) / sqrt(S M)`, with S and M the sums of squares.
+/// Russell's magnitude error: `sign(r) log10(1 + |r|)`, `r = (S - M) / sqrt(S M)`, with S and M the
+/// sums of squares.
 ///
 /// # Errors
 /// A signal is zero throughout.
@@ -96,8 +100,8 @@ fn russell(energies: &Energies) -> Result<f64, Undefined> {
 
 /// Angle between the signals, in [0, pi].
 ///
-/// The cosine of a small angle has half the digits only, and rounding can make it larger than 1. Kahan's formula, from the sides of
-/// the triangle of the two unit signals, has neither problem.
+/// The cosine of a small angle has half the digits only, and rounding can make it larger than 1.
+/// Kahan's formula, from the sides of the triangle of the two unit signals, has neither problem.
 fn angle(simulated: &[f64], measured: &[f64], energies: &Energies) -> Result<f64, Undefined> {
     both_move(energies)?;
     let (s_length, m_length) = (energies.simulated.sqrt(), energies.measured.sqrt());

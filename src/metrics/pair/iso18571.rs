@@ -1,7 +1,7 @@
 //! Ratings of ISO/TS 18571:2014, each from 0 to 1 (best).
 //!
-//! As in the Python package `objective-rating-metrics` 1.3 (TU Graz), whose numbers the tests hold. The standard asks for signals
-//! at 10 kHz; here the samples are those of the records.
+//! As in the Python package `objective-rating-metrics` 1.3 (TU Graz), whose numbers the tests hold.
+//! The standard asks for signals at 10 kHz; here the samples are those of the records.
 
 use super::lag::{Agreement, best_shift, overlap};
 use super::{Undefined, check};
@@ -10,12 +10,14 @@ use crate::metrics::{
     sum::{sum, sum_of, sum_of_pairs},
 };
 
-/// Half widths of the inner and outer corridor, as shares of the largest magnitude of the measurement.
+/// Half widths of the inner and outer corridor, as shares of the largest magnitude of the
+/// measurement.
 const INNER: f64 = 0.05;
 const OUTER: f64 = 0.5;
 /// The largest shift, as a share of the samples.
 const LARGEST_SHIFT: f64 = 0.2;
-/// Half width of the band in which the signals are warped onto each other, as a share of the samples.
+/// Half width of the band in which the signals are warped onto each other, as a share of the
+/// samples.
 const WARPING: f64 = 0.1;
 /// Relative errors of magnitude and of slope that are rated 0.
 const WORST_MAGNITUDE: f64 = 0.5;
@@ -24,17 +26,21 @@ const WORST_SLOPE: f64 = 2.0;
 const SMOOTHED: usize = 9;
 /// Weights of corridor, phase, magnitude and slope.
 const WEIGHTS: [f64; 4] = [0.4, 0.2, 0.2, 0.2];
-/// Most cells of the warping band: a byte each, 400 MB. They are reached at 44,000 samples, 220 s at 200 samples a second.
+/// Most cells of the warping band: a byte each, 400 MB. They are reached at 44,000 samples, 220 s
+/// at 200 samples a second.
 const MOST_CELLS: usize = 400_000_000;
 
-/// Share of agreement with two corridors about the measurement: 1 inside the inner one, 0 outside the outer one.
+/// Share of agreement with two corridors about the measurement: 1 inside the inner one, 0 outside
+/// the outer one.
 ///
 /// # Errors
-/// The measurement is zero throughout; signals of different length, without samples, or with a sample that is not finite.
+/// The measurement is zero throughout; signals of different length, without samples, or with a
+/// sample that is not finite.
 pub fn iso18571_corridor(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     check(simulated, measured)?;
     let largest = peak_magnitude(measured).filter(|largest| *largest > 0.0);
-    let largest = largest.ok_or_else(|| Undefined::because("the measured signal is zero throughout"))?;
+    let largest =
+        largest.ok_or_else(|| Undefined::because("the measured signal is zero throughout"))?;
     let (inner, outer) = (INNER * largest, OUTER * largest);
     let rating = |s: f64, m: f64| match (s - m).abs() {
         apart if apart < inner => 1.0,
@@ -76,13 +82,23 @@ pub fn iso18571_overall(simulated: &[f64], measured: &[f64]) -> Result<f64, Unde
     let corridor = iso18571_corridor(simulated, measured)?;
     let shift = shift(simulated, measured)?;
     let phase = phase_of(shift, simulated.len());
-    let ratings = [corridor, phase, magnitude_at(simulated, measured, shift)?, slope_at(simulated, measured, shift)?];
+    let ratings = [
+        corridor,
+        phase,
+        magnitude_at(simulated, measured, shift)?,
+        slope_at(simulated, measured, shift)?,
+    ];
     Ok(ratings.iter().zip(WEIGHTS).map(|(rating, weight)| rating * weight).sum())
 }
 
 fn shift(simulated: &[f64], measured: &[f64]) -> Result<isize, Undefined> {
     check(simulated, measured)?;
-    best_shift(simulated, measured, (LARGEST_SHIFT * simulated.len() as f64).floor() as usize, Agreement::Correlation)
+    best_shift(
+        simulated,
+        measured,
+        (LARGEST_SHIFT * simulated.len() as f64).floor() as usize,
+        Agreement::Correlation,
+    )
 }
 
 fn phase_of(shift: isize, count: usize) -> f64 {
@@ -101,7 +117,10 @@ fn magnitude_at(simulated: &[f64], measured: &[f64], shift: isize) -> Result<f64
 fn slope_at(simulated: &[f64], measured: &[f64], shift: isize) -> Result<f64, Undefined> {
     let (s, m) = overlap(simulated, measured, shift);
     if s.len() < SMOOTHED {
-        return Err(Undefined::because(format!("{} samples overlap after the shift, and the slopes need {SMOOTHED}", s.len())));
+        return Err(Undefined::because(format!(
+            "{} samples overlap after the shift, and the slopes need {SMOOTHED}",
+            s.len()
+        )));
     }
     let (s, m) = (smoothed_slopes(s), smoothed_slopes(m));
     rated(sum_of_pairs(&s, &m, |s, m| (s - m).abs()), sum_of(&m, f64::abs), WORST_SLOPE)
@@ -126,26 +145,37 @@ fn smoothed_slopes(signal: &[f64]) -> Vec<f64> {
         })
         .collect();
     let half = |at: usize| at.min(last - at).min(SMOOTHED / 2);
-    (0..=last).map(|at| slopes[at - half(at)..=at + half(at)].iter().sum::<f64>() / (2 * half(at) + 1) as f64).collect()
+    (0..=last)
+        .map(|at| {
+            slopes[at - half(at)..=at + half(at)].iter().sum::<f64>() / (2 * half(at) + 1) as f64
+        })
+        .collect()
 }
 
-/// The cheapest way through both signals, as pairs of samples, last pair first: squared distances, steps of one sample of either
-/// signal or of both, no more than the width of the band apart.
+/// The cheapest way through both signals, as pairs of samples, last pair first: squared distances,
+/// steps of one sample of either signal or of both, no more than the width of the band apart.
 ///
-/// Pairs are numbered by the simulated sample `i` on the diagonal `d = i + j`. A pair depends only on the two diagonals before its own,
-/// so that a processor can do several pairs of a diagonal at once.
+/// Pairs are numbered by the simulated sample `i` on the diagonal `d = i + j`. A pair depends only
+/// on the two diagonals before its own, so that a processor can do several pairs of a diagonal at
+/// once.
 fn warp(simulated: &[f64], measured: &[f64]) -> Result<Vec<(usize, usize)>, Undefined> {
     let count = simulated.len();
     let band = ((WARPING * count as f64).ceil() as usize).saturating_sub(1);
     let width = band + 1;
     if count.saturating_mul(2 * width) > MOST_CELLS {
-        return Err(Undefined::because(format!("{count} samples are too many to be warped onto each other; resample the signals")));
+        return Err(Undefined::because(format!(
+            "{count} samples are too many to be warped onto each other; resample the signals"
+        )));
     }
     let last = count - 1;
-    let range = |d: usize| d.saturating_sub(last).max(d.saturating_sub(band).div_ceil(2))..=last.min(d).min((d + band) / 2);
+    let range = |d: usize| {
+        d.saturating_sub(last).max(d.saturating_sub(band).div_ceil(2))
+            ..=last.min(d).min((d + band) / 2)
+    };
     let backwards: Vec<f64> = measured.iter().rev().copied().collect();
     let mut steps = vec![SIMULATED; (2 * last + 1) * width];
-    // Costs of a diagonal, of the one before it and of the one before that; the pair of sample `i` stands at `i + 1`.
+    // Costs of a diagonal, of the one before it and of the one before that; the pair of sample `i`
+    // stands at `i + 1`.
     let [mut row, mut before, mut earlier] = [(); 3].map(|()| vec![f64::INFINITY; count + 2]);
     before[1] = (simulated[0] - measured[0]).powi(2);
     for d in 1..=2 * last {
@@ -153,11 +183,20 @@ fn warp(simulated: &[f64], measured: &[f64]) -> Result<Vec<(usize, usize)>, Unde
         let backwards = &backwards[last + first - d..];
         // With a band of no width every second diagonal is empty.
         let steps = &mut steps[d * width..][..end + 1 - first];
-        let pairs = simulated[first..].iter().zip(backwards).zip(&before[first..]).zip(&before[first + 1..]).zip(&earlier[first..]);
-        for ((cost, step), ((((s, m), along), across), both)) in row[first + 1..].iter_mut().zip(steps).zip(pairs) {
+        let pairs = simulated[first..]
+            .iter()
+            .zip(backwards)
+            .zip(&before[first..])
+            .zip(&before[first + 1..])
+            .zip(&earlier[first..]);
+        for ((cost, step), ((((s, m), along), across), both)) in
+            row[first + 1..].iter_mut().zip(steps).zip(pairs)
+        {
             // Of equal ways the one written first.
-            let (cheaper, first_step) = if across < along { (across, MEASURED) } else { (along, SIMULATED) };
-            let (cheapest, chosen) = if both < cheaper { (both, BOTH) } else { (cheaper, first_step) };
+            let (cheaper, first_step) =
+                if across < along { (across, MEASURED) } else { (along, SIMULATED) };
+            let (cheapest, chosen) =
+                if both < cheaper { (both, BOTH) } else { (cheaper, first_step) };
             *cost = cheapest + (s - m) * (s - m);
             *step = chosen;
         }

@@ -6,7 +6,8 @@ use super::Undefined;
 use crate::metrics::fourier;
 use crate::metrics::sum::{RunningSums, sum_of};
 
-/// A larger shift has to agree better by more than this. Differences below are rounding, and of equal ones the smaller shift counts.
+/// A larger shift has to agree better by more than this. Differences below are rounding, and of
+/// equal ones the smaller shift counts.
 const TIE: f64 = 1e-12;
 /// A part of a signal with less than this share of its energy is constant but for rounding.
 const CONSTANT: f64 = 1e-12;
@@ -20,21 +21,34 @@ pub(super) enum Agreement {
     Cosine,
 }
 
-/// The shift in samples, at most so many: above zero where the simulated signal is late, and is moved to the left.
+/// The shift in samples, at most so many: above zero where the simulated signal is late, and is
+/// moved to the left.
 ///
-/// Only where the signals overlap are they compared. Of equal agreement the smaller shift counts, then the one to the left.
-pub(super) fn best_shift(simulated: &[f64], measured: &[f64], most: usize, by: Agreement) -> Result<isize, Undefined> {
+/// Only where the signals overlap are they compared. Of equal agreement the smaller shift counts,
+/// then the one to the left.
+pub(super) fn best_shift(
+    simulated: &[f64],
+    measured: &[f64],
+    most: usize,
+    by: Agreement,
+) -> Result<isize, Undefined> {
     let count = simulated.len();
     let most = most.min(count.saturating_sub(1));
     // Near zero mean, so that nothing cancels in the sums below.
     let centred = |signal: &[f64]| -> Vec<f64> {
-        let mean = if by == Agreement::Correlation { sum_of(signal, |value| value) / count as f64 } else { 0.0 };
+        let mean = if by == Agreement::Correlation {
+            sum_of(signal, |value| value) / count as f64
+        } else {
+            0.0
+        };
         signal.iter().map(|value| value - mean).collect()
     };
     let (s, m) = (centred(simulated), centred(measured));
     let products = products(&s, &m, most)?;
-    let (sums_s, sums_m) = (RunningSums::new(s.iter().copied()), RunningSums::new(m.iter().copied()));
-    let (squares_s, squares_m) = (RunningSums::new(s.iter().map(|v| v * v)), RunningSums::new(m.iter().map(|v| v * v)));
+    let (sums_s, sums_m) =
+        (RunningSums::new(s.iter().copied()), RunningSums::new(m.iter().copied()));
+    let (squares_s, squares_m) =
+        (RunningSums::new(s.iter().map(|v| v * v)), RunningSums::new(m.iter().map(|v| v * v)));
     let least = (CONSTANT * squares_s.between(0, count), CONSTANT * squares_m.between(0, count));
     let agreement = |shift: isize| -> Option<f64> {
         let by_samples = shift.unsigned_abs();
@@ -44,14 +58,17 @@ pub(super) fn best_shift(simulated: &[f64], measured: &[f64], most: usize, by: A
         let mut energy_s = squares_s.between(from_s, from_s + length);
         let mut energy_m = squares_m.between(from_m, from_m + length);
         if by == Agreement::Correlation {
-            let (sum_s, sum_m) = (sums_s.between(from_s, from_s + length), sums_m.between(from_m, from_m + length));
+            let (sum_s, sum_m) =
+                (sums_s.between(from_s, from_s + length), sums_m.between(from_m, from_m + length));
             product -= sum_s * sum_m / length as f64;
             energy_s -= sum_s * sum_s / length as f64;
             energy_m -= sum_m * sum_m / length as f64;
         }
         (energy_s > least.0 && energy_m > least.1).then(|| product / (energy_s * energy_m).sqrt())
     };
-    let Some(mut best) = agreement(0) else { return Err(Undefined::because("one of the signals is constant")) };
+    let Some(mut best) = agreement(0) else {
+        return Err(Undefined::because("one of the signals is constant"));
+    };
     let mut found = 0;
     for by_samples in 1..=most as isize {
         for shift in [by_samples, -by_samples] {
@@ -63,14 +80,24 @@ pub(super) fn best_shift(simulated: &[f64], measured: &[f64], most: usize, by: A
     Ok(found)
 }
 
-/// The parts of both signals that overlap after the simulated one is moved to the left by so many samples.
-pub(super) fn overlap<'a>(simulated: &'a [f64], measured: &'a [f64], shift: isize) -> (&'a [f64], &'a [f64]) {
+/// The parts of both signals that overlap after the simulated one is moved to the left by so many
+/// samples.
+pub(super) fn overlap<'a>(
+    simulated: &'a [f64],
+    measured: &'a [f64],
+    shift: isize,
+) -> (&'a [f64], &'a [f64]) {
     let by_samples = shift.unsigned_abs();
     let length = simulated.len() - by_samples;
-    if shift > 0 { (&simulated[by_samples..], &measured[..length]) } else { (&simulated[..length], &measured[by_samples..]) }
+    if shift > 0 {
+        (&simulated[by_samples..], &measured[..length])
+    } else {
+        (&simulated[..length], &measured[by_samples..])
+    }
 }
 
-/// Sums of the products of both signals, for the simulated one moved to the left by -most ..= most samples.
+/// Sums of the products of both signals, for the simulated one moved to the left by -most ..= most
+/// samples.
 fn products(simulated: &[f64], measured: &[f64], most: usize) -> Result<Vec<f64>, Undefined> {
     // Zeros behind the signals, so that what is moved out at one end does not come in at the other.
     let length = (simulated.len() + most).next_power_of_two().max(2);
@@ -84,7 +111,8 @@ fn products(simulated: &[f64], measured: &[f64], most: usize) -> Result<Vec<f64>
         Ok(found)
     };
     let of_measured = spectrum(measured)?;
-    let mut of_both: Vec<Complex<f64>> = spectrum(simulated)?.iter().zip(&of_measured).map(|(s, m)| s * m.conj()).collect();
+    let mut of_both: Vec<Complex<f64>> =
+        spectrum(simulated)?.iter().zip(&of_measured).map(|(s, m)| s * m.conj()).collect();
     let backward = fourier::inverse(length);
     let mut found = backward.make_output_vec();
     backward.process(&mut of_both, &mut found).map_err(failed)?;
@@ -99,7 +127,10 @@ mod tests {
     use super::*;
 
     fn wave(count: usize, late: f64) -> Vec<f64> {
-        (0..count).map(|k| k as f64 - late).map(|x| (TAU * x / 90.0).sin() + 0.4 * (TAU * x / 37.0).cos() + 0.7).collect()
+        (0..count)
+            .map(|k| k as f64 - late)
+            .map(|x| (TAU * x / 90.0).sin() + 0.4 * (TAU * x / 37.0).cos() + 0.7)
+            .collect()
     }
 
     #[test]

@@ -1,8 +1,8 @@
-//! Measures of agreement of a simulated and a measured signal with equal length and common points. The measurement is the
-//! reference.
+//! Measures of agreement of a simulated and a measured signal with equal length and common points.
+//! The measurement is the reference.
 //!
-//! Every metric is `fn(simulated, measured) -> Result<f64, Undefined>`. The mean is not removed. Sums replace integrals over a
-//! uniform grid, as the sampling distance cancels.
+//! Every metric is `fn(simulated, measured) -> Result<f64, Undefined>`. The mean is not removed.
+//! Sums replace integrals over a uniform grid, as the sampling distance cancels.
 
 mod alignment;
 mod cora;
@@ -16,18 +16,20 @@ mod theil;
 pub use alignment::{drift, mirrored_correlation, shift};
 pub use cora::{cora_corridor, cora_phase, cora_progression, cora_size, cora_total};
 pub use deviation::{
-    anova_mean, anova_standard_deviation, correlation, kraft_misfit, kraft_misfit_root, relative_to_range, rms_ratio,
-    root_mean_square_error, weighted_integrated_factor,
+    anova_mean, anova_standard_deviation, correlation, kraft_misfit, kraft_misfit_root,
+    relative_to_range, rms_ratio, root_mean_square_error, weighted_integrated_factor,
 };
 pub use distribution::{
-    area_between, area_metric, bogojevic, bogojevic_mean_term, bogojevic_variance_probability, bogojevic_variance_ratio, f_two_sided,
-    quantiles, quantiles_of_sorted,
+    area_between, area_metric, bogojevic, bogojevic_mean_term, bogojevic_variance_probability,
+    bogojevic_variance_ratio, f_two_sided, quantiles, quantiles_of_sorted,
 };
 pub use geers::{
-    geers_comprehensive, geers_phase, russell_comprehensive, russell_magnitude, russell_phase, sprague_geers_comprehensive,
-    sprague_geers_magnitude, sprague_geers_phase,
+    geers_comprehensive, geers_phase, russell_comprehensive, russell_magnitude, russell_phase,
+    sprague_geers_comprehensive, sprague_geers_magnitude, sprague_geers_phase,
 };
-pub use iso18571::{iso18571_corridor, iso18571_magnitude, iso18571_overall, iso18571_phase, iso18571_slope};
+pub use iso18571::{
+    iso18571_corridor, iso18571_magnitude, iso18571_overall, iso18571_phase, iso18571_slope,
+};
 pub use theil::{theil_bias, theil_covariance, theil_u1, theil_u2, theil_variance};
 
 use std::fmt;
@@ -57,7 +59,11 @@ impl std::error::Error for Undefined {}
 /// Checks for equal length, at least one sample, and finite samples.
 fn check(simulated: &[f64], measured: &[f64]) -> Result<(), Undefined> {
     if simulated.len() != measured.len() {
-        return Err(Undefined::because(format!("the simulated signal has {} samples, the measured {}", simulated.len(), measured.len())));
+        return Err(Undefined::because(format!(
+            "the simulated signal has {} samples, the measured {}",
+            simulated.len(),
+            measured.len()
+        )));
     }
     if simulated.is_empty() {
         return Err(Undefined::because("the signals have no samples"));
@@ -79,7 +85,10 @@ fn check_values(simulated: &[f64], measured: &[f64]) -> Result<(), Undefined> {
 
 fn check_finite(signal: &[f64], which: &str) -> Result<(), Undefined> {
     match signal.iter().position(|value| !value.is_finite()) {
-        Some(at) => Err(Undefined::because(format!("sample {} of the {which} signal is not finite", at + 1))),
+        Some(at) => Err(Undefined::because(format!(
+            "sample {} of the {which} signal is not finite",
+            at + 1
+        ))),
         None => Ok(()),
     }
 }
@@ -100,7 +109,10 @@ impl Energies {
             measured: sum_of(measured, |value| value * value),
             difference: sum_of_pairs(simulated, measured, |s, m| (s - m) * (s - m)),
         };
-        if energies.simulated.is_finite() && energies.measured.is_finite() && energies.difference.is_finite() {
+        if energies.simulated.is_finite()
+            && energies.measured.is_finite()
+            && energies.difference.is_finite()
+        {
             Ok(energies)
         } else {
             Err(Undefined::because("the sum of the squares of the samples overflows"))

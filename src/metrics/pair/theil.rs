@@ -1,6 +1,7 @@
 //! Theil's inequality coefficients and the proportions of the mean square error.
 //!
-//! Source: Theil, "Economic forecasts and policy" (1961) for U1 and the proportions, "Applied economic forecasting" (1966) for U2.
+//! Source: Theil, "Economic forecasts and policy" (1961) for U1 and the proportions, "Applied
+//! economic forecasting" (1966) for U2.
 
 use super::{Energies, Undefined};
 use crate::metrics::{
@@ -71,12 +72,17 @@ impl Proportions {
         if mean_square_error == 0.0 {
             return Err(Undefined::because("the signals are equal"));
         }
-        let moments = |signal: &[f64]| Some((mean(signal)?, standard_deviation(signal, Divisor::Population)?));
-        let (Some((mean_s, deviation_s)), Some((mean_m, deviation_m))) = (moments(simulated), moments(measured)) else {
+        let moments = |signal: &[f64]| {
+            Some((mean(signal)?, standard_deviation(signal, Divisor::Population)?))
+        };
+        let (Some((mean_s, deviation_s)), Some((mean_m, deviation_m))) =
+            (moments(simulated), moments(measured))
+        else {
             return Err(Undefined::because("the sum of the samples overflows"));
         };
         let covariance = if deviation_s > 0.0 && deviation_m > 0.0 {
-            // 2 (sigma_s sigma_m - cov) as a sum of squares; the difference loses digits for well correlated signals.
+            // 2 (sigma_s sigma_m - cov) as a sum of squares; the difference loses digits for well
+            // correlated signals.
             let root = (deviation_m / deviation_s).sqrt();
             let term = |s: f64, m: f64| (s - mean_s) * root - (m - mean_m) / root;
             sum_of_pairs(simulated, measured, |s, m| term(s, m) * term(s, m)) / n

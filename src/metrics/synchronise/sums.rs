@@ -61,13 +61,20 @@ type Parts = [Sums; BLOCKS];
 /// Shifts whose sums are computed side by side.
 const LANES: usize = 4;
 
-/// For each pair the sums at each shift, the smallest shift first; `None` if one of its signals does not vary.
+/// For each pair the sums at each shift, the smallest shift first; `None` if one of its signals
+/// does not vary.
 ///
-/// Signals of a record share their axis, on which points are located once for all of them. Shifts that are multiples of the grid step need
-/// one interpolation in total, others one each.
-pub(super) fn of_pairs(pairs: &[Pair<'_>], grid: &[f64], shifts: &[f64], on_grid: bool) -> Vec<Option<Vec<Parts>>> {
+/// Signals of a record share their axis, on which points are located once for all of them. Shifts
+/// that are multiples of the grid step need one interpolation in total, others one each.
+pub(super) fn of_pairs(
+    pairs: &[Pair<'_>],
+    grid: &[f64],
+    shifts: &[f64],
+    on_grid: bool,
+) -> Vec<Option<Vec<Parts>>> {
     let mut grids: Vec<(&[f64], Option<Located>)> = Vec::new();
-    let mut all: Vec<Option<Compared<'_>>> = pairs.iter().map(|pair| Compared::new(pair, grid, &mut grids)).collect();
+    let mut all: Vec<Option<Compared<'_>>> =
+        pairs.iter().map(|pair| Compared::new(pair, grid, &mut grids)).collect();
     let mut axes: Vec<&[f64]> = Vec::new();
     for compared in all.iter().flatten() {
         if !axes.iter().any(|known| std::ptr::eq(*known, compared.axis)) {
@@ -77,12 +84,19 @@ pub(super) fn of_pairs(pairs: &[Pair<'_>], grid: &[f64], shifts: &[f64], on_grid
     for axis in axes {
         let (Some(first), Some(last)) = (axis.first(), axis.last()) else { continue };
         // The grid has the range of the record; rounding may put its ends just outside.
-        let located =
-            |points: &mut dyn Iterator<Item = f64>| Located::on(axis, &points.map(|x| x.clamp(*first, *last)).collect::<Vec<_>>());
-        let mut on_axis: Vec<&mut Compared<'_>> = all.iter_mut().flatten().filter(|compared| std::ptr::eq(compared.axis, axis)).collect();
+        let located = |points: &mut dyn Iterator<Item = f64>| {
+            Located::on(axis, &points.map(|x| x.clamp(*first, *last)).collect::<Vec<_>>())
+        };
+        let mut on_axis: Vec<&mut Compared<'_>> =
+            all.iter_mut().flatten().filter(|compared| std::ptr::eq(compared.axis, axis)).collect();
         if on_grid {
             let (farthest, step) = (shifts.last().copied().unwrap_or(0.0), grid[1] - grid[0]);
-            let Ok(wide) = located(&mut (0..grid.len() + shifts.len() - 1).map(|k| grid[0] - farthest + k as f64 * step)) else { continue };
+            let Ok(wide) = located(
+                &mut (0..grid.len() + shifts.len() - 1)
+                    .map(|k| grid[0] - farthest + k as f64 * step),
+            ) else {
+                continue;
+            };
             on_axis.iter_mut().for_each(|compared| compared.add_on_grid(&wide, shifts.len()));
         } else {
             for shift in shifts {
@@ -117,15 +131,22 @@ fn part(block: usize, points: usize) -> Range<usize> {
 
 impl<'a> Compared<'a> {
     /// `grids` are the places of the grid on the axes of the simulated signals.
-    fn new(pair: &Pair<'a>, grid: &[f64], grids: &mut Vec<(&'a [f64], Option<Located>)>) -> Option<Self> {
+    fn new(
+        pair: &Pair<'a>,
+        grid: &[f64],
+        grids: &mut Vec<(&'a [f64], Option<Located>)>,
+    ) -> Option<Self> {
         let ((simulated_axis, simulated), (axis, measured)) = (pair.simulated, pair.measured);
         if simulated_axis.len() != simulated.len() || axis.len() != measured.len() {
             return None;
         }
-        let at = grids.iter().position(|(known, _)| std::ptr::eq(*known, simulated_axis)).unwrap_or_else(|| {
-            grids.push((simulated_axis, Located::on(simulated_axis, grid).ok()));
-            grids.len() - 1
-        });
+        let at = grids
+            .iter()
+            .position(|(known, _)| std::ptr::eq(*known, simulated_axis))
+            .unwrap_or_else(|| {
+                grids.push((simulated_axis, Located::on(simulated_axis, grid).ok()));
+                grids.len() - 1
+            });
         let simulated = centred(grids[at].1.as_ref()?.values(simulated))?;
         let alone = std::array::from_fn(|block| {
             let part = &simulated[part(block, grid.len())];
@@ -168,7 +189,8 @@ impl<'a> Compared<'a> {
         })
     }
 
-    /// The sums at all shifts, from the measured signal on the grid and as far beside it as the shifts reach.
+    /// The sums at all shifts, from the measured signal on the grid and as far beside it as the
+    /// shifts reach.
     fn add_on_grid(&mut self, wide: &Located, shifts: usize) {
         let wide = self.measured(wide);
         let points = self.simulated.len();
@@ -199,7 +221,8 @@ impl<'a> Compared<'a> {
     }
 }
 
-/// The sums of y, y^2 and xy with y from each of the first samples on: each in the order of the samples, several at a time.
+/// The sums of y, y^2 and xy with y from each of the first samples on: each in the order of the
+/// samples, several at a time.
 fn sums_of_lanes(x: &[f64], y: &[f64]) -> [[f64; 3]; LANES] {
     let (mut sum, mut squares, mut products) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
     for (x, y) in x.iter().zip(y.array_windows::<LANES>()) {
@@ -239,35 +262,61 @@ mod tests {
     /// The same sums, each pair and each shift by itself, to the last bit.
     #[test]
     fn pairs_and_shifts_together_give_the_same_sums() {
-        let axis: Vec<f64> = (0..700).map(|k| f64::from(k) * 0.21 + 0.05 * f64::from(k % 3)).collect();
+        let axis: Vec<f64> =
+            (0..700).map(|k| f64::from(k) * 0.21 + 0.05 * f64::from(k % 3)).collect();
         let other: Vec<f64> = (0..600).map(|k| f64::from(k) * 0.25).collect();
         let wave = |x: &f64| (0.3 * x).sin() + (1.7 * x).cos();
-        let of = |axis: &[f64], phase: f64| axis.iter().map(|x| 5.0 + wave(&(x + phase))).collect::<Vec<_>>();
+        let of = |axis: &[f64], phase: f64| {
+            axis.iter().map(|x| 5.0 + wave(&(x + phase))).collect::<Vec<_>>()
+        };
         let (a, b, c, still) = (of(&axis, 0.0), of(&other, 0.4), of(&other, 2.0), vec![3.0; 600]);
         let pair = |measured| Pair { simulated: (&axis, &a), measured, group: 0 };
-        let pairs = [pair((&other, &b)), pair((&axis, &a)), pair((&other, &still)), pair((&other, &c))];
+        let pairs =
+            [pair((&other, &b)), pair((&axis, &a)), pair((&other, &still)), pair((&other, &c))];
         let grid: Vec<f64> = (0..200).map(|k| 20.0 + 0.5 * f64::from(k)).collect();
-        for (shifts, on_grid) in [(-5..=5, true), (-7..=5, true), (-3..=4, false)]
-            .map(|(shifts, on_grid)| (shifts.map(|k| f64::from(k) * if on_grid { 0.5 } else { 0.11 }).collect::<Vec<_>>(), on_grid))
+        for (shifts, on_grid) in
+            [(-5..=5, true), (-7..=5, true), (-3..=4, false)].map(|(shifts, on_grid)| {
+                (
+                    shifts
+                        .map(|k| f64::from(k) * if on_grid { 0.5 } else { 0.11 })
+                        .collect::<Vec<_>>(),
+                    on_grid,
+                )
+            })
         {
             let together = of_pairs(&pairs, &grid, &shifts, on_grid);
             assert!(together[2].is_none() && together.len() == 4);
-            for (found, pair) in together.iter().zip(&pairs).filter_map(|(found, pair)| Some((found.as_ref()?, pair))) {
-                let x = centred(interpolate(pair.simulated.0, pair.simulated.1, &grid).expect("inside")).expect("varies");
+            for (found, pair) in together
+                .iter()
+                .zip(&pairs)
+                .filter_map(|(found, pair)| Some((found.as_ref()?, pair)))
+            {
+                let x = centred(
+                    interpolate(pair.simulated.0, pair.simulated.1, &grid).expect("inside"),
+                )
+                .expect("varies");
                 let mean = pair.measured.1.iter().sum::<f64>() / pair.measured.1.len() as f64;
                 for (at, shift) in shifts.iter().enumerate() {
                     // As the points on the grid are computed.
                     let (farthest, step) = (shifts[shifts.len() - 1], grid[1] - grid[0]);
                     let points: Vec<f64> = match on_grid {
-                        true => (0..grid.len()).map(|k| grid[0] - farthest + (k + shifts.len() - 1 - at) as f64 * step).collect(),
+                        true => (0..grid.len())
+                            .map(|k| grid[0] - farthest + (k + shifts.len() - 1 - at) as f64 * step)
+                            .collect(),
                         false => grid.iter().map(|x| x - shift).collect(),
                     };
-                    let mut y = interpolate(pair.measured.0, pair.measured.1, &points).expect("inside");
+                    let mut y =
+                        interpolate(pair.measured.0, pair.measured.1, &points).expect("inside");
                     y.iter_mut().for_each(|y| *y -= mean);
                     for (block, sums) in found[at].iter().enumerate() {
                         let part = part(block, grid.len());
-                        let Sums { n, x: a, y: b, xx, yy, xy } = Sums::of(&x[part.clone()], &y[part]);
-                        assert_eq!([sums.n, sums.x, sums.y, sums.xx, sums.yy, sums.xy], [n, a, b, xx, yy, xy], "{shift}");
+                        let Sums { n, x: a, y: b, xx, yy, xy } =
+                            Sums::of(&x[part.clone()], &y[part]);
+                        assert_eq!(
+                            [sums.n, sums.x, sums.y, sums.xx, sums.yy, sums.xy],
+                            [n, a, b, xx, yy, xy],
+                            "{shift}"
+                        );
                     }
                 }
             }

@@ -1,4 +1,5 @@
-//! Positions of the objects of a PDF: cross-reference tables and streams (ISO 32000-1, clause 7.5), the newest first.
+//! Positions of the objects of a PDF: cross-reference tables and streams (ISO 32000-1, clause 7.5),
+//! the newest first.
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -63,7 +64,8 @@ impl<'a> Document<'a> {
         };
         // The last `startxref` is in the last kilobyte of the file.
         let tail = bytes.len().saturating_sub(2048);
-        let last = memchr::memmem::rfind(&bytes[tail..], b"startxref").ok_or(Broken("its end is missing"))?;
+        let last = memchr::memmem::rfind(&bytes[tail..], b"startxref")
+            .ok_or(Broken("its end is missing"))?;
         let mut next = Some(document.parser(tail + last + b"startxref".len()).integer()?);
         let mut seen = Vec::new();
         while let Some(at) = next {
@@ -96,9 +98,14 @@ impl<'a> Document<'a> {
             let (first, count) = (parser.integer()?, parser.integer()?);
             parser.space();
             parts.push((first, count, parser.at));
-            parser.at = count.checked_mul(20).and_then(|length| parser.at.checked_add(length)).ok_or(Broken("a table is too long"))?;
+            parser.at = count
+                .checked_mul(20)
+                .and_then(|length| parser.at.checked_add(length))
+                .ok_or(Broken("a table is too long"))?;
         }
-        let Object::Dict(trailer) = parser.object(0)? else { return Err(Broken("its trailer is missing")) };
+        let Object::Dict(trailer) = parser.object(0)? else {
+            return Err(Broken("its trailer is missing"));
+        };
         self.tables.push(Table::Lines(parts));
         Ok(trailer)
     }
@@ -114,12 +121,18 @@ impl<'a> Document<'a> {
             _ => None,
         };
         let widths = integers("W").ok_or(Broken("its table of places is damaged"))?;
-        let &[a, b, c] = widths.as_slice() else { return Err(Broken("its table of places is damaged")) };
+        let &[a, b, c] = widths.as_slice() else {
+            return Err(Broken("its table of places is damaged"));
+        };
         if widths.iter().any(|width| *width > 8) || a + b + c == 0 {
             return Err(Broken("its table of places is damaged"));
         }
         let size = dict.get("Size").and_then(Object::integer).unwrap_or(0);
-        let numbers = integers("Index").unwrap_or_else(|| vec![0, size]).chunks_exact(2).map(|pair| (pair[0], pair[1])).collect();
+        let numbers = integers("Index")
+            .unwrap_or_else(|| vec![0, size])
+            .chunks_exact(2)
+            .map(|pair| (pair[0], pair[1]))
+            .collect();
         self.tables.push(Table::Packed { rows, widths: [a, b, c], numbers });
         Ok(dict)
     }
@@ -171,7 +184,9 @@ impl<'a> Document<'a> {
     }
 
     fn grouped(&self, group: u32, index: usize) -> Result<Object, Broken> {
-        let Place::At(at) = self.place(group)? else { return Err(Broken("a group of objects is missing")) };
+        let Place::At(at) = self.place(group)? else {
+            return Err(Broken("a group of objects is missing"));
+        };
         let (dict, data) = self.stream_at(at, Some(group))?;
         if !self.groups.borrow().contains_key(&group) {
             let found = self.structural(data, &dict)?;
@@ -179,7 +194,10 @@ impl<'a> Document<'a> {
         }
         let groups = self.groups.borrow();
         let data = groups.get(&group).map_or(&[][..], Vec::as_slice);
-        let first = dict.get("First").and_then(Object::integer).ok_or(Broken("a group of objects is damaged"))?;
+        let first = dict
+            .get("First")
+            .and_then(Object::integer)
+            .ok_or(Broken("a group of objects is damaged"))?;
         let mut header = Parser { bytes: data, at: 0, budget: &self.budget };
         for _ in 0..index {
             header.integer()?;
@@ -207,7 +225,9 @@ impl<'a> Document<'a> {
 
     /// The unpacked data of a stream, of at most `most` bytes.
     pub fn stream(&self, number: u32, most: usize) -> Result<Vec<u8>, Broken> {
-        let Place::At(at) = self.place(number)? else { return Err(Broken("the data of an attached file are missing")) };
+        let Place::At(at) = self.place(number)? else {
+            return Err(Broken("the data of an attached file are missing"));
+        };
         let (dict, data) = self.stream_at(at, Some(number))?;
         unpacked(data, &dict, most)
     }
@@ -218,15 +238,21 @@ impl<'a> Document<'a> {
         if number.is_some_and(|number| number as usize != found) || !parser.word("obj") {
             return Err(Broken("an object is not where it should be"));
         }
-        let Object::Dict(dict) = parser.object(0)? else { return Err(Broken("a stream has no dictionary")) };
+        let Object::Dict(dict) = parser.object(0)? else {
+            return Err(Broken("a stream has no dictionary"));
+        };
         if !parser.word("stream") {
             return Err(Broken("a stream is missing"));
         }
         let mut start = parser.at;
         start += usize::from(self.bytes.get(start) == Some(&b'\r'));
         start += usize::from(self.bytes.get(start) == Some(&b'\n'));
-        let length = self.get(&dict, "Length")?.integer().ok_or(Broken("a stream has no length"))?;
-        let end = start.checked_add(length).filter(|end| *end <= self.bytes.len()).ok_or(Broken("it ends in the middle of a stream"))?;
+        let length =
+            self.get(&dict, "Length")?.integer().ok_or(Broken("a stream has no length"))?;
+        let end = start
+            .checked_add(length)
+            .filter(|end| *end <= self.bytes.len())
+            .ok_or(Broken("it ends in the middle of a stream"))?;
         Ok((dict, &self.bytes[start..end]))
     }
 }
@@ -237,21 +263,41 @@ impl Table {
         let damaged = Broken("its table of places is damaged");
         match self {
             Self::Lines(parts) => {
-                let Some((first, _, at)) = parts.iter().find(|(first, count, _)| number >= *first && number - first < *count) else {
+                let Some((first, _, at)) = parts
+                    .iter()
+                    .find(|(first, count, _)| number >= *first && number - first < *count)
+                else {
                     return Ok(None);
                 };
-                let line = bytes.get(at + 20 * (number - first)..).and_then(|rest| rest.get(..18)).ok_or(damaged)?;
-                let text = std::str::from_utf8(line).map_err(|_| Broken("its table of places is damaged"))?;
-                let offset = text.get(..10).and_then(|digits| digits.parse().ok()).ok_or(Broken("its table of places is damaged"))?;
-                Ok(Some(if text.as_bytes().get(17) == Some(&b'n') { Place::At(offset) } else { Place::Free }))
+                let line = bytes
+                    .get(at + 20 * (number - first)..)
+                    .and_then(|rest| rest.get(..18))
+                    .ok_or(damaged)?;
+                let text = std::str::from_utf8(line)
+                    .map_err(|_| Broken("its table of places is damaged"))?;
+                let offset = text
+                    .get(..10)
+                    .and_then(|digits| digits.parse().ok())
+                    .ok_or(Broken("its table of places is damaged"))?;
+                Ok(Some(if text.as_bytes().get(17) == Some(&b'n') {
+                    Place::At(offset)
+                } else {
+                    Place::Free
+                }))
             }
             Self::Packed { rows, widths, numbers } => {
                 let mut row = 0_usize;
                 for (first, count) in numbers {
                     if number >= *first && number - first < *count {
                         let width: usize = widths.iter().sum();
-                        let at = row.checked_add(number - first).and_then(|row| row.checked_mul(width)).ok_or(damaged)?;
-                        let fields = rows.get(at..).and_then(|rest| rest.get(..width)).ok_or(Broken("its table of places is damaged"))?;
+                        let at = row
+                            .checked_add(number - first)
+                            .and_then(|row| row.checked_mul(width))
+                            .ok_or(damaged)?;
+                        let fields = rows
+                            .get(at..)
+                            .and_then(|rest| rest.get(..width))
+                            .ok_or(Broken("its table of places is damaged"))?;
                         return Ok(Some(packed_place(fields, widths)));
                     }
                     row = row.saturating_add(*count);
@@ -263,7 +309,11 @@ impl Table {
 }
 
 fn packed_place(fields: &[u8], widths: &[usize; 3]) -> Place {
-    let number = |from: usize, width: usize| fields[from..from + width].iter().fold(0_usize, |value, byte| value << 8 | usize::from(*byte));
+    let number = |from: usize, width: usize| {
+        fields[from..from + width]
+            .iter()
+            .fold(0_usize, |value, byte| value << 8 | usize::from(*byte))
+    };
     let kind = if widths[0] == 0 { 1 } else { number(0, widths[0]) };
     let (second, third) = (number(widths[0], widths[1]), number(widths[0] + widths[1], widths[2]));
     match (kind, u32::try_from(second)) {

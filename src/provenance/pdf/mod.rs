@@ -1,7 +1,8 @@
-//! Files attached to a PDF of any origin, also a damaged one, in bounded time and memory and without a panic.
+//! Files attached to a PDF of any origin, also a damaged one, in bounded time and memory and
+//! without a panic.
 //!
-//! Existing PDF libraries read more, but unpack streams without a limit. This module reads only the path to the attachments (ISO 32000-1,
-//! clause 7.11.4), with a limit for every step.
+//! Existing PDF libraries read more, but unpack streams without a limit. This module reads only the
+//! path to the attachments (ISO 32000-1, clause 7.11.4), with a limit for every step.
 
 mod document;
 mod object;
@@ -34,7 +35,10 @@ impl<'a> Attachments<'a> {
     /// # Errors
     /// `pdf-unreadable`: not a PDF, damaged, or encrypted.
     pub fn of(bytes: &'a [u8], shown: &str) -> Result<Self, Problem> {
-        if bytes.get(..1024.min(bytes.len())).is_none_or(|head| memchr::memmem::find(head, b"%PDF-").is_none()) {
+        if bytes
+            .get(..1024.min(bytes.len()))
+            .is_none_or(|head| memchr::memmem::find(head, b"%PDF-").is_none())
+        {
             return Err(Problem::error("pdf-unreadable", format!("`{shown}` is not a PDF")));
         }
         let broken = |broken: Broken| {
@@ -53,7 +57,11 @@ impl<'a> Attachments<'a> {
     /// Each name once: a file is listed by its name and as an associated file.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         let first = |at: usize| self.found[..at].iter().all(|(name, _)| *name != self.found[at].0);
-        self.found.iter().enumerate().filter(move |(at, _)| first(*at)).map(|(_, (name, _))| name.as_str())
+        self.found
+            .iter()
+            .enumerate()
+            .filter(move |(at, _)| first(*at))
+            .map(|(_, (name, _))| name.as_str())
     }
 
     /// The data of the first attachment with a name; `None` if there is none.
@@ -61,16 +69,24 @@ impl<'a> Attachments<'a> {
     /// # Errors
     /// `pdf-unreadable`, including data of more than `most` bytes.
     pub fn read(&self, name: &str, most: usize) -> Result<Option<Vec<u8>>, Problem> {
-        let Some((_, number)) = self.found.iter().find(|(known, _)| known == name) else { return Ok(None) };
-        let unreadable =
-            |broken: Broken| Problem::error("pdf-unreadable", format!("`{name}` inside `{}` cannot be read: {}", self.shown, broken.0));
+        let Some((_, number)) = self.found.iter().find(|(known, _)| known == name) else {
+            return Ok(None);
+        };
+        let unreadable = |broken: Broken| {
+            Problem::error(
+                "pdf-unreadable",
+                format!("`{name}` inside `{}` cannot be read: {}", self.shown, broken.0),
+            )
+        };
         self.document.stream(*number, most).map(Some).map_err(unreadable)
     }
 }
 
 /// The files of the name tree, and those in the list of associated files.
 fn listed(document: &Document<'_>) -> Result<Vec<(String, u32)>, Broken> {
-    let Object::Dict(catalogue) = document.get(&document.trailer, "Root")? else { return Err(Broken("its catalogue is missing")) };
+    let Object::Dict(catalogue) = document.get(&document.trailer, "Root")? else {
+        return Err(Broken("its catalogue is missing"));
+    };
     let mut found = Vec::new();
     let mut open = Vec::new();
     if let Object::Dict(names) = document.get(&catalogue, "Names")? {
@@ -118,7 +134,10 @@ fn name_of(document: &Document<'_>, file: &Dict) -> Result<Option<String>, Broke
         if let Object::Text(text) = document.get(file, key)? {
             let text = match text.strip_prefix(b"\xfe\xff") {
                 Some(wide) => {
-                    let units: Vec<u16> = wide.chunks_exact(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])).collect();
+                    let units: Vec<u16> = wide
+                        .chunks_exact(2)
+                        .map(|pair| u16::from_be_bytes([pair[0], pair[1]]))
+                        .collect();
                     String::from_utf16_lossy(&units)
                 }
                 None => String::from_utf8_lossy(&text).into_owned(),

@@ -99,7 +99,9 @@ impl Parser<'_> {
 
     pub fn integer(&mut self) -> Result<usize, Broken> {
         match self.object(0)? {
-            Object::Integer(value) => usize::try_from(value).map_err(|_| Broken("a number is below zero")),
+            Object::Integer(value) => {
+                usize::try_from(value).map_err(|_| Broken("a number is below zero"))
+            }
             _ => Err(Broken("a number is missing")),
         }
     }
@@ -134,7 +136,9 @@ impl Parser<'_> {
                 self.at += 2;
                 let mut dict = Dict::default();
                 while !self.word(">>") {
-                    let Object::Name(key) = self.object(depth + 1)? else { return Err(Broken("a key of a dictionary is not a name")) };
+                    let Object::Name(key) = self.object(depth + 1)? else {
+                        return Err(Broken("a key of a dictionary is not a name"));
+                    };
                     dict.0.push((key, self.object(depth + 1)?));
                 }
                 Ok(Object::Dict(dict))
@@ -146,7 +150,8 @@ impl Parser<'_> {
             }
             b'+' | b'-' | b'.' | b'0'..=b'9' => self.number(),
             _ => {
-                let known = [("true", Object::Other), ("false", Object::Other), ("null", Object::Null)];
+                let known =
+                    [("true", Object::Other), ("false", Object::Other), ("null", Object::Null)];
                 let found = known.into_iter().find(|(word, _)| self.word(word));
                 found.map(|(_, object)| object).ok_or(Broken("it contains an invalid object"))
             }
@@ -154,7 +159,9 @@ impl Parser<'_> {
     }
 
     fn spend(&self, objects: usize) -> Result<(), Broken> {
-        self.budget.set(self.budget.get().checked_sub(objects).ok_or(Broken("its structure is too large"))?);
+        self.budget.set(
+            self.budget.get().checked_sub(objects).ok_or(Broken("its structure is too large"))?,
+        );
         Ok(())
     }
 
@@ -169,13 +176,18 @@ impl Parser<'_> {
     fn number(&mut self) -> Result<Object, Broken> {
         let token = String::from_utf8_lossy(self.token()).into_owned();
         let Ok(value) = token.parse::<i64>() else {
-            return token.parse::<f64>().map(|_| Object::Other).map_err(|_| Broken("it contains an invalid number"));
+            return token
+                .parse::<f64>()
+                .map(|_| Object::Other)
+                .map_err(|_| Broken("it contains an invalid number"));
         };
         // `12 0 R` is a reference, `12 0 1` are three numbers.
         let after = self.at;
         self.space();
         if self.token().iter().all(u8::is_ascii_digit) && self.word("R") {
-            return u32::try_from(value).map(Object::Reference).map_err(|_| Broken("a reference leads nowhere"));
+            return u32::try_from(value)
+                .map(Object::Reference)
+                .map_err(|_| Broken("a reference leads nowhere"));
         }
         self.at = after;
         Ok(Object::Integer(value))
@@ -187,7 +199,11 @@ impl Parser<'_> {
         let mut name = Vec::new();
         let mut rest = token;
         while let [first, more @ ..] = rest {
-            let escaped = if *first == b'#' { more.get(..2).and_then(|two| hex(two[0]).zip(hex(two[1]))) } else { None };
+            let escaped = if *first == b'#' {
+                more.get(..2).and_then(|two| hex(two[0]).zip(hex(two[1])))
+            } else {
+                None
+            };
             match escaped {
                 Some((high, low)) => {
                     name.push(high << 4 | low);

@@ -35,7 +35,8 @@ pub fn unpacked(data: &[u8], dict: &Dict, most: usize) -> Result<Vec<u8>, Broken
 
 const TOO_LARGE: Broken = Broken("a part of it is too large after unpacking");
 
-/// Reverses the PNG prediction of rows (RFC 2083, clause 6), which is used for cross-reference streams.
+/// Reverses the PNG prediction of rows (RFC 2083, clause 6), which is used for cross-reference
+/// streams.
 fn predicted(data: Vec<u8>, dict: &Dict) -> Result<Vec<u8>, Broken> {
     let parameters = match dict.get("DecodeParms") {
         Some(Object::Dict(parameters)) => parameters,
@@ -45,12 +46,18 @@ fn predicted(data: Vec<u8>, dict: &Dict) -> Result<Vec<u8>, Broken> {
         },
         _ => return Ok(data),
     };
-    let number = |key: &str, default: usize| parameters.get(key).and_then(Object::integer).unwrap_or(default);
+    let number = |key: &str, default: usize| {
+        parameters.get(key).and_then(Object::integer).unwrap_or(default)
+    };
     if number("Predictor", 1) == 1 {
         return Ok(data);
     }
     let width = number("Columns", 1);
-    if number("Predictor", 1) < 10 || number("Colors", 1) != 1 || number("BitsPerComponent", 8) != 8 || width == 0 {
+    if number("Predictor", 1) < 10
+        || number("Colors", 1) != 1
+        || number("BitsPerComponent", 8) != 8
+        || width == 0
+    {
         return Err(Broken("a part of it uses a compression that is not supported"));
     }
     let mut rows: Vec<u8> = Vec::with_capacity(data.len());

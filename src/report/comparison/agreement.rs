@@ -12,10 +12,12 @@ pub fn chapter(found: &Comparison) -> Option<Chapter> {
     let mut items = vec![Item::text(
         "The score of a section is the largest ratio of its values and their limits. The limit of a pooled estimate stands for the values of the section too. Up to 1, the section meets the requirement. Spearman's rank correlation compares the order of the scores; the sections of all campaigns are taken together. The last column counts the campaigns with the same verdict.",
     )];
-    for (of, caption) in
-        [("protocols", "Agreement of protocols over the sections"), ("metrics", "Agreement of the metrics of a protocol over the sections")]
-    {
-        let rows: Vec<Vec<String>> = found.agreement.iter().filter(|one| one.of == of).map(row).collect();
+    for (of, caption) in [
+        ("protocols", "Agreement of protocols over the sections"),
+        ("metrics", "Agreement of the metrics of a protocol over the sections"),
+    ] {
+        let rows: Vec<Vec<String>> =
+            found.agreement.iter().filter(|one| one.of == of).map(row).collect();
         if !rows.is_empty() {
             items.push(table(caption, head(of), rows));
         }
@@ -45,15 +47,28 @@ fn head(of: &str) -> Vec<Head> {
 }
 
 fn row(one: &Agreement) -> Vec<String> {
-    let mut row: Vec<String> = if one.of == "metrics" { vec![one.protocol.clone().unwrap_or_default()] } else { Vec::new() };
+    let mut row: Vec<String> = if one.of == "metrics" {
+        vec![one.protocol.clone().unwrap_or_default()]
+    } else {
+        Vec::new()
+    };
     row.extend([one.a.clone(), one.b.clone(), one.sections.to_string()]);
     match one.contingency {
-        Some([[both, a], [b, neither]]) => row.extend([both, a, b, neither].map(|count| count.to_string())),
+        Some([[both, a], [b, neither]]) => {
+            row.extend([both, a, b, neither].map(|count| count.to_string()))
+        }
         None => row.extend([number::NONE; 4].map(str::to_owned)),
     }
-    row.push(if one.spearman.is_some() { three(one.spearman) } else { one.reason.clone().unwrap_or_else(|| number::NONE.to_owned()) });
+    row.push(if one.spearman.is_some() {
+        three(one.spearman)
+    } else {
+        one.reason.clone().unwrap_or_else(|| number::NONE.to_owned())
+    });
     if let Some(verdicts) = one.verdicts {
-        let (same, all) = ((0..3).map(|at| verdicts[at][at]).sum::<usize>(), verdicts.iter().flatten().sum::<usize>());
+        let (same, all) = (
+            (0..3).map(|at| verdicts[at][at]).sum::<usize>(),
+            verdicts.iter().flatten().sum::<usize>(),
+        );
         row.push(format!("{same} of {all}"));
     }
     row

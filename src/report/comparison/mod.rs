@@ -1,4 +1,5 @@
-//! A comparison of protocols as a document: chapters of text, tables and figures, printed as PDF and HTML from the same data.
+//! A comparison of protocols as a document: chapters of text, tables and figures, printed as PDF
+//! and HTML from the same data.
 
 mod agreement;
 mod sensitivity;
@@ -24,8 +25,14 @@ pub fn document(found: &Comparison) -> Document {
     let facts = [
         ("Protocols", found.protocols.len().to_string()),
         ("Campaigns", found.campaigns.len().to_string()),
-        ("Records read", format!("{} of {} asked for", found.work.records_read, found.work.records_asked)),
-        ("Filters run", format!("{} of {} asked for", found.work.filters_run, found.work.filters_asked)),
+        (
+            "Records read",
+            format!("{} of {} asked for", found.work.records_read, found.work.records_asked),
+        ),
+        (
+            "Filters run",
+            format!("{} of {} asked for", found.work.filters_run, found.work.filters_asked),
+        ),
     ];
     let mut symbols: Vec<String> = found.ratios.iter().map(|ratio| ratio.symbol.clone()).collect();
     symbols.sort_unstable();
@@ -47,20 +54,28 @@ pub fn document(found: &Comparison) -> Document {
 /// Campaigns on which the protocols have different verdicts.
 fn opening(found: &Comparison) -> (Finding, String) {
     let differs = |campaign: &str| {
-        let mut cells = found.verdicts.iter().filter(|cell| cell.campaign == campaign).map(|cell| cell.holds);
+        let mut cells =
+            found.verdicts.iter().filter(|cell| cell.campaign == campaign).map(|cell| cell.holds);
         let first = cells.next();
         cells.any(|holds| Some(holds) != first)
     };
-    let apart: Vec<&str> = found.campaigns.iter().map(|one| one.name.as_str()).filter(|name| differs(name)).collect();
+    let apart: Vec<&str> =
+        found.campaigns.iter().map(|one| one.name.as_str()).filter(|name| differs(name)).collect();
     let (all, different) = (found.campaigns.len(), apart.len());
     let of = format!("{different} of {all} campaign{}", if all == 1 { "" } else { "s" });
     if found.protocols.len() < 2 {
-        return (Finding::new(None, "", "", "One protocol"), "The metrics of one protocol, their applicability and sensitivity.".into());
+        return (
+            Finding::new(None, "", "", "One protocol"),
+            "The metrics of one protocol, their applicability and sensitivity.".into(),
+        );
     }
     match different {
         0 => (
             Finding { class: "open", sign: "–", word: "The verdicts agree".into() },
-            format!("On {} the protocols have the same verdict.", if all == 1 { "the campaign" } else { "every campaign" }),
+            format!(
+                "On {} the protocols have the same verdict.",
+                if all == 1 { "the campaign" } else { "every campaign" }
+            ),
         ),
         _ => (
             Finding::new(None, "", "", "The verdicts differ"),
@@ -71,8 +86,13 @@ fn opening(found: &Comparison) -> (Finding, String) {
 
 /// All campaigns as one list of files.
 fn inputs(found: &Comparison) -> CampaignInfo {
-    let file = |campaign: &str, file: &FileHash| FileHash { path: format!("{campaign}/{}", file.path), ..file.clone() };
-    let of = |one: &crate::result::comparison::OnCampaign| one.files.iter().map(|known| file(&one.name, known)).collect::<Vec<_>>();
+    let file = |campaign: &str, file: &FileHash| FileHash {
+        path: format!("{campaign}/{}", file.path),
+        ..file.clone()
+    };
+    let of = |one: &crate::result::comparison::OnCampaign| {
+        one.files.iter().map(|known| file(&one.name, known)).collect::<Vec<_>>()
+    };
     CampaignInfo {
         name: found.campaigns.iter().map(|one| one.name.as_str()).collect::<Vec<_>>().join("; "),
         members: Vec::new(),
@@ -111,7 +131,9 @@ pub fn figures(found: &Comparison) -> Vec<(String, String)> {
     sensitivity::disturbances(found)
         .into_iter()
         .enumerate()
-        .map(|(at, (name, curves))| (format!("sensitivity-{at}"), figure::sensitivity(name, &curves)))
+        .map(|(at, (name, curves))| {
+            (format!("sensitivity-{at}"), figure::sensitivity(name, &curves))
+        })
         .collect()
 }
 
@@ -122,7 +144,8 @@ pub fn json(found: &Comparison) -> String {
 }
 
 fn table(caption: &str, head: Vec<crate::report::study::Head>, rows: Vec<Vec<String>>) -> Item {
-    let rows = rows.into_iter().map(|row| row.iter().map(|cell| number::raised(cell)).collect()).collect();
+    let rows =
+        rows.into_iter().map(|row| row.iter().map(|cell| number::raised(cell)).collect()).collect();
     Item::Table { table: Table { caption: caption.into(), head, rows } }
 }
 
@@ -132,5 +155,9 @@ fn three(value: Option<f64>) -> String {
 
 /// A metric with its protocol, where there are several.
 fn metric(one: &Sensitivity, found: &Comparison) -> String {
-    if found.protocols.len() > 1 { format!("{}: {}", one.protocol, one.metric) } else { one.metric.clone() }
+    if found.protocols.len() > 1 {
+        format!("{}: {}", one.protocol, one.metric)
+    } else {
+        one.metric.clone()
+    }
 }

@@ -11,7 +11,12 @@ pub type Curve = (String, Vec<(f64, f64)>);
 pub fn disturbances(found: &Comparison) -> Vec<(&str, Vec<Curve>)> {
     let mut all: Vec<(&str, Vec<Curve>)> = Vec::new();
     for one in found.sensitivity.iter().filter(|one| one.limited) {
-        let points = one.sizes.iter().zip(&one.values).filter_map(|(size, value)| Some((*size, (*value)?))).collect();
+        let points = one
+            .sizes
+            .iter()
+            .zip(&one.values)
+            .filter_map(|(size, value)| Some((*size, (*value)?)))
+            .collect();
         let curve = (metric(one, found), points);
         match all.iter_mut().find(|(name, _)| *name == one.disturbance) {
             Some((_, curves)) => curves.push(curve),

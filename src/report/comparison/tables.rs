@@ -46,12 +46,24 @@ pub fn tables(found: &Comparison) -> Result<Vec<(String, Vec<u8>)>, csv::Error> 
     });
     let scores = found.scores.iter().map(|one| {
         let metric = one.metric.clone().unwrap_or_default();
-        vec![one.campaign.clone(), one.section.clone(), one.protocol.clone(), metric, one.score.to_string(), one.limited.to_string()]
+        vec![
+            one.campaign.clone(),
+            one.section.clone(),
+            one.protocol.clone(),
+            metric,
+            one.score.to_string(),
+            one.limited.to_string(),
+        ]
     });
     let agreement = found.agreement.iter().map(|one| {
         let counts = one.contingency.map_or([None; 4], |[[a, b], [c, d]]| [a, b, c, d].map(Some));
-        let mut row =
-            vec![one.of.clone(), one.protocol.clone().unwrap_or_default(), one.a.clone(), one.b.clone(), one.sections.to_string()];
+        let mut row = vec![
+            one.of.clone(),
+            one.protocol.clone().unwrap_or_default(),
+            one.a.clone(),
+            one.b.clone(),
+            one.sections.to_string(),
+        ];
         row.extend(counts.map(|count| count.map_or_else(String::new, |count| count.to_string())));
         row.extend([number(one.spearman), one.reason.clone().unwrap_or_default()]);
         row
@@ -86,28 +98,66 @@ pub fn tables(found: &Comparison) -> Result<Vec<(String, Vec<u8>)>, csv::Error> 
     Ok(vec![
         csv_file(
             "verdicts",
-            &["campaign", "protocol", "verdict", "holds", "decided by", "ratio", "sections used", "reasons"],
+            &[
+                "campaign",
+                "protocol",
+                "verdict",
+                "holds",
+                "decided by",
+                "ratio",
+                "sections used",
+                "reasons",
+            ],
             verdicts.collect(),
         )?,
         csv_file(
             "ratios",
-            &["campaign", "protocol", "metric", "quantity", "estimate", "scope", "unit", "value", "limit", "ratio", "holds", "reason"],
+            &[
+                "campaign", "protocol", "metric", "quantity", "estimate", "scope", "unit", "value",
+                "limit", "ratio", "holds", "reason",
+            ],
             ratios.collect(),
         )?,
-        csv_file("scores", &["campaign", "section", "protocol", "metric", "score", "limited"], scores.collect())?,
+        csv_file(
+            "scores",
+            &["campaign", "section", "protocol", "metric", "score", "limited"],
+            scores.collect(),
+        )?,
         csv_file(
             "agreement",
-            &["of", "protocol", "a", "b", "sections", "both met", "a only", "b only", "neither", "spearman", "reason"],
+            &[
+                "of", "protocol", "a", "b", "sections", "both met", "a only", "b only", "neither",
+                "spearman", "reason",
+            ],
             agreement.collect(),
         )?,
         csv_file(
             "sensitivity",
-            &["protocol", "metric", "disturbance", "size", "rms change", "largest", "verdicts changed", "verdicts", "reason"],
+            &[
+                "protocol",
+                "metric",
+                "disturbance",
+                "size",
+                "rms change",
+                "largest",
+                "verdicts changed",
+                "verdicts",
+                "reason",
+            ],
             sensitivity.collect(),
         )?,
         csv_file(
             "differences",
-            &["rule", "difference", "campaign", "verdict before", "verdict after", "ratio before", "ratio after", "reason"],
+            &[
+                "rule",
+                "difference",
+                "campaign",
+                "verdict before",
+                "verdict after",
+                "ratio before",
+                "ratio after",
+                "reason",
+            ],
             differences.collect(),
         )?,
     ])

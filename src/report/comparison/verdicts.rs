@@ -17,7 +17,9 @@ pub fn verdicts(found: &Comparison) -> Chapter {
         ]
     };
     let mut items = vec![
-        Item::text("A verdict is decided by the requirement with the largest ratio of value and limit."),
+        Item::text(
+            "A verdict is decided by the requirement with the largest ratio of value and limit.",
+        ),
         table(
             "Verdicts of the protocols",
             vec![
@@ -35,7 +37,9 @@ pub fn verdicts(found: &Comparison) -> Chapter {
         .verdicts
         .iter()
         .filter(|cell| cell.holds.is_none())
-        .filter_map(|cell| Some(format!("{}, {}: {}", cell.campaign, cell.protocol, cell.reasons.first()?)))
+        .filter_map(|cell| {
+            Some(format!("{}, {}: {}", cell.campaign, cell.protocol, cell.reasons.first()?))
+        })
         .collect();
     if !open.is_empty() {
         items.push(Item::text("Not assessable or open:"));
@@ -64,7 +68,10 @@ pub fn applicability(found: &Comparison) -> Chapter {
             tried(one.verdict_of_one_quantity),
             tried(one.verdict_of_one_section),
             one.scale.clone().unwrap_or_else(|| number::NONE.to_owned()),
-            one.symmetric.map_or_else(|| number::NONE.to_owned(), |it| if it { "yes" } else { "no" }.to_owned()),
+            one.symmetric.map_or_else(
+                || number::NONE.to_owned(),
+                |it| if it { "yes" } else { "no" }.to_owned(),
+            ),
         ]
     };
     Chapter {
@@ -103,7 +110,10 @@ pub fn differences(found: &Comparison) -> Option<Chapter> {
             one.words.clone(),
             one.campaign.clone(),
             one.verdict_before.clone(),
-            one.verdict_after.clone().or_else(|| one.reason.clone()).unwrap_or_else(|| number::NONE.to_owned()),
+            one.verdict_after
+                .clone()
+                .or_else(|| one.reason.clone())
+                .unwrap_or_else(|| number::NONE.to_owned()),
             format!("{} / {}", ratio(one.ratio_before), ratio(one.ratio_after)),
             one.limits_changed.map_or_else(|| number::NONE.to_owned(), |count| count.to_string()),
         ]
@@ -152,7 +162,9 @@ pub fn ratios(found: &Comparison) -> Chapter {
         let names: Vec<&str> = some.iter().map(|one| one.name.as_str()).collect();
         let mut rows: Vec<([&str; 3], Vec<Option<f64>>)> = Vec::new();
         for one in &found.ratios {
-            let Some(column) = names.iter().position(|name| *name == one.protocol) else { continue };
+            let Some(column) = names.iter().position(|name| *name == one.protocol) else {
+                continue;
+            };
             let key = [one.campaign.as_str(), one.symbol.as_str(), one.estimate.as_str()];
             let at = rows.iter().position(|(known, _)| *known == key).unwrap_or_else(|| {
                 rows.push((key, vec![None; names.len()]));
@@ -163,10 +175,14 @@ pub fn ratios(found: &Comparison) -> Chapter {
                 *largest = one.ratio;
             }
         }
-        let mut head = vec![Head::text("Campaign"), Head::short("Quantity"), Head::text("Estimate")];
+        let mut head =
+            vec![Head::text("Campaign"), Head::short("Quantity"), Head::text("Estimate")];
         head.extend(names.iter().map(|name| Head { numeric: true, ..Head::text(name) }));
         let row = |(key, ratios): ([&str; 3], Vec<Option<f64>>)| {
-            key.iter().map(|part| (*part).to_owned()).chain(ratios.into_iter().map(three)).collect::<Vec<_>>()
+            key.iter()
+                .map(|part| (*part).to_owned())
+                .chain(ratios.into_iter().map(three))
+                .collect::<Vec<_>>()
         };
         let caption = "Largest ratio of value and limit over the groups of each requirement";
         items.push(table(caption, head, rows.into_iter().map(row).collect()));
@@ -175,19 +191,31 @@ pub fn ratios(found: &Comparison) -> Chapter {
 }
 
 pub fn compared(found: &Comparison) -> Chapter {
-    let protocol =
-        |one: &crate::result::comparison::Compared| vec![one.name.clone(), one.title.clone(), one.criterion.clone(), one.sha256.clone()];
-    let campaign = |one: &crate::result::comparison::OnCampaign| vec![one.name.clone(), one.sections.to_string()];
+    let protocol = |one: &crate::result::comparison::Compared| {
+        vec![one.name.clone(), one.title.clone(), one.criterion.clone(), one.sha256.clone()]
+    };
+    let campaign = |one: &crate::result::comparison::OnCampaign| {
+        vec![one.name.clone(), one.sections.to_string()]
+    };
     Chapter {
         id: "compared".into(),
         title: "Protocols and campaigns".into(),
         items: vec![
             table(
                 "Protocols, with the SHA-256 of their text",
-                vec![Head::text("Name"), Head::text("Title"), Head::text("Criterion"), Head::text("SHA-256")],
+                vec![
+                    Head::text("Name"),
+                    Head::text("Title"),
+                    Head::text("Criterion"),
+                    Head::text("SHA-256"),
+                ],
                 found.protocols.iter().map(protocol).collect(),
             ),
-            table("Campaigns", vec![Head::text("Name"), Head::number("Sections")], found.campaigns.iter().map(campaign).collect()),
+            table(
+                "Campaigns",
+                vec![Head::text("Name"), Head::number("Sections")],
+                found.campaigns.iter().map(campaign).collect(),
+            ),
         ],
     }
 }

@@ -1,4 +1,5 @@
-//! Sections as points with the outline of their hull, and wanted operation inside and outside; two coordinates in each diagram.
+//! Sections as points with the outline of their hull, and wanted operation inside and outside; two
+//! coordinates in each diagram.
 
 use super::axis::{self, Scale};
 use super::canvas::{Canvas, Font, Group, Point};
@@ -14,12 +15,14 @@ const MOST: usize = 6;
 const TALL: f64 = 165.0;
 const FOOT: f64 = 32.0;
 const GUTTER: f64 = 20.0;
-/// Points of wanted operation have their number in the table beside their marks, up to this number of points.
+/// Points of wanted operation have their number in the table beside their marks, up to this number
+/// of points.
 const NUMBERED: usize = 30;
 
 pub fn application(result: &DomainResult) -> String {
     let count = result.coordinates.len();
-    let pairs: Vec<(usize, usize)> = (0..count).flat_map(|x| (x + 1..count).map(move |y| (x, y))).take(MOST).collect();
+    let pairs: Vec<(usize, usize)> =
+        (0..count).flat_map(|x| (x + 1..count).map(move |y| (x, y))).take(MOST).collect();
     let mut entries = vec![Entry::mark(Mark::Circle, MUTED, "section")];
     if result.reason.is_none() {
         entries.push(Entry::line(INK, 0.8, SOLID, "outline of the sections"));
@@ -51,14 +54,20 @@ const KINDS: [Kind; 3] = [
     (None, Mark::Triangle, INK, "wanted operation, not assessed"),
 ];
 
-fn diagram(canvas: &mut Canvas, result: &DomainResult, (across, up): (usize, usize), (left, right, top): (f64, f64, f64)) {
+fn diagram(
+    canvas: &mut Canvas,
+    result: &DomainResult,
+    (across, up): (usize, usize),
+    (left, right, top): (f64, f64, f64),
+) {
     let values = |at: usize| {
         let sections = result.sections.iter().map(move |section| section.values[at]);
         sections.chain(result.points.iter().map(move |point| point.values[at]))
     };
     let y = Scale::over(values(up), top + TALL, top);
     let ticks = y.ticks(6);
-    let frame = Frame { x: Scale::over(values(across), left + Frame::axis_room(&ticks), right - 6.0), y };
+    let frame =
+        Frame { x: Scale::over(values(across), left + Frame::axis_room(&ticks), right - 6.0), y };
     let title = |at: usize, room: f64| {
         let CoordinateRange { name, unit, .. } = &result.coordinates[at];
         cut(&axis::title(name, unit), TEXT, room)
@@ -73,29 +82,49 @@ fn diagram(canvas: &mut Canvas, result: &DomainResult, (across, up): (usize, usi
         canvas.draw(|layer| layer.path(&line, INK, 0.8));
     }
     let says = |name: &str, values: &[f64]| {
-        let one = |(of, value): (&CoordinateRange, &f64)| format!("{} {}", of.name, number::significant(*value, 5));
-        format!("{name}: {}", result.coordinates.iter().zip(values).map(one).collect::<Vec<_>>().join(", "))
+        let one = |(of, value): (&CoordinateRange, &f64)| {
+            format!("{} {}", of.name, number::significant(*value, 5))
+        };
+        format!(
+            "{name}: {}",
+            result.coordinates.iter().zip(values).map(one).collect::<Vec<_>>().join(", ")
+        )
     };
     for section in &result.sections {
         let says = says(&section.section, &section.values);
-        let group = Group { class: "mark", edge: 0.35, title: Some(&says), section: Some(&section.section), ..Group::default() };
+        let group = Group {
+            class: "mark",
+            edge: 0.35,
+            title: Some(&says),
+            section: Some(&section.section),
+            ..Group::default()
+        };
         canvas.group(&group, |layer| layer.mark(Mark::Circle, at(&section.values), 2.0, MUTED));
     }
     for (nth, point) in result.points.iter().enumerate() {
-        let Some((_, mark, color, _)) = KINDS.iter().find(|(inside, ..)| *inside == point.inside) else { continue };
+        let Some((_, mark, color, _)) = KINDS.iter().find(|(inside, ..)| *inside == point.inside)
+        else {
+            continue;
+        };
         let says = says(&point.point, &point.values);
         let (x, y) = at(&point.values);
-        canvas.group(&Group { class: "mark", edge: 0.35, title: Some(&says), ..Group::default() }, |layer| {
-            layer.mark(*mark, (x, y), 2.8, *color);
-        });
+        canvas.group(
+            &Group { class: "mark", edge: 0.35, title: Some(&says), ..Group::default() },
+            |layer| {
+                layer.mark(*mark, (x, y), 2.8, *color);
+            },
+        );
         if result.points.len() <= NUMBERED {
-            canvas.draw(|layer| layer.text(&(nth + 1).to_string(), (x + 4.0, y - 4.0), &Font::left(SMALL)));
+            canvas.draw(|layer| {
+                layer.text(&(nth + 1).to_string(), (x + 4.0, y - 4.0), &Font::left(SMALL))
+            });
         }
     }
 }
 
-/// The corners of the convex outline of points in a plane, in order. Source: A. M. Andrew, "Another efficient algorithm for convex hulls in
-/// two dimensions", Information Processing Letters 9 (1979).
+/// The corners of the convex outline of points in a plane, in order. Source: A. M. Andrew, "Another
+/// efficient algorithm for convex hulls in two dimensions", Information Processing Letters 9
+/// (1979).
 fn outline(mut points: Vec<Point>) -> Vec<Point> {
     points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     points.dedup();
@@ -127,7 +156,15 @@ mod tests {
 
     #[test]
     fn the_outline_has_the_corners_alone() {
-        let points = vec![(0.0, 0.0), (2.0, 0.0), (1.0, 0.0), (1.0, 1.0), (2.0, 2.0), (0.0, 2.0), (2.0, 2.0)];
+        let points = vec![
+            (0.0, 0.0),
+            (2.0, 0.0),
+            (1.0, 0.0),
+            (1.0, 1.0),
+            (2.0, 2.0),
+            (0.0, 2.0),
+            (2.0, 2.0),
+        ];
         assert_eq!(outline(points), [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)]);
         assert_eq!(outline(vec![(1.0, 1.0), (0.0, 0.0)]), [(0.0, 0.0), (1.0, 1.0)]);
         assert_eq!(outline(Vec::new()), []);

@@ -24,7 +24,9 @@ impl Scale {
     /// Position of a value, in points.
     pub fn at(&self, value: f64) -> f64 {
         // Halved, so that a very large range does not overflow.
-        self.from + (value / 2.0 - self.low / 2.0) / (self.high / 2.0 - self.low / 2.0) * (self.to - self.from)
+        self.from
+            + (value / 2.0 - self.low / 2.0) / (self.high / 2.0 - self.low / 2.0)
+                * (self.to - self.from)
     }
 
     pub fn contains(&self, value: f64) -> bool {
@@ -59,7 +61,9 @@ pub fn extent(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
     let (low, high) = values
         .into_iter()
         .filter(|value| value.is_finite())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+            (low.min(value), high.max(value))
+        });
     if low > high {
         return None;
     }
@@ -74,7 +78,10 @@ pub fn extent(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
 /// The smallest of 1, 2, 5 times a power of ten that is at least `width`.
 fn round_step(width: f64) -> f64 {
     let power = 10_f64.powf(width.log10().floor());
-    let step = [1.0, 2.0, 5.0].into_iter().map(|digit| digit * power).find(|step| *step >= width * (1.0 - 1e-9));
+    let step = [1.0, 2.0, 5.0]
+        .into_iter()
+        .map(|digit| digit * power)
+        .find(|step| *step >= width * (1.0 - 1e-9));
     step.unwrap_or(10.0 * power)
 }
 
@@ -89,7 +96,11 @@ mod tests {
     use super::*;
 
     fn labels(low: f64, high: f64, most: usize) -> Vec<String> {
-        Scale { low, high, from: 0.0, to: 1.0 }.ticks(most).into_iter().map(|tick| tick.label).collect()
+        Scale { low, high, from: 0.0, to: 1.0 }
+            .ticks(most)
+            .into_iter()
+            .map(|tick| tick.label)
+            .collect()
     }
 
     #[test]
@@ -109,7 +120,9 @@ mod tests {
         assert_eq!(extent([0.0]), Some((-1.0, 1.0)));
         assert_eq!(extent([-50.0, -50.0]), Some((-55.0, -45.0)));
         let scale = Scale::over([1.0, 3.0], 100.0, 0.0);
-        assert!(scale.at(1.0) < 100.0 && scale.at(3.0) > 0.0 && (scale.at(2.0) - 50.0).abs() < 1e-12);
+        assert!(
+            scale.at(1.0) < 100.0 && scale.at(3.0) > 0.0 && (scale.at(2.0) - 50.0).abs() < 1e-12
+        );
         assert_eq!(Scale { low: f64::MIN, high: f64::MAX, from: 0.0, to: 8.0 }.at(0.0), 4.0);
     }
 

@@ -1,10 +1,13 @@
-//! Box plots of normalised statistics over all selections of sections, as in Götz and Polach, Figures 5, 6 and 8.
+//! Box plots of normalised statistics over all selections of sections, as in Götz and Polach,
+//! Figures 5, 6 and 8.
 
 use super::axis::{Scale, Tick};
 use super::canvas::{Canvas, Font, Group};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::style::{self, BEYOND, BLUE, DASHED, INK, MUTED, Mark, SHADE, SMALL, TEXT, VERMILION, WIDTH, text_width};
+use super::style::{
+    self, BEYOND, BLUE, DASHED, INK, MUTED, Mark, SHADE, SMALL, TEXT, VERMILION, WIDTH, text_width,
+};
 use super::symbol::symbol;
 use crate::report::number;
 use crate::result::study::{QuantitySpread, Spread, StatisticSpread};
@@ -98,7 +101,9 @@ pub fn boxes(quantities: &[QuantitySpread], of: Of) -> String {
 }
 
 fn panel(quantities: &[QuantitySpread], of: Of) -> Panel<'_> {
-    let statistics = quantities.iter().flat_map(|quantity| quantity.statistics.iter().map(move |statistic| (quantity, statistic)));
+    let statistics = quantities.iter().flat_map(|quantity| {
+        quantity.statistics.iter().map(move |statistic| (quantity, statistic))
+    });
     let one = |(quantity, statistic): (&'_ QuantitySpread, &'_ StatisticSpread)| {
         let mut label = quantity.symbol.clone();
         if of == Of::Others {
@@ -111,7 +116,9 @@ fn panel(quantities: &[QuantitySpread], of: Of) -> Panel<'_> {
     };
     let boxes: Vec<_> = statistics
         .filter(|(_, statistic)| of.has(&statistic.name))
-        .filter_map(|(quantity, statistic)| Some((one((quantity, statistic)), statistic, quantity, statistic.spread?)))
+        .filter_map(|(quantity, statistic)| {
+            Some((one((quantity, statistic)), statistic, quantity, statistic.spread?))
+        })
         .collect();
     let signed = match of {
         Of::Means => true,
@@ -130,12 +137,20 @@ fn draw(canvas: &mut Canvas, panel: &Panel<'_>, top: f64) {
     let y = Scale { low, high: high + room, from: top + PANEL, to: top };
     let ticks: Vec<Tick> = y.ticks(7);
     let left = Frame::axis_room(&ticks).max(36.0);
-    let frame = Frame { x: Scale { low: 0.0, high: panel.boxes.len() as f64, from: left, to: WIDTH - 4.0 }, y };
+    let frame = Frame {
+        x: Scale { low: 0.0, high: panel.boxes.len() as f64, from: left, to: WIDTH - 4.0 },
+        y,
+    };
     beyond(canvas, &frame, panel.signed);
     frame.y_axis(canvas, &ticks, panel.of.axis());
     canvas.group(&Group { class: "limit", dash: DASHED, ..Group::default() }, |layer| {
         for limit in if panel.signed { &[-1.0, 1.0][..] } else { &[1.0][..] } {
-            layer.line((frame.left(), frame.y.at(*limit)), (frame.right(), frame.y.at(*limit)), INK, 0.9);
+            layer.line(
+                (frame.left(), frame.y.at(*limit)),
+                (frame.right(), frame.y.at(*limit)),
+                INK,
+                0.9,
+            );
         }
     });
     let width = (frame.right() - frame.left()) / panel.boxes.len() as f64;
@@ -176,7 +191,13 @@ fn one(layer: &mut super::canvas::Layer<'_>, frame: &Frame, x: f64, half: f64, s
         }
     }
     layer.rect((x - half, place(spread.q1)), (x + half, place(spread.q3)), SHADE);
-    let corners = [(-half, spread.q1), (half, spread.q1), (half, spread.q3), (-half, spread.q3), (-half, spread.q1)];
+    let corners = [
+        (-half, spread.q1),
+        (half, spread.q1),
+        (half, spread.q3),
+        (-half, spread.q3),
+        (-half, spread.q1),
+    ];
     layer.path(&corners.map(|(dx, value)| (x + dx, place(value))), BLUE, 0.9);
     layer.line((x - half, place(spread.median)), (x + half, place(spread.median)), VERMILION, 1.4);
     if spread.outliers > 0 {

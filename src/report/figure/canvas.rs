@@ -1,11 +1,14 @@
-//! A drawing in points, stored as SVG. plotters draws; this adds a grid finer than whole pixels, dashes and groups.
+//! A drawing in points, stored as SVG. plotters draws; this adds a grid finer than whole pixels,
+//! dashes and groups.
 
 use std::fmt::Write as _;
 
 use plotters::backend::SVGBackend;
 use plotters::prelude::DrawingBackend;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle, TextStyle};
+use plotters::style::{
+    Color, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle, TextStyle,
+};
 
 use super::style::{Dash, FAMILY, INK, Mark};
 use crate::report::visible::visible;
@@ -151,8 +154,9 @@ impl Canvas {
         drop(layer);
         let start = text.find('\n').map_or(0, |at| at + 1);
         let end = text.rfind("</svg>").unwrap_or(text.len());
-        // All quotes in texts are escaped, so these patterns are attributes. Full opacity is the default; a filled shape takes the
-        // outline of its group; texts are centred on half the x-height.
+        // All quotes in texts are escaped, so these patterns are attributes. Full opacity is the
+        // default; a filled shape takes the outline of its group; texts are centred on half the
+        // x-height.
         whole_sizes(text.get(start..end).unwrap_or_default())
             .replace(" opacity=\"1\"", "")
             .replace(" stroke=\"none\" stroke-width=\"1\"", "")
@@ -181,7 +185,8 @@ impl Layer<'_> {
     }
 
     pub fn path(&mut self, points: &[Point], color: RGBColor, width: f64) {
-        let _ = self.backend.draw_path(points.iter().map(|point| at(*point)), &stroke(color, width));
+        let _ =
+            self.backend.draw_path(points.iter().map(|point| at(*point)), &stroke(color, width));
     }
 
     pub fn fill(&mut self, points: &[Point], color: RGBColor) {
@@ -198,7 +203,12 @@ impl Layer<'_> {
     /// A filled mark around a point; all shapes have approximately the same area.
     pub fn mark(&mut self, mark: Mark, center: Point, radius: f64, color: RGBColor) {
         if mark == Mark::Circle {
-            let _ = self.backend.draw_circle(at(center), step(radius).max(1) as u32, &color.filled(), true);
+            let _ = self.backend.draw_circle(
+                at(center),
+                step(radius).max(1) as u32,
+                &color.filled(),
+                true,
+            );
         } else {
             self.fill(&outline(mark, center, radius), color);
         }
@@ -231,7 +241,12 @@ fn outline(mark: Mark, (x, y): Point, radius: f64) -> Vec<Point> {
         Mark::Circle => (24, 0.0, 1.0),
         Mark::Bar => {
             let (half, tall) = (0.45 * radius, 1.5 * radius);
-            return vec![(x - half, y - tall), (x + half, y - tall), (x + half, y + tall), (x - half, y + tall)];
+            return vec![
+                (x - half, y - tall),
+                (x + half, y - tall),
+                (x + half, y + tall),
+                (x - half, y + tall),
+            ];
         }
     };
     (0..corners)
@@ -249,7 +264,8 @@ fn whole_sizes(shapes: &str) -> String {
     let mut text = pieces.next().unwrap_or_default().to_owned();
     for piece in pieces {
         text.push_str(SIZE);
-        match piece.split_once('"').and_then(|(size, rest)| Some((size.parse::<f64>().ok()?, rest))) {
+        match piece.split_once('"').and_then(|(size, rest)| Some((size.parse::<f64>().ok()?, rest)))
+        {
             Some((size, rest)) => {
                 let _ = write!(text, "{}\"{rest}", size.round());
             }
@@ -264,7 +280,8 @@ fn stroke(color: RGBColor, width: f64) -> ShapeStyle {
 }
 
 fn step(length: f64) -> i32 {
-    // The conversion saturates and maps NaN to 0; the clamp prevents overflow of sums of coordinates.
+    // The conversion saturates and maps NaN to 0; the clamp prevents overflow of sums of
+    // coordinates.
     (length * STEPS).round().clamp(-FARTHEST, FARTHEST) as i32
 }
 
@@ -303,11 +320,22 @@ mod tests {
     fn texts_of_users_stay_texts() {
         let hostile = "\"/><script>alert('1')</script>&\u{0}\u{1b}\u{202e}\n";
         let mut canvas = Canvas::new(100.0, 50.0);
-        let group = Group { title: Some(hostile), section: Some(hostile), zone: Some(hostile), ..Group::default() };
+        let group = Group {
+            title: Some(hostile),
+            section: Some(hostile),
+            zone: Some(hostile),
+            ..Group::default()
+        };
         canvas.group(&group, |layer| layer.text(hostile, (1.0, 2.0), &Font::left(8.0)));
         let svg = canvas.finish();
         assert_eq!(svg.matches('<').count(), svg.matches('>').count());
-        assert!(!svg.contains("<script") && !svg.contains('\u{0}') && !svg.contains('\u{1b}') && !svg.contains('\u{202e}'), "{svg}");
+        assert!(
+            !svg.contains("<script")
+                && !svg.contains('\u{0}')
+                && !svg.contains('\u{1b}')
+                && !svg.contains('\u{202e}'),
+            "{svg}"
+        );
         assert_eq!(svg.matches("&lt;script&gt;").count(), 4, "{svg}");
         assert_eq!(svg.matches("<text").count(), 1);
     }
@@ -315,9 +343,16 @@ mod tests {
     #[test]
     fn points_are_twenty_steps_and_nothing_overflows() {
         let mut canvas = Canvas::new(100.0, 50.0);
-        canvas.group(&Group { dash: DASHED, ..Group::default() }, |layer| layer.line((0.0, 1.0), (1e300, f64::NAN), BLUE, 0.5));
+        canvas.group(&Group { dash: DASHED, ..Group::default() }, |layer| {
+            layer.line((0.0, 1.0), (1e300, f64::NAN), BLUE, 0.5)
+        });
         let svg = canvas.finish();
         assert!(svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"100pt\" height=\"50pt\" viewBox=\"0 0 2000 1000\">"));
-        assert!(svg.contains("stroke-dasharray=\"100 50\"") && svg.contains("y1=\"20\"") && svg.contains("x2=\"1000000\""), "{svg}");
+        assert!(
+            svg.contains("stroke-dasharray=\"100 50\"")
+                && svg.contains("y1=\"20\"")
+                && svg.contains("x2=\"1000000\""),
+            "{svg}"
+        );
     }
 }

@@ -1,10 +1,14 @@
-//! Influence of parameters on the verdict: the largest normalised statistic for every value of every parameter.
+//! Influence of parameters on the verdict: the largest normalised statistic for every value of
+//! every parameter.
 
 use super::axis::Scale;
 use super::canvas::{Canvas, Font, Group};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::style::{BEYOND, BLUE, DASHED, GRID, INK, MUTED, Mark, SMALL, TEXT, VERMILION, WHITE, WIDTH, cut, text_width};
+use super::style::{
+    BEYOND, BLUE, DASHED, GRID, INK, MUTED, Mark, SMALL, TEXT, VERMILION, WHITE, WIDTH, cut,
+    text_width,
+};
 use crate::report::number;
 use crate::result::study::{AtValue, ParameterStudy};
 use crate::result::{Verdict, VerdictWords};
@@ -23,7 +27,8 @@ fn sign(verdict: Verdict) -> (Mark, plotters::style::RGBColor) {
     }
 }
 
-/// One row per value: the limit at 1, shape and colour for the verdict, the share of selections for which the verdict holds at the right.
+/// One row per value: the limit at 1, shape and colour for the verdict, the share of selections for
+/// which the verdict holds at the right.
 pub fn choices(study: &ParameterStudy, words: &VerdictWords) -> String {
     let legend = Legend::new(
         [Verdict::Validated, Verdict::NotValidated, Verdict::NotAssessable]
@@ -35,11 +40,13 @@ pub fn choices(study: &ParameterStudy, words: &VerdictWords) -> String {
     let top = legend.height() + 14.0;
     let height = rows as f64 * ROW + study.parameters.len() as f64 * GAP;
     let largest = |at: &AtValue| at.largest.as_ref().map(|(_, value)| *value);
-    let all = study.parameters.iter().flat_map(|parameter| parameter.values.iter().filter_map(largest));
+    let all =
+        study.parameters.iter().flat_map(|parameter| parameter.values.iter().filter_map(largest));
     let high = all.clone().fold(1.1, f64::max).min(4.0);
     let low = all.fold(0.9, f64::min).max(0.0);
     let room = 0.05 * (high - low);
-    let x = Scale { low: (low - room).max(0.0), high: high + room, from: NAMES, to: WIDTH - SHARES };
+    let x =
+        Scale { low: (low - room).max(0.0), high: high + room, from: NAMES, to: WIDTH - SHARES };
     let frame = Frame { x, y: Scale { low: 0.0, high: 1.0, from: top + height, to: top } };
     let mut canvas = Canvas::new(WIDTH, top + height + 28.0);
     legend.draw(&mut canvas, (NAMES, 0.0));
@@ -56,7 +63,11 @@ pub fn choices(study: &ParameterStudy, words: &VerdictWords) -> String {
             let end = 6.0 + text_width(&title, TEXT);
             layer.rect((0.0, y + 3.0), (end.min(x.at(1.0)).max(0.0), y + 13.0), WHITE);
             if end > x.at(1.0) - 1.0 {
-                layer.rect((x.at(1.0), y + 3.0), (end.clamp(x.at(1.0), frame.right()), y + 13.0), BEYOND);
+                layer.rect(
+                    (x.at(1.0), y + 3.0),
+                    (end.clamp(x.at(1.0), frame.right()), y + 13.0),
+                    BEYOND,
+                );
                 limit.extend([y + 2.0, y + 14.0]);
             }
             layer.text(&title, (2.0, y + 8.0), &Font::left(TEXT).bold(parameter.decides));
@@ -73,20 +84,30 @@ pub fn choices(study: &ParameterStudy, words: &VerdictWords) -> String {
             layer.line((x.at(1.0), piece[0]), (x.at(1.0), piece[1]), INK, 0.9);
         }
     });
-    canvas.draw(|layer| layer.line((frame.left(), frame.bottom()), (frame.right(), frame.bottom()), INK, 0.7));
+    canvas.draw(|layer| {
+        layer.line((frame.left(), frame.bottom()), (frame.right(), frame.bottom()), INK, 0.7)
+    });
     canvas.finish()
 }
 
 fn row(canvas: &mut Canvas, frame: &Frame, (at, verdict): (&AtValue, &str), y: f64) {
-    let share = at.share.map_or_else(|| number::NONE.to_owned(), |share| format!("{} %", number::fixed(100.0 * share.share, 2)));
+    let share = at.share.map_or_else(
+        || number::NONE.to_owned(),
+        |share| format!("{} %", number::fixed(100.0 * share.share, 2)),
+    );
     canvas.draw(|layer| {
         layer.line((frame.left(), y), (frame.right(), y), GRID, 0.4);
-        layer.text(&cut(&at.value, SMALL, NAMES - 16.0), (NAMES - 5.0, y), &Font::right(SMALL).bold(at.is_base));
+        layer.text(
+            &cut(&at.value, SMALL, NAMES - 16.0),
+            (NAMES - 5.0, y),
+            &Font::right(SMALL).bold(at.is_base),
+        );
         layer.text(&share, (WIDTH - 2.0, y), &Font::right(SMALL));
     });
     if let Some((which, value)) = &at.largest {
         let (mark, color) = sign(at.verdict);
-        let title = format!("{}: {which} {} of its limit, {}", at.value, number::fixed(*value, 3), verdict);
+        let title =
+            format!("{}: {which} {} of its limit, {}", at.value, number::fixed(*value, 3), verdict);
         canvas.group(&Group { class: "mark", title: Some(&title), ..Group::default() }, |layer| {
             layer.mark(mark, (frame.x.at(value.clamp(frame.x.low, frame.x.high)), y), 2.2, color);
         });

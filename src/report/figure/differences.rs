@@ -94,10 +94,17 @@ pub fn scale(quantity: &QuantityResult, levels: &Levels, bottom: f64, top: f64) 
     Scale::over(differences.chain(levels.values()).chain([0.0]), bottom, top)
 }
 
-/// Draws the diagram from `left` to the right edge of the figure, between `top` and `bottom`, in points.
-pub fn draw(canvas: &mut Canvas, quantity: &QuantityResult, against: &Against<'_>, (left, top, bottom): (f64, f64, f64)) {
+/// Draws the diagram from `left` to the right edge of the figure, between `top` and `bottom`, in
+/// points.
+pub fn draw(
+    canvas: &mut Canvas,
+    quantity: &QuantityResult,
+    against: &Against<'_>,
+    (left, top, bottom): (f64, f64, f64),
+) {
     let Against { marks, levels, slots } = *against;
-    let x = Scale { low: 0.0, high: slots.sections.len().max(1) as f64, from: left, to: WIDTH - 2.0 };
+    let x =
+        Scale { low: 0.0, high: slots.sections.len().max(1) as f64, from: left, to: WIDTH - 2.0 };
     let y = scale(quantity, levels, bottom, top);
     let frame = Frame { x, y };
     grounds(canvas, &frame, levels, slots);
@@ -112,12 +119,18 @@ pub fn draw(canvas: &mut Canvas, quantity: &QuantityResult, against: &Against<'_
     zone_heads(canvas, &frame, slots);
     lines(canvas, &frame, levels, slots);
     frame.spine(canvas);
-    let decimals = number::decimals(&quantity.unit, quantity.values.iter().map(|pair| pair.difference));
+    let decimals =
+        number::decimals(&quantity.unit, quantity.values.iter().map(|pair| pair.difference));
     for pair in &quantity.values {
         let (mark, color) = marks.mark(pair);
         let title = tooltip(pair, quantity, decimals);
         canvas.group(&pair_group(pair, &title), |layer| {
-            layer.mark(mark, (x.at(slots.place(&pair.section, &pair.signal)), y.at(pair.difference)), 1.8, color);
+            layer.mark(
+                mark,
+                (x.at(slots.place(&pair.section, &pair.signal)), y.at(pair.difference)),
+                1.8,
+                color,
+            );
         });
     }
     if quantity.values.is_empty() {
@@ -131,7 +144,11 @@ fn grounds(canvas: &mut Canvas, frame: &Frame, levels: &Levels, slots: &Slots<'_
         let runs = slots.runs(|zone| speaks_of(&band.scope, zone));
         canvas.group(&Group { class: "band", ..Group::default() }, |layer| {
             for (from, to) in runs {
-                layer.rect((frame.x.at(from as f64), frame.y.at(band.low)), (frame.x.at(to as f64), frame.y.at(band.high)), SHADE);
+                layer.rect(
+                    (frame.x.at(from as f64), frame.y.at(band.low)),
+                    (frame.x.at(to as f64), frame.y.at(band.high)),
+                    SHADE,
+                );
             }
         });
     }
@@ -145,13 +162,19 @@ fn lines(canvas: &mut Canvas, frame: &Frame, levels: &Levels, slots: &Slots<'_>)
         let runs = slots.runs(|zone| speaks_of(&line.scope, zone));
         canvas.group(&Group { class: "level", dash: line.dash, ..Group::default() }, |layer| {
             for (from, to) in runs {
-                layer.line((frame.x.at(from as f64), y), (frame.x.at(to as f64), y), line.color, line.width);
+                layer.line(
+                    (frame.x.at(from as f64), y),
+                    (frame.x.at(to as f64), y),
+                    line.color,
+                    line.width,
+                );
             }
         });
     }
 }
 
-/// Section names below the axis: horizontal if they fit, else rotated; only every n-th if slots are narrower than the text.
+/// Section names below the axis: horizontal if they fit, else rotated; only every n-th if slots are
+/// narrower than the text.
 fn names(canvas: &mut Canvas, frame: &Frame, slots: &Slots<'_>) {
     let wide = frame.x.at(1.0) - frame.x.at(0.0);
     let upright = slots.sections.keys().all(|name| text_width(name, TICK) < wide - 2.0);
@@ -164,11 +187,19 @@ fn names(canvas: &mut Canvas, frame: &Frame, slots: &Slots<'_>) {
             if upright {
                 layer.text(name, (x, frame.bottom() + 7.0), &Font::middle(TICK).color(MUTED));
             } else {
-                layer.text(&cut(name, SMALL, room), (x, frame.bottom() + 4.0), &Font::right(SMALL).color(MUTED).upward());
+                layer.text(
+                    &cut(name, SMALL, room),
+                    (x, frame.bottom() + 4.0),
+                    &Font::right(SMALL).color(MUTED).upward(),
+                );
             }
         }
         let below = frame.bottom() + if upright { 18.0 } else { room + 11.0 };
-        layer.text("section", (f64::midpoint(frame.left(), frame.right()), below), &Font::middle(TEXT));
+        layer.text(
+            "section",
+            (f64::midpoint(frame.left(), frame.right()), below),
+            &Font::middle(TEXT),
+        );
     });
 }
 
@@ -185,8 +216,16 @@ fn zone_heads(canvas: &mut Canvas, frame: &Frame, slots: &Slots<'_>) {
                 layer.line((left, frame.top() - 9.0), (left, frame.bottom()), GRID, 0.8);
             }
             let long = format!("zone {zone}");
-            let text = if text_width(&long, TICK) < right - left { long } else { cut(zone, TICK, right - left) };
-            layer.text(&text, (f64::midpoint(left, right), frame.top() - 5.0), &Font::middle(TICK).color(MUTED));
+            let text = if text_width(&long, TICK) < right - left {
+                long
+            } else {
+                cut(zone, TICK, right - left)
+            };
+            layer.text(
+                &text,
+                (f64::midpoint(left, right), frame.top() - 5.0),
+                &Font::middle(TICK).color(MUTED),
+            );
         }
     });
 }

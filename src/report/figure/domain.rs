@@ -22,24 +22,35 @@ const UNUSED: RGBColor = MEASURED;
 /// Distance between the two columns of panels, in points.
 const GUTTER: f64 = 18.0;
 
-/// The range of every condition by zone, with the values of its sections; and a scatter diagram of the first two conditions that vary.
+/// The range of every condition by zone, with the values of its sections; and a scatter diagram of
+/// the first two conditions that vary.
 pub fn domain(ranges: &[DomainRange], sections: &[SectionResult], zones: &Zones) -> String {
-    let names: IndexSet<(&str, &str)> = ranges.iter().map(|range| (range.name.as_str(), range.unit.as_str())).collect();
-    let panels: Vec<Panel<'_>> = names.iter().map(|name| Panel::of(*name, ranges, sections)).collect();
+    let names: IndexSet<(&str, &str)> =
+        ranges.iter().map(|range| (range.name.as_str(), range.unit.as_str())).collect();
+    let panels: Vec<Panel<'_>> =
+        names.iter().map(|name| Panel::of(*name, ranges, sections)).collect();
     let across = scatter_pair(&panels);
-    let mut entries = zones.legend(sections.iter().filter(|section| section.used).map(|section| section.zone.as_deref()));
+    let mut entries = zones.legend(
+        sections.iter().filter(|section| section.used).map(|section| section.zone.as_deref()),
+    );
     if sections.iter().any(|section| !section.used) {
         entries.push(Entry::mark(Mark::Circle, UNUSED, "section not used"));
     }
     let legend = Legend::new(entries, WIDTH);
     let top = legend.height() + 6.0;
     let wide = (WIDTH - GUTTER) / 2.0;
-    let row_heights: Vec<f64> = panels.chunks(2).map(|pair| pair.iter().map(Panel::height).fold(0.0, f64::max)).collect();
+    let row_heights: Vec<f64> =
+        panels.chunks(2).map(|pair| pair.iter().map(Panel::height).fold(0.0, f64::max)).collect();
     let panels_height: f64 = row_heights.iter().sum();
     let height = top + panels_height + if across.is_some() { SCATTER + 40.0 } else { 0.0 };
     let mut canvas = Canvas::new(WIDTH, height.max(24.0));
     legend.draw(&mut canvas, (0.0, 0.0));
-    let labels = panels.iter().flat_map(|panel| &panel.scopes).map(|range| text_width(&scope(range), TICK)).fold(16.0, f64::max).min(70.0);
+    let labels = panels
+        .iter()
+        .flat_map(|panel| &panel.scopes)
+        .map(|range| text_width(&scope(range), TICK))
+        .fold(16.0, f64::max)
+        .min(70.0);
     let mut y = top;
     for (pair, tall) in panels.chunks(2).zip(&row_heights) {
         for (column, panel) in pair.iter().enumerate() {
@@ -52,13 +63,19 @@ pub fn domain(ranges: &[DomainRange], sections: &[SectionResult], zones: &Zones)
         scatter(&mut canvas, (across, up), zones, y + 8.0);
     }
     if panels.is_empty() {
-        canvas.draw(|layer| layer.text("no condition with numbers", (0.0, 12.0), &Font::left(TEXT).color(MUTED)));
+        canvas.draw(|layer| {
+            layer.text("no condition with numbers", (0.0, 12.0), &Font::left(TEXT).color(MUTED))
+        });
     }
     canvas.finish()
 }
 
 fn scope(range: &DomainRange) -> String {
-    if range.scope == "all" { "all".to_owned() } else { format!("zone {}", range.scope.trim_start_matches("zone ")) }
+    if range.scope == "all" {
+        "all".to_owned()
+    } else {
+        format!("zone {}", range.scope.trim_start_matches("zone "))
+    }
 }
 
 /// One condition: its ranges, and the values of the sections.
@@ -70,16 +87,32 @@ struct Panel<'a> {
 }
 
 impl<'a> Panel<'a> {
-    fn of((name, unit): (&'a str, &'a str), ranges: &'a [DomainRange], sections: &'a [SectionResult]) -> Self {
+    fn of(
+        (name, unit): (&'a str, &'a str),
+        ranges: &'a [DomainRange],
+        sections: &'a [SectionResult],
+    ) -> Self {
         let value = |section: &SectionResult| {
             let column = section.columns.iter().find(|column| column.name == name)?;
-            column.value.trim().replace('\u{2212}', "-").parse::<f64>().ok().filter(|value| value.is_finite())
+            column
+                .value
+                .trim()
+                .replace('\u{2212}', "-")
+                .parse::<f64>()
+                .ok()
+                .filter(|value| value.is_finite())
         };
         Self {
             name,
             unit,
-            scopes: ranges.iter().filter(|range| range.name == name && range.unit == unit).collect(),
-            points: sections.iter().filter_map(|section| Some((section, value(section)?))).collect(),
+            scopes: ranges
+                .iter()
+                .filter(|range| range.name == name && range.unit == unit)
+                .collect(),
+            points: sections
+                .iter()
+                .filter_map(|section| Some((section, value(section)?)))
+                .collect(),
         }
     }
 
@@ -92,10 +125,19 @@ impl<'a> Panel<'a> {
         Scale::over(ends.chain(self.points.iter().map(|(_, value)| *value)), from, to)
     }
 
-    fn draw(&self, canvas: &mut Canvas, zones: &Zones, (left, right, top): (f64, f64, f64), labels: f64) {
+    fn draw(
+        &self,
+        canvas: &mut Canvas,
+        zones: &Zones,
+        (left, right, top): (f64, f64, f64),
+        labels: f64,
+    ) {
         let from = left + labels + 6.0;
         let bottom = top + 6.0 + self.scopes.len() as f64 * BAR;
-        let frame = Frame { x: self.scale(from, right), y: Scale { low: 0.0, high: 1.0, from: bottom, to: top } };
+        let frame = Frame {
+            x: self.scale(from, right),
+            y: Scale { low: 0.0, high: 1.0, from: bottom, to: top },
+        };
         let title = cut(&axis::title(self.name, self.unit), TEXT, right - from);
         frame.x_axis(canvas, &frame.x.ticks(5), &title);
         for (at, range) in self.scopes.iter().enumerate() {
@@ -111,16 +153,34 @@ impl<'a> Panel<'a> {
                 number::significant(range.high, 6),
                 range.count
             );
-            canvas.draw(|layer| layer.text(&cut(&scope(range), TICK, labels), (from - 4.0, y), &Font::right(TICK).color(MUTED)));
-            canvas.group(&Group { class: "range", title: Some(&says), zone, ..Group::default() }, |layer| {
-                let (low, high) = (frame.x.at(range.low), frame.x.at(range.high));
-                layer.line((low, y), (high, y), color, if zone.is_none() { 1.6 } else { 1.2 });
-                for end in [low, high] {
-                    layer.line((end, y - 3.0), (end, y + 3.0), color, 1.0);
-                }
+            canvas.draw(|layer| {
+                layer.text(
+                    &cut(&scope(range), TICK, labels),
+                    (from - 4.0, y),
+                    &Font::right(TICK).color(MUTED),
+                )
             });
-            for (section, value) in self.points.iter().filter(|(section, _)| zone.is_some() && section.zone.as_deref() == zone) {
-                let says = format!("{}: {} {}", section.section, self.name, number::significant(*value, 6));
+            canvas.group(
+                &Group { class: "range", title: Some(&says), zone, ..Group::default() },
+                |layer| {
+                    let (low, high) = (frame.x.at(range.low), frame.x.at(range.high));
+                    layer.line((low, y), (high, y), color, if zone.is_none() { 1.6 } else { 1.2 });
+                    for end in [low, high] {
+                        layer.line((end, y - 3.0), (end, y + 3.0), color, 1.0);
+                    }
+                },
+            );
+            for (section, value) in self
+                .points
+                .iter()
+                .filter(|(section, _)| zone.is_some() && section.zone.as_deref() == zone)
+            {
+                let says = format!(
+                    "{}: {} {}",
+                    section.section,
+                    self.name,
+                    number::significant(*value, 6)
+                );
                 let group = section_group(section, &says);
                 let color = if section.used { color } else { UNUSED };
                 canvas.group(&group, |layer| layer.mark(mark, (frame.x.at(*value), y), 1.7, color));
@@ -150,7 +210,8 @@ fn scatter_pair<'p, 'a>(panels: &'p [Panel<'a>]) -> Option<(&'p Panel<'a>, &'p P
     let varied: Vec<&Panel<'_>> = panels
         .iter()
         .filter(|panel| {
-            let values: IndexSet<u64> = panel.points.iter().map(|(_, value)| value.to_bits()).collect();
+            let values: IndexSet<u64> =
+                panel.points.iter().map(|(_, value)| value.to_bits()).collect();
             values.len() > 2
         })
         .collect();
@@ -182,7 +243,14 @@ fn scatter(canvas: &mut Canvas, (across, up): (&Panel<'_>, &Panel<'_>), zones: &
     frame.spine(canvas);
     for (section, x, y) in together(across, up) {
         let (mark, color) = zones.mark(section.zone.as_deref());
-        let says = format!("{}: {} {}, {} {}", section.section, across.name, number::significant(x, 6), up.name, number::significant(y, 6));
+        let says = format!(
+            "{}: {} {}, {} {}",
+            section.section,
+            across.name,
+            number::significant(x, 6),
+            up.name,
+            number::significant(y, 6)
+        );
         canvas.group(&section_group(section, &says), |layer| {
             let color = if section.used { color } else { UNUSED };
             layer.mark(mark, (frame.x.at(x), frame.y.at(y)), 2.2, color);

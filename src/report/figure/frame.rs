@@ -60,14 +60,22 @@ impl Frame {
                 layer.line((x, self.top()), (x, self.bottom()), GRID, 0.5);
                 layer.text(&tick.label, (x, self.bottom() + 7.0), &Font::middle(TICK).color(MUTED));
             }
-            layer.text(title, (f64::midpoint(self.left(), self.right()), self.bottom() + 18.0), &Font::middle(TEXT));
+            layer.text(
+                title,
+                (f64::midpoint(self.left(), self.right()), self.bottom() + 18.0),
+                &Font::middle(TEXT),
+            );
         });
     }
 
     /// The lines of both axes, drawn on top of the plot.
     pub fn spine(&self, canvas: &mut Canvas) {
         canvas.draw(|layer| {
-            let corners = [(self.left(), self.top()), (self.left(), self.bottom()), (self.right(), self.bottom())];
+            let corners = [
+                (self.left(), self.top()),
+                (self.left(), self.bottom()),
+                (self.right(), self.bottom()),
+            ];
             layer.path(&corners, INK, 0.7);
         });
     }

@@ -1,4 +1,5 @@
-//! Cumulative frequency of the values of a quantity: one curve for each record, or for each zone where there is one record.
+//! Cumulative frequency of the values of a quantity: one curve for each record, or for each zone
+//! where there is one record.
 
 use indexmap::IndexMap;
 use plotters::style::RGBColor;
@@ -20,11 +21,15 @@ const LIMITS: usize = 6;
 /// Fewest values that are drawn: a curve of fewer says no more than the table of values.
 const FEWEST: usize = 5;
 
-/// Whether it is drawn: of an assessed quantity, and of a metric with a limit of the distribution of its values.
+/// Whether it is drawn: of an assessed quantity, and of a metric with a limit of the distribution
+/// of its values.
 pub fn has_frequency(quantity: &QuantityResult) -> bool {
-    let percentile = |name: &str| name.strip_prefix('p').is_some_and(|percent| percent.parse::<f64>().is_ok());
-    let of_distribution = || quantity.statistics.iter().any(|one| one.divided_at.is_some() || percentile(&one.name));
-    quantity.values.len() >= FEWEST && (quantity.from.is_some() || !quantity.has_sides && of_distribution())
+    let percentile =
+        |name: &str| name.strip_prefix('p').is_some_and(|percent| percent.parse::<f64>().is_ok());
+    let of_distribution =
+        || quantity.statistics.iter().any(|one| one.divided_at.is_some() || percentile(&one.name));
+    quantity.values.len() >= FEWEST
+        && (quantity.from.is_some() || !quantity.has_sides && of_distribution())
 }
 
 /// Values in increasing order, each at the share of values of its curve that do not exceed it.
@@ -35,7 +40,9 @@ pub fn frequency(quantity: &QuantityResult, zones: &Zones) -> String {
         let of = if several { &value.record } else { &value.zone };
         curves.entry(of.as_deref().unwrap_or_default()).or_default().push(value);
     }
-    let look = |at: usize, name: &str| if several { (Mark::nth(at), style::color(at)) } else { zones.mark(Some(name)) };
+    let look = |at: usize, name: &str| {
+        if several { (Mark::nth(at), style::color(at)) } else { zones.mark(Some(name)) }
+    };
     let mut entries = Vec::new();
     for (at, (name, values)) in curves.iter_mut().enumerate() {
         values.sort_by(|a, b| a.difference.total_cmp(&b.difference));
@@ -45,7 +52,11 @@ pub fn frequency(quantity: &QuantityResult, zones: &Zones) -> String {
             (true, _) => (*name).to_owned(),
             (false, _) => format!("zone {name}"),
         };
-        entries.push(Entry::mark(mark, color, format!("{of} ({})", number::count(values.len() as u64))));
+        entries.push(Entry::mark(
+            mark,
+            color,
+            format!("{of} ({})", number::count(values.len() as u64)),
+        ));
     }
     let limits = limits(quantity);
     if let [first, .., last] = limits.as_slice() {
@@ -59,7 +70,11 @@ pub fn frequency(quantity: &QuantityResult, zones: &Zones) -> String {
     let y = Scale { low: 0.0, high: 100.0, from: bottom, to: top };
     let ticks = y.ticks(5);
     let left = Frame::axis_room(&ticks);
-    let along = quantity.values.iter().map(|value| value.difference).chain(limits.iter().map(|(limit, _)| *limit));
+    let along = quantity
+        .values
+        .iter()
+        .map(|value| value.difference)
+        .chain(limits.iter().map(|(limit, _)| *limit));
     let frame = Frame { x: Scale::over(along, left, WIDTH - 6.0), y };
     let mut canvas = Canvas::new(WIDTH, bottom + 25.0);
     legend.draw(&mut canvas, (left, 0.0));
@@ -75,7 +90,8 @@ pub fn frequency(quantity: &QuantityResult, zones: &Zones) -> String {
             layer.text("limit", (frame.x.at(*limit), top - 5.0), &Font::middle(TICK).color(MUTED));
         }
     });
-    let decimals = number::decimals(&quantity.unit, quantity.values.iter().map(|value| value.difference));
+    let decimals =
+        number::decimals(&quantity.unit, quantity.values.iter().map(|value| value.difference));
     for (at, (name, values)) in curves.iter().enumerate() {
         curve(&mut canvas, &frame, values, look(at, name), (quantity, decimals));
     }
@@ -99,19 +115,28 @@ fn curve(
             [(x, frame.y.at(share(rank))), (x, frame.y.at(share(rank + 1)))]
         })
         .collect();
-    canvas.group(&Group { class: "curve", ..Group::default() }, |layer| layer.path(&steps, color, 0.8));
+    canvas.group(&Group { class: "curve", ..Group::default() }, |layer| {
+        layer.path(&steps, color, 0.8)
+    });
     for (rank, value) in values.iter().enumerate() {
         let title = tooltip(value, quantity, decimals);
         canvas.group(&pair_group(value, &title), |layer| {
-            layer.mark(mark, (frame.x.at(value.difference), frame.y.at(share(rank + 1))), 1.7, color);
+            layer.mark(
+                mark,
+                (frame.x.at(value.difference), frame.y.at(share(rank + 1))),
+                1.7,
+                color,
+            );
         });
     }
 }
 
-/// The different limits of the quantity in its unit, in increasing order, with their texts; of a magnitude on both sides where values are.
+/// The different limits of the quantity in its unit, in increasing order, with their texts; of a
+/// magnitude on both sides where values are.
 fn limits(quantity: &QuantityResult) -> Vec<(f64, String)> {
     // The limit of a share is no value; where the share divides the values is one.
-    let of = |one: &StatisticResult| one.divided_at.or(one.limit.filter(|_| one.unit == quantity.unit));
+    let of =
+        |one: &StatisticResult| one.divided_at.or(one.limit.filter(|_| one.unit == quantity.unit));
     let stated = quantity.statistics.iter().filter_map(of);
     let mut all: Vec<f64> = stated.collect();
     if quantity.values.iter().any(|value| value.difference < 0.0) {
@@ -119,7 +144,8 @@ fn limits(quantity: &QuantityResult) -> Vec<(f64, String)> {
     }
     all.sort_by(f64::total_cmp);
     let decimals = number::decimals(&quantity.unit, all.iter().copied());
-    let mut named: Vec<(f64, String)> = all.into_iter().map(|limit| (limit, number::fixed(limit, decimals))).collect();
+    let mut named: Vec<(f64, String)> =
+        all.into_iter().map(|limit| (limit, number::fixed(limit, decimals))).collect();
     named.dedup_by(|a, b| a.1 == b.1);
     if named.len() > LIMITS {
         named.drain(1..named.len() - 1);

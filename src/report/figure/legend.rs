@@ -76,10 +76,14 @@ impl Legend {
         for ((x, y), entry) in &self.placed {
             let (x, y) = (left + x, top + y);
             let dash = if let Sign::Line { dash, .. } = entry.sign { dash } else { None };
-            canvas.group(&Group { class: "key", dash, ..Group::default() }, |layer| match entry.sign {
-                Sign::Mark(mark, color) => layer.mark(mark, (x + 3.5, y), 2.6, color),
-                Sign::Line { color, width, .. } => layer.line((x, y), (x + KEY, y), color, width),
-                Sign::Ground(color) => layer.rect((x, y - 3.5), (x + KEY, y + 3.5), color),
+            canvas.group(&Group { class: "key", dash, ..Group::default() }, |layer| {
+                match entry.sign {
+                    Sign::Mark(mark, color) => layer.mark(mark, (x + 3.5, y), 2.6, color),
+                    Sign::Line { color, width, .. } => {
+                        layer.line((x, y), (x + KEY, y), color, width)
+                    }
+                    Sign::Ground(color) => layer.rect((x, y - 3.5), (x + KEY, y + 3.5), color),
+                }
             });
             canvas.draw(|layer| layer.text(&entry.text, (x + entry.key(), y), &Font::left(TEXT)));
         }

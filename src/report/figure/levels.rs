@@ -3,7 +3,9 @@
 use plotters::style::RGBColor;
 
 use super::legend::Entry;
-use super::style::{self, BLUE, DASH_DOT, DASHED, DOTTED, Dash, INK, LIMITS, SHADE, SOLID, VERMILION};
+use super::style::{
+    self, BLUE, DASH_DOT, DASHED, DOTTED, Dash, INK, LIMITS, SHADE, SOLID, VERMILION,
+};
 use crate::report::{estimates, number};
 use crate::result::{QuantityResult, StatisticResult};
 
@@ -40,17 +42,23 @@ pub struct Levels {
 impl Levels {
     /// Levels of the statistics in the unit of the values.
     ///
-    /// The limit of a standard deviation is drawn around the mean, for comparison with the band of the standard deviation.
+    /// The limit of a standard deviation is drawn around the mean, for comparison with the band of
+    /// the standard deviation.
     pub fn of(quantity: &QuantityResult) -> Self {
         if quantity.from.is_some() {
             return Self::of_assessed(quantity);
         }
         let mut levels = Self::default();
-        let two_sided = quantity.has_sides || quantity.values.iter().any(|pair| pair.difference < 0.0);
+        let two_sided =
+            quantity.has_sides || quantity.values.iter().any(|pair| pair.difference < 0.0);
         for limit in estimates::limits(quantity) {
             let first = limit.results[0];
             let same = limit.results.iter().all(|one| one.limit == first.limit);
-            for statistic in limit.results.into_iter().filter(|one| one.unit == quantity.unit && one.divided_at.is_none()) {
+            for statistic in limit
+                .results
+                .into_iter()
+                .filter(|one| one.unit == quantity.unit && one.divided_at.is_none())
+            {
                 let shown = Shown { two_sided, same };
                 match statistic.name.as_str() {
                     "mean" => levels.mean(statistic, shown),
@@ -62,15 +70,26 @@ impl Levels {
         levels
     }
 
-    /// Limits of an assessed quantity zone by zone. Its estimates are not drawn: one for a further value may lie far beyond all values.
+    /// Limits of an assessed quantity zone by zone. Its estimates are not drawn: one for a further
+    /// value may lie far beyond all values.
     fn of_assessed(quantity: &QuantityResult) -> Self {
         let mut levels = Self::default();
         let two_sided = quantity.values.iter().any(|pair| pair.difference < 0.0);
-        for statistic in quantity.statistics.iter().filter(|statistic| statistic.unit == quantity.unit && statistic.divided_at.is_none()) {
+        for statistic in quantity
+            .statistics
+            .iter()
+            .filter(|statistic| statistic.unit == quantity.unit && statistic.divided_at.is_none())
+        {
             let zones = estimates::zones(statistic);
             for scope in if zones.is_empty() { vec!["all"] } else { zones } {
                 for value in statistic.limit.iter().flat_map(|limit| both(0.0, *limit, two_sided)) {
-                    levels.draw(Level { value, color: INK, width: 0.9, dash: DASHED, scope: scope.to_owned() });
+                    levels.draw(Level {
+                        value,
+                        color: INK,
+                        width: 0.9,
+                        dash: DASHED,
+                        scope: scope.to_owned(),
+                    });
                 }
             }
         }
@@ -79,15 +98,26 @@ impl Levels {
             all.sort_by(f64::total_cmp);
             all.dedup();
             let decimals = number::decimals(&quantity.unit, all.iter().copied());
-            let texts: Vec<String> = all.iter().map(|limit| number::fixed(*limit, decimals)).collect();
+            let texts: Vec<String> =
+                all.iter().map(|limit| number::fixed(*limit, decimals)).collect();
             match texts.as_slice() {
                 [first, .., last] if texts.len() > NAMED => {
-                    levels.explain(Entry::line(INK, 0.9, DASHED, format!("limits {}{first} to {last}", sign(two_sided))));
+                    levels.explain(Entry::line(
+                        INK,
+                        0.9,
+                        DASHED,
+                        format!("limits {}{first} to {last}", sign(two_sided)),
+                    ));
                 }
                 // Each limit has a dash of its own, or the lines could not be told apart.
                 several => {
                     for (text, dash) in several.iter().zip(LIMITS) {
-                        levels.explain(Entry::line(INK, 0.9, dash, format!("limit {}{text}", sign(two_sided))));
+                        levels.explain(Entry::line(
+                            INK,
+                            0.9,
+                            dash,
+                            format!("limit {}{text}", sign(two_sided)),
+                        ));
                     }
                     for line in &mut levels.lines {
                         let nth = all.iter().position(|limit| *limit == line.value.abs());
@@ -101,10 +131,19 @@ impl Levels {
 
     /// All values of lines and backgrounds.
     pub fn values(&self) -> impl Iterator<Item = f64> {
-        self.lines.iter().map(|line| line.value).chain(self.bands.iter().flat_map(|band| [band.low, band.high]))
+        self.lines
+            .iter()
+            .map(|line| line.value)
+            .chain(self.bands.iter().flat_map(|band| [band.low, band.high]))
     }
 
-    fn line(&mut self, statistic: &StatisticResult, values: &[f64], (color, width, dash): (RGBColor, f64, Dash), text: String) {
+    fn line(
+        &mut self,
+        statistic: &StatisticResult,
+        values: &[f64],
+        (color, width, dash): (RGBColor, f64, Dash),
+        text: String,
+    ) {
         for scope in scopes(statistic) {
             for value in values {
                 self.draw(Level { value: *value, color, width, dash, scope: scope.to_owned() });
@@ -113,9 +152,13 @@ impl Levels {
         self.explain(Entry::line(color, width, dash, text));
     }
 
-    /// Adds a line once: groups of other things than zones often have the same limit over all sections.
+    /// Adds a line once: groups of other things than zones often have the same limit over all
+    /// sections.
     fn draw(&mut self, level: Level) {
-        let same = |line: &Level| (line.value, line.color, line.dash, &line.scope) == (level.value, level.color, level.dash, &level.scope);
+        let same = |line: &Level| {
+            (line.value, line.color, line.dash, &line.scope)
+                == (level.value, level.color, level.dash, &level.scope)
+        };
         if !self.lines.iter().any(same) {
             self.lines.push(level);
         }
@@ -130,7 +173,12 @@ impl Levels {
 
     fn mean(&mut self, statistic: &StatisticResult, with: Shown) {
         if let Some(value) = statistic.value.filter(|_| over_sections(statistic)) {
-            self.line(statistic, &[value], (BLUE, 1.3, SOLID), says(statistic, &shown(statistic, value)));
+            self.line(
+                statistic,
+                &[value],
+                (BLUE, 1.3, SOLID),
+                says(statistic, &shown(statistic, value)),
+            );
         }
         if let Some(limit) = statistic.limit {
             let text = says_of_limit(statistic, with);
@@ -140,27 +188,48 @@ impl Levels {
 
     fn deviation(&mut self, statistic: &StatisticResult, center: f64, with: Shown) {
         if let Some(value) = statistic.value.filter(|_| over_sections(statistic)) {
-            let band = |scope: &str| Band { low: center - value, high: center + value, scope: scope.to_owned() };
+            let band = |scope: &str| Band {
+                low: center - value,
+                high: center + value,
+                scope: scope.to_owned(),
+            };
             self.bands.extend(scopes(statistic).into_iter().map(band));
-            self.explain(Entry::ground(SHADE, format!("mean ± {}", says(statistic, &shown(statistic, value)))));
+            self.explain(Entry::ground(
+                SHADE,
+                format!("mean ± {}", says(statistic, &shown(statistic, value))),
+            ));
         }
         if let Some(limit) = statistic.limit {
-            let text = format!("mean ± {}", says_of_limit(statistic, Shown { two_sided: false, ..with }));
+            let text =
+                format!("mean ± {}", says_of_limit(statistic, Shown { two_sided: false, ..with }));
             self.line(statistic, &both(center, limit, true), (VERMILION, 0.9, DOTTED), text);
         }
     }
 
     fn other(&mut self, statistic: &StatisticResult, with: Shown) {
         let color = style::color(2);
-        if let Some(value) = statistic.value.filter(|_| statistic.name != "each" && over_sections(statistic)) {
-            self.line(statistic, &[value], (color, 1.1, DASH_DOT), says(statistic, &shown(statistic, value)));
+        if let Some(value) =
+            statistic.value.filter(|_| statistic.name != "each" && over_sections(statistic))
+        {
+            self.line(
+                statistic,
+                &[value],
+                (color, 1.1, DASH_DOT),
+                says(statistic, &shown(statistic, value)),
+            );
         }
         if let Some(limit) = statistic.limit {
             let text = says_of_limit(statistic, with);
             // Limits of several estimates have a dash each.
-            let known: Vec<&Entry> = self.legend.iter().filter(|entry| entry.text.starts_with(LIMIT)).collect();
+            let known: Vec<&Entry> =
+                self.legend.iter().filter(|entry| entry.text.starts_with(LIMIT)).collect();
             let nth = known.iter().position(|entry| entry.text == text).unwrap_or(known.len());
-            self.line(statistic, &both(0.0, limit, with.two_sided), (INK, 0.9, LIMITS[nth % NAMED]), text);
+            self.line(
+                statistic,
+                &both(0.0, limit, with.two_sided),
+                (INK, 0.9, LIMITS[nth % NAMED]),
+                text,
+            );
         }
     }
 }
@@ -182,19 +251,28 @@ fn scopes(statistic: &StatisticResult) -> Vec<&str> {
     if zones.is_empty() { vec!["all"] } else { zones }
 }
 
-/// Whether the values of a result are all those of its sections. The result of a record or of a position is not drawn: there is one for
-/// each in the same place.
+/// Whether the values of a result are all those of its sections. The result of a record or of a
+/// position is not drawn: there is one for each in the same place.
 fn over_sections(statistic: &StatisticResult) -> bool {
-    statistic.scope == "all" || statistic.group.iter().all(|(key, _)| key == "zone") && !estimates::zones(statistic).is_empty()
+    statistic.scope == "all"
+        || statistic.group.iter().all(|(key, _)| key == "zone")
+            && !estimates::zones(statistic).is_empty()
 }
 
 /// The mean of the same scope, around which a standard deviation is drawn.
 fn center(quantity: &QuantityResult, of: &StatisticResult) -> f64 {
-    let stated = quantity.statistics.iter().find(|one| one.name == "mean" && one.scope == of.scope && over_sections(of));
+    let stated = quantity
+        .statistics
+        .iter()
+        .find(|one| one.name == "mean" && one.scope == of.scope && over_sections(of));
     stated.and_then(|one| one.value).unwrap_or_else(|| {
         let scopes = scopes(of);
-        let within = quantity.values.iter().filter(|pair| scopes.iter().any(|scope| speaks_of(scope, pair.zone.as_deref())));
-        let (sum, count) = within.fold((0.0, 0_u32), |(sum, count), pair| (sum + pair.difference, count + 1));
+        let within = quantity
+            .values
+            .iter()
+            .filter(|pair| scopes.iter().any(|scope| speaks_of(scope, pair.zone.as_deref())));
+        let (sum, count) =
+            within.fold((0.0, 0_u32), |(sum, count), pair| (sum + pair.difference, count + 1));
         if count == 0 { 0.0 } else { sum / f64::from(count) }
     })
 }
@@ -215,19 +293,33 @@ fn sign(two_sided: bool) -> &'static str {
 /// The value as in the tables, with the decimals of the limit.
 fn shown(statistic: &StatisticResult, value: f64) -> String {
     let decimals = number::decimals(&statistic.unit, statistic.limit.or(Some(value)));
-    statistic.limit.map_or_else(|| number::fixed(value, decimals), |limit| number::beside(value, limit, decimals))
+    statistic.limit.map_or_else(
+        || number::fixed(value, decimals),
+        |limit| number::beside(value, limit, decimals),
+    )
 }
 
 /// A statistic and its value; without value if it differs between zones.
 fn says(statistic: &StatisticResult, value: &str) -> String {
-    if statistic.scope == "all" { format!("{} {value}", statistic.title) } else { format!("{} by {}", statistic.title, by(statistic)) }
+    if statistic.scope == "all" {
+        format!("{} {value}", statistic.title)
+    } else {
+        format!("{} by {}", statistic.title, by(statistic))
+    }
 }
 
 /// The limit of a statistic; without its number if it differs between groups.
 fn says_of_limit(statistic: &StatisticResult, Shown { two_sided, same }: Shown) -> String {
     let one = statistic.scope == "all" || same && !statistic.group.is_empty();
-    let limit = statistic.limit.filter(|_| one).map(|limit| format!("{}{}", sign(two_sided), shown(statistic, limit)));
-    format!("{LIMIT}{} {}", statistic.title, limit.unwrap_or_else(|| format!("by {}", by(statistic))))
+    let limit = statistic
+        .limit
+        .filter(|_| one)
+        .map(|limit| format!("{}{}", sign(two_sided), shown(statistic, limit)));
+    format!(
+        "{LIMIT}{} {}",
+        statistic.title,
+        limit.unwrap_or_else(|| format!("by {}", by(statistic)))
+    )
 }
 
 /// What the groups of a statistic are: `zone`, `record`, `record and wheelset`.
@@ -272,15 +364,25 @@ mod tests {
         }
     }
 
-    /// There are no zones: the limit is one line over all sections, with its number where all records have the same.
+    /// There are no zones: the limit is one line over all sections, with its number where all
+    /// records have the same.
     #[test]
     fn the_limit_of_each_record_is_drawn() {
         let with = |same| Shown { two_sided: true, same };
         let mut levels = Levels::default();
-        [of_record("A", 2.0), of_record("B", 2.0)].iter().for_each(|one| levels.other(one, with(true)));
-        let drawn: Vec<(f64, &str)> = levels.lines.iter().map(|line| (line.value, line.scope.as_str())).collect();
+        [of_record("A", 2.0), of_record("B", 2.0)]
+            .iter()
+            .for_each(|one| levels.other(one, with(true)));
+        let drawn: Vec<(f64, &str)> =
+            levels.lines.iter().map(|line| (line.value, line.scope.as_str())).collect();
         assert_eq!(drawn, [(-2.0, "all"), (2.0, "all")]);
-        assert_eq!(levels.legend.iter().map(|entry| entry.text.as_str()).collect::<Vec<_>>(), ["limit of each value ±2.00"]);
-        assert_eq!(says_of_limit(&of_record("A", 2.0), with(false)), "limit of each value by record");
+        assert_eq!(
+            levels.legend.iter().map(|entry| entry.text.as_str()).collect::<Vec<_>>(),
+            ["limit of each value ±2.00"]
+        );
+        assert_eq!(
+            says_of_limit(&of_record("A", 2.0), with(false)),
+            "limit of each value by record"
+        );
     }
 }

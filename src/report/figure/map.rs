@@ -32,7 +32,9 @@ pub fn map(places: &[Where]) -> String {
     }
     rows.sort_by(|a, b| b.1.total_cmp(&a.1));
     // Zones in order; in each, quasi-static first, then bands by frequency.
-    let edge = |band: &str| band.split(' ').next().and_then(|word| word.parse::<f64>().ok()).unwrap_or(-1.0);
+    let edge = |band: &str| {
+        band.split(' ').next().and_then(|word| word.parse::<f64>().ok()).unwrap_or(-1.0)
+    };
     columns.sort_by(|a, b| a.0.cmp(&b.0).then(edge(&a.1).total_cmp(&edge(&b.1))));
     let wide = (WIDTH - NAMES) / columns.len().max(1) as f64;
     let most = places.iter().map(|place| place.share_of_gap).fold(1e-12, f64::max);
@@ -41,28 +43,51 @@ pub fn map(places: &[Where]) -> String {
     canvas.draw(|layer| {
         for (at, (zone, band)) in columns.iter().enumerate() {
             let x = NAMES + wide * (at as f64 + 0.5);
-            layer.text(&cut(band, SMALL, HEAD - 14.0), (x, HEAD - 18.0), &Font::middle(SMALL).upward().color(MUTED));
+            layer.text(
+                &cut(band, SMALL, HEAD - 14.0),
+                (x, HEAD - 18.0),
+                &Font::middle(SMALL).upward().color(MUTED),
+            );
             if at == 0 || columns[at - 1].0 != *zone {
                 let count = columns.iter().filter(|(of, _)| of == zone).count() as f64;
-                layer.text(&format!("zone {zone}"), (NAMES + wide * (at as f64 + 0.5 * count), 5.0), &Font::middle(TEXT).bold(true));
+                layer.text(
+                    &format!("zone {zone}"),
+                    (NAMES + wide * (at as f64 + 0.5 * count), 5.0),
+                    &Font::middle(TEXT).bold(true),
+                );
             }
         }
         for (at, (row, _)) in rows.iter().enumerate() {
-            layer.text(&cut(row, SMALL, NAMES - 6.0), (NAMES - 4.0, HEAD + ROW * (at as f64 + 0.5)), &Font::right(SMALL));
+            layer.text(
+                &cut(row, SMALL, NAMES - 6.0),
+                (NAMES - 4.0, HEAD + ROW * (at as f64 + 0.5)),
+                &Font::right(SMALL),
+            );
         }
     });
     for place in places {
         let row = rows.iter().position(|(known, _)| *known == name(place));
-        let column = columns.iter().position(|(zone, band)| *zone == place.zones.join(", ") && *band == place.wavelength_or_band);
+        let column = columns.iter().position(|(zone, band)| {
+            *zone == place.zones.join(", ") && *band == place.wavelength_or_band
+        });
         let (Some(row), Some(column)) = (row, column) else { continue };
         let (x, y) = (NAMES + wide * column as f64, HEAD + ROW * row as f64);
         let share = (place.share_of_gap / most).sqrt();
-        let says = format!("{}: {} % of the gap", place.says, number::fixed(100.0 * place.share_of_gap, 1));
+        let says = format!(
+            "{}: {} % of the gap",
+            place.says,
+            number::fixed(100.0 * place.share_of_gap, 1)
+        );
         canvas.group(&Group { class: "mark", title: Some(&says), ..Group::default() }, |layer| {
             layer.rect((x + 0.4, y + 0.4), (x + wide - 0.4, y + ROW - 0.4), shade(share));
             if place.significant {
                 let middle = (x + 0.5 * wide, y + 0.5 * ROW);
-                layer.mark(super::style::Mark::Circle, middle, 0.9, if share > 0.55 { WHITE } else { INK });
+                layer.mark(
+                    super::style::Mark::Circle,
+                    middle,
+                    0.9,
+                    if share > 0.55 { WHITE } else { INK },
+                );
             }
         });
     }
@@ -83,7 +108,11 @@ pub fn map(places: &[Where]) -> String {
 fn scale(canvas: &mut Canvas, top: f64, most: f64) {
     let wide = (WIDTH - NAMES) / STEPS as f64;
     canvas.draw(|layer| {
-        layer.text("share of the gap", (NAMES - 4.0, top + 0.5 * ROW), &Font::right(SMALL).color(MUTED));
+        layer.text(
+            "share of the gap",
+            (NAMES - 4.0, top + 0.5 * ROW),
+            &Font::right(SMALL).color(MUTED),
+        );
         for step in 0..STEPS {
             let of = step as f64 / (STEPS - 1) as f64;
             let x = NAMES + wide * step as f64;
@@ -99,12 +128,16 @@ fn scale(canvas: &mut Canvas, top: f64, most: f64) {
 
 fn name(place: &Where) -> String {
     let position = place.says.strip_prefix(&format!("{}, ", place.quantity)).unwrap_or(&place.says);
-    let position = position.split(&format!(", {}", place.wavelength_or_band)).next().unwrap_or(position);
+    let position =
+        position.split(&format!(", {}", place.wavelength_or_band)).next().unwrap_or(position);
     format!("{}, {position}", place.quantity)
 }
 
 /// From white to dark blue; readable in grey.
 fn shade(share: f64) -> RGBColor {
-    let mix = |to: u8| (f64::from(u8::MAX) + share.clamp(0.0, 1.0) * (f64::from(to) - f64::from(u8::MAX))).round() as u8;
+    let mix = |to: u8| {
+        (f64::from(u8::MAX) + share.clamp(0.0, 1.0) * (f64::from(to) - f64::from(u8::MAX))).round()
+            as u8
+    };
     RGBColor(mix(0x0b), mix(0x3c), mix(0x6f))
 }

@@ -1,7 +1,8 @@
 //! Figures of a report as SVG texts: 17 cm wide, in one style, reproducible byte by byte.
 //!
-//! plotters draws. Names of sections, signals and quantities are user text and are escaped. Marks have a `<title>` as tooltip, and
-//! `data-section` and `data-zone` for the scripts of the HTML report.
+//! plotters draws. Names of sections, signals and quantities are user text and are escaped. Marks
+//! have a `<title>` as tooltip, and `data-section` and `data-zone` for the scripts of the HTML
+//! report.
 
 mod application;
 pub mod axis;
@@ -48,7 +49,8 @@ use crate::result::Certification;
 
 /// All figures of a report by their names in the view ([`super::view::FigureView::name`]).
 ///
-/// Empty figures are omitted: a quantity without values, a domain without conditions, a missing graph.
+/// Empty figures are omitted: a quantity without values, a domain without conditions, a missing
+/// graph.
 pub fn figures(found: &Certification) -> Vec<(String, String)> {
     let zones = Zones::of(found);
     let mut drawn = Vec::new();
@@ -58,10 +60,13 @@ pub fn figures(found: &Certification) -> Vec<(String, String)> {
     if brief::is_brief(&found.quantities) {
         for (at, matrix) in brief::matrices(&found.quantities).iter().enumerate() {
             let pages = matrix.lines.chunks(LINES).enumerate();
-            drawn.extend(pages.map(|(page, lines)| (multiples_name(at, page), multiples::multiples(matrix, lines, &zones))));
+            drawn.extend(pages.map(|(page, lines)| {
+                (multiples_name(at, page), multiples::multiples(matrix, lines, &zones))
+            }));
         }
     }
-    let with_chapter = brief::in_full(&found.quantities).into_iter().map(|at| (at, &found.quantities[at]));
+    let with_chapter =
+        brief::in_full(&found.quantities).into_iter().map(|at| (at, &found.quantities[at]));
     for (at, quantity) in with_chapter.filter(|(_, quantity)| !quantity.values.is_empty()) {
         drawn.push((format!("pairs-{at}"), pairs(quantity, &zones)));
         if has_frequency(quantity) {
@@ -70,7 +75,10 @@ pub fn figures(found: &Certification) -> Vec<(String, String)> {
         for (nth, limit) in estimates::limits(quantity).iter().enumerate() {
             let groups = regression::drawn(limit);
             if !groups.is_empty() {
-                drawn.push((format!("regression-{at}-{nth}"), regression(quantity, &groups, &zones)));
+                drawn.push((
+                    format!("regression-{at}-{nth}"),
+                    regression(quantity, &groups, &zones),
+                ));
             }
         }
     }
@@ -80,7 +88,9 @@ pub fn figures(found: &Certification) -> Vec<(String, String)> {
     if !found.domain.is_empty() {
         drawn.push(("domain".to_owned(), domain(&found.domain, &found.sections, &zones)));
     }
-    for (at, result) in found.application.iter().enumerate().filter(|(_, result)| view::application::drawn(result)) {
+    for (at, result) in
+        found.application.iter().enumerate().filter(|(_, result)| view::application::drawn(result))
+    {
         drawn.push((format!("application-{at}"), application(result)));
     }
     if !found.protocol.graph_svg.trim().is_empty() {

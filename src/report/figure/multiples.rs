@@ -1,4 +1,5 @@
-//! Small diagrams of many quantities: the values of each in the order of the sections, with the limits.
+//! Small diagrams of many quantities: the values of each in the order of the sections, with the
+//! limits.
 
 use super::axis::Scale;
 use super::canvas::{Canvas, Font, Group};
@@ -41,13 +42,23 @@ pub fn multiples(matrix: &Matrix<'_>, lines: &[Line<'_>], zones: &Zones) -> Stri
             let center = (at as f64 + 0.5) * width + 0.5 * AXIS;
             // The signal, and below it its places.
             let (signal, places) = column.split_once(' ').unwrap_or((column, ""));
-            layer.text(&cut(signal, TEXT, width - 6.0), (center, legend.height() + 7.0), &Font::middle(TEXT).bold(true));
-            layer.text(&cut(places, SMALL, width - 6.0), (center, legend.height() + 15.0), &Font::middle(SMALL));
+            layer.text(
+                &cut(signal, TEXT, width - 6.0),
+                (center, legend.height() + 7.0),
+                &Font::middle(TEXT).bold(true),
+            );
+            layer.text(
+                &cut(places, SMALL, width - 6.0),
+                (center, legend.height() + 15.0),
+                &Font::middle(SMALL),
+            );
         }
     });
     for (at, line) in lines.iter().enumerate() {
         let top = first + at as f64 * (HEAD + HEIGHT + GAP);
-        canvas.draw(|layer| layer.text(&cut(&words(line), TEXT, WIDTH), (0.0, top + 5.0), &Font::left(TEXT)));
+        canvas.draw(|layer| {
+            layer.text(&cut(&words(line), TEXT, WIDTH), (0.0, top + 5.0), &Font::left(TEXT))
+        });
         for (column, cell) in line.cells.iter().enumerate() {
             if let Some(cell) = cell {
                 let left = column as f64 * width;
@@ -75,20 +86,33 @@ fn words(line: &Line<'_>) -> String {
 /// The limits that are values of the quantity.
 fn limits(quantity: &QuantityResult) -> Vec<f64> {
     let two_sided = quantity.values.iter().any(|pair| pair.difference < 0.0);
-    let of_values = quantity.statistics.iter().filter(|one| one.unit == quantity.unit && one.name != "std" && one.divided_at.is_none());
-    let mut all: Vec<f64> =
-        of_values.filter_map(|one| one.limit).flat_map(|limit| if two_sided { vec![-limit, limit] } else { vec![limit] }).collect();
+    let of_values = quantity
+        .statistics
+        .iter()
+        .filter(|one| one.unit == quantity.unit && one.name != "std" && one.divided_at.is_none());
+    let mut all: Vec<f64> = of_values
+        .filter_map(|one| one.limit)
+        .flat_map(|limit| if two_sided { vec![-limit, limit] } else { vec![limit] })
+        .collect();
     all.sort_by(f64::total_cmp);
     all.dedup();
     all
 }
 
-fn one(canvas: &mut Canvas, (_, quantity): Numbered<'_>, marks: &Marks<'_>, (left, right): (f64, f64), top: f64) {
+fn one(
+    canvas: &mut Canvas,
+    (_, quantity): Numbered<'_>,
+    marks: &Marks<'_>,
+    (left, right): (f64, f64),
+    top: f64,
+) {
     let limits = limits(quantity);
     let along = quantity.values.iter().map(|pair| pair.difference).chain(limits.iter().copied());
     let mut sections: Vec<&str> = Vec::new();
     for pair in &quantity.values {
-        if sections.last() != Some(&pair.section.as_str()) && !sections.contains(&pair.section.as_str()) {
+        if sections.last() != Some(&pair.section.as_str())
+            && !sections.contains(&pair.section.as_str())
+        {
             sections.push(&pair.section);
         }
     }
@@ -111,20 +135,34 @@ fn one(canvas: &mut Canvas, (_, quantity): Numbered<'_>, marks: &Marks<'_>, (lef
             layer.line((left, frame.y.at(*limit)), (right, frame.y.at(*limit)), INK, 0.7);
         }
     });
-    let decimals = number::decimals(&quantity.unit, quantity.values.iter().map(|pair| pair.difference));
+    let decimals =
+        number::decimals(&quantity.unit, quantity.values.iter().map(|pair| pair.difference));
     for pair in quantity.values.iter().filter(|pair| pair.difference.is_finite()) {
         let at = sections.iter().position(|section| *section == pair.section).unwrap_or_default();
         let (mark, color) = marks.mark(pair);
         let title = tooltip(pair, quantity, decimals);
-        canvas.group(&pair_group(pair, &title), |layer| layer.mark(mark, (frame.x.at(at as f64), frame.y.at(pair.difference)), 1.2, color));
+        canvas.group(&pair_group(pair, &title), |layer| {
+            layer.mark(mark, (frame.x.at(at as f64), frame.y.at(pair.difference)), 1.2, color)
+        });
     }
     if quantity.values.is_empty() {
-        canvas.draw(|layer| layer.text("no values", (f64::midpoint(left, right), top + 0.5 * HEIGHT), &Font::middle(SMALL).color(MUTED)));
+        canvas.draw(|layer| {
+            layer.text(
+                "no values",
+                (f64::midpoint(left, right), top + 0.5 * HEIGHT),
+                &Font::middle(SMALL).color(MUTED),
+            )
+        });
     }
     frame.spine(canvas);
     // The unit of the values, as a panel has no title of its axis.
     if quantity.unit != "-" {
-        canvas
-            .draw(|layer| layer.text(&format!("[{}]", number::unit(&quantity.unit)), (right, top - 3.0), &Font::right(SMALL).color(MUTED)));
+        canvas.draw(|layer| {
+            layer.text(
+                &format!("[{}]", number::unit(&quantity.unit)),
+                (right, top - 3.0),
+                &Font::right(SMALL).color(MUTED),
+            )
+        });
     }
 }

@@ -24,18 +24,22 @@ const GAP: (f64, f64) = (6.0, 3.0);
 /// Number of lines from which the reduced heights are used.
 const CLOSE: usize = 50;
 
-/// Normalised statistics of the quantities, one row each, with the limit at 1 (and -1 for signed statistics).
+/// Normalised statistics of the quantities, one row each, with the limit at 1 (and -1 for signed
+/// statistics).
 ///
-/// A statistic beyond its limit is labelled with its number and with the word at the end of the row, so that colour is not needed.
+/// A statistic beyond its limit is labelled with its number and with the word at the end of the
+/// row, so that colour is not needed.
 pub fn overview(quantities: &[QuantityResult]) -> String {
     // What is reported without a limit has nothing to draw.
     let some = quantities.iter().any(|one| !one.decides_nothing());
-    let quantities: Vec<&QuantityResult> = quantities.iter().filter(|one| !some || !one.decides_nothing()).collect();
+    let quantities: Vec<&QuantityResult> =
+        quantities.iter().filter(|one| !some || !one.decides_nothing()).collect();
     let series = Series::of(&quantities);
     let lines: Vec<usize> = quantities.iter().map(|quantity| line_count(quantity)).collect();
     let total: usize = lines.iter().sum();
     let (line, gap) = if total > CLOSE { (LINE.1, GAP.1) } else { (LINE.0, GAP.0) };
-    let labels = quantities.iter().map(|one| text_width(&one.symbol, TEXT)).fold(20.0, f64::max).min(120.0);
+    let labels =
+        quantities.iter().map(|one| text_width(&one.symbol, TEXT)).fold(20.0, f64::max).min(120.0);
     let left = labels + 10.0;
     let right = WIDTH - FINDINGS;
     let mut entries = series.legend();
@@ -46,7 +50,10 @@ pub fn overview(quantities: &[QuantityResult]) -> String {
     let top = legend.height() + 14.0;
     let height = total as f64 * line + quantities.len() as f64 * gap + gap;
     let mut canvas = Canvas::new(WIDTH, top + height + 26.0);
-    let frame = Frame { x: scale(&quantities, left, right), y: Scale { low: 0.0, high: 1.0, from: top + height, to: top } };
+    let frame = Frame {
+        x: scale(&quantities, left, right),
+        y: Scale { low: 0.0, high: 1.0, from: top + height, to: top },
+    };
     legend.draw(&mut canvas, (left, 0.0));
     ground(&mut canvas, &frame);
     let mut y = top + gap;
@@ -61,7 +68,9 @@ pub fn overview(quantities: &[QuantityResult]) -> String {
 
 /// Statistics with a limit; of a limit by group, the decisive one.
 fn shown(quantity: &QuantityResult) -> impl Iterator<Item = &StatisticResult> {
-    estimates::representatives(quantity).into_iter().filter(|statistic| statistic.limit.is_some() || statistic.normalised.is_some())
+    estimates::representatives(quantity)
+        .into_iter()
+        .filter(|statistic| statistic.limit.is_some() || statistic.normalised.is_some())
 }
 
 fn line_count(quantity: &QuantityResult) -> usize {
@@ -83,13 +92,16 @@ struct Series(IndexSet<(String, String)>);
 
 impl Series {
     fn of(quantities: &[&QuantityResult]) -> Self {
-        let of = |quantity: &&QuantityResult| shown(quantity).map(|statistic| Self::key(quantity, statistic)).collect::<Vec<_>>();
+        let of = |quantity: &&QuantityResult| {
+            shown(quantity).map(|statistic| Self::key(quantity, statistic)).collect::<Vec<_>>()
+        };
         Self(quantities.iter().flat_map(of).collect())
     }
 
     /// An estimate of all values, or of groups, is one series, wherever its decisive group is.
     fn key(quantity: &QuantityResult, statistic: &StatisticResult) -> (String, String) {
-        let grouped = quantity.from.is_some() || !statistic.group.is_empty() || statistic.scope == "all";
+        let grouped =
+            quantity.from.is_some() || !statistic.group.is_empty() || statistic.scope == "all";
         (statistic.title.clone(), if grouped { String::new() } else { statistic.scope.clone() })
     }
 
@@ -99,24 +111,39 @@ impl Series {
 
     fn legend(&self) -> Vec<Entry> {
         let text = |(title, scope): &(String, String)| {
-            number::formula(&if scope.is_empty() { title.clone() } else { format!("{title}, {scope}") })
+            number::formula(&if scope.is_empty() {
+                title.clone()
+            } else {
+                format!("{title}, {scope}")
+            })
         };
-        self.0.iter().enumerate().map(|(n, key)| Entry::mark(Mark::nth(n), style::color(n), text(key))).collect()
+        self.0
+            .iter()
+            .enumerate()
+            .map(|(n, key)| Entry::mark(Mark::nth(n), style::color(n), text(key)))
+            .collect()
     }
 }
 
 fn scale(quantities: &[&QuantityResult], from: f64, to: f64) -> Scale {
-    let values: Vec<f64> = quantities.iter().flat_map(|quantity| shown(quantity)).filter_map(signed).collect();
+    let values: Vec<f64> =
+        quantities.iter().flat_map(|quantity| shown(quantity)).filter_map(signed).collect();
     let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-    let high = if largest <= 1.15 { 1.25 } else { ((largest + 0.15) * 4.0).ceil() / 4.0 }.min(FARTHEST);
+    let high =
+        if largest <= 1.15 { 1.25 } else { ((largest + 0.15) * 4.0).ceil() / 4.0 }.min(FARTHEST);
     let has_sign = values.iter().any(|value| *value < 0.0)
-        || quantities.iter().filter(|quantity| quantity.from.is_none()).flat_map(|quantity| shown(quantity)).any(|one| one.name == "mean");
+        || quantities
+            .iter()
+            .filter(|quantity| quantity.from.is_none())
+            .flat_map(|quantity| shown(quantity))
+            .any(|one| one.name == "mean");
     Scale { low: if has_sign { -high } else { 0.0 }, high, from, to }
 }
 
 fn ground(canvas: &mut Canvas, frame: &Frame) {
     let (top, bottom) = (frame.top(), frame.bottom());
-    let limits: Vec<f64> = [-1.0, 1.0].into_iter().filter(|limit| frame.x.contains(*limit)).collect();
+    let limits: Vec<f64> =
+        [-1.0, 1.0].into_iter().filter(|limit| frame.x.contains(*limit)).collect();
     canvas.draw(|layer| {
         layer.rect((frame.x.at(1.0), top), (frame.right(), bottom), BEYOND);
         if limits.len() == 2 {
@@ -135,26 +162,55 @@ fn ground(canvas: &mut Canvas, frame: &Frame) {
     });
 }
 
-fn row(canvas: &mut Canvas, frame: &Frame, quantity: &QuantityResult, series: &Series, (top, line, lines): (f64, f64, usize), labels: f64) {
+fn row(
+    canvas: &mut Canvas,
+    frame: &Frame,
+    quantity: &QuantityResult,
+    series: &Series,
+    (top, line, lines): (f64, f64, usize),
+    labels: f64,
+) {
     let middle = top + lines as f64 * line / 2.0;
     let fails = quantity.holds == Some(false);
-    canvas.group(&Group { class: "row", title: Some(&quantity.title), ..Group::default() }, |layer| {
-        symbol_left_of(layer, &quantity.symbol, (frame.left() - 6.0, middle), &Font::right(TEXT).bold(fails), labels);
-    });
+    canvas.group(
+        &Group { class: "row", title: Some(&quantity.title), ..Group::default() },
+        |layer| {
+            symbol_left_of(
+                layer,
+                &quantity.symbol,
+                (frame.left() - 6.0, middle),
+                &Font::right(TEXT).bold(fails),
+                labels,
+            );
+        },
+    );
     if !quantity.decides_nothing() {
         finding(canvas, quantity.holds, (frame.right() + 8.0, middle));
     }
     let statistics: Vec<&StatisticResult> = shown(quantity).collect();
     if statistics.is_empty() {
         let says = if quantity.values.is_empty() { "no values" } else { "no limit" };
-        nothing(canvas, frame, middle, if quantity.holds.is_none() { "not assessable" } else { says });
+        nothing(
+            canvas,
+            frame,
+            middle,
+            if quantity.holds.is_none() { "not assessable" } else { says },
+        );
         return;
     }
     let shared = statistics.len() > LINES;
-    let farthest = statistics.iter().filter_map(|one| signed(one)).fold(0.0_f64, |most, value| most.max(value.abs()));
+    let farthest = statistics
+        .iter()
+        .filter_map(|one| signed(one))
+        .fold(0.0_f64, |most, value| most.max(value.abs()));
     if statistics.iter().all(|one| signed(one).is_none()) {
         // A value that is not above zero has no ratio to a limit that it should reach.
-        nothing(canvas, frame, middle, if quantity.holds.is_none() { "not assessable" } else { "no ratio to the limit" });
+        nothing(
+            canvas,
+            frame,
+            middle,
+            if quantity.holds.is_none() { "not assessable" } else { "no ratio to the limit" },
+        );
         return;
     }
     for (at, statistic) in statistics.iter().enumerate() {
@@ -163,10 +219,17 @@ fn row(canvas: &mut Canvas, frame: &Frame, quantity: &QuantityResult, series: &S
             Some(value) => {
                 // On a shared line the numbers would overlap: only the largest is labelled.
                 let named = !shared || value.abs() == farthest;
-                let look = Look { n: series.nth(quantity, statistic), stem: !shared, named, size: TEXT.min(line + 0.5) };
+                let look = Look {
+                    n: series.nth(quantity, statistic),
+                    stem: !shared,
+                    named,
+                    size: TEXT.min(line + 0.5),
+                };
                 value_mark(canvas, frame, (&quantity.symbol, statistic), (value, y), &look);
             }
-            None if !shared => nothing(canvas, frame, y, &format!("{}: not assessable", statistic.title)),
+            None if !shared => {
+                nothing(canvas, frame, y, &format!("{}: not assessable", statistic.title))
+            }
             None => {}
         }
     }
@@ -212,7 +275,13 @@ struct Look {
     size: f64,
 }
 
-fn value_mark(canvas: &mut Canvas, frame: &Frame, (symbol, statistic): (&str, &StatisticResult), (value, y): (f64, f64), look: &Look) {
+fn value_mark(
+    canvas: &mut Canvas,
+    frame: &Frame,
+    (symbol, statistic): (&str, &StatisticResult),
+    (value, y): (f64, f64),
+    look: &Look,
+) {
     let says = match value.abs() {
         size if size < 10.0 => number::beside(value, 1.0, 2),
         size if size > 1000.0 => number::ratio(size),
@@ -222,16 +291,19 @@ fn value_mark(canvas: &mut Canvas, frame: &Frame, (symbol, statistic): (&str, &S
     let color = style::color(look.n);
     let clipped = !frame.x.contains(value);
     let x = frame.x.at(value.clamp(frame.x.low, frame.x.high));
-    canvas.group(&Group { class: "mark", title: Some(&title), edge: 0.5, ..Group::default() }, |layer| {
-        if look.stem {
-            layer.line((frame.x.at(0.0), y), (x, y), color, 2.2);
-        }
-        if clipped {
-            arrow(layer, (x, y), value.signum(), color);
-        } else {
-            layer.mark(Mark::nth(look.n), (x, y), 2.7, color);
-        }
-    });
+    canvas.group(
+        &Group { class: "mark", title: Some(&title), edge: 0.5, ..Group::default() },
+        |layer| {
+            if look.stem {
+                layer.line((frame.x.at(0.0), y), (x, y), color, 2.2);
+            }
+            if clipped {
+                arrow(layer, (x, y), value.signum(), color);
+            } else {
+                layer.mark(Mark::nth(look.n), (x, y), 2.7, color);
+            }
+        },
+    );
     let fails = statistic.holds == Some(false);
     if !look.named || !(fails || clipped) {
         return;
@@ -242,16 +314,26 @@ fn value_mark(canvas: &mut Canvas, frame: &Frame, (symbol, statistic): (&str, &S
     let room = if outward > 0.0 { frame.right() - x } else { x - frame.left() };
     let (direction, start) = if !clipped && room > wide { (outward, 4.5) } else { (-outward, 7.5) };
     let at = x + direction * start;
-    let font = if direction > 0.0 { Font::left(look.size) } else { Font::right(look.size) }.bold(true);
+    let font =
+        if direction > 0.0 { Font::left(look.size) } else { Font::right(look.size) }.bold(true);
     canvas.draw(|layer| {
         if clipped || room <= wide {
             let half = look.size / 2.0 - 0.4;
-            layer.rect((at - direction * 1.5, y - half), (at + direction * (wide - 4.0), y + half), GRID);
+            layer.rect(
+                (at - direction * 1.5, y - half),
+                (at + direction * (wide - 4.0), y + half),
+                GRID,
+            );
         }
         layer.text(&says, (at, y), &font);
     });
 }
 
-fn arrow(layer: &mut Layer<'_>, (x, y): (f64, f64), direction: f64, color: plotters::style::RGBColor) {
+fn arrow(
+    layer: &mut Layer<'_>,
+    (x, y): (f64, f64),
+    direction: f64,
+    color: plotters::style::RGBColor,
+) {
     layer.fill(&[(x, y), (x - direction * 5.5, y - 3.4), (x - direction * 5.5, y + 3.4)], color);
 }

@@ -30,7 +30,12 @@ pub(super) fn tooltip(pair: &PairValue, quantity: &QuantityResult, decimals: usi
     match (pair.simulated, pair.measured) {
         (Some(simulated), Some(measured)) => {
             let Sides { one, other, .. } = Sides::of(quantity);
-            text.push_str(&format!(": {one} {}, {other} {}, difference {}", shown(simulated), shown(measured), shown(pair.difference)))
+            text.push_str(&format!(
+                ": {one} {}, {other} {}, difference {}",
+                shown(simulated),
+                shown(measured),
+                shown(pair.difference)
+            ))
         }
         _ => text.push_str(&format!(": {}", shown(pair.difference))),
     }

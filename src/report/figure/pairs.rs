@@ -22,8 +22,9 @@ const GUTTER: f64 = 12.0;
 /// Maximum number of ticks of the left diagram.
 const TICKS: usize = 5;
 
-/// Left, simulated over measured values; right, differences in the order of the sections with mean, standard deviation and limits. If a
-/// metric gives one number for both signals, only the right diagram over the full width.
+/// Left, simulated over measured values; right, differences in the order of the sections with mean,
+/// standard deviation and limits. If a metric gives one number for both signals, only the right
+/// diagram over the full width.
 pub fn pairs(quantity: &QuantityResult, zones: &Zones) -> String {
     let levels = Levels::of(quantity);
     let looks = Marks::of(quantity.values.iter(), zones);
@@ -31,10 +32,16 @@ pub fn pairs(quantity: &QuantityResult, zones: &Zones) -> String {
     let lines = Legend::new(levels.legend.clone(), WIDTH - AXIS);
     let top = marks.height() + lines.height() + 16.0;
     let bottom = top + HEIGHT;
-    let with_sides: Vec<(&PairValue, f64, f64)> =
-        quantity.values.iter().filter_map(|pair| Some((pair, pair.simulated?, pair.measured?))).collect();
+    let with_sides: Vec<(&PairValue, f64, f64)> = quantity
+        .values
+        .iter()
+        .filter_map(|pair| Some((pair, pair.simulated?, pair.measured?)))
+        .collect();
     let both = quantity.has_sides && !with_sides.is_empty();
-    let own = Frame::axis_room(&differences::scale(quantity, &levels, bottom, top).ticks(differences::TICKS)).max(AXIS);
+    let own = Frame::axis_room(
+        &differences::scale(quantity, &levels, bottom, top).ticks(differences::TICKS),
+    )
+    .max(AXIS);
     let side = Frame::axis_room(&Scale::over(ends(&with_sides), 0.0, 1.0).ticks(TICKS)).max(AXIS);
     let left = if both { side + HEIGHT + GUTTER + own } else { own };
     let slots = differences::Slots::of(quantity);
@@ -44,7 +51,12 @@ pub fn pairs(quantity: &QuantityResult, zones: &Zones) -> String {
     if both {
         scatter(&mut canvas, quantity, &looks, &with_sides, (side, bottom));
     }
-    differences::draw(&mut canvas, quantity, &differences::Against { marks: &looks, levels: &levels, slots: &slots }, (left, top, bottom));
+    differences::draw(
+        &mut canvas,
+        quantity,
+        &differences::Against { marks: &looks, levels: &levels, slots: &slots },
+        (left, top, bottom),
+    );
     canvas.finish()
 }
 
@@ -62,12 +74,22 @@ fn scatter(
 ) {
     let of = |side: &str| axis::title(side, &quantity.unit);
     let Sides { one, other, .. } = Sides::of(quantity);
-    let frame = Frame { x: Scale::over(ends(values), left, left + HEIGHT), y: Scale::over(ends(values), bottom, bottom - HEIGHT) };
+    let frame = Frame {
+        x: Scale::over(ends(values), left, left + HEIGHT),
+        y: Scale::over(ends(values), bottom, bottom - HEIGHT),
+    };
     let ticks = frame.x.ticks(TICKS);
     frame.x_axis(canvas, &ticks, &of(&other));
     frame.y_axis(canvas, &ticks, &of(one));
-    canvas.draw(|layer| layer.line((frame.left(), bottom), (frame.right(), frame.top()), MUTED, 0.8));
-    canvas.draw(|layer| layer.text(&format!("{one} = {other}"), (frame.right(), frame.top() - 5.0), &Font::right(TICK).color(MUTED)));
+    canvas
+        .draw(|layer| layer.line((frame.left(), bottom), (frame.right(), frame.top()), MUTED, 0.8));
+    canvas.draw(|layer| {
+        layer.text(
+            &format!("{one} = {other}"),
+            (frame.right(), frame.top() - 5.0),
+            &Font::right(TICK).color(MUTED),
+        )
+    });
     frame.spine(canvas);
     let decimals = number::decimals(&quantity.unit, ends(values));
     for (pair, simulated, measured) in values {

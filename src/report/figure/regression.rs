@@ -1,18 +1,21 @@
-//! Regressions of the values of groups: one small diagram for each group, in a row on the same scale.
+//! Regressions of the values of groups: one small diagram for each group, in a row on the same
+//! scale.
 
 use super::axis::{self, Scale};
 use super::canvas::{Canvas, Font, Group};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
 use super::style::{
-    self, BLUE, DASH_DOT, DASHED, DOTTED, INK, MUTED, Mark, SMALL, SOLID, TEXT, TICK, VERMILION, WIDTH, cut_apart, text_width,
+    self, BLUE, DASH_DOT, DASHED, DOTTED, INK, MUTED, Mark, SMALL, SOLID, TEXT, TICK, VERMILION,
+    WIDTH, cut_apart, text_width,
 };
 use super::zones::Zones;
 use crate::report::estimates::OfLimit;
 use crate::report::number;
 use crate::result::{QuantityResult, RegressionFigure, StatisticResult};
 
-/// Most diagrams side by side, and most in a figure: those of the largest ratio, so that they stay readable on one page.
+/// Most diagrams side by side, and most in a figure: those of the largest ratio, so that they stay
+/// readable on one page.
 const ABREAST: usize = 4;
 pub const MOST: usize = 16;
 /// Height of a diagram, in points: one alone, and of several.
@@ -27,11 +30,14 @@ const GUTTER: f64 = 9.0;
 const AXIS: f64 = 10.0;
 const TICKS: (usize, usize) = (5, 5);
 
-/// The groups of a limit that have a regression to draw, in order; of many those with the largest ratio.
+/// The groups of a limit that have a regression to draw, in order; of many those with the largest
+/// ratio.
 pub fn drawn<'a>(limit: &OfLimit<'a>) -> Vec<(&'a StatisticResult, &'a RegressionFigure)> {
-    let mut all: Vec<_> = limit.results.iter().filter_map(|one| Some((*one, one.regression.as_deref()?))).collect();
+    let mut all: Vec<_> =
+        limit.results.iter().filter_map(|one| Some((*one, one.regression.as_deref()?))).collect();
     if all.len() > MOST {
-        let mut ratios: Vec<f64> = all.iter().map(|(one, _)| one.normalised.unwrap_or(0.0)).collect();
+        let mut ratios: Vec<f64> =
+            all.iter().map(|(one, _)| one.normalised.unwrap_or(0.0)).collect();
         ratios.sort_by(|a, b| b.total_cmp(a));
         let least = ratios[MOST - 1];
         all.retain(|(one, _)| one.normalised.unwrap_or(0.0) >= least);
@@ -41,7 +47,11 @@ pub fn drawn<'a>(limit: &OfLimit<'a>) -> Vec<(&'a StatisticResult, &'a Regressio
 }
 
 /// The regressions of the groups of one limit.
-pub fn regression(quantity: &QuantityResult, groups: &[(&StatisticResult, &RegressionFigure)], zones: &Zones) -> String {
+pub fn regression(
+    quantity: &QuantityResult,
+    groups: &[(&StatisticResult, &RegressionFigure)],
+    zones: &Zones,
+) -> String {
     let points = || groups.iter().flat_map(|(_, one)| &one.points);
     let curves = || groups.iter().flat_map(|(_, one)| &one.curve);
     let bound = groups.iter().find_map(|(_, one)| one.bound.as_deref());
@@ -61,10 +71,18 @@ pub fn regression(quantity: &QuantityResult, groups: &[(&StatisticResult, &Regre
     let top = legend.height() + 6.0;
     let narrow = (WIDTH - 4.0) / abreast as f64 - GUTTER;
     let scopes: Vec<&str> = groups.iter().map(|(statistic, _)| statistic.scope.as_str()).collect();
-    let head = if scopes.iter().all(|scope| text_width(scope, TICK) <= narrow - AXIS) { HEAD } else { HEADS };
+    let head = if scopes.iter().all(|scope| text_width(scope, TICK) <= narrow - AXIS) {
+        HEAD
+    } else {
+        HEADS
+    };
     let row = head + tall + FOOT;
     let of_row = |at: usize| {
-        let ys = groups.iter().skip(at * abreast).take(abreast).flat_map(|(one, figure)| heights(one, figure));
+        let ys = groups
+            .iter()
+            .skip(at * abreast)
+            .take(abreast)
+            .flat_map(|(one, figure)| heights(one, figure));
         Scale::over(ys, top + at as f64 * row + head + tall, top + at as f64 * row + head)
     };
     let left = (0..rows).map(|at| Frame::axis_room(&of_row(at).ticks(TICKS.1))).fold(0.0, f64::max);
@@ -74,18 +92,37 @@ pub fn regression(quantity: &QuantityResult, groups: &[(&StatisticResult, &Regre
     let names = names(&scopes, wide);
     for (at, (statistic, figure)) in groups.iter().enumerate() {
         let from = left + (at % abreast) as f64 * (wide + GUTTER);
-        let frame = Frame { x: Scale::over(xs.iter().copied(), from, from + wide), y: of_row(at / abreast) };
-        axes(&mut canvas, &frame, (at % abreast == 0).then(|| axis::title(&quantity.symbol, &quantity.unit)).as_deref());
+        let frame = Frame {
+            x: Scale::over(xs.iter().copied(), from, from + wide),
+            y: of_row(at / abreast),
+        };
+        axes(
+            &mut canvas,
+            &frame,
+            (at % abreast == 0).then(|| axis::title(&quantity.symbol, &quantity.unit)).as_deref(),
+        );
         canvas.draw(|layer| {
             for (up, line) in names[at].iter().rev().filter(|line| !line.is_empty()).enumerate() {
                 let y = frame.top() - 6.0 - 8.0 * up as f64;
-                layer.text(line, (f64::midpoint(frame.left(), frame.right()), y), &Font::middle(TICK));
+                layer.text(
+                    line,
+                    (f64::midpoint(frame.left(), frame.right()), y),
+                    &Font::middle(TICK),
+                );
             }
         });
         panel(&mut canvas, &frame, quantity, (statistic, figure), zones);
     }
-    let title = groups.first().map_or_else(String::new, |(_, one)| axis::title(&one.regressor, &one.regressor_unit));
-    canvas.draw(|layer| layer.text(&title, (f64::midpoint(left, WIDTH - 4.0), top + rows as f64 * row + 6.0), &Font::middle(TEXT)));
+    let title = groups
+        .first()
+        .map_or_else(String::new, |(_, one)| axis::title(&one.regressor, &one.regressor_unit));
+    canvas.draw(|layer| {
+        layer.text(
+            &title,
+            (f64::midpoint(left, WIDTH - 4.0), top + rows as f64 * row + 6.0),
+            &Font::middle(TEXT),
+        )
+    });
     canvas.finish()
 }
 
@@ -96,11 +133,20 @@ fn names(scopes: &[&str], wide: f64) -> Vec<[String; 2]> {
             return [String::new(), scope.to_owned()];
         }
         let places: Vec<usize> = scope.match_indices(", ").map(|(at, _)| at).collect();
-        let fits = places.iter().rev().find(|at| text_width(&scope[..=**at], TICK) <= wide).or(places.first());
-        fits.map_or_else(|| [String::new(), scope.to_owned()], |at| [scope[..=*at].to_owned(), scope[at + 2..].to_owned()])
+        let fits = places
+            .iter()
+            .rev()
+            .find(|at| text_width(&scope[..=**at], TICK) <= wide)
+            .or(places.first());
+        fits.map_or_else(
+            || [String::new(), scope.to_owned()],
+            |at| [scope[..=*at].to_owned(), scope[at + 2..].to_owned()],
+        )
     };
     let all: Vec<[String; 2]> = scopes.iter().map(|scope| split(scope)).collect();
-    let line = |nth: usize| cut_apart(&all.iter().map(|lines| lines[nth].as_str()).collect::<Vec<_>>(), TICK, wide);
+    let line = |nth: usize| {
+        cut_apart(&all.iter().map(|lines| lines[nth].as_str()).collect::<Vec<_>>(), TICK, wide)
+    };
     std::iter::zip(line(0), line(1)).map(|(one, other)| [one, other]).collect()
 }
 
@@ -111,14 +157,20 @@ fn heights(statistic: &StatisticResult, figure: &RegressionFigure) -> Vec<f64> {
     points.chain(curves).chain(statistic.limit).chain([figure.value]).collect()
 }
 
-/// Axes whose x numbers stand without a title, since all diagrams have the same; y numbers only at the first of a row.
+/// Axes whose x numbers stand without a title, since all diagrams have the same; y numbers only at
+/// the first of a row.
 fn axes(canvas: &mut Canvas, frame: &Frame, title: Option<&str>) {
     let ticks = frame.y.ticks(TICKS.1);
     match title {
         Some(title) => frame.y_axis(canvas, &ticks, title),
         None => canvas.draw(|layer| {
             for tick in &ticks {
-                layer.line((frame.left(), frame.y.at(tick.value)), (frame.right(), frame.y.at(tick.value)), style::GRID, 0.5);
+                layer.line(
+                    (frame.left(), frame.y.at(tick.value)),
+                    (frame.right(), frame.y.at(tick.value)),
+                    style::GRID,
+                    0.5,
+                );
             }
         }),
     }
@@ -144,16 +196,24 @@ fn panel(
     });
     if let Some(limit) = statistic.limit {
         canvas.group(&Group { class: "limit", dash: DASHED, ..Group::default() }, |layer| {
-            layer.line((frame.left(), frame.y.at(limit)), (frame.right(), frame.y.at(limit)), INK, 0.9);
+            layer.line(
+                (frame.left(), frame.y.at(limit)),
+                (frame.right(), frame.y.at(limit)),
+                INK,
+                0.9,
+            );
         });
     }
     let curve = |of: &dyn Fn(&crate::result::RegressionAt) -> Option<f64>| -> Vec<(f64, f64)> {
         figure.curve.iter().filter_map(|at| Some((frame.x.at(at.x), frame.y.at(of(at)?)))).collect()
     };
     let (fitted, bound) = (curve(&|at| Some(at.fitted)), curve(&|at| at.bound));
-    canvas.group(&Group { class: "fit", ..Group::default() }, |layer| layer.path(&fitted, BLUE, 1.2));
+    canvas
+        .group(&Group { class: "fit", ..Group::default() }, |layer| layer.path(&fitted, BLUE, 1.2));
     if bound.len() > 1 {
-        canvas.group(&Group { class: "bound", dash: DASH_DOT, ..Group::default() }, |layer| layer.path(&bound, VERMILION, 1.1));
+        canvas.group(&Group { class: "bound", dash: DASH_DOT, ..Group::default() }, |layer| {
+            layer.path(&bound, VERMILION, 1.1)
+        });
     }
     frame.spine(canvas);
     let decimals = number::decimals(&quantity.unit, figure.points.iter().map(|point| point.y));
@@ -174,11 +234,20 @@ fn panel(
             zone: point.zone.as_deref(),
             ..Group::default()
         };
-        canvas.group(&group, |layer| layer.mark(mark, (frame.x.at(point.x), frame.y.at(point.y)), 1.6, color));
+        canvas.group(&group, |layer| {
+            layer.mark(mark, (frame.x.at(point.x), frame.y.at(point.y)), 1.6, color)
+        });
     }
-    let says =
-        format!("{} ({}): {}", statistic.title, statistic.scope, number::with_unit(&number::fixed(figure.value, decimals), &quantity.unit));
-    canvas.group(&Group { class: "mark", title: Some(&says), edge: 0.3, ..Group::default() }, |layer| {
-        layer.mark(Mark::Diamond, (target, frame.y.at(figure.value)), 2.2, INK);
-    });
+    let says = format!(
+        "{} ({}): {}",
+        statistic.title,
+        statistic.scope,
+        number::with_unit(&number::fixed(figure.value, decimals), &quantity.unit)
+    );
+    canvas.group(
+        &Group { class: "mark", title: Some(&says), edge: 0.3, ..Group::default() },
+        |layer| {
+            layer.mark(Mark::Diamond, (target, frame.y.at(figure.value)), 2.2, INK);
+        },
+    );
 }

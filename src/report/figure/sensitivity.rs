@@ -12,8 +12,8 @@ const PANEL: f64 = 130.0;
 /// Largest number of curves that can be told apart; further metrics are in the table only.
 const MOST: usize = 12;
 
-/// The axis ends at so many times the median of what the curves reach: one metric that is much more sensitive than the others would
-/// press them onto the axis.
+/// The axis ends at so many times the median of what the curves reach: one metric that is much more
+/// sensitive than the others would press them onto the axis.
 const HIGHEST: f64 = 5.0;
 
 /// Name of a metric, and pairs of size and sensitivity.
@@ -21,7 +21,10 @@ type Curve = (String, Vec<(f64, f64)>);
 
 /// Where the axis ends: at the largest value, or below it.
 fn highest(curves: &[Curve]) -> f64 {
-    let mut reached: Vec<f64> = curves.iter().map(|(_, points)| points.iter().map(|(_, value)| *value).fold(0.0, f64::max)).collect();
+    let mut reached: Vec<f64> = curves
+        .iter()
+        .map(|(_, points)| points.iter().map(|(_, value)| *value).fold(0.0, f64::max))
+        .collect();
     reached.sort_by(f64::total_cmp);
     let most = reached.last().copied().unwrap_or(0.0);
     let end = HIGHEST * reached.get(reached.len() / 2).copied().unwrap_or(0.0);
@@ -37,7 +40,11 @@ pub fn sensitivity(disturbance: &str, curves: &[Curve]) -> String {
     let entry = |(n, (_, points)): (usize, &Curve)| {
         let name = names[n].clone();
         let beyond = points.iter().any(|(_, value)| *value > high);
-        Entry::mark(Mark::nth(n), color(n), if beyond { format!("{name} (beyond the axis)") } else { name })
+        Entry::mark(
+            Mark::nth(n),
+            color(n),
+            if beyond { format!("{name} (beyond the axis)") } else { name },
+        )
     };
     let entries = curves.iter().enumerate().map(entry);
     let legend = Legend::new(entries.collect(), WIDTH - 40.0);
@@ -45,21 +52,38 @@ pub fn sensitivity(disturbance: &str, curves: &[Curve]) -> String {
     let sizes = curves.iter().flat_map(|(_, points)| points.iter().map(|(size, _)| *size));
     let y = Scale { low: 0.0, high: 1.05 * high, from: top + PANEL, to: top };
     let ticks = y.ticks(6);
-    let frame =
-        Frame { x: Scale { low: 0.0, high: 1.05 * sizes.fold(0.0, f64::max), from: Frame::axis_room(&ticks), to: WIDTH - 10.0 }, y };
+    let frame = Frame {
+        x: Scale {
+            low: 0.0,
+            high: 1.05 * sizes.fold(0.0, f64::max),
+            from: Frame::axis_room(&ticks),
+            to: WIDTH - 10.0,
+        },
+        y,
+    };
     let mut canvas = Canvas::new(WIDTH, top + PANEL + 30.0);
     legend.draw(&mut canvas, (40.0, 0.0));
     frame.y_axis(&mut canvas, &ticks, "rms change of value / limit");
-    frame.x_axis(&mut canvas, &frame.x.ticks(8), &format!("size of the disturbance ({disturbance})"));
+    frame.x_axis(
+        &mut canvas,
+        &frame.x.ticks(8),
+        &format!("size of the disturbance ({disturbance})"),
+    );
     for (n, (name, points)) in curves.iter().enumerate() {
-        let placed: Vec<(f64, f64)> =
-            [(0.0, 0.0)].iter().chain(points).map(|(size, value)| (frame.x.at(*size), frame.y.at(value.min(1.05 * high)))).collect();
+        let placed: Vec<(f64, f64)> = [(0.0, 0.0)]
+            .iter()
+            .chain(points)
+            .map(|(size, value)| (frame.x.at(*size), frame.y.at(value.min(1.05 * high))))
+            .collect();
         canvas.draw(|layer| layer.path(&placed, color(n), 0.9));
         for ((size, value), point) in points.iter().zip(&placed[1..]) {
             let title = format!("{name}, size {size}: {}", number::significant(*value, 3));
-            canvas.group(&Group { class: "mark", title: Some(&title), ..Group::default() }, |layer| {
-                layer.mark(Mark::nth(n), *point, 2.0, color(n));
-            });
+            canvas.group(
+                &Group { class: "mark", title: Some(&title), ..Group::default() },
+                |layer| {
+                    layer.mark(Mark::nth(n), *point, 2.0, color(n));
+                },
+            );
         }
     }
     frame.spine(&mut canvas);

@@ -1,5 +1,5 @@
-//! Common style of all figures: colours, type, marks. Every distinction by colour is also made by shape or line, so that a figure is
-//! readable in grey and for colour-blind readers.
+//! Common style of all figures: colours, type, marks. Every distinction by colour is also made by
+//! shape or line, so that a figure is readable in grey and for colour-blind readers.
 
 use plotters::style::RGBColor;
 
@@ -29,8 +29,9 @@ pub const SHADE: RGBColor = RGBColor(0xe4, 0xec, 0xf3);
 /// Wide, light line of a measured signal under the thin, dark line of the simulated one.
 pub const MEASURED: RGBColor = RGBColor(0xa3, 0xa9, 0xb1);
 
-/// Okabe and Ito, "Color Universal Design" (2008): blue, vermilion, bluish green, reddish purple, orange, sky blue, black.
-/// The yellow of the set is omitted, since it is hardly visible on white paper.
+/// Okabe and Ito, "Color Universal Design" (2008): blue, vermilion, bluish green, reddish purple,
+/// orange, sky blue, black. The yellow of the set is omitted, since it is hardly visible on white
+/// paper.
 pub const PALETTE: [RGBColor; 7] = [
     RGBColor(0x00, 0x72, 0xb2),
     RGBColor(0xd5, 0x5e, 0x00),
@@ -63,8 +64,16 @@ pub enum Mark {
 }
 
 impl Mark {
-    pub const ALL: [Self; 8] =
-        [Self::Circle, Self::Triangle, Self::Square, Self::Diamond, Self::TriangleDown, Self::Pentagon, Self::Hexagon, Self::Bar];
+    pub const ALL: [Self; 8] = [
+        Self::Circle,
+        Self::Triangle,
+        Self::Square,
+        Self::Diamond,
+        Self::TriangleDown,
+        Self::Pentagon,
+        Self::Hexagon,
+        Self::Bar,
+    ];
 
     pub fn nth(n: usize) -> Self {
         Self::ALL[n % Self::ALL.len()]
@@ -83,8 +92,8 @@ const LONG_DASH: Dash = Some(&[10.0, 2.5]);
 /// Dashes of several limits in one diagram.
 pub const LIMITS: [Dash; 4] = [DASHED, DOTTED, DASH_DOT, LONG_DASH];
 
-/// Approximate width of a text in points, for layout without font metrics: advance widths of a humanist sans by kind of character,
-/// slightly overestimated.
+/// Approximate width of a text in points, for layout without font metrics: advance widths of a
+/// humanist sans by kind of character, slightly overestimated.
 pub fn text_width(text: &str, size: f64) -> f64 {
     let em: f64 = text
         .chars()
@@ -119,26 +128,36 @@ pub fn cut(text: &str, size: f64, width: f64) -> String {
     kept
 }
 
-/// Several texts cut to a width. Texts that would look alike keep the part in which they differ, and lose a part of what they share.
+/// Several texts cut to a width. Texts that would look alike keep the part in which they differ,
+/// and lose a part of what they share.
 pub fn cut_apart(texts: &[&str], size: f64, width: f64) -> Vec<String> {
     let mut shown: Vec<String> = texts.iter().map(|text| cut(text, size, width)).collect();
     let alike = |shown: &[String], at: usize| -> Vec<usize> {
-        (0..texts.len()).filter(|other| shown[*other] == shown[at] && (*other == at || texts[*other] != texts[at])).collect()
+        (0..texts.len())
+            .filter(|other| {
+                shown[*other] == shown[at] && (*other == at || texts[*other] != texts[at])
+            })
+            .collect()
     };
     for at in 0..texts.len() {
         let same = alike(&shown, at);
         if same.len() < 2 {
             continue;
         }
-        let letters: Vec<Vec<char>> = same.iter().map(|nth| visible(texts[*nth]).chars().collect()).collect();
-        let common = (0..letters[0].len()).take_while(|n| letters.iter().all(|one| one.get(*n) == letters[0].get(*n))).count();
+        let letters: Vec<Vec<char>> =
+            same.iter().map(|nth| visible(texts[*nth]).chars().collect()).collect();
+        let common = (0..letters[0].len())
+            .take_while(|n| letters.iter().all(|one| one.get(*n) == letters[0].get(*n)))
+            .count();
         for (nth, own) in same.iter().zip(&letters) {
             // At least half of the width is for what differs.
             let mut rest: String = own[common..].iter().collect();
             let mut kept = String::new();
             for c in &own[..common] {
                 kept.push(*c);
-                if text_width(&kept, size) + text_width(&rest, size).min(0.5 * width) + 1.0 * size > width {
+                if text_width(&kept, size) + text_width(&rest, size).min(0.5 * width) + 1.0 * size
+                    > width
+                {
                     kept.pop();
                     break;
                 }
@@ -157,10 +176,20 @@ mod tests {
     #[test]
     fn texts_that_differ_are_cut_to_texts_that_differ() {
         let long = "a-protocol-with-a-long-name";
-        let texts = [format!("{long}: mean"), format!("{long}-and-a-variant: mean"), format!("{long}: standard deviation"), "b".into()];
+        let texts = [
+            format!("{long}: mean"),
+            format!("{long}-and-a-variant: mean"),
+            format!("{long}: standard deviation"),
+            "b".into(),
+        ];
         let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
         let shown = cut_apart(&texts, TEXT, 100.0);
-        assert!(shown[0].ends_with("…: mean") && shown[1].contains("…-and-a-v") && shown[2].contains("…: standard"), "{shown:?}");
+        assert!(
+            shown[0].ends_with("…: mean")
+                && shown[1].contains("…-and-a-v")
+                && shown[2].contains("…: standard"),
+            "{shown:?}"
+        );
         assert!(shown.iter().all(|text| text_width(text, TEXT) < 108.0), "{shown:?}");
         assert_eq!(cut_apart(&["b", "b", long], TEXT, 200.0), ["b", "b", long]);
     }

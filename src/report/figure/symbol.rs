@@ -1,4 +1,5 @@
-//! Symbols of quantities as labels. Subscripts, and dots over letters for which no precomposed character exists, are drawn.
+//! Symbols of quantities as labels. Subscripts, and dots over letters for which no precomposed
+//! character exists, are drawn.
 //!
 //! A font would print a letter and its dots as two glyphs, which a PDF cannot map to one character.
 
@@ -15,7 +16,10 @@ const LOWER: f64 = 0.22;
 
 /// The parts of a symbol before and after its single underscore.
 fn parts(label: &str) -> (&str, &str) {
-    label.split_once('_').filter(|(base, sub)| !base.is_empty() && !sub.is_empty() && !sub.contains('_')).unwrap_or((label, ""))
+    label
+        .split_once('_')
+        .filter(|(base, sub)| !base.is_empty() && !sub.is_empty() && !sub.contains('_'))
+        .unwrap_or((label, ""))
 }
 
 /// A symbol centred at a point, cut to a width, with its subscript.
@@ -31,7 +35,9 @@ pub fn symbol(layer: &mut Layer<'_>, label: &str, at: Point, size: f64, width: f
 /// The same, right-aligned at a point.
 pub fn symbol_left_of(layer: &mut Layer<'_>, label: &str, (x, y): Point, font: &Font, width: f64) {
     let (base, sub) = parts(label);
-    let wide = |base: &str, sub: &str| NARROWER * (text_width(base, font.size) + SMALLER * text_width(sub, font.size));
+    let wide = |base: &str, sub: &str| {
+        NARROWER * (text_width(base, font.size) + SMALLER * text_width(sub, font.size))
+    };
     let middle = Font { held: Held::Middle, ..*font };
     if sub.is_empty() || wide(base, sub) > width {
         let shown = cut(label, font.size, width);
@@ -41,7 +47,10 @@ pub fn symbol_left_of(layer: &mut Layer<'_>, label: &str, (x, y): Point, font: &
 }
 
 fn pieces(layer: &mut Layer<'_>, (base, sub): (&str, &str), (x, y): Point, font: &Font) {
-    let (wide, own) = (NARROWER * text_width(&bare(base), font.size), NARROWER * SMALLER * text_width(sub, font.size));
+    let (wide, own) = (
+        NARROWER * text_width(&bare(base), font.size),
+        NARROWER * SMALLER * text_width(sub, font.size),
+    );
     plain(layer, base, (x - 0.5 * own, y), font, f64::INFINITY);
     let below = Font { size: SMALLER * font.size, held: Held::Start, ..*font };
     layer.text(sub, (x + 0.5 * (wide - own) + 0.04 * font.size, y + LOWER * font.size), &below);
@@ -52,7 +61,8 @@ fn bare(label: &str) -> String {
     label.chars().filter(|c| !('\u{300}'..='\u{36f}').contains(c)).collect()
 }
 
-/// A label centred at a point, cut to a width; diaereses are drawn over their letters, other accents are omitted.
+/// A label centred at a point, cut to a width; diaereses are drawn over their letters, other
+/// accents are omitted.
 fn plain(layer: &mut Layer<'_>, label: &str, (x, y): Point, font: &Font, width: f64) {
     let size = font.size;
     let shown = cut(&bare(label), size, width);
@@ -65,14 +75,24 @@ fn plain(layer: &mut Layer<'_>, label: &str, (x, y): Point, font: &Font, width: 
     let own: String = shown.chars().skip(letter).take(1).collect();
     let after: String = shown.chars().skip(letter + 1).collect();
     let half = 0.5 * NARROWER * text_width(&own, size);
-    let center = x - 0.5 * NARROWER * text_width(&shown, size) + NARROWER * text_width(&before, size) + half;
-    for (text, at, held) in [(&before, center - half, Held::End), (&own, center, Held::Middle), (&after, center + half, Held::Start)] {
+    let center =
+        x - 0.5 * NARROWER * text_width(&shown, size) + NARROWER * text_width(&before, size) + half;
+    for (text, at, held) in [
+        (&before, center - half, Held::End),
+        (&own, center, Held::Middle),
+        (&after, center + half, Held::Start),
+    ] {
         if !text.is_empty() {
             layer.text(text, (at, y), &Font { held, ..*font });
         }
     }
     for side in [-1.0, 1.0] {
-        layer.mark(Mark::Circle, (center + side * 0.13 * size, y - 0.42 * size), 0.06 * size, font.color);
+        layer.mark(
+            Mark::Circle,
+            (center + side * 0.13 * size, y - 0.42 * size),
+            0.06 * size,
+            font.color,
+        );
     }
 }
 
@@ -81,7 +101,11 @@ const NARROWER: f64 = 0.88;
 
 /// Index of the first letter with a diaeresis among the characters without accents.
 fn dotted(label: &str) -> Option<usize> {
-    let letters = label.chars().take_while(|c| *c != DIAERESIS).filter(|c| !('\u{300}'..='\u{36f}').contains(c)).count();
+    let letters = label
+        .chars()
+        .take_while(|c| *c != DIAERESIS)
+        .filter(|c| !('\u{300}'..='\u{36f}').contains(c))
+        .count();
     (label.contains(DIAERESIS) && letters > 0).then(|| letters - 1)
 }
 
@@ -92,7 +116,10 @@ mod tests {
 
     #[test]
     fn the_letter_with_dots_is_found_and_gets_two() {
-        assert_eq!((dotted("z\u{308}*_rms"), dotted("az\u{308}"), dotted("ÿ"), dotted("\u{308}")), (Some(0), Some(1), None, None));
+        assert_eq!(
+            (dotted("z\u{308}*_rms"), dotted("az\u{308}"), dotted("ÿ"), dotted("\u{308}")),
+            (Some(0), Some(1), None, None)
+        );
         let dots = |label: &str| {
             let mut canvas = Canvas::new(60.0, 20.0);
             canvas.draw(|layer| symbol(layer, label, (30.0, 10.0), 8.0, 50.0));

@@ -4,15 +4,20 @@ use super::axis::{self, Scale};
 use super::canvas::{Canvas, Font, Group};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::style::{BLUE, DASH_DOT, DASHED, DOTTED, Dash, INK, MEASURED, SHADE, SOLID, TEXT, WIDTH, color};
+use super::style::{
+    BLUE, DASH_DOT, DASHED, DOTTED, Dash, INK, MEASURED, SHADE, SOLID, TEXT, WIDTH, color,
+};
 use crate::result::{Curve, Trace};
 
 const HEIGHT: f64 = 128.0;
 
-/// The signals that there are, by the names of the sides: the measured one wide and light, the simulated thin and dark on top of it, the evaluated section shaded.
+/// The signals that there are, by the names of the sides: the measured one wide and light, the
+/// simulated thin and dark on top of it, the evaluated section shaded.
 pub fn trace(trace: &Trace, (simulated, measured): (&str, &str)) -> String {
-    let mut drawn =
-        vec![("curve measured", measured, &trace.measured, MEASURED, 1.8), ("curve simulated", simulated, &trace.simulated, BLUE, 0.8)];
+    let mut drawn = vec![
+        ("curve measured", measured, &trace.measured, MEASURED, 1.8),
+        ("curve simulated", simulated, &trace.simulated, BLUE, 0.8),
+    ];
     // Of several records, each has its name.
     let name = trace.record.as_deref().filter(|_| !trace.others.is_empty());
     drawn.iter_mut().for_each(|(_, says, ..)| *says = name.unwrap_or(says));
@@ -23,18 +28,32 @@ pub fn trace(trace: &Trace, (simulated, measured): (&str, &str)) -> String {
     if let [(.., color, width)] = drawn.as_mut_slice() {
         (*color, *width) = (BLUE, 0.8);
     }
-    let mut entries: Vec<Entry> = drawn.iter().map(|(_, says, _, color, width)| Entry::line(*color, *width, SOLID, *says)).collect();
-    let others: Vec<_> = trace.others.iter().enumerate().map(|(at, (name, curve))| (name, curve, color(at + 1), dash(at))).collect();
-    entries.extend(others.iter().map(|(name, _, color, dash)| Entry::line(*color, 0.8, *dash, name.as_str())));
+    let mut entries: Vec<Entry> = drawn
+        .iter()
+        .map(|(_, says, _, color, width)| Entry::line(*color, *width, SOLID, *says))
+        .collect();
+    let others: Vec<_> = trace
+        .others
+        .iter()
+        .enumerate()
+        .map(|(at, (name, curve))| (name, curve, color(at + 1), dash(at)))
+        .collect();
+    entries.extend(
+        others.iter().map(|(name, _, color, dash)| Entry::line(*color, 0.8, *dash, name.as_str())),
+    );
     entries.push(Entry::ground(SHADE, "evaluated section"));
     let legend = Legend::new(entries, WIDTH - 50.0);
     let top = legend.height() + 5.0;
     let bottom = top + HEIGHT;
-    let curves: Vec<&Curve> = [&trace.measured, &trace.simulated].into_iter().chain(trace.others.iter().map(|(_, curve)| curve)).collect();
+    let curves: Vec<&Curve> = [&trace.measured, &trace.simulated]
+        .into_iter()
+        .chain(trace.others.iter().map(|(_, curve)| curve))
+        .collect();
     let y = Scale::over(curves.iter().flat_map(|curve| curve.y.iter().copied()), bottom, top);
     let ticks = y.ticks(6);
     let left = Frame::axis_room(&ticks);
-    let along = curves.iter().flat_map(|curve| curve.x.iter().copied()).chain([trace.start, trace.end]);
+    let along =
+        curves.iter().flat_map(|curve| curve.x.iter().copied()).chain([trace.start, trace.end]);
     let (low, high) = axis::extent(along).unwrap_or((0.0, 1.0));
     let frame = Frame { x: Scale { low, high, from: left, to: WIDTH - 6.0 }, y };
     let mut canvas = Canvas::new(WIDTH, bottom + 25.0);

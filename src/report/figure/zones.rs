@@ -41,7 +41,8 @@ impl Zones {
     }
 }
 
-/// Marks of the values of a quantity: one for each record where there are several, else one for each zone.
+/// Marks of the values of a quantity: one for each record where there are several, else one for
+/// each zone.
 #[derive(Clone, Debug)]
 pub struct Marks<'a> {
     zones: &'a Zones,
@@ -65,7 +66,8 @@ impl<'a> Marks<'a> {
         if self.records.is_empty() {
             return self.zones.legend(values.map(|value| value.zone.as_deref()));
         }
-        let entry = |(n, record): (usize, &&str)| Entry::mark(Mark::nth(n), style::color(n), *record);
+        let entry =
+            |(n, record): (usize, &&str)| Entry::mark(Mark::nth(n), style::color(n), *record);
         self.records.iter().enumerate().map(entry).collect()
     }
 }

@@ -1,4 +1,5 @@
-//! Input of the templates of a study. The templates place it and do not calculate; user texts are data.
+//! Input of the templates of a study. The templates place it and do not calculate; user texts are
+//! data.
 
 use serde::Serialize;
 
@@ -43,8 +44,14 @@ impl Item {
         Self::Text { text: text.into() }
     }
 
-    pub fn figure(name: impl Into<String>, caption: impl Into<String>, alt: impl Into<String>) -> Self {
-        Self::Figure { figure: FigureView { name: name.into(), caption: caption.into(), alt: alt.into() } }
+    pub fn figure(
+        name: impl Into<String>,
+        caption: impl Into<String>,
+        alt: impl Into<String>,
+    ) -> Self {
+        Self::Figure {
+            figure: FigureView { name: name.into(), caption: caption.into(), alt: alt.into() },
+        }
     }
 }
 

@@ -3,7 +3,8 @@
 use serde_json::{Map, Value, json};
 
 use crate::result::study::{
-    AtOffset, AtValue, Flips, Found, ParameterStudy, QuantitySpread, Selected, SelectionStudy, Spread, StatisticSpread, Study, SyncStudy,
+    AtOffset, AtValue, Flips, Found, ParameterStudy, QuantitySpread, Selected, SelectionStudy,
+    Spread, StatisticSpread, Study, SyncStudy,
 };
 
 /// The complete study, ending in a line break.
@@ -42,7 +43,9 @@ fn selections(root: &mut Map<String, Value>, found: &SelectionStudy) {
     root.insert("verdict_all_sections".into(), json!(found.verdict));
     root.insert("quantities".into(), Value::Array(found.quantities.iter().map(quantity).collect()));
     let by_zone = |of: &dyn Fn(&crate::result::study::Stratum) -> usize| {
-        Value::Object(found.strata.iter().map(|stratum| (stratum.zone.clone(), json!(of(stratum)))).collect())
+        Value::Object(
+            found.strata.iter().map(|stratum| (stratum.zone.clone(), json!(of(stratum)))).collect(),
+        )
     };
     root.insert("sections_per_zone".into(), by_zone(&|stratum| stratum.sections.len()));
     root.insert("taken_per_zone".into(), by_zone(&|stratum| stratum.take));
@@ -78,12 +81,21 @@ fn quantity(quantity: &QuantitySpread) -> Value {
     let mut entry = Map::new();
     entry.insert("id".into(), json!(quantity.id));
     for name in ["mean", "std"] {
-        let found = quantity.statistics.iter().find(|statistic| statistic.name == name && statistic.scope == "all");
-        entry.insert(name.into(), found.and_then(|statistic| statistic.spread.as_ref()).map_or(Value::Null, spread));
+        let found = quantity
+            .statistics
+            .iter()
+            .find(|statistic| statistic.name == name && statistic.scope == "all");
+        entry.insert(
+            name.into(),
+            found.and_then(|statistic| statistic.spread.as_ref()).map_or(Value::Null, spread),
+        );
     }
     entry.insert("share_failing".into(), json!(quantity.failing));
     entry.insert("share_failing_alone".into(), json!(quantity.alone));
-    entry.insert("statistics".into(), Value::Array(quantity.statistics.iter().map(statistic).collect()));
+    entry.insert(
+        "statistics".into(),
+        Value::Array(quantity.statistics.iter().map(statistic).collect()),
+    );
     Value::Object(entry)
 }
 
@@ -129,13 +141,23 @@ fn sync(root: &mut Map<String, Value>, found: &SyncStudy) {
             }
         }
         entry.insert("verdict_changes".into(), json!(at.changes));
-        entry.insert("selections_changed".into(), at.flips.as_ref().map_or_else(|reason| json!({"reason": reason}), flips));
+        entry.insert(
+            "selections_changed".into(),
+            at.flips.as_ref().map_or_else(|reason| json!({"reason": reason}), flips),
+        );
         entry.insert("verdict_all_sections".into(), json!(at.verdict));
         entry.insert("reasons".into(), json!(at.reasons));
-        entry.insert("one_selection".into(), Value::Array(at.selected.iter().map(selected).collect()));
-        let quantities = at.study.as_ref().map_or_else(|_| Vec::new(), |study| study.quantities.iter().map(quantity).collect());
+        entry.insert(
+            "one_selection".into(),
+            Value::Array(at.selected.iter().map(selected).collect()),
+        );
+        let quantities = at
+            .study
+            .as_ref()
+            .map_or_else(|_| Vec::new(), |study| study.quantities.iter().map(quantity).collect());
         entry.insert("quantities".into(), Value::Array(quantities));
-        let lost = at.lost.iter().map(|(section, reason)| json!({"section": section, "reason": reason}));
+        let lost =
+            at.lost.iter().map(|(section, reason)| json!({"section": section, "reason": reason}));
         entry.insert("sections_lost".into(), Value::Array(lost.collect()));
         Value::Object(entry)
     };

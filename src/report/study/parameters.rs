@@ -9,26 +9,44 @@ use crate::result::VerdictWords;
 use crate::result::study::{AtValue, ParameterStudy, Varied};
 
 pub fn opening(found: &ParameterStudy, words: &VerdictWords) -> Opening {
-    let deciding: Vec<&str> =
-        found.parameters.iter().filter(|parameter| parameter.decides).map(|parameter| parameter.title.as_str()).collect();
+    let deciding: Vec<&str> = found
+        .parameters
+        .iter()
+        .filter(|parameter| parameter.decides)
+        .map(|parameter| parameter.title.as_str())
+        .collect();
     let values: usize = found.parameters.iter().map(|parameter| parameter.values.len()).sum();
     let sentence = if deciding.is_empty() {
-        format!("The baseline verdict is '{}'; no tested value changes it.", words.word(found.base.verdict))
+        format!(
+            "The baseline verdict is '{}'; no tested value changes it.",
+            words.word(found.base.verdict)
+        )
     } else {
-        format!("The baseline verdict is '{}'. It changes with: {}.", words.word(found.base.verdict), deciding.join("; "))
+        format!(
+            "The baseline verdict is '{}'. It changes with: {}.",
+            words.word(found.base.verdict),
+            deciding.join("; ")
+        )
     };
     Opening {
         headline: super::stays(
             Some(found.base.verdict).filter(|_| deciding.is_empty()),
             words,
-            &format!("{} of {} parameters affect the verdict", deciding.len(), found.parameters.len()),
+            &format!(
+                "{} of {} parameters affect the verdict",
+                deciding.len(),
+                found.parameters.len()
+            ),
         ),
         sentence,
         facts: [
             ("Parameters varied".to_owned(), found.parameters.len().to_string()),
             ("Values tested".to_owned(), values.to_string()),
             ("Baseline verdict".to_owned(), words.word(found.base.verdict).to_owned()),
-            (format!("Selections: {}", words.good), found.base.share.as_ref().map_or_else(|| number::NONE.to_owned(), share)),
+            (
+                format!("Selections: {}", words.good),
+                found.base.share.as_ref().map_or_else(|| number::NONE.to_owned(), share),
+            ),
         ]
         .map(|(name, value)| Fact { name, value })
         .to_vec(),
@@ -41,12 +59,18 @@ pub fn chapters(found: &ParameterStudy, words: &VerdictWords) -> Vec<Chapter> {
             parameter.name.clone(),
             if at.is_base { format!("{} (baseline)", at.value) } else { at.value.clone() },
             words.word(at.verdict).to_owned(),
-            at.largest.as_ref().map_or_else(|| number::NONE.to_owned(), |(_, value)| number::beside(*value, 1.0, 3)),
+            at.largest.as_ref().map_or_else(
+                || number::NONE.to_owned(),
+                |(_, value)| number::beside(*value, 1.0, 3),
+            ),
             at.largest.as_ref().map_or_else(String::new, |(which, _)| which.clone()),
             at.share.as_ref().map_or_else(|| at.reason.clone().unwrap_or_default(), share),
         ]
     };
-    let rows = found.parameters.iter().flat_map(|parameter| parameter.values.iter().map(move |at| row(parameter, at)));
+    let rows = found
+        .parameters
+        .iter()
+        .flat_map(|parameter| parameter.values.iter().map(move |at| row(parameter, at)));
     let mut chapters = vec![Chapter {
         id: "choices".into(),
         title: "Parameters that affect the verdict".into(),
@@ -85,7 +109,11 @@ pub fn chapters(found: &ParameterStudy, words: &VerdictWords) -> Vec<Chapter> {
     for parameter in &found.parameters {
         items.push(statistics(parameter));
     }
-    chapters.push(Chapter { id: "statistics".into(), title: "Statistics by parameter value".into(), items });
+    chapters.push(Chapter {
+        id: "statistics".into(),
+        title: "Statistics by parameter value".into(),
+        items,
+    });
     chapters
 }
 
@@ -101,15 +129,25 @@ fn statistics(parameter: &Varied) -> Item {
         let scope = if one.scope == "all" { String::new() } else { format!(", {}", one.scope) };
         let mut row = vec![one.symbol.clone(), format!("{}{scope}", one.name)];
         row.extend(values.iter().map(|at| {
-            let same = at.statistics.iter().find(|other| other.id == one.id && other.name == one.name && other.scope == one.scope);
-            same.and_then(|other| other.normalised).map_or_else(|| number::NONE.to_owned(), |value| number::beside(value, 1.0, 3))
+            let same = at.statistics.iter().find(|other| {
+                other.id == one.id && other.name == one.name && other.scope == one.scope
+            });
+            same.and_then(|other| other.normalised)
+                .map_or_else(|| number::NONE.to_owned(), |value| number::beside(value, 1.0, 3))
         }));
         row
     });
-    let more = if parameter.values.len() > ABREAST { "; further values are in the tables beside this report" } else { "" };
+    let more = if parameter.values.len() > ABREAST {
+        "; further values are in the tables beside this report"
+    } else {
+        ""
+    };
     Item::Table {
         table: Table {
-            caption: format!("{}: statistics of all sections divided by their limits{more}", parameter.title),
+            caption: format!(
+                "{}: statistics of all sections divided by their limits{more}",
+                parameter.title
+            ),
             head,
             rows: rows.collect(),
         },

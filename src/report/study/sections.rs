@@ -6,7 +6,9 @@ use crate::report::figure;
 use crate::report::number;
 use crate::report::sides::capital;
 use crate::report::view::{Fact, Finding};
-use crate::result::study::{Importance, QuantitySpread, Reduction, Removal, SelectionStudy, Spread};
+use crate::result::study::{
+    Importance, QuantitySpread, Reduction, Removal, SelectionStudy, Spread,
+};
 use crate::result::{Verdict, VerdictWords};
 
 /// Maximum number of rows of a table; the CSV tables contain all.
@@ -48,7 +50,12 @@ pub fn opening(found: &SelectionStudy, words: &VerdictWords) -> Opening {
     };
     let lacking = found.lacking.as_ref().map_or_else(String::new, |lacking| format!(" {lacking}"));
     Opening {
-        headline: Finding::new(holds, &share(&found.share), &share(&found.share), &share(&found.share)),
+        headline: Finding::new(
+            holds,
+            &share(&found.share),
+            &share(&found.share),
+            &share(&found.share),
+        ),
         sentence: format!(
             "of the selections have the verdict '{}'. The verdict on all {of} together is '{}'. The verdict {same}. {looked}{lacking}",
             words.good,
@@ -56,11 +63,23 @@ pub fn opening(found: &SelectionStudy, words: &VerdictWords) -> Opening {
         ),
         facts: vec![
             fact("Selections", number::large(found.combinations)),
-            fact(&capital(&words.good), if found.share.exact { number::count(found.share.validated) } else { share(&found.share) }),
+            fact(
+                &capital(&words.good),
+                if found.share.exact {
+                    number::count(found.share.validated)
+                } else {
+                    share(&found.share)
+                },
+            ),
             fact("All sections", words.word(found.verdict).to_owned()),
             fact(
                 "Sections",
-                found.strata.iter().map(|stratum| format!("{} of {}", stratum.take, stratum.sections.len())).collect::<Vec<_>>().join(", "),
+                found
+                    .strata
+                    .iter()
+                    .map(|stratum| format!("{} of {}", stratum.take, stratum.sections.len()))
+                    .collect::<Vec<_>>()
+                    .join(", "),
             ),
         ],
     }
@@ -71,8 +90,16 @@ pub fn chapters(found: &SelectionStudy, words: &VerdictWords) -> Vec<Chapter> {
     items.extend(found.methods.iter().map(Item::text));
     let mut chapters = vec![
         Chapter { id: "selections".into(), title: "Selections".into(), items },
-        Chapter { id: "spread".into(), title: "Scatter over the selections".into(), items: spread(&found.quantities, all_of(found)) },
-        Chapter { id: "failing".into(), title: "Criteria not met or not assessed".into(), items: failing(found) },
+        Chapter {
+            id: "spread".into(),
+            title: "Scatter over the selections".into(),
+            items: spread(&found.quantities, all_of(found)),
+        },
+        Chapter {
+            id: "failing".into(),
+            title: "Criteria not met or not assessed".into(),
+            items: failing(found),
+        },
         Chapter {
             id: "sections".into(),
             title: "Influence of individual sections".into(),
@@ -114,7 +141,12 @@ fn strata(found: &SelectionStudy) -> Item {
 /// The box plots, one figure for each kind of statistic.
 pub fn boxes(quantities: &[QuantitySpread], name: &str, at: &str) -> Vec<Item> {
     let one = |(of, count): (figure::boxes::Of, usize)| {
-        let all = || quantities.iter().flat_map(|quantity| &quantity.statistics).filter(|statistic| of.has(&statistic.name));
+        let all = || {
+            quantities
+                .iter()
+                .flat_map(|quantity| &quantity.statistics)
+                .filter(|statistic| of.has(&statistic.name))
+        };
         let beyond = all().filter(|statistic| statistic.failing > 0.0).count();
         Item::figure(
             format!("{name}-{}", of.name()),
@@ -129,7 +161,11 @@ pub fn boxes(quantities: &[QuantitySpread], name: &str, at: &str) -> Vec<Item> {
 
 /// The box plots and their numbers.
 fn spread(quantities: &[QuantitySpread], of: &str) -> Vec<Item> {
-    let statistics = || quantities.iter().flat_map(|quantity| quantity.statistics.iter().map(move |statistic| (quantity, statistic)));
+    let statistics = || {
+        quantities.iter().flat_map(|quantity| {
+            quantity.statistics.iter().map(move |statistic| (quantity, statistic))
+        })
+    };
     // Columns with the same content in every row are omitted.
     let scopes = statistics().any(|(_, statistic)| statistic.scope != "all");
     let spreads: Vec<Spread> = statistics().filter_map(|(_, statistic)| statistic.spread).collect();
@@ -151,7 +187,11 @@ fn spread(quantities: &[QuantitySpread], of: &str) -> Vec<Item> {
     head.extend(["All", "Min", "25 %", "Median", "75 %", "Max", "Outliers"].map(Head::number));
     head.push(Head::number("Not met"));
     let table = Table {
-        caption: format!("Statistics divided by their limits over the selections; “All” refers to all {} together{}", of, known(&spreads)),
+        caption: format!(
+            "Statistics divided by their limits over the selections; “All” refers to all {} together{}",
+            of,
+            known(&spreads)
+        ),
         head,
         rows,
     };
@@ -162,14 +202,20 @@ fn shown(value: f64) -> String {
     number::beside(value, 1.0, 3)
 }
 
-/// Minimum, quartiles, maximum and outliers; for an estimated quartile half the width of its interval.
+/// Minimum, quartiles, maximum and outliers; for an estimated quartile half the width of its
+/// interval.
 fn numbers(spread: &Spread) -> Vec<String> {
     let within = |at: usize| {
         let half = spread.intervals.map(|all| 0.5 * (all[at].1 - all[at].0));
         half.map_or_else(String::new, |half| format!(" ± {}", number::significant(half, 1)))
     };
     let mut row = vec![shown(spread.min)];
-    row.extend([spread.q1, spread.median, spread.q3].iter().enumerate().map(|(at, value)| shown(*value) + &within(at)));
+    row.extend(
+        [spread.q1, spread.median, spread.q3]
+            .iter()
+            .enumerate()
+            .map(|(at, value)| shown(*value) + &within(at)),
+    );
     row.push(shown(spread.max));
     row.push(number::large(spread.outliers as f64));
     row
@@ -188,14 +234,20 @@ fn known(spreads: &[Spread]) -> String {
         (false, false) => "; all numbers are exact".to_owned(),
         (true, false) => "; rows with ± are estimated, all others are exact".to_owned(),
         (true, true) => {
-            format!("; rows with ± are estimated, quartiles of all others are exact to within {}", number::significant(within, 1))
+            format!(
+                "; rows with ± are estimated, quartiles of all others are exact to within {}",
+                number::significant(within, 1)
+            )
         }
-        (false, true) => format!("; quartiles are exact to within {}", number::significant(within, 1)),
+        (false, true) => {
+            format!("; quartiles are exact to within {}", number::significant(within, 1))
+        }
     }
 }
 
 fn failing(found: &SelectionStudy) -> Vec<Item> {
-    let fails: Vec<&QuantitySpread> = found.quantities.iter().filter(|quantity| quantity.failing > 0.0).collect();
+    let fails: Vec<&QuantitySpread> =
+        found.quantities.iter().filter(|quantity| quantity.failing > 0.0).collect();
     if fails.is_empty() {
         return vec![Item::text("All criteria are met in every selection that was evaluated.")];
     }
@@ -235,7 +287,11 @@ fn failing(found: &SelectionStudy) -> Vec<Item> {
                 .iter()
                 .take(MOST_ROWS)
                 .map(|worst| {
-                    let scope = if worst.scope == "all" { String::new() } else { format!(", {}", worst.scope) };
+                    let scope = if worst.scope == "all" {
+                        String::new()
+                    } else {
+                        format!(", {}", worst.scope)
+                    };
                     vec![
                         worst.symbol.clone(),
                         format!("{}{scope}", worst.title),
@@ -249,9 +305,14 @@ fn failing(found: &SelectionStudy) -> Vec<Item> {
     items
 }
 
-fn importance(sections: &[Importance], removal: Option<&Removal>, words: &VerdictWords) -> Vec<Item> {
+fn importance(
+    sections: &[Importance],
+    removal: Option<&Removal>,
+    words: &VerdictWords,
+) -> Vec<Item> {
     let mut sorted: Vec<&Importance> = sections.iter().collect();
-    let effect = |one: &Importance| one.with.zip(one.without).map_or(0.0, |(with, without)| with - without);
+    let effect =
+        |one: &Importance| one.with.zip(one.without).map_or(0.0, |(with, without)| with - without);
     sorted.sort_by(|a, b| effect(b).abs().total_cmp(&effect(a).abs()));
     let shown = |share: Option<f64>| share.map_or_else(|| number::NONE.to_owned(), percent);
     let removal = removal.map(|removal| Item::text(worded(removal, words)));
@@ -272,8 +333,15 @@ fn importance(sections: &[Importance], removal: Option<&Removal>, words: &Verdic
                 .iter()
                 .take(MOST_ROWS)
                 .map(|one| {
-                    let difference = one.with.zip(one.without).map(|(with, without)| 100.0 * (with - without));
-                    vec![one.section.clone(), one.zone.clone(), shown(one.with), shown(one.without), number::optional(difference, 2)]
+                    let difference =
+                        one.with.zip(one.without).map(|(with, without)| 100.0 * (with - without));
+                    vec![
+                        one.section.clone(),
+                        one.zone.clone(),
+                        shown(one.with),
+                        shown(one.without),
+                        number::optional(difference, 2),
+                    ]
                 })
                 .collect(),
         },
@@ -299,7 +367,10 @@ fn worded(removal: &Removal, words: &VerdictWords) -> String {
                     set.join(", ")
                 ),
             };
-            format!("Removing up to {} sections does not change the verdict on all sections together ({verdict}); {larger}.", removal.tried)
+            format!(
+                "Removing up to {} sections does not change the verdict on all sections together ({verdict}); {larger}.",
+                removal.tried
+            )
         }
         [first, rest @ ..] => {
             let size = first.len();
@@ -310,7 +381,8 @@ fn worded(removal: &Removal, words: &VerdictWords) -> String {
                 more => format!("there are {more} other sets of this size"),
             };
             let more: Vec<String> = rest.iter().take(5).map(|set| set.join(" and ")).collect();
-            let more = if more.is_empty() { String::new() } else { format!(": {}", more.join("; ")) };
+            let more =
+                if more.is_empty() { String::new() } else { format!(": {}", more.join("; ")) };
             format!(
                 "The verdict on all sections together ({verdict}) changes when {} {plural} removed: {}; {others}{more}. No smaller set changes it.",
                 size,
@@ -321,9 +393,16 @@ fn worded(removal: &Removal, words: &VerdictWords) -> String {
 }
 
 fn reduction(reduction: &Reduction) -> Chapter {
-    let kept = reduction.kept.iter().map(|(zone, sections)| vec![zone.clone(), sections.len().to_string(), sections.join(", ")]);
+    let kept = reduction.kept.iter().map(|(zone, sections)| {
+        vec![zone.clone(), sections.len().to_string(), sections.join(", ")]
+    });
     let scatter = reduction.scatter.iter().map(|(symbol, all, kept)| {
-        vec![symbol.clone(), number::beside(*all, 1.0, 3), number::beside(*kept, 1.0, 3), number::fixed(kept - all, 4)]
+        vec![
+            symbol.clone(),
+            number::beside(*all, 1.0, 3),
+            number::beside(*kept, 1.0, 3),
+            number::fixed(kept - all, 4),
+        ]
     });
     Chapter {
         id: "reduction".into(),
@@ -343,7 +422,12 @@ fn reduction(reduction: &Reduction) -> Chapter {
             Item::Table {
                 table: Table {
                     caption: "Standard deviations divided by their limits".into(),
-                    head: vec![Head::text("Quantity"), Head::number("All sections"), Head::number("Sections kept"), Head::number("Change")],
+                    head: vec![
+                        Head::text("Quantity"),
+                        Head::number("All sections"),
+                        Head::number("Sections kept"),
+                        Head::number("Change"),
+                    ],
                     rows: scatter.collect(),
                 },
             },
@@ -351,7 +435,8 @@ fn reduction(reduction: &Reduction) -> Chapter {
     }
 }
 
-/// Sections that are not used for the same reason, with the reason once: `S01, S02: left out by the reduction`.
+/// Sections that are not used for the same reason, with the reason once: `S01, S02: left out by the
+/// reduction`.
 fn by_reason(sections: &[(String, String)]) -> Vec<String> {
     let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
     for (section, why) in sections {

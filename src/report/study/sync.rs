@@ -13,19 +13,36 @@ fn shown(found: &SyncStudy, offset: f64) -> String {
 }
 
 pub fn opening(found: &SyncStudy, words: &VerdictWords) -> Opening {
-    let shares: Vec<f64> = found.offsets.iter().filter_map(|at| at.study.as_ref().ok().map(|study| study.share.share)).collect();
-    let (low, high) = shares.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), share| (low.min(*share), high.max(*share)));
+    let shares: Vec<f64> = found
+        .offsets
+        .iter()
+        .filter_map(|at| at.study.as_ref().ok().map(|study| study.share.share))
+        .collect();
+    let (low, high) =
+        shares.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), share| {
+            (low.min(*share), high.max(*share))
+        });
     let base = found.offsets.iter().find(|at| at.offset == 0.0);
     let same = base.is_none_or(|base| found.offsets.iter().all(|at| at.verdict == base.verdict));
-    let (first, last) = (found.offsets.first().map_or(0.0, |at| at.offset), found.offsets.last().map_or(0.0, |at| at.offset));
+    let (first, last) = (
+        found.offsets.first().map_or(0.0, |at| at.offset),
+        found.offsets.last().map_or(0.0, |at| at.offset),
+    );
     let facts = [
         ("Offsets".to_owned(), format!("{} to {}", shown(found, first), shown(found, last))),
         (format!("{}, minimum", capital(&words.good)), percent(low)),
         (format!("{}, maximum", capital(&words.good)), percent(high)),
-        ("Estimated offsets removed".to_owned(), if found.corrected { "yes" } else { "no" }.to_owned()),
+        (
+            "Estimated offsets removed".to_owned(),
+            if found.corrected { "yes" } else { "no" }.to_owned(),
+        ),
     ];
     Opening {
-        headline: super::stays(base.map(|base| base.verdict).filter(|_| same), words, "The verdict changes"),
+        headline: super::stays(
+            base.map(|base| base.verdict).filter(|_| same),
+            words,
+            "The verdict changes",
+        ),
         sentence: format!(
             "The measurement was shifted relative to the simulation, from {} to {}. The verdict on all sections together {}. The share of selections with the verdict '{}' is between {} and {}.",
             shown(found, first),
@@ -44,9 +61,17 @@ pub fn opening(found: &SyncStudy, words: &VerdictWords) -> Opening {
 
 pub fn chapters(found: &SyncStudy, words: &VerdictWords) -> Vec<Chapter> {
     let mut chapters = vec![
-        Chapter { id: "shares".into(), title: format!("Share with the verdict '{}'", words.good), items: shares(found, words) },
+        Chapter {
+            id: "shares".into(),
+            title: format!("Share with the verdict '{}'", words.good),
+            items: shares(found, words),
+        },
         Chapter { id: "one".into(), title: "Single selection".into(), items: one(found) },
-        Chapter { id: "estimates".into(), title: "Offsets estimated from the signals".into(), items: estimates(found) },
+        Chapter {
+            id: "estimates".into(),
+            title: "Offsets estimated from the signals".into(),
+            items: estimates(found),
+        },
     ];
     let mut items = Vec::new();
     for (at, offset) in found.offsets.iter().enumerate() {
@@ -56,7 +81,11 @@ pub fn chapters(found: &SyncStudy, words: &VerdictWords) -> Vec<Chapter> {
             items.extend(sections::boxes(&study.quantities, &format!("{BOXES}-{at}"), &words));
         }
     }
-    chapters.push(Chapter { id: "spread".into(), title: "Scatter over the selections".into(), items });
+    chapters.push(Chapter {
+        id: "spread".into(),
+        title: "Scatter over the selections".into(),
+        items,
+    });
     chapters
 }
 
@@ -68,18 +97,33 @@ fn shares(found: &SyncStudy, words: &VerdictWords) -> Vec<Item> {
         };
         let of = |share: f64, interval| super::share_with(share, interval);
         let (lost, gained) = match &at.flips {
-            Ok(flips) => (of(flips.lost, flips.lost_interval), of(flips.gained, flips.gained_interval)),
+            Ok(flips) => {
+                (of(flips.lost, flips.lost_interval), of(flips.gained, flips.gained_interval))
+            }
             Err(_) => (number::NONE.to_owned(), number::NONE.to_owned()),
         };
-        let changes = if at.changes.is_empty() { number::NONE.to_owned() } else { at.changes.join("; ") };
-        vec![shown(found, at.offset), validated, lost, gained, selections, words.word(at.verdict).to_owned(), changes]
+        let changes =
+            if at.changes.is_empty() { number::NONE.to_owned() } else { at.changes.join("; ") };
+        vec![
+            shown(found, at.offset),
+            validated,
+            lost,
+            gained,
+            selections,
+            words.word(at.verdict).to_owned(),
+            changes,
+        ]
     };
     let good = &words.good;
     let mut items = vec![
         Item::figure(
             "shares",
-            format!("Share of selections with the verdict '{good}' as a function of the measurement offset"),
-            format!("Share of selections with the verdict '{good}' over the offset; the numbers are in the table."),
+            format!(
+                "Share of selections with the verdict '{good}' as a function of the measurement offset"
+            ),
+            format!(
+                "Share of selections with the verdict '{good}' over the offset; the numbers are in the table."
+            ),
         ),
         Item::Table {
             table: Table {
@@ -105,14 +149,19 @@ fn shares(found: &SyncStudy, words: &VerdictWords) -> Vec<Item> {
         // What stands in brackets are the sections that are lost, which a table of their own lists.
         .filter_map(|at| {
             let reason = at.study.as_ref().err()?;
-            Some(format!("Offset {}: {}", shown(found, at.offset), reason.split(" (").next().unwrap_or(reason)))
+            Some(format!(
+                "Offset {}: {}",
+                shown(found, at.offset),
+                reason.split(" (").next().unwrap_or(reason)
+            ))
         })
         .collect();
     if !none.is_empty() {
         items.push(Item::text("Offsets at which no selection can be made:"));
         items.push(Item::List { entries: none });
     }
-    let rows: Vec<Vec<String>> = found.offsets.iter().flat_map(|at| lost(at, &shown(found, at.offset))).collect();
+    let rows: Vec<Vec<String>> =
+        found.offsets.iter().flat_map(|at| lost(at, &shown(found, at.offset))).collect();
     if !rows.is_empty() {
         items.push(Item::Table {
             table: Table {
@@ -136,22 +185,28 @@ fn lost(at: &AtOffset, offset: &str) -> Vec<Vec<String>> {
             None => rules.push((rule(reason), vec![section], reason)),
         }
     }
-    rules.into_iter().map(|(_, sections, reason)| vec![offset.to_owned(), sections.join(", "), reason.to_owned()]).collect()
+    rules
+        .into_iter()
+        .map(|(_, sections, reason)| {
+            vec![offset.to_owned(), sections.join(", "), reason.to_owned()]
+        })
+        .collect()
 }
 
 fn one(found: &SyncStudy) -> Vec<Item> {
     let mut head = vec![Head::text("Quantity"), Head::short("Statistic")];
     head.extend(found.offsets.iter().map(|at| Head::number(&shown(found, at.offset))));
     let first = found.offsets.iter().find(|at| !at.selected.is_empty());
-    let rows = first.map_or(&[][..], |at| &at.selected).iter().enumerate().map(|(statistic, one)| {
-        let scope = if one.scope == "all" { String::new() } else { format!(", {}", one.scope) };
-        let mut row = vec![one.symbol.clone(), format!("{}{scope}", one.name)];
-        row.extend(found.offsets.iter().map(|at| {
-            let value = at.selected.get(statistic).and_then(|one| one.normalised);
-            value.map_or_else(|| number::NONE.to_owned(), |value| number::beside(value, 1.0, 2))
-        }));
-        row
-    });
+    let rows =
+        first.map_or(&[][..], |at| &at.selected).iter().enumerate().map(|(statistic, one)| {
+            let scope = if one.scope == "all" { String::new() } else { format!(", {}", one.scope) };
+            let mut row = vec![one.symbol.clone(), format!("{}{scope}", one.name)];
+            row.extend(found.offsets.iter().map(|at| {
+                let value = at.selected.get(statistic).and_then(|one| one.normalised);
+                value.map_or_else(|| number::NONE.to_owned(), |value| number::beside(value, 1.0, 2))
+            }));
+            row
+        });
     vec![
         Item::text(format!("One selection drawn at random: {}.", found.selection.join(", "))),
         Item::figure(
@@ -160,7 +215,11 @@ fn one(found: &SyncStudy) -> Vec<Item> {
             "Normalised statistics of one selection at every offset; the numbers are in the table.",
         ),
         Item::Table {
-            table: Table { caption: "Statistics of a single selection divided by their limits".into(), head, rows: rows.collect() },
+            table: Table {
+                caption: "Statistics of a single selection divided by their limits".into(),
+                head,
+                rows: rows.collect(),
+            },
         },
     ]
 }
@@ -172,7 +231,10 @@ fn estimates(found: &SyncStudy) -> Vec<Item> {
             one.section.clone(),
             one.zone.clone().unwrap_or_default(),
             number(one.shift),
-            one.low.map_or_else(|| number::NONE.to_owned(), |_| format!("{} to {}", number(one.low), number(one.high))),
+            one.low.map_or_else(
+                || number::NONE.to_owned(),
+                |_| format!("{} to {}", number(one.low), number(one.high)),
+            ),
             number(one.correlation),
         ]
     });
@@ -187,7 +249,10 @@ fn estimates(found: &SyncStudy) -> Vec<Item> {
         )),
         Item::Table {
             table: Table {
-                caption: format!("Offset to be added to the axis of the measurement, in {}", number::unit(&found.axis_unit)),
+                caption: format!(
+                    "Offset to be added to the axis of the measurement, in {}",
+                    number::unit(&found.axis_unit)
+                ),
                 head: vec![
                     Head::text("Section"),
                     Head::short("Zone"),

@@ -1,7 +1,9 @@
 //! All tables of a study as CSV, in full precision.
 
 use crate::report::tables::csv_file;
-use crate::result::study::{AtValue, Found, ParameterStudy, QuantitySpread, SelectionStudy, Study, SyncStudy};
+use crate::result::study::{
+    AtValue, Found, ParameterStudy, QuantitySpread, SelectionStudy, Study, SyncStudy,
+};
 
 type Row = Vec<String>;
 type Tables = Vec<(String, Vec<u8>)>;
@@ -46,17 +48,33 @@ const SPREAD: [&str; 20] = [
 ];
 
 fn spread(quantities: &[QuantitySpread]) -> Vec<Row> {
-    let statistics = quantities.iter().flat_map(|quantity| quantity.statistics.iter().map(move |statistic| (quantity, statistic)));
+    let statistics = quantities.iter().flat_map(|quantity| {
+        quantity.statistics.iter().map(move |statistic| (quantity, statistic))
+    });
     statistics
         .map(|(quantity, statistic)| {
-            let mut row = vec![quantity.id.clone(), statistic.name.clone(), statistic.scope.clone(), statistic.limit.to_string()];
+            let mut row = vec![
+                quantity.id.clone(),
+                statistic.name.clone(),
+                statistic.scope.clone(),
+                statistic.limit.to_string(),
+            ];
             row.push(number(statistic.overall));
             match &statistic.spread {
                 Some(spread) => {
-                    row.extend([spread.min, spread.q1, spread.median, spread.q3, spread.max].map(|value| value.to_string()));
-                    row.extend([spread.outliers.to_string(), spread.exact.to_string(), number(spread.within)]);
+                    row.extend(
+                        [spread.min, spread.q1, spread.median, spread.q3, spread.max]
+                            .map(|value| value.to_string()),
+                    );
+                    row.extend([
+                        spread.outliers.to_string(),
+                        spread.exact.to_string(),
+                        number(spread.within),
+                    ]);
                     let ends = (0..3).map(|at| spread.intervals.map(|all| all[at]));
-                    row.extend(ends.flat_map(|ends| [number(ends.map(|ends| ends.0)), number(ends.map(|ends| ends.1))]));
+                    row.extend(ends.flat_map(|ends| {
+                        [number(ends.map(|ends| ends.0)), number(ends.map(|ends| ends.1))]
+                    }));
                 }
                 None => row.extend((0..14).map(|_| String::new())),
             }
@@ -67,25 +85,54 @@ fn spread(quantities: &[QuantitySpread]) -> Vec<Row> {
 }
 
 fn sections(found: &SelectionStudy) -> Result<Tables, csv::Error> {
-    let importance =
-        found.sections.iter().map(|one| vec![one.section.clone(), one.zone.clone(), number(one.with), number(one.without)]).collect();
-    let failing =
-        found.quantities.iter().map(|quantity| vec![quantity.id.clone(), quantity.failing.to_string(), number(quantity.alone)]).collect();
+    let importance = found
+        .sections
+        .iter()
+        .map(|one| {
+            vec![one.section.clone(), one.zone.clone(), number(one.with), number(one.without)]
+        })
+        .collect();
+    let failing = found
+        .quantities
+        .iter()
+        .map(|quantity| {
+            vec![quantity.id.clone(), quantity.failing.to_string(), number(quantity.alone)]
+        })
+        .collect();
     let worst = found
         .worst
         .iter()
-        .map(|one| vec![one.quantity.clone(), one.title.clone(), one.scope.clone(), one.normalised.to_string(), one.sections.join(" ")])
+        .map(|one| {
+            vec![
+                one.quantity.clone(),
+                one.title.clone(),
+                one.scope.clone(),
+                one.normalised.to_string(),
+                one.sections.join(" "),
+            ]
+        })
         .collect();
-    let removal = found.removal.iter().flat_map(|removal| &removal.sets).map(|set| vec![set.len().to_string(), set.join(" ")]).collect();
+    let removal = found
+        .removal
+        .iter()
+        .flat_map(|removal| &removal.sets)
+        .map(|set| vec![set.len().to_string(), set.join(" ")])
+        .collect();
     let mut all = vec![
         csv_file("spread", &SPREAD, spread(&found.quantities))?,
-        csv_file("importance", &["section", "zone", "share validated with it", "share validated without it"], importance)?,
+        csv_file(
+            "importance",
+            &["section", "zone", "share validated with it", "share validated without it"],
+            importance,
+        )?,
         csv_file("failing", &["quantity", "share failing", "share failing alone"], failing)?,
         csv_file("worst", &["quantity", "statistic", "scope", "normalised", "sections"], worst)?,
         csv_file("removal", &["sections removed", "sections"], removal)?,
     ];
     if let Some(reduction) = &found.reduction {
-        let kept = reduction.kept.iter().flat_map(|(zone, kept)| kept.iter().map(move |section| vec![zone.clone(), section.clone()]));
+        let kept = reduction.kept.iter().flat_map(|(zone, kept)| {
+            kept.iter().map(move |section| vec![zone.clone(), section.clone()])
+        });
         all.push(csv_file("kept", &["zone", "section"], kept.collect())?);
     }
     Ok(all)
@@ -100,13 +147,33 @@ fn sync(found: &SyncStudy) -> Result<Tables, csv::Error> {
             Err(reason) => (String::new(), reason.clone()),
         };
         let flips = at.flips.as_ref().ok();
-        let (lost, gained) = (number(flips.map(|flips| flips.lost)), number(flips.map(|flips| flips.gained)));
-        offsets.push(vec![offset.clone(), share, lost, gained, at.verdict.in_words().to_owned(), at.changes.join("; "), reason]);
+        let (lost, gained) =
+            (number(flips.map(|flips| flips.lost)), number(flips.map(|flips| flips.gained)));
+        offsets.push(vec![
+            offset.clone(),
+            share,
+            lost,
+            gained,
+            at.verdict.in_words().to_owned(),
+            at.changes.join("; "),
+            reason,
+        ]);
         if let Ok(study) = &at.study {
-            all.extend(spread(&study.quantities).into_iter().map(|row| [vec![offset.clone()], row].concat()));
+            all.extend(
+                spread(&study.quantities)
+                    .into_iter()
+                    .map(|row| [vec![offset.clone()], row].concat()),
+            );
         }
         one.extend(at.selected.iter().map(|one| {
-            vec![offset.clone(), one.id.clone(), one.name.clone(), one.scope.clone(), number(one.normalised), one.holds.to_string()]
+            vec![
+                offset.clone(),
+                one.id.clone(),
+                one.name.clone(),
+                one.scope.clone(),
+                number(one.normalised),
+                one.holds.to_string(),
+            ]
         }));
     }
     let estimates = found
@@ -134,8 +201,16 @@ fn sync(found: &SyncStudy) -> Result<Tables, csv::Error> {
             offsets,
         )?,
         csv_file("spread", &head, all)?,
-        csv_file("one_selection", &["offset", "quantity", "statistic", "scope", "normalised", "holds"], one)?,
-        csv_file("estimates", &["section", "zone", "offset", "low 95 %", "high 95 %", "correlation"], estimates)?,
+        csv_file(
+            "one_selection",
+            &["offset", "quantity", "statistic", "scope", "normalised", "holds"],
+            one,
+        )?,
+        csv_file(
+            "estimates",
+            &["section", "zone", "offset", "low 95 %", "high 95 %", "correlation"],
+            estimates,
+        )?,
     ])
 }
 
@@ -160,10 +235,23 @@ fn parameters(found: &ParameterStudy) -> Result<Tables, csv::Error> {
     Ok(vec![
         csv_file(
             "parameters",
-            &["parameter", "value", "as it is", "verdict", "largest statistic", "normalised", "share validated", "reason"],
+            &[
+                "parameter",
+                "value",
+                "as it is",
+                "verdict",
+                "largest statistic",
+                "normalised",
+                "share validated",
+                "reason",
+            ],
             values,
         )?,
-        csv_file("statistics", &["parameter", "value", "quantity", "statistic", "scope", "normalised", "holds"], statistics)?,
+        csv_file(
+            "statistics",
+            &["parameter", "value", "quantity", "statistic", "scope", "normalised", "holds"],
+            statistics,
+        )?,
     ])
 }
 

@@ -6,7 +6,8 @@ use typst_pdf::Timestamp;
 /// The date of issue, `2026-03-31`, at 00:00. `None` if the text is not a date.
 pub(super) fn issued(text: &str) -> Option<Timestamp> {
     let mut parts = text.split('-');
-    let (year, month, day) = (parts.next()?.parse().ok()?, parts.next()?.parse().ok()?, parts.next()?.parse().ok()?);
+    let (year, month, day) =
+        (parts.next()?.parse().ok()?, parts.next()?.parse().ok()?, parts.next()?.parse().ok()?);
     if parts.next().is_some() {
         return None;
     }
@@ -18,8 +19,8 @@ pub(super) fn placeholder() -> Option<Timestamp> {
     Datetime::from_ymd_hms(1, 1, 1, 0, 0, 0).map(Timestamp::new_utc)
 }
 
-/// The metadata entries that contain [`placeholder`]. They cannot occur in texts of the document, which are compressed, or escape `<` and
-/// parentheses.
+/// The metadata entries that contain [`placeholder`]. They cannot occur in texts of the document,
+/// which are compressed, or escape `<` and parentheses.
 const PLACEHOLDERS: [&[u8]; 5] = [
     b"/ModDate(D:00010101000000Z)",
     b"/CreationDate(D:00010101000000Z)",
@@ -28,11 +29,13 @@ const PLACEHOLDERS: [&[u8]; 5] = [
     b"<stEvt:when>0001-01-01T00:00:00+00:00</stEvt:when>",
 ];
 
-/// Overwrites the entries with blanks, which are allowed there, so that all offsets in the file remain valid.
+/// Overwrites the entries with blanks, which are allowed there, so that all offsets in the file
+/// remain valid.
 pub(super) fn remove_placeholder(bytes: &mut [u8]) {
     for entry in PLACEHOLDERS {
         let mut at = 0;
-        while let Some(found) = bytes[at..].windows(entry.len()).position(|window| window == entry) {
+        while let Some(found) = bytes[at..].windows(entry.len()).position(|window| window == entry)
+        {
             at += found;
             bytes[at..at + entry.len()].fill(b' ');
         }
@@ -57,6 +60,9 @@ mod tests {
         let length = bytes.len();
         remove_placeholder(&mut bytes);
         assert_eq!((bytes.len(), bytes[0], bytes[length - 1]), (length, b'a', b'z'));
-        assert_eq!(String::from_utf8_lossy(&bytes).split_whitespace().collect::<Vec<_>>(), ["a", "/ModDate(D:20260101000000Z)z"]);
+        assert_eq!(
+            String::from_utf8_lossy(&bytes).split_whitespace().collect::<Vec<_>>(),
+            ["a", "/ModDate(D:20260101000000Z)z"]
+        );
     }
 }

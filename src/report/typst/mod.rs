@@ -1,7 +1,8 @@
 //! The PDF report, typeset by Typst from `templates/`.
 //!
-//! User text is passed to the templates as data (`/data.json`), never as markup, so that it cannot be executed.
-//! The program reads nothing from outside: fonts and templates are embedded, and neither clock nor network is used.
+//! User text is passed to the templates as data (`/data.json`), never as markup, so that it cannot
+//! be executed. The program reads nothing from outside: fonts and templates are embedded, and
+//! neither clock nor network is used.
 
 mod date;
 mod text;
@@ -24,13 +25,18 @@ use world::Files;
 
 /// Typesets a report as PDF/A-3a and PDF/UA-1.
 ///
-/// `figures` are SVG texts by their names in the view ([`super::view::FigureView::name`]); a missing figure is omitted.
-/// The same arguments give the same bytes.
+/// `figures` are SVG texts by their names in the view ([`super::view::FigureView::name`]); a
+/// missing figure is omitted. The same arguments give the same bytes.
 ///
 /// # Errors
 ///
-/// `report-template`: a template cannot be filled, or Typst refuses it or a figure. `report-attachment`: a name is not a file name.
-pub fn typeset(data: &ReportData, figures: &[(String, String)], attachments: &[Attachment<'_>]) -> Result<Pdf, Problems> {
+/// `report-template`: a template cannot be filled, or Typst refuses it or a figure.
+/// `report-attachment`: a name is not a file name.
+pub fn typeset(
+    data: &ReportData,
+    figures: &[(String, String)],
+    attachments: &[Attachment<'_>],
+) -> Result<Pdf, Problems> {
     framed(filled(data)?, data, figures, attachments)
 }
 
@@ -39,15 +45,25 @@ pub fn typeset(data: &ReportData, figures: &[(String, String)], attachments: &[A
 /// # Errors
 ///
 /// As [`typeset`].
-pub fn typeset_study(data: &Document, figures: &[(String, String)], attachments: &[Attachment<'_>]) -> Result<Pdf, Problems> {
+pub fn typeset_study(
+    data: &Document,
+    figures: &[(String, String)],
+    attachments: &[Attachment<'_>],
+) -> Result<Pdf, Problems> {
     framed(world::STUDY.to_owned(), data, figures, attachments)
 }
 
 /// Typesets data with a frame and its parts.
-fn framed(frame: String, data: &impl Serialize, figures: &[(String, String)], attachments: &[Attachment<'_>]) -> Result<Pdf, Problems> {
+fn framed(
+    frame: String,
+    data: &impl Serialize,
+    figures: &[(String, String)],
+    attachments: &[Attachment<'_>],
+) -> Result<Pdf, Problems> {
     let printable = Printable::of(world::fonts());
     let mut files = Files::new(frame);
-    let mut value = serde_json::to_value(data).map_err(|error| one(Problem::error("report-template", error.to_string())))?;
+    let mut value = serde_json::to_value(data)
+        .map_err(|error| one(Problem::error("report-template", error.to_string())))?;
     printable.clean(&mut value);
     let mut drawn = serde_json::Map::new();
     for (at, (name, svg)) in figures.iter().enumerate() {
@@ -58,7 +74,10 @@ fn framed(frame: String, data: &impl Serialize, figures: &[(String, String)], at
     let mut attached = Vec::new();
     for attachment in attachments {
         if attachment.name.is_empty() || attachment.name.contains(['/', '\\']) {
-            return Err(one(Problem::error("report-attachment", format!("`{}` is not a file name", attachment.name))));
+            return Err(one(Problem::error(
+                "report-attachment",
+                format!("`{}` is not a file name", attachment.name),
+            )));
         }
         let path = format!("/attached/{}", attachment.name);
         files.add(&path, attachment.bytes.to_vec())?;
@@ -70,7 +89,8 @@ fn framed(frame: String, data: &impl Serialize, figures: &[(String, String)], at
     }
     files.add("/data.json", value.to_string().into_bytes())?;
     let ident = ident(&value, figures, attachments);
-    let issued = value.pointer("/campaign/report/issued").and_then(Value::as_str).and_then(date::issued);
+    let issued =
+        value.pointer("/campaign/report/issued").and_then(Value::as_str).and_then(date::issued);
     let pdf = compile(&files, ident, issued);
     // Typst's caches are global and would keep the data of all reports.
     typst::comemo::evict(0);
@@ -80,7 +100,9 @@ fn framed(frame: String, data: &impl Serialize, figures: &[(String, String)], at
 fn compile(files: &Files, ident: String, issued: Option<Timestamp>) -> Result<Pdf, Problems> {
     let compiled = typst::compile::<PagedDocument>(files);
     let warnings = Problems(compiled.warnings.iter().map(|found| problem(found, files)).collect());
-    let refuse = |errors: &[SourceDiagnostic]| Problems(errors.iter().map(|found| problem(found, files)).collect());
+    let refuse = |errors: &[SourceDiagnostic]| {
+        Problems(errors.iter().map(|found| problem(found, files)).collect())
+    };
     let document = compiled.output.map_err(|errors| refuse(&errors))?;
     let standards = PdfStandards::new(&[PdfStandard::A_3a, PdfStandard::Ua_1])
         .map_err(|error| one(Problem::error("report-template", error.message().to_string())))?;
@@ -108,7 +130,9 @@ fn filled(data: &ReportData) -> Result<String, Problems> {
         traces => !data.traces.is_empty(),
         domain => !data.domain.is_empty() || !data.application.is_empty(),
     };
-    environment.render_str(world::REPORT, context).map_err(|error| one(Problem::error("report-template", error.to_string())))
+    environment
+        .render_str(world::REPORT, context)
+        .map_err(|error| one(Problem::error("report-template", error.to_string())))
 }
 
 /// Document identifier: the hash of all inputs.
@@ -130,7 +154,8 @@ fn ident(value: &Value, figures: &[(String, String)], attachments: &[Attachment<
     hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// An error of Typst with its place in the template. Templates are part of the program, so no user text is underlined.
+/// An error of Typst with its place in the template. Templates are part of the program, so no user
+/// text is underlined.
 fn problem(found: &SourceDiagnostic, files: &Files) -> Problem {
     let mut says = found.message.to_string();
     if let Some(place) = files.place(found.span) {

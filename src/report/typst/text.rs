@@ -1,16 +1,19 @@
-//! Printable text: characters without a glyph in the fonts, or without a visible form, are printed as `⟨U+4E2D U+6587⟩`.
+//! Printable text: characters without a glyph in the fonts, or without a visible form, are printed
+//! as `⟨U+4E2D U+6587⟩`.
 //!
-//! PDF/A forbids text without glyphs. An assessor must also see the content of a name: a control character or a change of writing
-//! direction could make two names look alike.
+//! PDF/A forbids text without glyphs. An assessor must also see the content of a name: a control
+//! character or a change of writing direction could make two names look alike.
 
 use serde_json::Value;
 use typst::text::{Coverage, Font};
 
-/// Length from which a word may be broken anywhere; ordinary words, including German ones, are shorter.
+/// Length from which a word may be broken anywhere; ordinary words, including German ones, are
+/// shorter.
 const LONGEST_WORD: usize = 30;
 /// Number of letters between two break points of such a word.
 const BREAK_EVERY: usize = 8;
-/// Length from which a text without spaces is shortened in the middle, since it would not fit a table.
+/// Length from which a text without spaces is shortened in the middle, since it would not fit a
+/// table.
 const LONGEST_NAME: usize = 160;
 /// Zero-width space: a break point without a hyphen.
 const BREAK: char = '\u{200b}';
@@ -42,16 +45,23 @@ impl<'a> Printable<'a> {
         }
     }
 
-    /// Makes the texts of an SVG printable; its markup is ASCII and unchanged. Characters without a glyph are replaced by a box, since a
-    /// drawing has space for one letter only; the tables spell them out.
+    /// Makes the texts of an SVG printable; its markup is ASCII and unchanged. Characters without a
+    /// glyph are replaced by a box, since a drawing has space for one letter only; the tables spell
+    /// them out.
     pub(super) fn svg(&self, svg: &str) -> String {
-        svg.chars().map(|c| if matches!(c, '\n' | '\r' | '\t') || self.has(c) { c } else { '□' }).collect()
+        svg.chars()
+            .map(|c| if matches!(c, '\n' | '\r' | '\t') || self.has(c) { c } else { '□' })
+            .collect()
     }
 
     fn visible(&self, text: &str) -> String {
         let mut shown = String::with_capacity(text.len());
         let mut spelling = false;
-        for c in text.replace("\r\n", " ").chars().map(|c| if matches!(c, '\n' | '\r' | '\t') { ' ' } else { c }) {
+        for c in text
+            .replace("\r\n", " ")
+            .chars()
+            .map(|c| if matches!(c, '\n' | '\r' | '\t') { ' ' } else { c })
+        {
             let has = self.has(c);
             if has && spelling {
                 shown.push('⟩');
@@ -59,7 +69,11 @@ impl<'a> Printable<'a> {
             if has {
                 shown.push(c);
             } else {
-                shown.push_str(&format!("{}U+{:04X}", if spelling { ' ' } else { '⟨' }, u32::from(c)));
+                shown.push_str(&format!(
+                    "{}U+{:04X}",
+                    if spelling { ' ' } else { '⟨' },
+                    u32::from(c)
+                ));
             }
             spelling = !has;
         }
@@ -69,7 +83,8 @@ impl<'a> Printable<'a> {
         shown
     }
 
-    /// Whether a character is printed as it is: a glyph in an embedded font, of a script written from left to right without ligatures.
+    /// Whether a character is printed as it is: a glyph in an embedded font, of a script written
+    /// from left to right without ligatures.
     fn has(&self, c: char) -> bool {
         let simple = matches!(c,
             ' '..='~' | '\u{a0}'..='\u{ac}' | '\u{ae}'..='\u{52f}'  // Latin, Greek, Cyrillic; not the soft hyphen
@@ -77,7 +92,9 @@ impl<'a> Printable<'a> {
             | '\u{2010}'..='\u{2027}' | '\u{202f}'..='\u{205e}'     // punctuation; not the invisible signs between
             | '\u{2070}'..='\u{2bff}'                               // raised digits, currency, arrows, mathematics, shapes
         );
-        simple && !matches!(c, '\u{2066}'..='\u{2069}') && self.fonts.iter().any(|coverage| coverage.contains(u32::from(c)))
+        simple
+            && !matches!(c, '\u{2066}'..='\u{2069}')
+            && self.fonts.iter().any(|coverage| coverage.contains(u32::from(c)))
     }
 
     /// Adds break points to long words, and shortens very long ones in the middle.
@@ -96,7 +113,12 @@ fn broken(word: &str) -> String {
     }
     let kept: Vec<char> = if letters.len() > LONGEST_NAME {
         let half = LONGEST_NAME / 2;
-        letters[..half].iter().chain(&['…']).chain(&letters[letters.len() - half..]).copied().collect()
+        letters[..half]
+            .iter()
+            .chain(&['…'])
+            .chain(&letters[letters.len() - half..])
+            .copied()
+            .collect()
     } else {
         letters
     };
@@ -111,7 +133,9 @@ fn broken(word: &str) -> String {
 }
 
 fn is_hash(value: &Value) -> bool {
-    value.as_str().is_some_and(|text| text.len() <= 64 && text.bytes().all(|byte| byte.is_ascii_hexdigit()))
+    value
+        .as_str()
+        .is_some_and(|text| text.len() <= 64 && text.bytes().all(|byte| byte.is_ascii_hexdigit()))
 }
 
 #[cfg(test)]
@@ -132,7 +156,10 @@ mod tests {
         assert_eq!(clean("中文 a"), "⟨U+4E2D U+6587⟩ a");
         assert_eq!(clean(&clean("中")), "⟨U+4E2D⟩");
         assert_eq!(clean("🚆"), "⟨U+1F686⟩");
-        assert_eq!(clean("a\u{202e}b\u{0} c\u{ad}d\u{feff}"), "a⟨U+202E⟩b⟨U+0000⟩ c⟨U+00AD⟩d⟨U+FEFF⟩");
+        assert_eq!(
+            clean("a\u{202e}b\u{0} c\u{ad}d\u{feff}"),
+            "a⟨U+202E⟩b⟨U+0000⟩ c⟨U+00AD⟩d⟨U+FEFF⟩"
+        );
         assert_eq!(clean("two\nlines\r\nthree\tfour"), "two lines three four");
     }
 

@@ -46,7 +46,8 @@ const FONTS: &[&[u8]] = &[
     include_bytes!("../../../templates/fonts/DejaVuSans.ttf"),
 ];
 
-static EMBEDDED_FONTS: LazyLock<Vec<Font>> = LazyLock::new(|| FONTS.iter().flat_map(|data| Font::iter(Bytes::new(*data))).collect());
+static EMBEDDED_FONTS: LazyLock<Vec<Font>> =
+    LazyLock::new(|| FONTS.iter().flat_map(|data| Font::iter(Bytes::new(*data))).collect());
 
 /// The embedded fonts.
 pub(super) fn fonts() -> &'static [Font] {
@@ -65,11 +66,15 @@ pub(super) struct Files {
 impl Files {
     pub(super) fn new(report: String) -> Self {
         let source = |(path, text): &(&str, &str)| Some(Source::new(id(path)?, (*text).to_owned()));
-        let templates = TEMPLATES.iter().filter_map(source).map(|source| (source.id(), source)).collect();
+        let templates =
+            TEMPLATES.iter().filter_map(source).map(|source| (source.id(), source)).collect();
         Self {
             standard: LazyHash::new(Library::default()),
             book: LazyHash::new(FontBook::from_fonts(fonts())),
-            main: id("/report.typ").map_or_else(|| Source::detached(report.clone()), |main| Source::new(main, report.clone())),
+            main: id("/report.typ").map_or_else(
+                || Source::detached(report.clone()),
+                |main| Source::new(main, report.clone()),
+            ),
             templates,
             files: IndexMap::new(),
         }
@@ -77,7 +82,9 @@ impl Files {
 
     /// Adds a file that templates can read under `path`.
     pub(super) fn add(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), Problems> {
-        let id = id(path).ok_or_else(|| Problems(vec![Problem::error("report-attachment", format!("`{path}` is not a path"))]))?;
+        let id = id(path).ok_or_else(|| {
+            Problems(vec![Problem::error("report-attachment", format!("`{path}` is not a path"))])
+        })?;
         self.files.insert(id, Bytes::new(bytes));
         Ok(())
     }

@@ -51,13 +51,20 @@ pub(super) fn views(found: &Certification) -> Vec<ApplicationView> {
 }
 
 fn view((at, result): (usize, &DomainResult)) -> ApplicationView {
-    let title = if result.scope == "all" { result.title.clone() } else { format!("{}: {}", result.title, result.scope) };
+    let title = if result.scope == "all" {
+        result.title.clone()
+    } else {
+        format!("{}: {}", result.title, result.scope)
+    };
     let outside = result.points.iter().filter(|point| point.inside == Some(false)).count();
     let corners = result.sections.iter().filter(|section| section.corner).count();
     let counted = match (&result.reason, result.points.len()) {
         (Some(reason), _) => format!("Nothing can be said of wanted operation here: {reason}."),
         (None, 0) => {
-            format!("{} sections span the domain, {corners} of them as corners; no operation is wanted here.", result.sections.len())
+            format!(
+                "{} sections span the domain, {corners} of them as corners; no operation is wanted here.",
+                result.sections.len()
+            )
         }
         (None, all) => format!(
             "{} sections span the domain, {corners} of them as corners. {outside} of {all} points of wanted operation lie outside.",
@@ -107,8 +114,14 @@ fn row(result: &DomainResult, nth: usize, point: &WantedPoint) -> PointRow {
         point: point.point.clone(),
         finding: Finding::new(point.inside, "inside", "outside", "not assessed"),
         values: point.values.iter().map(|value| number::significant(*value, VALUE)).collect(),
-        away: point.outside_by.as_ref().map_or_else(none, |all| all.iter().zip(&result.coordinates).map(by).collect()),
-        distance: point.distance.map_or_else(|| number::NONE.to_owned(), |distance| number::significant(distance, DISTANCE)),
+        away: point
+            .outside_by
+            .as_ref()
+            .map_or_else(none, |all| all.iter().zip(&result.coordinates).map(by).collect()),
+        distance: point.distance.map_or_else(
+            || number::NONE.to_owned(),
+            |distance| number::significant(distance, DISTANCE),
+        ),
         section: point.nearest_section.clone().unwrap_or_else(|| number::NONE.to_owned()),
     }
 }

@@ -52,10 +52,15 @@ pub(super) fn view(quantities: &[QuantityResult], work: Option<&str>) -> Option<
     let chapters = match open {
         0 => String::new(),
         1 => " The one that does not meet its limits has a chapter.".to_owned(),
-        open if open == full => format!(" The {open} that do not meet their limits have a chapter each."),
-        open => format!(" Of the {open} that do not meet their limits, the {full} with the largest ratios have a chapter each."),
+        open if open == full => {
+            format!(" The {open} that do not meet their limits have a chapter each.")
+        }
+        open => format!(
+            " Of the {open} that do not meet their limits, the {full} with the largest ratios have a chapter each."
+        ),
     };
-    let figures = matrices.iter().enumerate().flat_map(|(at, matrix)| figures(at, matrix)).collect();
+    let figures =
+        matrices.iter().enumerate().flat_map(|(at, matrix)| figures(at, matrix)).collect();
     Some(BriefView {
         sentence: format!(
             "{} quantities are more than are read one by one. The table has the mean of the values of each over the sections, and the smallest and the largest value; the diagrams have every value.{chapters} All values are in tables/values.csv.",
@@ -98,25 +103,42 @@ fn table(matrix: &Matrix<'_>, work: Option<&str>) -> BriefTable {
         let first = line.first();
         let single = matrix.columns == [""];
         BriefRow {
-            title: first.map_or_else(String::new, |first| if single { first.title.clone() } else { title(first) }),
+            title: first.map_or_else(String::new, |first| {
+                if single { first.title.clone() } else { title(first) }
+            }),
             filter: first.map_or_else(String::new, |first| first.filter.clone()),
-            source: first.and_then(|first| first.source.as_deref()).map(|source| with_work(source, work)),
-            cells: line.cells.iter().map(|cell| cell.map(|(_, quantity)| self::cell(quantity))).collect(),
+            source: first
+                .and_then(|first| first.source.as_deref())
+                .map(|source| with_work(source, work)),
+            cells: line
+                .cells
+                .iter()
+                .map(|cell| cell.map(|(_, quantity)| self::cell(quantity)))
+                .collect(),
         }
     };
-    BriefTable { columns: matrix.columns.iter().map(ToString::to_string).collect(), rows: matrix.lines.iter().map(row).collect() }
+    BriefTable {
+        columns: matrix.columns.iter().map(ToString::to_string).collect(),
+        rows: matrix.lines.iter().map(row).collect(),
+    }
 }
 
 fn cell(quantity: &QuantityResult) -> BriefCell {
     let values = || quantity.values.iter().map(|pair| pair.difference);
     let decimals = number::decimals_of(values(), 3);
-    let (low, high, sum) = values().fold((f64::INFINITY, f64::NEG_INFINITY, 0.0), |(low, high, sum), x| (low.min(x), high.max(x), sum + x));
+    let (low, high, sum) = values()
+        .fold((f64::INFINITY, f64::NEG_INFINITY, 0.0), |(low, high, sum), x| {
+            (low.min(x), high.max(x), sum + x)
+        });
     let count = quantity.values.len();
     let (mean, range) = if count == 0 {
         (number::NONE.to_owned(), quantity.reason.clone().unwrap_or_default())
     } else {
         let mean = number::fixed(sum / count as f64, decimals);
-        (number::with_unit(&mean, &quantity.unit), format!("{} to {}", number::fixed(low, decimals), number::fixed(high, decimals)))
+        (
+            number::with_unit(&mean, &quantity.unit),
+            format!("{} to {}", number::fixed(low, decimals), number::fixed(high, decimals)),
+        )
     };
     BriefCell { mean, range, holds: Finding::of_quantity(quantity) }
 }

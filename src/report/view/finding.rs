@@ -4,7 +4,8 @@ use serde::Serialize;
 
 use crate::result::{QuantityResult, StatisticResult};
 
-/// Result of a check or verdict as a word, a sign and a class for styling, so that it does not depend on colour alone.
+/// Result of a check or verdict as a word, a sign and a class for styling, so that it does not
+/// depend on colour alone.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Finding {
     /// `good`, `bad` or `open`.
@@ -26,7 +27,8 @@ impl Finding {
 
     /// Of a statistic: marginal if its interval contains the limit.
     pub(crate) fn of_statistic(statistic: Option<&StatisticResult>) -> Self {
-        Self::of(statistic.and_then(|one| one.holds)).marginal(statistic.is_some_and(|one| one.marginal))
+        Self::of(statistic.and_then(|one| one.holds))
+            .marginal(statistic.is_some_and(|one| one.marginal))
     }
 
     /// Of a quantity: marginal if one of its statistics is.
@@ -34,7 +36,9 @@ impl Finding {
         if quantity.decides_nothing() {
             return Self { class: "open", sign: "–", word: "no limit".into() };
         }
-        Self::of(quantity.holds).marginal(quantity.holds.is_some() && quantity.statistics.iter().any(|one| one.marginal))
+        Self::of(quantity.holds).marginal(
+            quantity.holds.is_some() && quantity.statistics.iter().any(|one| one.marginal),
+        )
     }
 
     pub(super) fn marginal(mut self, marginal: bool) -> Self {

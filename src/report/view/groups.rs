@@ -1,4 +1,5 @@
-//! Estimates by group: one row for each limit in the summary, one table for each limit with its groups.
+//! Estimates by group: one row for each limit in the summary, one table for each limit with its
+//! groups.
 
 use serde::Serialize;
 
@@ -63,25 +64,35 @@ fn row(quantity: &QuantityResult, limit: &OfLimit<'_>) -> EstimateRow {
     let decisive = limit.decisive();
     EstimateRow {
         limited: Limited {
-            holds: Finding::of(limit.holds()).marginal(limit.holds().is_some() && limit.results.iter().any(|one| one.marginal)),
+            holds: Finding::of(limit.holds())
+                .marginal(limit.holds().is_some() && limit.results.iter().any(|one| one.marginal)),
             reason: limit.reason().map(str::to_owned),
             ..summary::limited(quantity, decisive)
         },
         estimate: number::formula(&decisive.title),
         holding: limit.holding(),
-        place: if decisive.value.is_some() { decisive.scope.clone() } else { number::NONE.to_owned() },
+        place: if decisive.value.is_some() {
+            decisive.scope.clone()
+        } else {
+            number::NONE.to_owned()
+        },
     }
 }
 
 /// A table for each condensed limit that has several groups.
 pub(super) fn tables(quantity: &QuantityResult) -> Vec<GroupTable> {
-    estimates::condensed(quantity).iter().filter(|limit| limit.by_group()).map(|limit| table(quantity, limit)).collect()
+    estimates::condensed(quantity)
+        .iter()
+        .filter(|limit| limit.by_group())
+        .map(|limit| table(quantity, limit))
+        .collect()
 }
 
 fn table(quantity: &QuantityResult, limit: &OfLimit<'_>) -> GroupTable {
     let first = limit.results[0];
     let keys = heads(limit);
-    let decimals = number::decimals(&quantity.unit, limit.results.iter().filter_map(|one| one.sample.mean));
+    let decimals =
+        number::decimals(&quantity.unit, limit.results.iter().filter_map(|one| one.sample.mean));
     let row = |one: &&StatisticResult| {
         let own = summary::decimals(one);
         GroupRow {
@@ -113,7 +124,8 @@ const GROUP: &str = "group";
 
 /// What tells the groups of a limit apart.
 fn heads(limit: &OfLimit<'_>) -> Vec<String> {
-    let heads = |one: &StatisticResult| keys(one).into_iter().map(|(key, _)| key).collect::<Vec<_>>();
+    let heads =
+        |one: &StatisticResult| keys(one).into_iter().map(|(key, _)| key).collect::<Vec<_>>();
     let first = heads(limit.results[0]);
     let alike = !first.is_empty() && limit.results.iter().all(|one| heads(one) == first);
     if alike { first } else { vec![GROUP.into()] }

@@ -1,4 +1,5 @@
-//! Identification of the report: the items that an assessor expects; missing ones are listed as not stated.
+//! Identification of the report: the items that an assessor expects; missing ones are listed as not
+//! stated.
 
 use serde::Serialize;
 
@@ -50,9 +51,16 @@ pub(super) fn head(items: &[ReportItem]) -> ReportHead {
     };
     let item = |path: &&[&str]| {
         let found = items.iter().find(|item| item.path == *path)?;
-        Some(Fact { name: found.title.clone(), value: found.value.clone().unwrap_or_else(|| NOT_STATED.to_owned()) })
+        Some(Fact {
+            name: found.title.clone(),
+            value: found.value.clone().unwrap_or_else(|| NOT_STATED.to_owned()),
+        })
     };
-    ReportHead { line, issued: stated(items, &["dates", "issue"]).map(str::to_owned), cover: COVER.iter().filter_map(item).collect() }
+    ReportHead {
+        line,
+        issued: stated(items, &["dates", "issue"]).map(str::to_owned),
+        cover: COVER.iter().filter_map(item).collect(),
+    }
 }
 
 /// The checklist: items stated by the campaign, and items known to the program.
@@ -65,7 +73,10 @@ pub(super) fn checklist(found: &Certification) -> Vec<IdentityRow> {
     };
     let protocol = &found.protocol;
     let method = match &protocol.edition {
-        Some(edition) => format!("{} ({edition}); protocol “{}”, printed in this report", protocol.title, protocol.name),
+        Some(edition) => format!(
+            "{} ({edition}); protocol “{}”, printed in this report",
+            protocol.title, protocol.name
+        ),
         None => format!("{}; protocol “{}”, printed in this report", protocol.title, protocol.name),
     };
     let mut rows = vec![row("7.8.2.1 a)", "Title", &super::title(found))];
@@ -78,7 +89,11 @@ pub(super) fn checklist(found: &Certification) -> Vec<IdentityRow> {
     rows.extend([
         row("7.8.2.1 f)", "Method", &method),
         row("7.8.2.1 n)", "Deviations from the method", &deviations(found)),
-        row("7.8.2.1 l)", "Scope of the results", "The results relate only to the test item and to the records listed under Provenance."),
+        row(
+            "7.8.2.1 l)",
+            "Scope of the results",
+            "The results relate only to the test item and to the records listed under Provenance.",
+        ),
         row("7.8.3.1 b)", "Statement of conformity", super::wording::sentence(found)),
     ]);
     rows
@@ -95,7 +110,9 @@ fn deviations(found: &Certification) -> String {
         .parameters
         .iter()
         .filter(|parameter| parameter.value != parameter.default)
-        .map(|parameter| format!("{} = {} (default {})", parameter.name, parameter.value, parameter.default))
+        .map(|parameter| {
+            format!("{} = {} (default {})", parameter.name, parameter.value, parameter.default)
+        })
         .collect();
     let mut parts = Vec::new();
     match protocol.deviations.len() {
@@ -106,7 +123,11 @@ fn deviations(found: &Certification) -> String {
     if !changed.is_empty() {
         parts.push(format!("parameters changed: {}", changed.join(", ")));
     }
-    if parts.is_empty() { "None from the protocol.".to_owned() } else { format!("{}; see chapter Protocol.", parts.join("; ")) }
+    if parts.is_empty() {
+        "None from the protocol.".to_owned()
+    } else {
+        format!("{}; see chapter Protocol.", parts.join("; "))
+    }
 }
 
 #[cfg(test)]
@@ -120,7 +141,9 @@ mod tests {
 
     #[test]
     fn the_head_says_what_is_stated_and_no_more() {
-        let line = |number, revision| head(&[item(&["number"], number), item(&["revision"], revision)]).line;
+        let line = |number, revision| {
+            head(&[item(&["number"], number), item(&["revision"], revision)]).line
+        };
         assert_eq!(line(Some("7"), Some("B")), "Report 7, revision B");
         assert_eq!(line(Some("7"), None), "Report 7");
         assert_eq!(line(None, None), "");

@@ -1,7 +1,8 @@
-//! The result of a certification, ready to print: numbers rounded, lists sorted, sentences formulated.
+//! The result of a certification, ready to print: numbers rounded, lists sorted, sentences
+//! formulated.
 //!
-//! PDF and HTML are filled from the same [`ReportData`]; the templates do not calculate. Names and texts of users are passed on
-//! unchanged: escaping is the task of the template.
+//! PDF and HTML are filled from the same [`ReportData`]; the templates do not calculate. Names and
+//! texts of users are passed on unchanged: escaping is the task of the template.
 
 pub mod application;
 mod brief;
@@ -26,7 +27,9 @@ use serde::Serialize;
 use crate::report::brief::in_full;
 use crate::report::sides::{self, capital};
 use crate::report::{estimates, findings, number};
-use crate::result::{CampaignInfo, CampaignMember, Certification, DataItem, Kind, QuantityResult, Trace, Verdict};
+use crate::result::{
+    CampaignInfo, CampaignMember, Certification, DataItem, Kind, QuantityResult, Trace, Verdict,
+};
 
 pub use brief::{BriefCell, BriefRow, BriefTable, BriefView};
 pub use finding::Finding;
@@ -50,7 +53,8 @@ const REASONS_ON_COVER: usize = 8;
 /// All data of a report.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReportData {
-    /// Title of the document: `Validation report: <campaign>`, or of what else the protocol is about.
+    /// Title of the document: `Validation report: <campaign>`, or of what else the protocol is
+    /// about.
     pub title: String,
     /// Program and version that wrote the report.
     pub program: String,
@@ -83,7 +87,8 @@ pub struct ReportData {
     pub key_facts: Vec<Fact>,
     pub campaign: CampaignView,
     pub protocol: ProtocolView,
-    /// Quantities judged by mean and standard deviation over all pairs, one row each, as in EN 14363.
+    /// Quantities judged by mean and standard deviation over all pairs, one row each, as in EN
+    /// 14363.
     pub summary: Vec<SummaryRow>,
     /// All other statistics, one row each.
     pub further: Vec<FurtherRow>,
@@ -123,7 +128,8 @@ pub struct Fact {
 /// A figure: its name, its caption, and a text alternative.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct FigureView {
-    /// `overview`, `domain`, `application-<index of the domain>`, `graph`, `pairs-<index of the quantity>`, `trace-<index of the trace>`; indices from 0.
+    /// `overview`, `domain`, `application-<index of the domain>`, `graph`, `pairs-<index of the
+    /// quantity>`, `trace-<index of the trace>`; indices from 0.
     pub name: String,
     pub caption: String,
     pub alt: String,
@@ -181,7 +187,8 @@ pub fn view(found: &Certification) -> ReportData {
     };
     let work = found.protocol.source.as_deref();
     let with_chapter = in_full(&found.quantities).into_iter();
-    let quantities: Vec<QuantityView> = with_chapter.map(|at| quantity::view(at, &found.quantities[at], work)).collect();
+    let quantities: Vec<QuantityView> =
+        with_chapter.map(|at| quantity::view(at, &found.quantities[at], work)).collect();
     let (summary, further) = summary::tables(&found.quantities);
     let reasons = verdicts::reasons(found);
     ReportData {
@@ -240,8 +247,13 @@ fn title(found: &Certification) -> String {
 
 /// Replaces the id of a quantity at the start of a sentence by its symbol.
 fn in_symbols(reason: &str, found: &Certification) -> String {
-    let of = reason.split_once(": ").and_then(|(id, says)| Some((found.quantities.iter().find(|quantity| quantity.id == id)?, says)));
-    of.map_or_else(|| reason.to_owned(), |(quantity, says)| format!("{}: {says}", symbol(&quantity.symbol)))
+    let of = reason.split_once(": ").and_then(|(id, says)| {
+        Some((found.quantities.iter().find(|quantity| quantity.id == id)?, says))
+    });
+    of.map_or_else(
+        || reason.to_owned(),
+        |(quantity, says)| format!("{}: {says}", symbol(&quantity.symbol)),
+    )
 }
 
 fn more_reasons(count: usize) -> Option<String> {
@@ -250,7 +262,8 @@ fn more_reasons(count: usize) -> Option<String> {
 
 fn key_facts(found: &Certification) -> Vec<Fact> {
     let used = found.sections.iter().filter(|section| section.used).count();
-    let deciding: Vec<&QuantityResult> = found.quantities.iter().filter(|quantity| !quantity.decides_nothing()).collect();
+    let deciding: Vec<&QuantityResult> =
+        found.quantities.iter().filter(|quantity| !quantity.decides_nothing()).collect();
     let holding = deciding.iter().filter(|quantity| quantity.holds == Some(true)).count();
     let failing = deciding.iter().filter(|quantity| quantity.holds == Some(false)).count();
     let open = deciding.len() - holding - failing;
@@ -283,22 +296,31 @@ fn key_facts(found: &Certification) -> Vec<Fact> {
     let wanted = || found.application.iter().flat_map(|domain| &domain.points);
     if wanted().next().is_some() {
         let inside = wanted().filter(|point| point.inside == Some(true)).count();
-        facts.push(fact("Wanted operation", format!("{inside} of {} points inside", wanted().count())));
+        facts.push(fact(
+            "Wanted operation",
+            format!("{inside} of {} points inside", wanted().count()),
+        ));
     }
     if !found.zones.is_empty() {
         let filled = found.zones.iter().filter(|zone| zone.holds).count();
-        facts.push(fact("Test zones", format!("{filled} of {} with enough sections", found.zones.len())));
+        facts.push(fact(
+            "Test zones",
+            format!("{filled} of {} with enough sections", found.zones.len()),
+        ));
     }
     facts
 }
 
 /// First words of a place inside a document.
-const PLACES: [&str; 10] = ["Table", "Section", "Clause", "Annex", "Chapter", "Figure", "Equation", "Page", "p.", "§"];
+const PLACES: [&str; 10] =
+    ["Table", "Section", "Clause", "Annex", "Chapter", "Figure", "Equation", "Page", "p.", "§"];
 
 /// Whether a text is only a place inside a document: `Table 1, footnote`.
 fn is_place(text: &str) -> bool {
     PLACES.iter().any(|word| {
-        text.strip_prefix(word).is_some_and(|rest| rest.trim_start().starts_with(|c: char| c.is_ascii_digit() || c.is_ascii_uppercase()))
+        text.strip_prefix(word).is_some_and(|rest| {
+            rest.trim_start().starts_with(|c: char| c.is_ascii_digit() || c.is_ascii_uppercase())
+        })
     })
 }
 
@@ -306,7 +328,8 @@ fn is_place(text: &str) -> bool {
 fn with_work(source: &str, work: Option<&str>) -> String {
     let Some(work) = work.filter(|_| is_place(source)) else { return source.to_owned() };
     // The protocol may itself name a place of the document.
-    let whole = work.rsplit_once(", ").filter(|(_, last)| is_place(last)).map_or(work, |(whole, _)| whole);
+    let whole =
+        work.rsplit_once(", ").filter(|(_, last)| is_place(last)).map_or(work, |(whole, _)| whole);
     format!("{whole}, {source}")
 }
 
@@ -342,13 +365,27 @@ fn fact(name: &str, value: String) -> Fact {
 /// The campaign as printed.
 pub fn campaign(campaign: &CampaignInfo) -> CampaignView {
     let of = |used: bool| {
-        let items: Vec<&DataItem> = campaign.vehicle.iter().filter(|item| item.used == used).collect();
-        common(&items, campaign.vehicle.iter().filter_map(|item| item.of.as_deref()).collect::<IndexSet<_>>().len())
+        let items: Vec<&DataItem> =
+            campaign.vehicle.iter().filter(|item| item.used == used).collect();
+        common(
+            &items,
+            campaign
+                .vehicle
+                .iter()
+                .filter_map(|item| item.of.as_deref())
+                .collect::<IndexSet<_>>()
+                .len(),
+        )
     };
     CampaignView {
         name: campaign.name.clone(),
         report: identity::head(&campaign.report),
-        facts: campaign.members.iter().map(member_row).chain(campaign.facts.iter().map(data_row)).collect(),
+        facts: campaign
+            .members
+            .iter()
+            .map(member_row)
+            .chain(campaign.facts.iter().map(data_row))
+            .collect(),
         origin: campaign.origin.as_ref().map(|origin| format!("{}.", origin.says)),
         made: campaign.origin.iter().flat_map(|origin| &origin.imported).map(made::view).collect(),
         vehicle_used: of(true),
@@ -356,7 +393,11 @@ pub fn campaign(campaign: &CampaignInfo) -> CampaignView {
         files: campaign
             .files
             .iter()
-            .map(|file| FileView { path: file.path.clone(), sha256: file.sha256.clone(), bytes: number::count(file.bytes) })
+            .map(|file| FileView {
+                path: file.path.clone(),
+                sha256: file.sha256.clone(),
+                bytes: number::count(file.bytes),
+            })
             .collect(),
         bytes: number::count(campaign.files.iter().map(|file| file.bytes).sum()),
     }
@@ -365,8 +406,17 @@ pub fn campaign(campaign: &CampaignInfo) -> CampaignView {
 /// One of several campaigns.
 fn member_row(member: &CampaignMember) -> DataRow {
     let sections = format!("{} sections", member.sections);
-    let value = if member.name == member.short_name { sections } else { format!("{}; {sections}", member.name) };
-    DataRow { name: format!("Campaign {}", member.short_name), value, unit: String::new(), numeric: false }
+    let value = if member.name == member.short_name {
+        sections
+    } else {
+        format!("{}; {sections}", member.name)
+    };
+    DataRow {
+        name: format!("Campaign {}", member.short_name),
+        value,
+        unit: String::new(),
+        numeric: false,
+    }
 }
 
 /// What several vehicles have alike is one row, what differs a row for each, together.
@@ -377,7 +427,10 @@ fn common(items: &[&DataItem], vehicles: usize) -> Vec<DataRow> {
         let same: Vec<&&DataItem> = items.iter().filter(|other| other.name == item.name).collect();
         let alike = item.of.is_none()
             || same.len() == vehicles
-                && same.iter().all(|other| (&other.value, &other.unit, other.unit_assumed) == (&item.value, &item.unit, item.unit_assumed));
+                && same.iter().all(|other| {
+                    (&other.value, &other.unit, other.unit_assumed)
+                        == (&item.value, &item.unit, item.unit_assumed)
+                });
         if alike {
             rows.push(data_row(&DataItem { of: None, ..(*item).clone() }));
         } else {
@@ -389,9 +442,13 @@ fn common(items: &[&DataItem], vehicles: usize) -> Vec<DataRow> {
 
 fn data_row(item: &DataItem) -> DataRow {
     DataRow {
-        name: item.of.as_ref().map_or_else(|| item.name.clone(), |of| format!("{} ({of})", item.name)),
+        name: item
+            .of
+            .as_ref()
+            .map_or_else(|| item.name.clone(), |of| format!("{} ({of})", item.name)),
         value: number::in_text(&item.value),
-        unit: item.unit.as_deref().map(number::unit).unwrap_or_default() + if item.unit_assumed { " (unit assumed)" } else { "" },
+        unit: item.unit.as_deref().map(number::unit).unwrap_or_default()
+            + if item.unit_assumed { " (unit assumed)" } else { "" },
         numeric: number::is_number(&item.value),
     }
 }
@@ -399,7 +456,10 @@ fn data_row(item: &DataItem) -> DataRow {
 fn overview(found: &Certification) -> Option<FigureView> {
     let shown = found.quantities.iter().flat_map(estimates::representatives);
     let normalised: Vec<f64> = shown.filter_map(|statistic| statistic.normalised).collect();
-    let by_group = found.quantities.iter().any(|quantity| estimates::condensed(quantity).iter().any(estimates::OfLimit::by_group));
+    let by_group = found
+        .quantities
+        .iter()
+        .any(|quantity| estimates::condensed(quantity).iter().any(estimates::OfLimit::by_group));
     let beyond = normalised.iter().filter(|value| **value > 1.0).count();
     (!normalised.is_empty()).then(|| FigureView {
         name: "overview".into(),
@@ -419,7 +479,12 @@ fn overview(found: &Certification) -> Option<FigureView> {
 /// The curves of a trace in words.
 fn curves(trace: &Trace, found: &Certification) -> String {
     if !trace.others.is_empty() {
-        let names: Vec<&str> = trace.record.iter().chain(trace.others.iter().map(|(name, _)| name)).map(String::as_str).collect();
+        let names: Vec<&str> = trace
+            .record
+            .iter()
+            .chain(trace.others.iter().map(|(name, _)| name))
+            .map(String::as_str)
+            .collect();
         return format!("Records {}:", names.join(", "));
     }
     let (simulated, measured) = sides::of_trace(trace, found);
@@ -441,7 +506,12 @@ fn traces(found: &Certification) -> Vec<TraceView> {
             TraceView {
                 figure: FigureView {
                     name: format!("trace-{at}"),
-                    caption: format!("{} in section {}{zone}: {}", name(&trace.signal), name(&trace.section), trace.why),
+                    caption: format!(
+                        "{} in section {}{zone}: {}",
+                        name(&trace.signal),
+                        name(&trace.section),
+                        trace.why
+                    ),
                     alt: format!(
                         "{} {} [{}] over {} [{}], section {} from {} to {}.",
                         curves(trace, found),
@@ -454,7 +524,8 @@ fn traces(found: &Certification) -> Vec<TraceView> {
                         number::significant(trace.end, 6)
                     ),
                 },
-                quantity: quantity.map_or_else(|| trace.quantity.clone(), |quantity| quantity.title.clone()),
+                quantity: quantity
+                    .map_or_else(|| trace.quantity.clone(), |quantity| quantity.title.clone()),
                 section: name(&trace.section),
                 signal: name(&trace.signal),
                 why: trace.why.clone(),
@@ -473,7 +544,10 @@ mod tests {
         assert_eq!(with_work("Table 1", work), "A & B, A title, with a comma, Table 1");
         assert_eq!(with_work("Section 3.2", work), "A & B, A title, with a comma, Section 3.2");
         assert_eq!(with_work("Common practice", work), "Common practice");
-        assert_eq!((with_work("Table 1", None), with_work("Tableau", work)), ("Table 1".into(), "Tableau".into()));
+        assert_eq!(
+            (with_work("Table 1", None), with_work("Tableau", work)),
+            ("Table 1".into(), "Tableau".into())
+        );
         assert_eq!(with_work("Table 2", Some("ISO 1")), "ISO 1, Table 2");
     }
 

@@ -40,13 +40,17 @@ pub struct Term {
     pub meaning: String,
 }
 
-/// Comparisons with an explanation of their sign, of values called ONE and OTHER. Others are self-explanatory.
+/// Comparisons with an explanation of their sign, of values called ONE and OTHER. Others are
+/// self-explanatory.
 const COMPARISONS: [(&str, &str); 3] = [
     (
         "sign(OTHER) * (ONE - OTHER)",
         "Positive: the ONE is larger in the direction of the OTHER. A wrong sign of the ONE gives a large negative difference.",
     ),
-    ("|ONE| - |OTHER|", "Positive: the magnitude of the ONE is larger. The signs of both values are not compared."),
+    (
+        "|ONE| - |OTHER|",
+        "Positive: the magnitude of the ONE is larger. The signs of both values are not compared.",
+    ),
     ("ONE - OTHER", "Positive: the ONE is larger, with its sign."),
 ];
 
@@ -62,9 +66,11 @@ const VALUES: [([&str; 2], [&str; 2]); 6] = [
 
 /// Each comparison that quantities use, with its meaning.
 fn comparisons(found: &Certification) -> Vec<Term> {
-    let put = |text: &str, [one, other]: [&str; 2]| text.replace("ONE", one).replace("OTHER", other);
+    let put =
+        |text: &str, [one, other]: [&str; 2]| text.replace("ONE", one).replace("OTHER", other);
     let of_values = |(in_words, named)| {
-        let term = move |(words, meaning): (&str, &str)| (put(words, in_words), put(meaning, named));
+        let term =
+            move |(words, meaning): (&str, &str)| (put(words, in_words), put(meaning, named));
         COMPARISONS.into_iter().map(term)
     };
     let used = |words: &str| found.quantities.iter().any(|quantity| quantity.comparison == words);
@@ -74,18 +80,33 @@ fn comparisons(found: &Certification) -> Vec<Term> {
 
 /// Terms of a comparison of simulated with measured records.
 const COMPARED: [(&str, &str); 4] = [
-    ("Pair", "The simulated and the measured value of one quantity, in one section, for one signal."),
-    ("n", "Number of sites of the pairs: repeats and positions of one section are not independent of each other."),
+    (
+        "Pair",
+        "The simulated and the measured value of one quantity, in one section, for one signal.",
+    ),
+    (
+        "n",
+        "Number of sites of the pairs: repeats and positions of one section are not independent of each other.",
+    ),
     ("Mean", "Arithmetic mean of the differences of the pairs."),
-    ("Standard deviation", "Scatter of the differences about their mean. The divisor, n − 1 or n, is stated with it."),
+    (
+        "Standard deviation",
+        "Scatter of the differences about their mean. The divisor, n − 1 or n, is stated with it.",
+    ),
 ];
 
 /// Terms of an assessment.
 const ASSESSED: [(&str, &str); 4] = [
     ("Value", "The number of one record, in one section, for one signal."),
-    ("Values / n", "Number of values of a group, and of its independent units: sites, if the protocol does not say otherwise."),
+    (
+        "Values / n",
+        "Number of values of a group, and of its independent units: sites, if the protocol does not say otherwise.",
+    ),
     ("Mean, s", "Arithmetic mean and standard deviation (divisor n − 1) of the values of a group."),
-    ("Estimate", "What is compared with the limit: a statistic of the values of a group, or a value predicted from them."),
+    (
+        "Estimate",
+        "What is compared with the limit: a statistic of the values of a group, or a value predicted from them.",
+    ),
 ];
 
 /// Terms of a comparison of several records of one side.
@@ -98,34 +119,58 @@ const AMONG: [(&str, &str); 6] = [
         "Largest less smallest number and standard deviation (divisor n − 1): of the mean deviations of the records; of the spread, of the \
          deviations of all records in one section, for one signal.",
     ),
-    ("Rank", "By the root mean square of the deviations: 1 is nearest to all records. Equal ones have the same rank."),
+    (
+        "Rank",
+        "By the root mean square of the deviations: 1 is nearest to all records. Equal ones have the same rank.",
+    ),
     ("Values / n", "Number of values of a statistic, and of their independent sites."),
 ];
 
 /// Terms of a comparison of repeats with their originals.
 const REPEATED: [(&str, &str); 4] = [
-    ("Repeat, original", "A section that was measured again, and the section that it repeats: the number of each, for one signal."),
+    (
+        "Repeat, original",
+        "A section that was measured again, and the section that it repeats: the number of each, for one signal.",
+    ),
     ("Values / n", "Number of values of a statistic, and of their independent sites."),
     ("Mean", "Arithmetic mean of the values."),
-    ("Standard deviation", "Scatter of the values about their mean. The divisor, n − 1 or n, is stated with it."),
+    (
+        "Standard deviation",
+        "Scatter of the values about their mean. The divisor, n − 1 or n, is stated with it.",
+    ),
 ];
 
 /// Terms explained in every report.
 const WORDS: [(&str, &str); 4] = [
-    ("95 % interval", "Confidence interval of the statistic. The mean: Student's t; the standard deviation: chi-square."),
+    (
+        "95 % interval",
+        "Confidence interval of the statistic. The mean: Student's t; the standard deviation: chi-square.",
+    ),
     (
         "|Value| / limit",
         "Magnitude of the statistic divided by its limit, or the limit divided by it where the limit is a least value; the criterion is met \
          up to 1. Ratios above 1000 are not printed.",
     ),
-    ("p0.15, p99.85", "Value below which 0.15 % or 99.85 % of the samples of a section lie; other percentiles likewise."),
+    (
+        "p0.15, p99.85",
+        "Value below which 0.15 % or 99.85 % of the samples of a section lie; other percentiles likewise.",
+    ),
     ("rms", "Root of the mean of the squares of the samples."),
 ];
 
-/// Terms explained where a metric, an estimate or a limit uses them: what they are known by in its words.
+/// Terms explained where a metric, an estimate or a limit uses them: what they are known by in its
+/// words.
 const WHERE_USED: [(&str, &str, &str); 3] = [
-    ("misfit", "Misfit", "Sum of the squared differences of both signals, divided by the smaller of the sums of their squares."),
-    ("share where", "Share where …", "The part of the values of a group that satisfy the condition, from 0 to 1."),
+    (
+        "misfit",
+        "Misfit",
+        "Sum of the squared differences of both signals, divided by the smaller of the sums of their squares.",
+    ),
+    (
+        "share where",
+        "Share where …",
+        "The part of the values of a group that satisfy the condition, from 0 to 1.",
+    ),
     (
         "bootstrap",
         "By bootstrap",
@@ -136,21 +181,25 @@ const WHERE_USED: [(&str, &str, &str); 3] = [
 
 fn terms(found: &Certification) -> Vec<(&'static str, &'static str)> {
     let words = |quantity: &QuantityResult| {
-        let estimates = quantity.statistics.iter().flat_map(|one| [one.title.clone(), one.limit_text.clone()]);
+        let estimates =
+            quantity.statistics.iter().flat_map(|one| [one.title.clone(), one.limit_text.clone()]);
         let reported = quantity.reported.iter().map(|one| one.title.clone());
         estimates.chain(reported).chain([quantity.comparison.clone()]).collect::<Vec<String>>()
     };
     let words: Vec<String> = found.quantities.iter().flat_map(words).collect();
-    let special = WHERE_USED.iter().filter(|(part, ..)| words.iter().any(|text| text.contains(part)));
+    let special =
+        WHERE_USED.iter().filter(|(part, ..)| words.iter().any(|text| text.contains(part)));
     let some = |of: fn(&QuantityResult) -> bool| found.quantities.iter().any(of);
-    let compared = some(|quantity| quantity.from.is_none() && quantity.among.is_none() && !quantity.repeats);
+    let compared =
+        some(|quantity| quantity.from.is_none() && quantity.among.is_none() && !quantity.repeats);
     let kinds: [(bool, &[_]); 4] = [
         (compared, &COMPARED),
         (some(|quantity| quantity.from.is_some()), &ASSESSED),
         (some(|quantity| quantity.among.is_some()), &AMONG),
         (some(|quantity| quantity.repeats), &REPEATED),
     ];
-    let used = kinds.into_iter().filter(|(used, _)| *used).flat_map(|(_, terms)| terms).chain(&WORDS);
+    let used =
+        kinds.into_iter().filter(|(used, _)| *used).flat_map(|(_, terms)| terms).chain(&WORDS);
     let used = used.copied().chain(special.map(|(_, word, meaning)| (*word, *meaning)));
     // A word that two kinds explain stands once, as the first explains it.
     let mut all: Vec<(&str, &str)> = Vec::new();
@@ -163,7 +212,10 @@ fn terms(found: &Certification) -> Vec<(&'static str, &'static str)> {
 }
 
 pub(super) fn view(found: &Certification) -> NotationView {
-    let term = |(word, meaning): &(&str, &str)| Term { word: (*word).to_owned(), meaning: (*meaning).to_owned() };
+    let term = |(word, meaning): &(&str, &str)| Term {
+        word: (*word).to_owned(),
+        meaning: (*meaning).to_owned(),
+    };
     let finding = |holds, says: &str| (Finding::of(holds), says.to_owned());
     NotationView {
         channels: found
@@ -190,20 +242,23 @@ pub(super) fn view(found: &Certification) -> NotationView {
             })
             .collect(),
         comparisons: comparisons(found),
-        words: if found.quantities.is_empty() { Vec::new() } else { terms(found).iter().map(term).collect() },
+        words: if found.quantities.is_empty() {
+            Vec::new()
+        } else {
+            terms(found).iter().map(term).collect()
+        },
         findings: [
             finding(Some(true), "The acceptance criterion or requirement is met."),
             finding(Some(false), "It is not met."),
             finding(None, "It could not be assessed; the reason is stated."),
         ]
         .into_iter()
-        .chain(
-            found
-                .verdicts
-                .iter()
-                .any(|verdict| verdict.outcome == Outcome::Open)
-                .then(|| (super::verdicts::finding(Outcome::Open, ""), "A person decides it, whom the protocol names.".to_owned())),
-        )
+        .chain(found.verdicts.iter().any(|verdict| verdict.outcome == Outcome::Open).then(|| {
+            (
+                super::verdicts::finding(Outcome::Open, ""),
+                "A person decides it, whom the protocol names.".to_owned(),
+            )
+        }))
         .collect(),
     }
 }

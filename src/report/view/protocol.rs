@@ -97,12 +97,21 @@ fn source_file(file: &ProtocolFile) -> SourceFile {
     SourceFile {
         name: file.name.clone(),
         sha256: file.sha256.clone(),
-        lines: lines.map(|(at, text)| SourceLine { number: at + 1, text: text.replace('\t', "    ").trim_end().to_owned() }).collect(),
+        lines: lines
+            .map(|(at, text)| SourceLine {
+                number: at + 1,
+                text: text.replace('\t', "    ").trim_end().to_owned(),
+            })
+            .collect(),
     }
 }
 
 fn deviation(deviation: &Deviation) -> DeviationView {
-    DeviationView { rule: deviation.rule.clone(), before: deviation.before.clone(), after: deviation.after.clone() }
+    DeviationView {
+        rule: deviation.rule.clone(),
+        before: deviation.before.clone(),
+        after: deviation.after.clone(),
+    }
 }
 
 fn parameter(parameter: &ParameterInfo) -> ParameterView {

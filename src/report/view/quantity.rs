@@ -44,7 +44,8 @@ pub struct QuantityView {
     pub rows: &'static str,
     /// Whether values are those of one record, assessed by themselves.
     pub assessed: bool,
-    /// Names of the two values of a pair: simulated and measured, a record and what is central of all, or a repeat and its original.
+    /// Names of the two values of a pair: simulated and measured, a record and what is central of
+    /// all, or a repeat and its original.
     pub sides: [String; 2],
     /// The same in the narrow heads of tables.
     pub short_sides: [&'static str; 2],
@@ -119,14 +120,19 @@ pub struct ValueRow {
     /// Empty where there is one record of each side.
     pub record: String,
     pub zone: String,
-    /// For every signal: simulated, measured, difference; without sides, only the value of the metric.
+    /// For every signal: simulated, measured, difference; without sides, only the value of the
+    /// metric.
     pub cells: Vec<Vec<String>>,
 }
 
 pub(super) fn view(at: usize, quantity: &QuantityResult, work: Option<&str>) -> QuantityView {
     let decimals = number::decimals(
         &quantity.unit,
-        quantity.values.iter().flat_map(|pair| [Some(pair.difference), pair.simulated, pair.measured]).flatten(),
+        quantity
+            .values
+            .iter()
+            .flat_map(|pair| [Some(pair.difference), pair.simulated, pair.measured])
+            .flatten(),
     );
     let (worst, worst_against) = worst(quantity, decimals);
     let sides = Sides::of(quantity);
@@ -172,8 +178,11 @@ fn sides_apart(quantity: &QuantityResult) -> bool {
 
 /// Results that have no table of their own.
 fn stated(quantity: &QuantityResult) -> Vec<&StatisticResult> {
-    let by_group: Vec<_> = estimates::condensed(quantity).into_iter().filter(estimates::OfLimit::by_group).collect();
-    let among = |one: &StatisticResult| by_group.iter().any(|limit| limit.results.iter().any(|other| std::ptr::eq(*other, one)));
+    let by_group: Vec<_> =
+        estimates::condensed(quantity).into_iter().filter(estimates::OfLimit::by_group).collect();
+    let among = |one: &StatisticResult| {
+        by_group.iter().any(|limit| limit.results.iter().any(|other| std::ptr::eq(*other, one)))
+    };
     quantity.statistics.iter().filter(|one| !among(one)).collect()
 }
 
@@ -198,13 +207,16 @@ fn statistic(found: &StatisticResult, quantity: &QuantityResult) -> StatisticVie
 /// The pairs with the largest |difference|; equal ones in the order of the campaign.
 fn worst(quantity: &QuantityResult, decimals: usize) -> (Vec<WorstPair>, Option<String>) {
     // The limits of an assessed quantity differ from zone to zone.
-    let stated: &[StatisticResult] = if quantity.from.is_some() { &[] } else { &quantity.statistics };
+    let stated: &[StatisticResult] =
+        if quantity.from.is_some() { &[] } else { &quantity.statistics };
     let yardstick = stated
         .iter()
         .find(|statistic| statistic.name == "std")
         .or_else(|| stated.first())
         .filter(|statistic| statistic.unit == quantity.unit && statistic.divided_at.is_none())
-        .and_then(|statistic| statistic.limit.filter(|limit| *limit > 0.0).map(|limit| (statistic, limit)));
+        .and_then(|statistic| {
+            statistic.limit.filter(|limit| *limit > 0.0).map(|limit| (statistic, limit))
+        });
     let mut pairs: Vec<&PairValue> = quantity.values.iter().collect();
     pairs.sort_by(|a, b| b.difference.abs().total_cmp(&a.difference.abs()));
     let rows = pairs
@@ -225,12 +237,13 @@ fn worst(quantity: &QuantityResult, decimals: usize) -> (Vec<WorstPair>, Option<
     (rows, yardstick.map(|(statistic, _)| format!("limit of the {}", statistic.title)))
 }
 
-/// Sections and their records as rows, signals as columns, both in order of first occurrence. A position with several values of one
-/// record, which have a rule each, has several rows.
+/// Sections and their records as rows, signals as columns, both in order of first occurrence. A
+/// position with several values of one record, which have a rule each, has several rows.
 fn blocks(quantity: &QuantityResult, decimals: usize) -> Vec<ValueBlock> {
     let signals = first_seen(quantity.values.iter().map(|pair| pair.signal.as_str()));
     let width = if quantity.has_sides { SIGNALS_WITH_SIDES } else { SIGNALS_WITHOUT_SIDES };
-    let mut rows: IndexMap<(&str, Option<&str>, usize), HashMap<&str, &PairValue>> = IndexMap::new();
+    let mut rows: IndexMap<(&str, Option<&str>, usize), HashMap<&str, &PairValue>> =
+        IndexMap::new();
     let mut seen: HashMap<(&str, Option<&str>, &str), usize> = HashMap::new();
     for pair in &quantity.values {
         let (section, record) = (pair.section.as_str(), pair.record.as_deref());
@@ -239,9 +252,16 @@ fn blocks(quantity: &QuantityResult, decimals: usize) -> Vec<ValueBlock> {
         *nth += 1;
     }
     // Rows of one section stay together.
-    rows.sort_by_cached_key(|(section, ..), _| quantity.values.iter().position(|pair| pair.section == **section));
+    rows.sort_by_cached_key(|(section, ..), _| {
+        quantity.values.iter().position(|pair| pair.section == **section)
+    });
     let sections = |signal: &str| -> HashSet<&str> {
-        quantity.values.iter().filter(|pair| pair.signal == signal).map(|pair| pair.section.as_str()).collect()
+        quantity
+            .values
+            .iter()
+            .filter(|pair| pair.signal == signal)
+            .map(|pair| pair.section.as_str())
+            .collect()
     };
     // Signals without a common section are not of one table: half of it would be empty.
     signals
@@ -256,7 +276,12 @@ fn blocks(quantity: &QuantityResult, decimals: usize) -> Vec<ValueBlock> {
                     section: name(section),
                     record: record.map(name).unwrap_or_default(),
                     zone: cells.values().next().map(|pair| zone(pair)).unwrap_or_default(),
-                    cells: signals.iter().map(|signal| cell(cells.get(signal).copied(), quantity.has_sides, decimals)).collect(),
+                    cells: signals
+                        .iter()
+                        .map(|signal| {
+                            cell(cells.get(signal).copied(), quantity.has_sides, decimals)
+                        })
+                        .collect(),
                 })
                 .collect(),
         })
@@ -266,7 +291,8 @@ fn blocks(quantity: &QuantityResult, decimals: usize) -> Vec<ValueBlock> {
 fn cell(pair: Option<&PairValue>, has_sides: bool, decimals: usize) -> Vec<String> {
     let difference = number::optional(pair.map(|pair| pair.difference), decimals);
     if has_sides {
-        let side = |of: fn(&PairValue) -> Option<f64>| number::optional(pair.and_then(of), decimals);
+        let side =
+            |of: fn(&PairValue) -> Option<f64>| number::optional(pair.and_then(of), decimals);
         vec![side(|pair| pair.simulated), side(|pair| pair.measured), difference]
     } else {
         vec![difference]
@@ -288,7 +314,15 @@ fn pairs(at: usize, quantity: &QuantityResult) -> FigureView {
     let shown = estimates::representatives(quantity);
     let found: Vec<String> = shown
         .into_iter()
-        .map(|one| format!("{} ({}) {}, limit {}", one.title, one.scope, summary::value(Some(one)), summary::limit(Some(one))))
+        .map(|one| {
+            format!(
+                "{} ({}) {}, limit {}",
+                one.title,
+                one.scope,
+                summary::value(Some(one)),
+                summary::limit(Some(one))
+            )
+        })
         .collect();
     let what = match (quantity.has_sides, &quantity.from) {
         (true, _) => format!("{}, and their differences", Sides::of(quantity).against()),
@@ -298,7 +332,11 @@ fn pairs(at: usize, quantity: &QuantityResult) -> FigureView {
     let rows = if sides_apart(quantity) { "pairs" } else { "values" };
     FigureView {
         name: format!("pairs-{at}"),
-        caption: format!("{}: {what}, {} {rows}", super::symbol(&quantity.symbol), number::count(quantity.values.len() as u64)),
+        caption: format!(
+            "{}: {what}, {} {rows}",
+            super::symbol(&quantity.symbol),
+            number::count(quantity.values.len() as u64)
+        ),
         alt: format!(
             "{}: {what} of {} {rows} in {}. {}.",
             quantity.title,
@@ -330,7 +368,11 @@ fn regressions(at: usize, quantity: &QuantityResult) -> Vec<FigureView> {
         let title = number::formula(&first.title);
         Some(FigureView {
             name: format!("regression-{at}-{nth}"),
-            caption: format!("{}: {title}, values over {}{some}", super::symbol(&quantity.symbol), regression.regressor),
+            caption: format!(
+                "{}: {title}, values over {}{some}",
+                super::symbol(&quantity.symbol),
+                regression.regressor
+            ),
             alt: format!(
                 "{}: values, regression{} and limit over {} for {} groups. The numbers are in the table of the estimate.",
                 quantity.title,
@@ -352,7 +394,10 @@ fn frequency(at: usize, quantity: &QuantityResult) -> FigureView {
     };
     FigureView {
         name: format!("frequency-{at}"),
-        caption: format!("{}: cumulative frequency of the values{by}, with the limits", super::symbol(&quantity.symbol)),
+        caption: format!(
+            "{}: cumulative frequency of the values{by}, with the limits",
+            super::symbol(&quantity.symbol)
+        ),
         alt: format!(
             "{}: cumulative frequency of {} values in {}{by}. The values are in the table of all values.",
             quantity.title,

@@ -54,11 +54,19 @@ fn column(one: &Reported) -> Column<'_> {
 }
 
 fn keys(one: &Reported) -> Vec<&str> {
-    if one.group.is_empty() { vec![GROUP] } else { one.group.iter().map(|(key, _)| key.as_str()).collect() }
+    if one.group.is_empty() {
+        vec![GROUP]
+    } else {
+        one.group.iter().map(|(key, _)| key.as_str()).collect()
+    }
 }
 
 fn members(one: &Reported) -> Vec<&str> {
-    if one.group.is_empty() { vec![&one.scope] } else { one.group.iter().map(|(_, member)| member.as_str()).collect() }
+    if one.group.is_empty() {
+        vec![&one.scope]
+    } else {
+        one.group.iter().map(|(_, member)| member.as_str()).collect()
+    }
 }
 
 fn table(keys: &[&str], columns: &[Column<'_>], all: &[&Reported]) -> ReportTable {
@@ -66,19 +74,34 @@ fn table(keys: &[&str], columns: &[Column<'_>], all: &[&Reported]) -> ReportTabl
     for one in all.iter().filter(|one| columns.contains(&column(one))) {
         rows.entry(members(one)).or_default().push(one);
     }
-    let of = |wanted: &Column<'_>| all.iter().filter(|one| column(one) == *wanted).filter_map(|one| one.value).collect::<Vec<_>>();
-    let decimals: Vec<usize> = columns.iter().map(|wanted| number::decimals(wanted.2, of(wanted))).collect();
+    let of = |wanted: &Column<'_>| {
+        all.iter()
+            .filter(|one| column(one) == *wanted)
+            .filter_map(|one| one.value)
+            .collect::<Vec<_>>()
+    };
+    let decimals: Vec<usize> =
+        columns.iter().map(|wanted| number::decimals(wanted.2, of(wanted))).collect();
     let cell = |cells: &[&Reported], (wanted, decimals): (&Column<'_>, &usize)| {
         let value = cells.iter().find(|one| column(one) == *wanted).and_then(|one| one.value);
         number::optional(value, *decimals)
     };
     let head = |(title, condition, unit): &Column<'_>| {
         let title = capital(&number::formula(title));
-        let title = condition.map_or_else(|| title.clone(), |condition| format!("{title}, {}", number::formula(condition)));
+        let title = condition.map_or_else(
+            || title.clone(),
+            |condition| format!("{title}, {}", number::formula(condition)),
+        );
         ColumnHead { title, unit: number::unit(unit), numeric: true }
     };
     let reason = |one: &&Reported| {
-        one.reason.as_ref().map(|reason| number::raised(&format!("{}, {}: {reason}", capital(&number::formula(&one.title)), one.scope)))
+        one.reason.as_ref().map(|reason| {
+            number::raised(&format!(
+                "{}, {}: {reason}",
+                capital(&number::formula(&one.title)),
+                one.scope
+            ))
+        })
     };
     ReportTable {
         keys: keys.iter().map(|key| capital(key)).collect(),

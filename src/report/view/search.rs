@@ -96,9 +96,11 @@ pub fn reduction(found: &Certification) -> Option<ReductionView> {
 }
 
 fn view(reduction: &Reduction) -> ReductionView {
-    let highest = |of: fn(&(String, f64, f64)) -> f64| reduction.scatter.iter().map(of).fold(0.0, f64::max);
+    let highest =
+        |of: fn(&(String, f64, f64)) -> f64| reduction.scatter.iter().map(of).fold(0.0, f64::max);
     let (all, kept) = (highest(|row| row.1), highest(|row| row.2));
-    let (left, used): (usize, usize) = (reduction.left_out.len(), reduction.kept.iter().map(|(_, kept)| kept.len()).sum());
+    let (left, used): (usize, usize) =
+        (reduction.left_out.len(), reduction.kept.iter().map(|(_, kept)| kept.len()).sum());
     ReductionView {
         sentence: format!(
             "{used} of {} sections were kept, at most {} of each group, so that the highest standard deviation divided by its limit stays \
@@ -111,12 +113,20 @@ fn view(reduction: &Reduction) -> ReductionView {
         groups: reduction
             .kept
             .iter()
-            .map(|(group, kept)| GroupRow { group: group.clone(), kept: kept.len().to_string(), sections: kept.join(", ") })
+            .map(|(group, kept)| GroupRow {
+                group: group.clone(),
+                kept: kept.len().to_string(),
+                sections: kept.join(", "),
+            })
             .collect(),
         scatter: reduction
             .scatter
             .iter()
-            .map(|(symbol, all, kept)| ScatterRow { symbol: symbol.clone(), all: number::fixed(*all, 3), kept: number::fixed(*kept, 3) })
+            .map(|(symbol, all, kept)| ScatterRow {
+                symbol: symbol.clone(),
+                all: number::fixed(*all, 3),
+                kept: number::fixed(*kept, 3),
+            })
             .collect(),
     }
 }

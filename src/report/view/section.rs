@@ -107,20 +107,23 @@ pub(super) fn zones(found: &Certification) -> Vec<ZoneView> {
 }
 
 pub(super) fn tables(found: &Certification) -> Vec<SectionTable> {
-    let mut zones: IndexSet<Option<&str>> = found.zones.iter().map(|zone| Some(zone.zone.as_str())).collect();
+    let mut zones: IndexSet<Option<&str>> =
+        found.zones.iter().map(|zone| Some(zone.zone.as_str())).collect();
     zones.extend(found.sections.iter().filter_map(|section| section.zone.as_deref()).map(Some));
     zones.insert(None);
     zones
         .into_iter()
         .filter_map(|zone| {
-            let sections: Vec<&SectionResult> = found.sections.iter().filter(|section| section.zone.as_deref() == zone).collect();
+            let sections: Vec<&SectionResult> =
+                found.sections.iter().filter(|section| section.zone.as_deref() == zone).collect();
             let known = found.zones.iter().find(|known| Some(known.zone.as_str()) == zone);
             (!sections.is_empty()).then(|| table(zone, known, &sections))
         })
         .collect()
 }
 
-/// Section data that were found have more digits than they are worth: of a number as long as this, three decimals are printed.
+/// Section data that were found have more digits than they are worth: of a number as long as this,
+/// three decimals are printed.
 fn short(text: String) -> String {
     /// Decimals from which on a number is not one that was written by hand.
     const MANY: usize = 5;
@@ -134,10 +137,22 @@ fn short(text: String) -> String {
     }
 }
 
-fn table(zone: Option<&str>, known: Option<&ZoneResult>, sections: &[&SectionResult]) -> SectionTable {
-    let names: IndexSet<&str> = sections.iter().flat_map(|section| &section.columns).map(|column| column.name.as_str()).collect();
+fn table(
+    zone: Option<&str>,
+    known: Option<&ZoneResult>,
+    sections: &[&SectionResult],
+) -> SectionTable {
+    let names: IndexSet<&str> = sections
+        .iter()
+        .flat_map(|section| &section.columns)
+        .map(|column| column.name.as_str())
+        .collect();
     let text = |section: &SectionResult, name: &str| {
-        section.columns.iter().find(|column| column.name == name).map(|column| column.value.trim().to_owned())
+        section
+            .columns
+            .iter()
+            .find(|column| column.name == name)
+            .map(|column| column.value.trim().to_owned())
     };
     let columns = names
         .iter()
@@ -163,7 +178,9 @@ fn table(zone: Option<&str>, known: Option<&ZoneResult>, sections: &[&SectionRes
     SectionTable {
         zone: zone.map(name),
         title: match (zone, known) {
-            (Some(zone), Some(known)) if !known.title.is_empty() && known.title != zone => format!("Zone {zone}: {}", known.title),
+            (Some(zone), Some(known)) if !known.title.is_empty() && known.title != zone => {
+                format!("Zone {zone}: {}", known.title)
+            }
             (Some(zone), _) => format!("Zone {zone}"),
             (None, _) => "Sections".to_owned(),
         },
@@ -180,9 +197,10 @@ fn table(zone: Option<&str>, known: Option<&ZoneResult>, sections: &[&SectionRes
                 values: names
                     .iter()
                     .map(|name| {
-                        text(section, name)
-                            .filter(|text| !text.is_empty())
-                            .map_or_else(|| number::NONE.to_owned(), |text| number::in_text(&short(text)))
+                        text(section, name).filter(|text| !text.is_empty()).map_or_else(
+                            || number::NONE.to_owned(),
+                            |text| number::in_text(&short(text)),
+                        )
                     })
                     .collect(),
                 used: Finding::new(Some(section.used), "used", "not used", ""),
@@ -197,7 +215,10 @@ fn checks(sections: &[&SectionResult]) -> Vec<CheckTable> {
     let mut names: Vec<(&str, &str)> = Vec::new();
     for check in sections.iter().flat_map(|section| &section.checks) {
         if !names.iter().any(|(name, _)| *name == check.name) {
-            names.push((&check.name, if check.title.is_empty() { &check.name } else { &check.title }));
+            names.push((
+                &check.name,
+                if check.title.is_empty() { &check.name } else { &check.title },
+            ));
         }
     }
     names
@@ -212,7 +233,10 @@ fn checks(sections: &[&SectionResult]) -> Vec<CheckTable> {
                         .iter()
                         .map(|(name, _)| {
                             let check = section.checks.iter().find(|check| check.name == *name)?;
-                            Some(CheckCell { holds: Finding::of(check.holds), says: number::formula(&check.says) })
+                            Some(CheckCell {
+                                holds: Finding::of(check.holds),
+                                says: number::formula(&check.says),
+                            })
                         })
                         .collect(),
                 })
@@ -223,20 +247,30 @@ fn checks(sections: &[&SectionResult]) -> Vec<CheckTable> {
 
 /// Ranges grouped by condition; scopes in order of occurrence.
 pub(super) fn domain(found: &Certification) -> Vec<DomainView> {
-    let names: IndexSet<(&str, &str)> = found.domain.iter().map(|range| (range.name.as_str(), range.unit.as_str())).collect();
+    let names: IndexSet<(&str, &str)> =
+        found.domain.iter().map(|range| (range.name.as_str(), range.unit.as_str())).collect();
     names
         .into_iter()
         .map(|(name, unit)| DomainView {
             name: name.to_owned(),
             unit: number::unit(unit),
-            rows: found.domain.iter().filter(|range| range.name == name && range.unit == unit).map(domain_row).collect(),
+            rows: found
+                .domain
+                .iter()
+                .filter(|range| range.name == name && range.unit == unit)
+                .map(domain_row)
+                .collect(),
         })
         .collect()
 }
 
 fn domain_row(range: &DomainRange) -> DomainRow {
     DomainRow {
-        scope: if range.scope == "all" { "all".to_owned() } else { format!("zone {}", range.scope.trim_start_matches("zone ")) },
+        scope: if range.scope == "all" {
+            "all".to_owned()
+        } else {
+            format!("zone {}", range.scope.trim_start_matches("zone "))
+        },
         low: number::significant(range.low, 6),
         high: number::significant(range.high, 6),
         count: range.count.to_string(),

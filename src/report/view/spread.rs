@@ -1,4 +1,5 @@
-//! How far several records of one side are apart, as tables: a column for each record, a block of rows for each class of sections.
+//! How far several records of one side are apart, as tables: a column for each record, a block of
+//! rows for each class of sections.
 
 use serde::Serialize;
 
@@ -36,7 +37,8 @@ pub struct SpreadRow {
     pub place: Option<String>,
     /// Cells are words, numbers otherwise.
     pub words: bool,
-    /// Between the records: largest less smallest, and standard deviation; empty where a row has none.
+    /// Between the records: largest less smallest, and standard deviation; empty where a row has
+    /// none.
     pub range: String,
     pub std: String,
 }
@@ -49,8 +51,18 @@ pub(super) fn tables(quantity: &QuantityResult) -> Vec<SpreadTable> {
     let table = |from: usize| SpreadTable {
         between,
         center: spread.center.clone(),
-        records: spread.classes.last().map_or(&[][..], |class| part(class, from)).iter().map(|one| name(&one.record)).collect(),
-        classes: spread.classes.iter().map(|class| self::class(class, part(class, from), between, decimals)).collect(),
+        records: spread
+            .classes
+            .last()
+            .map_or(&[][..], |class| part(class, from))
+            .iter()
+            .map(|one| name(&one.record))
+            .collect(),
+        classes: spread
+            .classes
+            .iter()
+            .map(|class| self::class(class, part(class, from), between, decimals))
+            .collect(),
     };
     (0..most).step_by(RECORDS).map(table).collect()
 }
@@ -65,7 +77,10 @@ fn part(class: &ClassSpread, from: usize) -> &[OfRecord] {
 }
 
 fn decimals(quantity: &QuantityResult, spread: &Spread) -> usize {
-    number::decimals(&quantity.unit, spread.classes.iter().flat_map(|class| &class.records).map(|one| one.rms))
+    number::decimals(
+        &quantity.unit,
+        spread.classes.iter().flat_map(|class| &class.records).map(|one| one.rms),
+    )
 }
 
 fn class(class: &ClassSpread, records: &[OfRecord], between: &str, decimals: usize) -> SpreadClass {
@@ -93,7 +108,10 @@ fn class(class: &ClassSpread, records: &[OfRecord], between: &str, decimals: usi
         ..row("Mean deviation", &|one| shown(one.mean), false)
     };
     SpreadClass {
-        title: class.zone.as_ref().map_or_else(|| "All".to_owned(), |zone| name(&format!("Zone {zone}"))),
+        title: class
+            .zone
+            .as_ref()
+            .map_or_else(|| "All".to_owned(), |zone| name(&format!("Zone {zone}"))),
         rows: vec![
             mean,
             row("Standard deviation", &|one| number::optional(one.std, decimals), false),
@@ -101,8 +119,18 @@ fn class(class: &ClassSpread, records: &[OfRecord], between: &str, decimals: usi
             row("Where", &|one| place(&one.largest), true),
             row("Root mean square", &|one| shown(one.rms), false),
             row("Rank", &|one| one.rank.to_string(), false),
-            of_all(format!("Spread of the {between}, mean"), None, class.mean_range, class.mean_std),
-            of_all(format!("Spread of the {between}, largest"), Some(place(&class.widest)), class.widest.value, class.std_at_widest),
+            of_all(
+                format!("Spread of the {between}, mean"),
+                None,
+                class.mean_range,
+                class.mean_std,
+            ),
+            of_all(
+                format!("Spread of the {between}, largest"),
+                Some(place(&class.widest)),
+                class.widest.value,
+                class.std_at_widest,
+            ),
         ],
     }
 }

@@ -1,4 +1,5 @@
-//! The summary: one row per quantity with mean and standard deviation, and one row per other statistic.
+//! The summary: one row per quantity with mean and standard deviation, and one row per other
+//! statistic.
 
 use serde::Serialize;
 
@@ -9,7 +10,8 @@ use crate::result::{QuantityResult, StatisticResult};
 /// The scope of a statistic over all pairs of a quantity.
 const ALL: &str = "all";
 
-/// A quantity as in EN 14363: limits, mean and standard deviation, and both divided by their limits.
+/// A quantity as in EN 14363: limits, mean and standard deviation, and both divided by their
+/// limits.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SummaryRow {
     pub id: String,
@@ -70,8 +72,10 @@ pub(super) fn tables(quantities: &[QuantityResult]) -> (Vec<SummaryRow>, Vec<Fur
         }
         let mean = overall(quantity, "mean");
         let std = overall(quantity, "std");
-        // A quantity without statistics is listed with its reason. One without a limit that has values stands in its chapter.
-        let without_limit = quantity.decides_nothing() && quantity.reason.is_none() && !quantity.values.is_empty();
+        // A quantity without statistics is listed with its reason. One without a limit that has
+        // values stands in its chapter.
+        let without_limit =
+            quantity.decides_nothing() && quantity.reason.is_none() && !quantity.values.is_empty();
         if mean.is_some() || std.is_some() || quantity.statistics.is_empty() && !without_limit {
             summary.push(summary_row(quantity, mean, std));
         }
@@ -90,7 +94,11 @@ fn overall<'a>(quantity: &'a QuantityResult, name: &str) -> Option<&'a Statistic
     quantity.statistics.iter().find(|statistic| is_overall(statistic, name))
 }
 
-fn summary_row(quantity: &QuantityResult, mean: Option<&StatisticResult>, std: Option<&StatisticResult>) -> SummaryRow {
+fn summary_row(
+    quantity: &QuantityResult,
+    mean: Option<&StatisticResult>,
+    std: Option<&StatisticResult>,
+) -> SummaryRow {
     let either = mean.or(std);
     SummaryRow {
         id: quantity.id.clone(),
@@ -101,7 +109,10 @@ fn summary_row(quantity: &QuantityResult, mean: Option<&StatisticResult>, std: O
         processing: quantity.processing.clone(),
         limit_std: limit(std),
         limit_mean: limit(mean),
-        count: either.map_or_else(|| pairs_and_n(quantity.values.len(), quantity.n), |one| pairs_and_n(one.count, one.n)),
+        count: either.map_or_else(
+            || pairs_and_n(quantity.values.len(), quantity.n),
+            |one| pairs_and_n(one.count, one.n),
+        ),
         mean: value(mean),
         std: value(std),
         normalised_mean: normalised(mean),
@@ -151,7 +162,8 @@ pub(super) fn limit(statistic: Option<&StatisticResult>) -> String {
     number::optional(statistic.limit, decimals(statistic))
 }
 
-/// Decimals of a statistic: those of its unit, or more if the limit (or else the value) needs them to show two digits.
+/// Decimals of a statistic: those of its unit, or more if the limit (or else the value) needs them
+/// to show two digits.
 pub(super) fn decimals(statistic: &StatisticResult) -> usize {
     number::decimals(&statistic.unit, statistic.limit.or(statistic.value))
 }
@@ -168,5 +180,7 @@ pub(super) fn value(statistic: Option<&StatisticResult>) -> String {
 
 /// |value| / limit with two decimals, or more close to 1.
 pub(super) fn normalised(statistic: Option<&StatisticResult>) -> String {
-    statistic.and_then(|statistic| statistic.normalised).map_or_else(|| number::NONE.to_owned(), number::ratio)
+    statistic
+        .and_then(|statistic| statistic.normalised)
+        .map_or_else(|| number::NONE.to_owned(), number::ratio)
 }

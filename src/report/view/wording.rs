@@ -1,4 +1,5 @@
-//! Words that depend on what the protocol is about: a validation, an assessment, a comparison of records.
+//! Words that depend on what the protocol is about: a validation, an assessment, a comparison of
+//! records.
 
 use serde::Serialize;
 
@@ -26,13 +27,25 @@ pub struct Wording {
 
 pub(super) fn wording(found: &Certification) -> Wording {
     let (report, domain, outside, rows) = match found.kind() {
-        Kind::Validation if found.own_word.is_some() => ("Comparison report", "Validity domain", NOT_DEMONSTRATED, "Pairs"),
-        Kind::Validation => ("Validation report", "Validity domain", NOT_DEMONSTRATED, "Pairs"),
-        Kind::Assessment => {
-            ("Assessment report", "Test conditions", "The requirements have not been assessed outside these ranges.", "Values")
+        Kind::Validation if found.own_word.is_some() => {
+            ("Comparison report", "Validity domain", NOT_DEMONSTRATED, "Pairs")
         }
-        Kind::Comparison => ("Comparison report", "Test conditions", "The records have not been compared outside these ranges.", "Values"),
-        Kind::Mixed => ("Validation and assessment report", "Validity domain", NOT_DEMONSTRATED, "Values"),
+        Kind::Validation => ("Validation report", "Validity domain", NOT_DEMONSTRATED, "Pairs"),
+        Kind::Assessment => (
+            "Assessment report",
+            "Test conditions",
+            "The requirements have not been assessed outside these ranges.",
+            "Values",
+        ),
+        Kind::Comparison => (
+            "Comparison report",
+            "Test conditions",
+            "The records have not been compared outside these ranges.",
+            "Values",
+        ),
+        Kind::Mixed => {
+            ("Validation and assessment report", "Validity domain", NOT_DEMONSTRATED, "Values")
+        }
     };
     let count = if rows == "Pairs" { "Pairs / n" } else { "Values / n" };
     let comparison = match found.kind() {
@@ -44,7 +57,8 @@ pub(super) fn wording(found: &Certification) -> Wording {
     Wording { over: over(found), report, domain, outside, count, rows, comparison }
 }
 
-const NOT_DEMONSTRATED: &str = "Agreement between simulation and measurement has not been demonstrated outside these ranges.";
+const NOT_DEMONSTRATED: &str =
+    "Agreement between simulation and measurement has not been demonstrated outside these ranges.";
 
 fn over(found: &Certification) -> String {
     let of_sides = match found.reads() {
@@ -54,10 +68,14 @@ fn over(found: &Certification) -> String {
     };
     match found.kind() {
         // A protocol that does not speak of validation gives its verdict in words of its own.
-        Kind::Validation if found.own_word.is_some() => "Comparison of simulated and measured records".into(),
+        Kind::Validation if found.own_word.is_some() => {
+            "Comparison of simulated and measured records".into()
+        }
         Kind::Validation => "Validation of a vehicle simulation model".into(),
         Kind::Assessment => format!("Assessment of a vehicle by {of_sides} records"),
-        Kind::Comparison if found.reads() == (true, false) => "Comparison of simulation codes".into(),
+        Kind::Comparison if found.reads() == (true, false) => {
+            "Comparison of simulation codes".into()
+        }
         Kind::Comparison => format!("Comparison of {of_sides} records"),
         Kind::Mixed => "Validation of a simulation model and assessment of a vehicle".into(),
     }
@@ -73,14 +91,18 @@ pub(super) fn sentence(found: &Certification) -> &'static str {
             Verdict::Validated => {
                 "All acceptance criteria of the protocol are met. The simulation model is validated for the domain stated in this report."
             }
-            Verdict::NotValidated => "At least one acceptance criterion is not met. The simulation model is not validated.",
+            Verdict::NotValidated => {
+                "At least one acceptance criterion is not met. The simulation model is not validated."
+            }
             Verdict::NotAssessable => {
                 "The campaign does not contain the data that the protocol requires. The simulation model cannot be assessed."
             }
         };
     }
     match found.verdict {
-        Verdict::Validated => "The requirements of the protocol are met for the conditions stated in this report.",
+        Verdict::Validated => {
+            "The requirements of the protocol are met for the conditions stated in this report."
+        }
         Verdict::NotValidated => "At least one requirement of the protocol is not met.",
         Verdict::NotAssessable => {
             "The requirements cannot all be assessed: the campaign does not contain the data that the protocol requires."
@@ -88,8 +110,9 @@ pub(super) fn sentence(found: &Certification) -> &'static str {
     }
 }
 
-/// The statement about the simulation; `None` where no simulated record is in a quantity. That nothing was changed after the comparison is
-/// printed only of a comparison with measurements whose campaign has no origin that contradicts it.
+/// The statement about the simulation; `None` where no simulated record is in a quantity. That
+/// nothing was changed after the comparison is printed only of a comparison with measurements whose
+/// campaign has no origin that contradicts it.
 pub(super) fn simulation_statement(found: &Certification) -> Option<String> {
     let (simulated, measured) = found.reads();
     if !simulated {
@@ -113,16 +136,26 @@ pub(super) fn measurement_statement(found: &Certification) -> Option<&'static st
     )
 }
 
-/// A limit as worded. Where the name of another statistic stands for the limit of that one, so it says.
+/// A limit as worded. Where the name of another statistic stands for the limit of that one, so it
+/// says.
 pub(super) fn limit_in_words(found: &StatisticResult, quantity: &QuantityResult) -> String {
-    let (limit, rest) = found.limit_text.split_once(", ").map_or((found.limit_text.as_str(), None), |(limit, rest)| (limit, Some(rest)));
+    let (limit, rest) = found
+        .limit_text
+        .split_once(", ")
+        .map_or((found.limit_text.as_str(), None), |(limit, rest)| (limit, Some(rest)));
     let of = |name: &str| -> Option<String> {
         match limit.strip_suffix(name)? {
             "" => Some(format!("limit of {name}")),
-            share => share.strip_suffix("of ").map(|share| format!("{share}of the limit of {name}")),
+            share => {
+                share.strip_suffix("of ").map(|share| format!("{share}of the limit of {name}"))
+            }
         }
     };
-    let mut others = quantity.statistics.iter().map(|other| other.name.as_str()).filter(|name| *name != found.name);
+    let mut others = quantity
+        .statistics
+        .iter()
+        .map(|other| other.name.as_str())
+        .filter(|name| *name != found.name);
     let words = others.find_map(of).unwrap_or_else(|| limit.to_owned());
     number::formula(&rest.map_or_else(|| words.clone(), |rest| format!("{words}, {rest}")))
 }

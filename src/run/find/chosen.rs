@@ -40,7 +40,8 @@ impl Chosen {
         self.taken
     }
 
-    /// Takes the place with the highest value, then the highest of those that do not overlap with it, and so on; of equal values the first.
+    /// Takes the place with the highest value, then the highest of those that do not overlap with
+    /// it, and so on; of equal values the first.
     fn close(&mut self) {
         let mut open = std::mem::take(&mut self.open);
         open.sort_by(|a, b| b.value.total_cmp(&a.value).then(a.start.total_cmp(&b.start)));
@@ -70,13 +71,25 @@ mod tests {
 
     #[test]
     fn of_places_that_overlap_the_highest_is_taken() {
-        let places = [(0.0, 10.0, 1.0), (5.0, 15.0, 3.0), (14.0, 24.0, 2.0), (15.0, 25.0, 2.0), (30.0, 40.0, 0.0)];
+        let places = [
+            (0.0, 10.0, 1.0),
+            (5.0, 15.0, 3.0),
+            (14.0, 24.0, 2.0),
+            (15.0, 25.0, 2.0),
+            (30.0, 40.0, 0.0),
+        ];
         assert_eq!(taken(true, &places), [(5.0, 15.0), (15.0, 25.0), (30.0, 40.0)]);
     }
 
     #[test]
     fn of_equal_values_the_first_is_taken() {
-        assert_eq!(taken(true, &[(0.0, 10.0, 1.0), (1.0, 11.0, 1.0), (10.0, 20.0, 1.0)]), [(0.0, 10.0), (10.0, 20.0)]);
-        assert_eq!(taken(false, &[(0.0, 10.0, 1.0), (10.0, 20.0, 5.0)]), [(0.0, 10.0), (10.0, 20.0)]);
+        assert_eq!(
+            taken(true, &[(0.0, 10.0, 1.0), (1.0, 11.0, 1.0), (10.0, 20.0, 1.0)]),
+            [(0.0, 10.0), (10.0, 20.0)]
+        );
+        assert_eq!(
+            taken(false, &[(0.0, 10.0, 1.0), (10.0, 20.0, 5.0)]),
+            [(0.0, 10.0), (10.0, 20.0)]
+        );
     }
 }

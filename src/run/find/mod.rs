@@ -1,5 +1,6 @@
-//! Looks for sections in the runs of a campaign, as the protocol says: place by place along each run, in a window that moves with the
-//! search. What is in memory does not grow with the length of a run.
+//! Looks for sections in the runs of a campaign, as the protocol says: place by place along each
+//! run, in a window that moves with the search. What is in memory does not grow with the length of
+//! a run.
 
 mod chosen;
 mod course;
@@ -25,8 +26,9 @@ use window::Window;
 
 pub use place::{Place, is_stated};
 
-/// How much of a run is looked at in one piece, in lengths of the longest section with all it needs on both sides: its filters run once
-/// for all places of the piece. Longer pieces take more memory, shorter ones filter their margins more often.
+/// How much of a run is looked at in one piece, in lengths of the longest section with all it needs
+/// on both sides: its filters run once for all places of the piece. Longer pieces take more memory,
+/// shorter ones filter their margins more often.
 const PIECE: f64 = 16.0;
 
 /// A campaign with the sections that were found in its runs.
@@ -36,7 +38,8 @@ pub struct Found {
     pub told: FoundSections,
 }
 
-/// Whether the sections of a campaign are those that are found: the protocol looks for sections, and the campaign has runs and no table.
+/// Whether the sections of a campaign are those that are found: the protocol looks for sections,
+/// and the campaign has runs and no table.
 pub fn applies(plan: &Plan, campaign: &Campaign) -> bool {
     plan.sections.find.is_some() && campaign.sections.is_none() && !campaign.runs().is_empty()
 }
@@ -53,12 +56,20 @@ pub fn check_facts(plan: &Plan, campaign: &Campaign, problems: &mut Problems) {
 /// Finds the sections of a campaign.
 ///
 /// # Errors
-/// `no-search`: the protocol does not look for sections; `no-runs`; `nothing-found`; `records-apart`; a record of a run cannot be read, or lacks a channel;
-/// vehicle data are missing.
-pub fn find(plan: &Plan, graph: &Graph, campaign: &Campaign, progress: Progress<'_>) -> Result<Found, Problems> {
+/// `no-search`: the protocol does not look for sections; `no-runs`; `nothing-found`;
+/// `records-apart`; a record of a run cannot be read, or lacks a channel; vehicle data are missing.
+pub fn find(
+    plan: &Plan,
+    graph: &Graph,
+    campaign: &Campaign,
+    progress: Progress<'_>,
+) -> Result<Found, Problems> {
     let one = |problem: Problem| Problems(vec![problem]);
     let Some(rules) = &plan.sections.find else {
-        let problem = Problem::error("no-search", format!("the protocol `{}` does not look for sections", plan.name));
+        let problem = Problem::error(
+            "no-search",
+            format!("the protocol `{}` does not look for sections", plan.name),
+        );
         return Err(one(problem.help("in its block `sections`, write `use found sections`, and what is looked for in blocks `find`")));
     };
     if campaign.runs().is_empty() {
@@ -76,7 +87,10 @@ pub fn find(plan: &Plan, graph: &Graph, campaign: &Campaign, progress: Progress<
         campaign: None,
         step: plan.axis.unit.from_si(rules.step),
         axis_unit: plan.axis.unit.text.clone(),
-        prefer: rules.prefer.as_ref().map_or_else(|| "first".to_string(), |prefer| format!("highest {}", prefer.words)),
+        prefer: rules
+            .prefer
+            .as_ref()
+            .map_or_else(|| "first".to_string(), |prefer| format!("highest {}", prefer.words)),
         runs: Vec::new(),
     };
     let mut places = Vec::new();
@@ -91,7 +105,12 @@ pub fn find(plan: &Plan, graph: &Graph, campaign: &Campaign, progress: Progress<
         let rejected = told.rejected();
         let most = rejected.iter().max_by_key(|rejected| rejected.places);
         let why = most.map_or_else(String::new, |most| {
-            format!("; of {} places, {} were rejected first by: {}", told.tried(), most.places, most.reason)
+            format!(
+                "; of {} places, {} were rejected first by: {}",
+                told.tried(),
+                most.places,
+                most.reason
+            )
         });
         let says = format!("no section was found in the runs of the campaign{why}");
         return Err(one(Problem::error("nothing-found", says).at(&campaign.runs_span())));
@@ -100,30 +119,49 @@ pub fn find(plan: &Plan, graph: &Graph, campaign: &Campaign, progress: Progress<
     let found = campaign.with_sections(table);
     let offsets = drifts(plan, graph, &found, &places, &mut told);
     let found = match offsets {
-        Some(offsets) => campaign.with_sections(table::table(plan, &places, Some(&offsets)).map_err(one)?),
+        Some(offsets) => {
+            campaign.with_sections(table::table(plan, &places, Some(&offsets)).map_err(one)?)
+        }
         None => found,
     };
     Ok(Found { campaign: found, told })
 }
 
-/// Tells the shift of the measurement along each run, and gives what is added to the axis of each section where runs ask for it.
-fn drifts(plan: &Plan, graph: &Graph, found: &Campaign, places: &[(&Run, Place)], told: &mut FoundSections) -> Option<Vec<f64>> {
+/// Tells the shift of the measurement along each run, and gives what is added to the axis of each
+/// section where runs ask for it.
+fn drifts(
+    plan: &Plan,
+    graph: &Graph,
+    found: &Campaign,
+    places: &[(&Run, Place)],
+    told: &mut FoundSections,
+) -> Option<Vec<f64>> {
     let shifts = drift::shifts(plan, graph, found, places);
-    let shortest = places.iter().map(|(_, place)| place.end - place.start).fold(f64::INFINITY, f64::min);
+    let shortest =
+        places.iter().map(|(_, place)| place.end - place.start).fold(f64::INFINITY, f64::min);
     let mut offsets = vec![0.0; places.len()];
     let mut corrected = false;
     for in_run in &mut told.runs {
-        let own: Vec<usize> = (0..places.len()).filter(|&at| places[at].0.name.value == in_run.run).collect();
+        let own: Vec<usize> =
+            (0..places.len()).filter(|&at| places[at].0.name.value == in_run.run).collect();
         let Some(&(run, _)) = own.first().map(|&at| &places[at]) else { continue };
         let starts: Vec<f64> = own.iter().map(|&at| places[at].1.start).collect();
-        let names: Vec<&str> = own.iter().filter_map(|&at| found.names.get(at)).map(|name| name.value.as_str()).collect();
+        let names: Vec<&str> = own
+            .iter()
+            .filter_map(|&at| found.names.get(at))
+            .map(|name| name.value.as_str())
+            .collect();
         let of_run: Vec<_> = own.iter().map(|&at| shifts[at].clone()).collect();
         let of_places: Vec<&Place> = own.iter().map(|&at| &places[at].1).collect();
         let extent = (plan.axis.unit.to_si(in_run.start), plan.axis.unit.to_si(in_run.end));
-        let course = course::course(plan, graph, found, run, &of_places, extent, drift::FARTHEST * shortest);
+        let course =
+            course::course(plan, graph, found, run, &of_places, extent, drift::FARTHEST * shortest);
         in_run.drift = drift::told(plan, run, (&names, &starts), &of_run, &course);
-        let shift: Vec<Option<f64>> = of_run.iter().map(|shift| shift.as_ref().map(|shift| shift.shift)).collect();
-        if let Some(along) = drift::along(&starts, &shift, &course.knots()).filter(|_| run.correct_drift) {
+        let shift: Vec<Option<f64>> =
+            of_run.iter().map(|shift| shift.as_ref().map(|shift| shift.shift)).collect();
+        if let Some(along) =
+            drift::along(&starts, &shift, &course.knots()).filter(|_| run.correct_drift)
+        {
             own.iter().zip(along).for_each(|(&at, shift)| offsets[at] = shift);
             corrected = true;
         }
@@ -135,12 +173,19 @@ fn drifts(plan: &Plan, graph: &Graph, found: &Campaign, places: &[(&Run, Place)]
 ///
 /// # Errors
 /// As [`find`].
-pub fn in_all(plan: &Plan, graph: &Graph, campaigns: &mut [Campaign]) -> Result<Vec<FoundSections>, Problems> {
+pub fn in_all(
+    plan: &Plan,
+    graph: &Graph,
+    campaigns: &mut [Campaign],
+) -> Result<Vec<FoundSections>, Problems> {
     let mut told = Vec::new();
     let several = campaigns.len() > 1;
     for campaign in campaigns.iter_mut().filter(|campaign| applies(plan, campaign)) {
         let found = find(plan, graph, campaign, &|_| {})?;
-        told.push(FoundSections { campaign: several.then(|| campaign.short_name.value.clone()), ..found.told });
+        told.push(FoundSections {
+            campaign: several.then(|| campaign.short_name.value.clone()),
+            ..found.told
+        });
         *campaign = found.campaign;
     }
     Ok(told)
@@ -166,7 +211,9 @@ impl Windows {
                 continue;
             }
             let mut wanted = vec![Wanted::new(plan.axis.column.as_str(), plan.axis.unit.dimension)];
-            let time = plan.time.as_ref().filter(|time| source != Source::Track && !columns.is_empty() && time.column != plan.axis.column);
+            let time = plan.time.as_ref().filter(|time| {
+                source != Source::Track && !columns.is_empty() && time.column != plan.axis.column
+            });
             wanted.extend(time.map(|time| Wanted::new(time.column.as_str(), time.unit.dimension)));
             for id in columns {
                 let node = &graph.nodes[id];
@@ -176,7 +223,8 @@ impl Windows {
                     wanted.push(Wanted::new(column.as_str(), node.dimension));
                 }
             }
-            let record = campaign.run_source(run, kind).map_err(|problem| Problems(vec![problem]))?;
+            let record =
+                campaign.run_source(run, kind).map_err(|problem| Problems(vec![problem]))?;
             all.push((source, Window::open(record, wanted, run.known(kind).clone())));
         }
         Ok(Self { all })
@@ -207,7 +255,10 @@ impl Windows {
 
     /// Up to where all of them are read.
     fn read_to(&self) -> f64 {
-        self.all.iter().map(|(_, window)| window.end().map_or_else(|| window.last(), |_| f64::INFINITY)).fold(f64::INFINITY, f64::min)
+        self.all
+            .iter()
+            .map(|(_, window)| window.end().map_or_else(|| window.last(), |_| f64::INFINITY))
+            .fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -216,9 +267,17 @@ pub fn own_side(plan: &Plan) -> Side {
     if plan.reads(Side::Measured) { Side::Measured } else { Side::Simulated }
 }
 
-fn in_run(plan: &Plan, graph: &Graph, campaign: &Campaign, run: &Run, rules: &Rules<'_>) -> Result<(Vec<Place>, FoundInRun), Problems> {
+fn in_run(
+    plan: &Plan,
+    graph: &Graph,
+    campaign: &Campaign,
+    run: &Run,
+    rules: &Rules<'_>,
+) -> Result<(Vec<Place>, FoundInRun), Problems> {
     let mut windows = Windows::open(plan, graph, campaign, run)?;
-    let reach = rules.reach().map_err(|says| Problems(vec![Problem::error("find-length", says).at(&run.name.span)]))?;
+    let reach = rules
+        .reach()
+        .map_err(|says| Problems(vec![Problem::error("find-length", says).at(&run.name.span)]))?;
     let piece = PIECE * (reach.before + reach.after);
     windows.fill(f64::NEG_INFINITY)?;
     let start = windows.start();
@@ -250,7 +309,11 @@ fn in_run(plan: &Plan, graph: &Graph, campaign: &Campaign, run: &Run, rules: &Ru
                     let end = place.end;
                     chosen.add(place);
                     // A section that is taken as the first is not looked into again.
-                    at = if chosen.takes_first() { (end / step - WHOLE).ceil().max(at + 1.0) } else { at + 1.0 };
+                    at = if chosen.takes_first() {
+                        (end / step - WHOLE).ceil().max(at + 1.0)
+                    } else {
+                        at + 1.0
+                    };
                 }
                 Tried::Rejected(reason) => {
                     rejections.add(place, reason);
@@ -267,7 +330,9 @@ fn in_run(plan: &Plan, graph: &Graph, campaign: &Campaign, run: &Run, rules: &Ru
             run.name.value
         );
         let problem = Problem::error("records-apart", says).at(&run.name.span);
-        return Err(Problems(vec![problem.help("check the files of the run, and whether all count the same distance")]));
+        return Err(Problems(vec![
+            problem.help("check the files of the run, and whether all count the same distance"),
+        ]));
     }
     let found = chosen.finish();
     let (tried, rejected, stretches) = rejections.told(|x| unit.from_si(x));
@@ -284,8 +349,8 @@ fn in_run(plan: &Plan, graph: &Graph, campaign: &Campaign, run: &Run, rules: &Ru
     Ok((found, told))
 }
 
-/// Most places that are tried in a run: 10 000 km, one every metre. An axis that jumps, and a step that is too small, would else be looked
-/// through for hours.
+/// Most places that are tried in a run: 10 000 km, one every metre. An axis that jumps, and a step
+/// that is too small, would else be looked through for hours.
 const MOST_PLACES: f64 = 1e7;
 
 fn too_many(plan: &Plan, run: &Run, (start, end): (f64, f64), step: f64) -> Problem {
@@ -295,7 +360,10 @@ fn too_many(plan: &Plan, run: &Run, (start, end): (f64, f64), step: f64) -> Prob
         "the records of run `{}` go from {start} to {end} {unit}: with one place every {step} {unit} there are more than {MOST_PLACES:.0} to try",
         run.name.value
     );
-    let help = format!("write a longer `step`, and check `{}` of the records for a jump", plan.axis.column);
+    let help = format!(
+        "write a longer `step`, and check `{}` of the records for a jump",
+        plan.axis.column
+    );
     Problem::error("too-many-places", says).at(&run.name.span).help(help)
 }
 
@@ -324,14 +392,18 @@ impl Rejections {
         self.tried += 1;
         self.counts[reason] += 1;
         match self.stretches.last_mut() {
-            Some((_, to, of, places)) if *of == reason && place - *to < 1.5 * self.step => (*to, *places) = (place, *places + 1),
+            Some((_, to, of, places)) if *of == reason && place - *to < 1.5 * self.step => {
+                (*to, *places) = (place, *places + 1)
+            }
             _ => self.stretches.push((place, place, reason, 1)),
         }
     }
 
     fn told(self, shown: impl Fn(f64) -> f64) -> (usize, Vec<Rejected>, Vec<Stretch>) {
         let rejected = self.reasons.iter().zip(&self.counts).filter(|(_, places)| **places > 0);
-        let rejected = rejected.map(|(reason, places)| Rejected { reason: reason.clone(), places: *places }).collect();
+        let rejected = rejected
+            .map(|(reason, places)| Rejected { reason: reason.clone(), places: *places })
+            .collect();
         let of = |(from, to, reason, places): &(f64, f64, usize, usize)| Stretch {
             from: shown(*from),
             to: shown(*to),

@@ -12,14 +12,16 @@ use crate::run::facts::{Facts, Known, Vehicle};
 use crate::run::sections::of_run;
 use crate::run::signal::Extent;
 
-/// How often a length that depends on data of the section is computed again from those of the new length.
+/// How often a length that depends on data of the section is computed again from those of the new
+/// length.
 const MOST_LENGTHS: usize = 8;
 
-/// Share of a bound by which a value may miss it: that of 2 km/h by a range of speeds recorded with two decimals, which is subtracted in
-/// m/s, is 1e-14.
+/// Share of a bound by which a value may miss it: that of 2 km/h by a range of speeds recorded with
+/// two decimals, which is subtracted in m/s, is 1e-14.
 const ROUNDING: f64 = 1e-12;
 
-/// Significant digits of found section data in their unit: a radius of 10 km to the tenth of a millimetre.
+/// Significant digits of found section data in their unit: a radius of 10 km to the tenth of a
+/// millimetre.
 const DIGITS: usize = 8;
 
 /// Values of a place, with bounds met up to rounding.
@@ -92,27 +94,49 @@ pub struct Rules<'a> {
 type Columns = Vec<Result<Scalar, String>>;
 
 impl<'a> Rules<'a> {
-    pub fn new(plan: &'a Plan, graph: &'a Graph, find: &'a Find, facts: &'a Facts, campaign: &Campaign, run: &Run) -> Self {
-        let stated = plan.columns.iter().map(|datum| of_run(datum, run, &campaign.short_name.value)).collect();
+    pub fn new(
+        plan: &'a Plan,
+        graph: &'a Graph,
+        find: &'a Find,
+        facts: &'a Facts,
+        campaign: &Campaign,
+        run: &Run,
+    ) -> Self {
+        let stated = plan
+            .columns
+            .iter()
+            .map(|datum| of_run(datum, run, &campaign.short_name.value))
+            .collect();
         let state = run.fact("state").map(|fact| fact.value.value.as_str());
-        let vehicle = campaign.vehicles.iter().position(|vehicle| state.is_some() && vehicle.state.as_deref() == state).unwrap_or(0);
+        let vehicle = campaign
+            .vehicles
+            .iter()
+            .position(|vehicle| state.is_some() && vehicle.state.as_deref() == state)
+            .unwrap_or(0);
         Self { plan, graph, find, vehicle: &facts.vehicles[vehicle], stated }
     }
 
     /// Why a place may be rejected, in the order in which it is looked at.
     pub fn reasons(&self) -> Vec<String> {
-        let first = ["the record ends too close".to_string(), "in no zone".to_string(), self.no_length()];
-        first.into_iter().chain(self.find.conditions.iter().map(|condition| condition.title.clone())).collect()
+        let first =
+            ["the record ends too close".to_string(), "in no zone".to_string(), self.no_length()];
+        first
+            .into_iter()
+            .chain(self.find.conditions.iter().map(|condition| condition.title.clone()))
+            .collect()
     }
 
-    /// Why a length has no value: the vehicle data that are not stated, with the zones that need them.
+    /// Why a length has no value: the vehicle data that are not stated, with the zones that need
+    /// them.
     fn no_length(&self) -> String {
         let (mut zones, mut keys): (Vec<&str>, Vec<&str>) = (Vec::new(), Vec::new());
         for zone in self.zones() {
             let mut lacking = Vec::new();
             self.length_of(zone).into_iter().for_each(|length| {
                 length.visit(&mut |part| match part.kind {
-                    Kind::Vehicle(index) if self.vehicle.data[index].is_err() => lacking.push(self.plan.vehicle[index].key.as_str()),
+                    Kind::Vehicle(index) if self.vehicle.data[index].is_err() => {
+                        lacking.push(self.plan.vehicle[index].key.as_str())
+                    }
                     _ => {}
                 });
             });
@@ -126,7 +150,11 @@ impl<'a> Rules<'a> {
             return "the length has no value".to_string();
         }
         let keys = keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(" and ");
-        let of = if zones.is_empty() { String::new() } else { format!(" of zone {}", zones.join(" and ")) };
+        let of = if zones.is_empty() {
+            String::new()
+        } else {
+            format!(" of zone {}", zones.join(" and "))
+        };
         format!("the length{of} has no value: the vehicle file does not state {keys}")
     }
 
@@ -156,17 +184,33 @@ impl<'a> Rules<'a> {
             longest = match (number(length, &known), possible(length, &known)) {
                 (Ok(length), _) => longest.max(length),
                 (Err(_), Possible::Number(_, most)) if most.is_finite() => longest.max(most),
-                (Err(reason), _) => return Err(format!("the length of a found section has no upper bound: {reason}")),
+                (Err(reason), _) => {
+                    return Err(format!(
+                        "the length of a found section has no upper bound: {reason}"
+                    ));
+                }
             };
         }
         let margin = self.margin(longest);
-        let lead = self.find.conditions.iter().map(|condition| condition.lead).fold(margin, f64::max);
-        let tail = self.find.conditions.iter().map(|condition| condition.tail).fold(margin, f64::max);
+        let lead =
+            self.find.conditions.iter().map(|condition| condition.lead).fold(margin, f64::max);
+        let tail =
+            self.find.conditions.iter().map(|condition| condition.tail).fold(margin, f64::max);
         Ok(Reach { before: lead, after: longest + tail })
     }
 
-    fn known<'k>(&'k self, columns: &'k Columns, extent: Extent, inputs: &'k [Result<f64, String>]) -> Known<'k> {
-        Known { columns: Some(columns), extent: Some(extent), inputs, ..Known::vehicle(self.vehicle) }
+    fn known<'k>(
+        &'k self,
+        columns: &'k Columns,
+        extent: Extent,
+        inputs: &'k [Result<f64, String>],
+    ) -> Known<'k> {
+        Known {
+            columns: Some(columns),
+            extent: Some(extent),
+            inputs,
+            ..Known::vehicle(self.vehicle)
+        }
     }
 
     /// A section that begins at a place; the records go from `first` to `last`.
@@ -187,15 +231,17 @@ impl<'a> Rules<'a> {
             let mut columns = self.data(signals, extent, &mut seen);
             if let (Some(zone), Some(index)) = (zone, self.plan.sections.zone) {
                 columns[index] = Ok(Scalar::Word(zone.name.clone()));
-                let inside =
-                    zone.condition.as_ref().is_none_or(|condition| flag(condition, &self.known(&columns, extent, &[])) == Ok(true));
+                let inside = zone.condition.as_ref().is_none_or(|condition| {
+                    flag(condition, &self.known(&columns, extent, &[])) == Ok(true)
+                });
                 if !inside {
                     continue;
                 }
             }
             match self.failing(signals, &columns, extent) {
                 Some(condition) => {
-                    // What the place lacks as a section of its zone, and not that the record is too short for a longer zone.
+                    // What the place lacks as a section of its zone, and not that the record is too
+                    // short for a longer zone.
                     if reason.is_none_or(|reason| reason < CONDITIONS) {
                         reason = Some(condition);
                     }
@@ -203,15 +249,28 @@ impl<'a> Rules<'a> {
                 None => {
                     let value = self.value(signals, &columns, extent);
                     let zone = zone.map(|zone| zone.name.clone());
-                    return Tried::Fits(Place { start: extent.0, end: extent.1, zone, columns, value });
+                    return Tried::Fits(Place {
+                        start: extent.0,
+                        end: extent.1,
+                        zone,
+                        columns,
+                        value,
+                    });
                 }
             }
         }
         Tried::Rejected(reason.unwrap_or(NO_ZONE))
     }
 
-    /// The length of a section of a zone. Where it depends on data of the section, those of a section of just this length.
-    fn length(&self, signals: &Signals<'_>, zone: Option<&Zone>, start: f64, seen: &mut Vec<(f64, Columns)>) -> Option<f64> {
+    /// The length of a section of a zone. Where it depends on data of the section, those of a
+    /// section of just this length.
+    fn length(
+        &self,
+        signals: &Signals<'_>,
+        zone: Option<&Zone>,
+        start: f64,
+        seen: &mut Vec<(f64, Columns)>,
+    ) -> Option<f64> {
         let length = self.length_of(zone)?;
         if let Ok(length) = number(length, &Known::vehicle(self.vehicle)) {
             return (length > 0.0).then_some(length);
@@ -223,7 +282,9 @@ impl<'a> Rules<'a> {
             if let (Some(zone), Some(index)) = (zone, self.plan.sections.zone) {
                 columns[index] = Ok(Scalar::Word(zone.name.clone()));
             }
-            let found = number(length, &self.known(&columns, extent, &[])).ok().filter(|found| *found > 0.0)?;
+            let found = number(length, &self.known(&columns, extent, &[]))
+                .ok()
+                .filter(|found| *found > 0.0)?;
             if found == tried {
                 return Some(found);
             }
@@ -233,7 +294,12 @@ impl<'a> Rules<'a> {
     }
 
     /// The section data of a part of the run, all but the zone.
-    fn data(&self, signals: &Signals<'_>, extent: Extent, seen: &mut Vec<(f64, Columns)>) -> Columns {
+    fn data(
+        &self,
+        signals: &Signals<'_>,
+        extent: Extent,
+        seen: &mut Vec<(f64, Columns)>,
+    ) -> Columns {
         if let Some((_, columns)) = seen.iter().find(|(end, _)| *end == extent.1) {
             return columns.clone();
         }
@@ -241,21 +307,28 @@ impl<'a> Rules<'a> {
         for (datum, nodes) in self.find.data.iter().zip(&self.graph.find.data) {
             let inputs = signals.values(nodes, extent);
             let value = evaluate(&datum.of.expr, &self.known(&columns, extent, &inputs));
-            columns[datum.column] = value.map(|value| written(&self.plan.columns[datum.column], value));
+            columns[datum.column] =
+                value.map(|value| written(&self.plan.columns[datum.column], value));
         }
         seen.push((extent.1, columns.clone()));
         columns
     }
 
     /// The first condition that the section does not satisfy.
-    fn failing(&self, signals: &Signals<'_>, columns: &Columns, (start, end): Extent) -> Option<usize> {
+    fn failing(
+        &self,
+        signals: &Signals<'_>,
+        columns: &Columns,
+        (start, end): Extent,
+    ) -> Option<usize> {
         let fails = |(condition, nodes): (&FindCondition, &Vec<InputNode>)| {
             let around = (start - condition.lead, end + condition.tail);
             if !signals.cover(nodes, around) {
                 return true;
             }
             let inputs = signals.values(nodes, around);
-            flag(&condition.require.expr, &Rounded(self.known(columns, (start, end), &inputs))) != Ok(true)
+            flag(&condition.require.expr, &Rounded(self.known(columns, (start, end), &inputs)))
+                != Ok(true)
         };
         let at = self.find.conditions.iter().zip(&self.graph.find.conditions).position(fails)?;
         Some(CONDITIONS + at)
@@ -268,7 +341,8 @@ impl<'a> Rules<'a> {
     }
 }
 
-/// A value as the table of sections states it, so that a zone follows from the table as it does from the run.
+/// A value as the table of sections states it, so that a zone follows from the table as it does
+/// from the run.
 fn written(datum: &Datum, value: Scalar) -> Scalar {
     match (value, &datum.kind) {
         (Scalar::Number(value), DatumKind::Number(unit)) => {

@@ -38,7 +38,10 @@ pub fn source(graph: &Graph, input: &InputNode, own: Side) -> Source {
 /// The nodes that read the columns which the search needs of a record.
 pub fn columns(graph: &Graph, of: Source, own: Side) -> Vec<NodeId> {
     let mut seen = BTreeSet::new();
-    let mut open: Vec<NodeId> = inputs(graph).filter(|input| source(graph, input, own) == of).map(|input| input.node).collect();
+    let mut open: Vec<NodeId> = inputs(graph)
+        .filter(|input| source(graph, input, own) == of)
+        .map(|input| input.node)
+        .collect();
     while let Some(id) = open.pop() {
         if seen.insert(id) {
             open.extend(&graph.nodes[id].inputs);
@@ -48,7 +51,8 @@ pub fn columns(graph: &Graph, of: Source, own: Side) -> Vec<NodeId> {
     seen.into_iter().collect()
 }
 
-/// The signal of the whole record that a processed one is made from, and what is done inside the section.
+/// The signal of the whole record that a processed one is made from, and what is done inside the
+/// section.
 fn peeled(graph: &Graph, mut id: NodeId) -> (NodeId, Vec<Option<&StepSpec>>) {
     let mut inside = Vec::new();
     loop {
@@ -81,7 +85,13 @@ pub struct Signals<'a> {
 
 impl<'a> Signals<'a> {
     /// Runs the filters over what the windows hold.
-    pub fn of(plan: &Plan, graph: &'a Graph, windows: &Windows, own: Side, vehicle: &Vehicle) -> Result<Self, Problems> {
+    pub fn of(
+        plan: &Plan,
+        graph: &'a Graph,
+        windows: &Windows,
+        own: Side,
+        vehicle: &Vehicle,
+    ) -> Result<Self, Problems> {
         let method = plan.sections.percentiles;
         let mut signals = Self { graph, own, method, samples: Vec::new(), covered: Vec::new() };
         for (of, window) in &windows.all {
@@ -89,7 +99,12 @@ impl<'a> Signals<'a> {
             signals.covered.push((*of, (first, last)));
             let mut wanted = BTreeSet::new();
             for input in inputs(graph).filter(|input| source(graph, input, own) == *of) {
-                wanted.extend(graph.nodes[input.node].inputs.iter().map(|&processed| peeled(graph, processed).0));
+                wanted.extend(
+                    graph.nodes[input.node]
+                        .inputs
+                        .iter()
+                        .map(|&processed| peeled(graph, processed).0),
+                );
             }
             if wanted.is_empty() {
                 continue;
@@ -100,8 +115,10 @@ impl<'a> Signals<'a> {
                 Problems(vec![Problem::error("find-signal", says)])
             };
             let needed = needed(graph, &wanted, &known).map_err(failed)?;
-            let opened = Opened::piece(plan, *of == Source::Track, window.columns(), window.first_row());
-            let found = opened.evaluate(graph, &needed, &wanted, &known, method, None).map_err(failed)?;
+            let opened =
+                Opened::piece(plan, *of == Source::Track, window.columns(), window.first_row());
+            let found =
+                opened.evaluate(graph, &needed, &wanted, &known, method, None).map_err(failed)?;
             for (id, found) in found {
                 let samples = match found {
                     Found::Samples(samples) => Ok(samples),
@@ -121,13 +138,19 @@ impl<'a> Signals<'a> {
 
     /// Whether every record that the values are taken from covers a part of the run.
     pub fn cover(&self, inputs: &[InputNode], (start, end): Extent) -> bool {
-        let covers = |of: Source| self.covered.iter().any(|(source, (first, last))| *source == of && *first <= start && *last >= end);
+        let covers = |of: Source| {
+            self.covered
+                .iter()
+                .any(|(source, (first, last))| *source == of && *first <= start && *last >= end)
+        };
         inputs.iter().all(|input| covers(source(self.graph, input, self.own)))
     }
 
     fn value(&self, input: &InputNode, extent: Extent) -> Result<f64, String> {
         let node = &self.graph.nodes[input.node];
-        let Operation::Reduce(reducer) = &node.operation else { return Err("no value of a signal".into()) };
+        let Operation::Reduce(reducer) = &node.operation else {
+            return Err("no value of a signal".into());
+        };
         let of = source(self.graph, input, self.own);
         let (base, inside) = peeled(self.graph, node.inputs[0]);
         let samples = self.samples(of, base)?;
@@ -138,7 +161,11 @@ impl<'a> Signals<'a> {
             if range.is_empty() {
                 return Err("there is no sample here".into());
             }
-            let value = reducer.run(&samples.along.axis[range.clone()], &samples.values[range], self.method);
+            let value = reducer.run(
+                &samples.along.axis[range.clone()],
+                &samples.values[range],
+                self.method,
+            );
             return value.filter(|value| value.is_finite()).ok_or_else(undefined);
         }
         let processed = |node: NodeId| -> Result<Samples, String> {
@@ -155,11 +182,19 @@ impl<'a> Signals<'a> {
         let samples = processed(node.inputs[0])?;
         let over = node.inputs.get(1).map(|&over| processed(over)).transpose()?;
         let axis: &Arc<Vec<f64>> = over.as_ref().map_or(&samples.along.axis, |over| &over.values);
-        reducer.run(axis, &samples.values, self.method).filter(|value| value.is_finite()).ok_or_else(undefined)
+        reducer
+            .run(axis, &samples.values, self.method)
+            .filter(|value| value.is_finite())
+            .ok_or_else(undefined)
     }
 
     fn samples(&self, of: Source, node: NodeId) -> Result<&Samples, String> {
-        match self.samples.iter().find(|(known, id, _)| (*known, *id) == (of, node)).map(|(_, _, samples)| samples) {
+        match self
+            .samples
+            .iter()
+            .find(|(known, id, _)| (*known, *id) == (of, node))
+            .map(|(_, _, samples)| samples)
+        {
             Some(Ok(samples)) => Ok(samples),
             Some(Err(reason)) => Err(reason.clone()),
             None => Err("the signal was not evaluated".into()),

@@ -1,4 +1,5 @@
-//! Found sections as a table of sections: the same columns as one that is written by hand, and the run.
+//! Found sections as a table of sections: the same columns as one that is written by hand, and the
+//! run.
 
 use super::place::{Place, is_stated};
 use crate::check::plan::{Datum, DatumKind, Find, Plan, Scalar};
@@ -12,26 +13,41 @@ use crate::run::sections::of_run;
 
 /// What the table of found sections is called in messages: it is in no file.
 const NAME: &str = "found sections";
-/// Data of a run that say on which line it was: sections of the same line at the same place are of one site.
+/// Data of a run that say on which line it was: sections of the same line at the same place are of
+/// one site.
 const LINE: &str = "line";
 
-/// Section data that are neither found nor have a default must be stated of every run, and what is stated must be possible.
+/// Section data that are neither found nor have a default must be stated of every run, and what is
+/// stated must be possible.
 ///
 /// Problems: `missing-run-data`, `wrong-run-data`.
 pub fn check_facts(plan: &Plan, find: &Find, campaign: &Campaign, problems: &mut Problems) {
-    let stated = || (0..plan.columns.len()).filter(|&index| is_stated(plan, find, index)).map(|index| &plan.columns[index]);
+    let stated = || {
+        (0..plan.columns.len())
+            .filter(|&index| is_stated(plan, find, index))
+            .map(|index| &plan.columns[index])
+    };
     for datum in stated() {
         for run in campaign.runs() {
             let Some(fact) = run.fact(&datum.key) else { continue };
             if let Err(says) = of_run(datum, run, &campaign.short_name.value) {
-                problems.push(Problem::error("wrong-run-data", says).at(&fact.value.span).also(&datum.span, "what the protocol knows"));
+                problems.push(
+                    Problem::error("wrong-run-data", says)
+                        .at(&fact.value.span)
+                        .also(&datum.span, "what the protocol knows"),
+                );
             }
         }
     }
     for datum in stated().filter(|datum| datum.default.is_none()) {
         for run in campaign.runs().iter().filter(|run| run.fact(&datum.key).is_none()) {
-            let says = format!("`{}` of the sections of run `{}` is neither found nor stated", datum.key, run.name.value);
-            let problem = Problem::error("missing-run-data", says).at(&run.name.span).also(&datum.span, "the protocol needs it");
+            let says = format!(
+                "`{}` of the sections of run `{}` is neither found nor stated",
+                datum.key, run.name.value
+            );
+            let problem = Problem::error("missing-run-data", says)
+                .at(&run.name.span)
+                .also(&datum.span, "the protocol needs it");
             let slip = nearest(&datum.key, run.facts.iter().map(|fact| fact.name.as_str()));
             problems.push(problem.help(match slip {
                 Some(slip) => format!("the run states `{slip}`: if `{0}` is meant, write `{0}`", datum.key),
@@ -45,24 +61,42 @@ pub fn check_facts(plan: &Plan, find: &Find, campaign: &Campaign, problems: &mut
 ///
 /// # Errors
 /// Those of a table that is read.
-pub fn table(plan: &Plan, places: &[(&Run, Place)], offsets: Option<&[f64]>) -> Result<Table, Problem> {
+pub fn table(
+    plan: &Plan,
+    places: &[(&Run, Place)],
+    offsets: Option<&[f64]>,
+) -> Result<Table, Problem> {
     let axis = &plan.axis.unit;
-    let columns: Vec<usize> = (0..plan.columns.len()).filter(|index| plan.columns[*index].kind != DatumKind::Campaign).collect();
-    let of_line = places.iter().any(|(run, _)| run.fact(LINE).is_some()) && plan.columns.iter().all(|datum| datum.key != "track");
+    let columns: Vec<usize> = (0..plan.columns.len())
+        .filter(|index| plan.columns[*index].kind != DatumKind::Campaign)
+        .collect();
+    let of_line = places.iter().any(|(run, _)| run.fact(LINE).is_some())
+        && plan.columns.iter().all(|datum| datum.key != "track");
     let heading = |datum: &Datum, zone: bool| match &datum.kind {
         DatumKind::Number(unit) => format!("{} [{}]", datum.key, unit.text),
         _ if zone => format!("{} [-]", datum.key),
         _ => datum.key.clone(),
     };
-    let mut rows = vec![vec!["section".to_string(), RUN_COLUMN.to_string(), format!("start [{axis}]"), format!("end [{axis}]")]];
+    let mut rows = vec![vec![
+        "section".to_string(),
+        RUN_COLUMN.to_string(),
+        format!("start [{axis}]"),
+        format!("end [{axis}]"),
+    ]];
     rows[0].extend(of_line.then(|| "track".to_string()));
-    rows[0].extend(columns.iter().map(|&index| heading(&plan.columns[index], plan.sections.zone == Some(index))));
+    rows[0].extend(
+        columns
+            .iter()
+            .map(|&index| heading(&plan.columns[index], plan.sections.zone == Some(index))),
+    );
     rows[0].extend(offsets.map(|_| format!("{OFFSET} [{axis}]")));
     let digits = places.len().to_string().len().max(2);
     for (number, (run, place)) in places.iter().enumerate() {
         let mut row = vec![format!("S{:0digits$}", number + 1), run.name.value.clone()];
         row.extend([place.start, place.end].map(|x| trimmed(axis.from_si(x))));
-        row.extend(of_line.then(|| run.fact(LINE).map_or(run.name.value.clone(), |fact| fact.value.value.clone())));
+        row.extend(of_line.then(|| {
+            run.fact(LINE).map_or(run.name.value.clone(), |fact| fact.value.value.clone())
+        }));
         row.extend(columns.iter().map(|&index| cell(&plan.columns[index], &place.columns[index])));
         // To a thousandth: an estimate is not better than a tenth of the distance between samples.
         row.extend(offsets.map(|offsets| format!("{:.3}", axis.from_si(offsets[number]))));

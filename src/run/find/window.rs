@@ -1,4 +1,5 @@
-//! The part of a record around the places that are looked at. Samples behind it are forgotten as the search goes on.
+//! The part of a record around the places that are looked at. Samples behind it are forgotten as
+//! the search goes on.
 
 use crate::data::blocks::Blocks;
 use crate::data::record::{Known, RecordSource, Wanted};
@@ -53,8 +54,14 @@ impl Window {
             let from = before.max(1);
             if let Some(at) = (from..axis.len()).find(|&at| axis[at] <= axis[at - 1]) {
                 let row = self.first_row + at;
-                let says = format!("`{}` does not increase at row {row} of `{}`", self.names[0], self.shown);
-                return Err(vec![Problem::error("axis-not-increasing", says).help("a run goes forward along its axis")]);
+                let says = format!(
+                    "`{}` does not increase at row {row} of `{}`",
+                    self.names[0], self.shown
+                );
+                return Err(vec![
+                    Problem::error("axis-not-increasing", says)
+                        .help("a run goes forward along its axis"),
+                ]);
             }
             self.first = self.first.or_else(|| axis.first().copied());
             self.last = axis.last().copied().unwrap_or(self.last);

@@ -1,8 +1,8 @@
 //! The parts of rules: what expressions and signals each of them holds.
 
 use crate::check::plan::{
-    AxisOperation, Estimate, EstimateKind, Evaluation, Expr, Input, Key, Limit, OfGroup, OfSignals, Quantity, Records, Report, Scope,
-    Signal, SignalKind, Taking, Valued,
+    AxisOperation, Estimate, EstimateKind, Evaluation, Expr, Input, Key, Limit, OfGroup, OfSignals,
+    Quantity, Records, Report, Scope, Signal, SignalKind, Taking, Valued,
 };
 use crate::units::Unit;
 
@@ -23,7 +23,9 @@ pub(super) fn quantity(rule: &Quantity, see: &mut dyn See) {
         Evaluation::Values { values, records } => {
             values.iter().for_each(|value| valued(value, see));
             match records {
-                Records::Compared { difference, .. } | Records::Spread { difference, .. } => see.expr(difference),
+                Records::Compared { difference, .. } | Records::Spread { difference, .. } => {
+                    see.expr(difference)
+                }
                 Records::Of(_) => {}
             }
         }
@@ -51,12 +53,17 @@ pub(super) fn input(input: &Input, see: &mut dyn See) {
 
 pub(super) fn signal(of: &Signal, see: &mut dyn See) {
     match &of.kind {
-        SignalKind::Column { column, channel, unit } => see.channel(column, channel, unit, of.track),
-        SignalKind::Scalar(expr) => see.expr(expr),
-        SignalKind::Binary(_, left, right) => [left, right].into_iter().for_each(|part| signal(part, see)),
-        SignalKind::Negative(inner) | SignalKind::Power(inner, _) | SignalKind::Filtered(inner, _) | SignalKind::Level(_, inner) => {
-            signal(inner, see)
+        SignalKind::Column { column, channel, unit } => {
+            see.channel(column, channel, unit, of.track)
         }
+        SignalKind::Scalar(expr) => see.expr(expr),
+        SignalKind::Binary(_, left, right) => {
+            [left, right].into_iter().for_each(|part| signal(part, see))
+        }
+        SignalKind::Negative(inner)
+        | SignalKind::Power(inner, _)
+        | SignalKind::Filtered(inner, _)
+        | SignalKind::Level(_, inner) => signal(inner, see),
         SignalKind::Call(_, parts) => parts.iter().for_each(|part| signal(part, see)),
         SignalKind::OverAxis(operation, inner) => {
             if let AxisOperation::Shifted(by) = operation {
@@ -78,7 +85,12 @@ pub(super) fn signal(of: &Signal, see: &mut dyn See) {
 fn limit(limit: &Limit, see: &mut dyn See) {
     estimate(&limit.estimate, see);
     of_group(&limit.bound, see);
-    limit.factors.iter().flat_map(|(factor, when)| [factor, when]).chain(&limit.only_when).for_each(|part| see.expr(part));
+    limit
+        .factors
+        .iter()
+        .flat_map(|(factor, when)| [factor, when])
+        .chain(&limit.only_when)
+        .for_each(|part| see.expr(part));
     scope(&limit.scope, see);
 }
 

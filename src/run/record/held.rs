@@ -39,12 +39,15 @@ impl Held<'_> {
         let to = axis.last().map_or(end, |x| (x.min(last) + shift).min(end));
         let missing = (end - start) - (to - from);
         if missing > MOST_MISSING * (end - start) {
-            return Err(format!("shifted by {shift} along the axis, the record ends {missing:.3} short of the section"));
+            return Err(format!(
+                "shifted by {shift} along the axis, the record ends {missing:.3} short of the section"
+            ));
         }
         Ok((from, to))
     }
 
-    /// Values of the requested nodes with the record moved along the axis by `shift` (SI) before the section is cut.
+    /// Values of the requested nodes with the record moved along the axis by `shift` (SI) before
+    /// the section is cut.
     ///
     /// # Errors
     /// Where the moved record covers too little of the section; and the errors of an evaluation.
@@ -69,7 +72,8 @@ impl Held<'_> {
     }
 }
 
-/// Largest share of a section that a moved record may leave uncovered; the covered part is evaluated.
+/// Largest share of a section that a moved record may leave uncovered; the covered part is
+/// evaluated.
 const MOST_MISSING: f64 = 0.2;
 
 /// Signals of a record share their axis, which is moved once for all of them.
@@ -83,7 +87,11 @@ impl Moved {
         if self.shift == 0.0 {
             return samples.clone();
         }
-        let known = self.known.iter().find(|(from, _)| Arc::ptr_eq(from, &samples.along)).map(|(_, to)| Arc::clone(to));
+        let known = self
+            .known
+            .iter()
+            .find(|(from, _)| Arc::ptr_eq(from, &samples.along))
+            .map(|(_, to)| Arc::clone(to));
         let along = known.unwrap_or_else(|| {
             let to = Arc::new(samples.along.moved(self.shift));
             self.known.push((Arc::clone(&samples.along), Arc::clone(&to)));

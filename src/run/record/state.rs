@@ -34,7 +34,12 @@ pub(super) struct State<'a> {
 }
 
 impl<'a> State<'a> {
-    pub(super) fn new(opened: &'a Opened, graph: &'a Graph, known: &'a Known<'a>, method: Method) -> Self {
+    pub(super) fn new(
+        opened: &'a Opened,
+        graph: &'a Graph,
+        known: &'a Known<'a>,
+        method: Method,
+    ) -> Self {
         let nodes = graph.nodes.len();
         let cutter = Cutter::new(opened.extent);
         Self {
@@ -52,7 +57,8 @@ impl<'a> State<'a> {
         }
     }
 
-    /// The needed nodes by level, inputs before the nodes that use them, and the number of uses of each.
+    /// The needed nodes by level, inputs before the nodes that use them, and the number of uses of
+    /// each.
     pub(super) fn count(&mut self, needed: &BTreeSet<NodeId>) -> Vec<Vec<NodeId>> {
         let mut level = vec![0_usize; self.graph.nodes.len()];
         let mut levels: Vec<Vec<NodeId>> = Vec::new();
@@ -70,14 +76,21 @@ impl<'a> State<'a> {
     }
 
     /// Runs the chosen nodes and keeps the values of the requested ones.
-    pub(super) fn run(&mut self, levels: &[Vec<NodeId>], wanted: &BTreeSet<NodeId>, chosen: impl Fn(NodeId) -> bool) -> Result<(), String> {
+    pub(super) fn run(
+        &mut self,
+        levels: &[Vec<NodeId>],
+        wanted: &BTreeSet<NodeId>,
+        chosen: impl Fn(NodeId) -> bool,
+    ) -> Result<(), String> {
         for level in levels {
             let here: Vec<NodeId> = level.iter().copied().filter(|&id| chosen(id)).collect();
             let before = self.found.len();
             self.filters(&here)?;
             self.reducers(&here)?;
             for &id in &here {
-                if self.values[id].is_none() && self.failed[id].is_none() && !matches!(self.graph.nodes[id].operation, Operation::Reduce(_))
+                if self.values[id].is_none()
+                    && self.failed[id].is_none()
+                    && !matches!(self.graph.nodes[id].operation, Operation::Reduce(_))
                 {
                     self.value(id)?;
                 }
@@ -100,8 +113,13 @@ impl<'a> State<'a> {
 }
 
 impl State<'_> {
-    /// Takes what others have computed of this record already; what is left to compute, where results are shared.
-    pub(super) fn recall(&mut self, needed: &BTreeSet<NodeId>, wanted: &BTreeSet<NodeId>) -> Option<BTreeSet<NodeId>> {
+    /// Takes what others have computed of this record already; what is left to compute, where
+    /// results are shared.
+    pub(super) fn recall(
+        &mut self,
+        needed: &BTreeSet<NodeId>,
+        wanted: &BTreeSet<NodeId>,
+    ) -> Option<BTreeSet<NodeId>> {
         let (memo, keys) = self.memo?;
         let filters = |id: &&NodeId| matches!(&self.graph.nodes[**id].operation, Operation::Step(spec) if spec.is_filter());
         memo.count_asked(needed.iter().filter(filters).count());
@@ -121,10 +139,14 @@ impl State<'_> {
                         self.found.push((id, Found::Samples(samples)));
                     }
                 }
-                Some(Kept::Number(value, samples)) => self.found.push((id, Found::Number(value, samples))),
+                Some(Kept::Number(value, samples)) => {
+                    self.found.push((id, Found::Number(value, samples)))
+                }
                 None => {
                     left.insert(id);
-                    open.extend(self.graph.nodes[id].inputs.iter().filter(|input| needed.contains(input)));
+                    open.extend(
+                        self.graph.nodes[id].inputs.iter().filter(|input| needed.contains(input)),
+                    );
                 }
             }
         }
@@ -160,12 +182,15 @@ impl State<'_> {
     }
 
     fn signal(&self, id: NodeId) -> Result<&Signal, String> {
-        self.values[id].as_ref().ok_or_else(|| self.failed[id].clone().unwrap_or_else(|| "an input is missing".to_string()))
+        self.values[id].as_ref().ok_or_else(|| {
+            self.failed[id].clone().unwrap_or_else(|| "an input is missing".to_string())
+        })
     }
 
     /// Whether an input has no value. Then this node has none for the same reason.
     fn without_input(&mut self, id: NodeId) -> bool {
-        let reason = self.graph.nodes[id].inputs.iter().find_map(|&input| self.failed[input].clone());
+        let reason =
+            self.graph.nodes[id].inputs.iter().find_map(|&input| self.failed[input].clone());
         let failed = reason.is_some();
         if failed {
             self.failed[id] = reason;
@@ -177,8 +202,8 @@ impl State<'_> {
         self.failed[id] = Some(format!("{reason} ({})", self.graph.nodes[id].label));
     }
 
-    /// Computes a node. Where a step of a quantity is not possible, only this node has no value. Samples without a finite result
-    /// are a fault of the record.
+    /// Computes a node. Where a step of a quantity is not possible, only this node has no value.
+    /// Samples without a finite result are a fault of the record.
     fn value(&mut self, id: NodeId) -> Result<(), String> {
         if self.without_input(id) {
             return Ok(());
@@ -192,16 +217,20 @@ impl State<'_> {
     }
 
     fn asks(&self, id: NodeId) -> bool {
-        matches!(self.graph.nodes[id].operation, Operation::Step(_) | Operation::Window(_) | Operation::OverAxis(_))
+        matches!(
+            self.graph.nodes[id].operation,
+            Operation::Step(_) | Operation::Window(_) | Operation::OverAxis(_)
+        )
     }
 
     pub(super) fn samples(&self, id: NodeId) -> Result<Samples, String> {
         match self.signal(id)? {
             Signal::Samples(samples) => Ok(samples.clone()),
             // A constant becomes a signal of equal samples where a signal is needed.
-            Signal::Constant(value) => {
-                Ok(Samples { along: Arc::clone(&self.opened.along), values: Arc::new(vec![*value; self.opened.along.axis.len()]) })
-            }
+            Signal::Constant(value) => Ok(Samples {
+                along: Arc::clone(&self.opened.along),
+                values: Arc::new(vec![*value; self.opened.along.axis.len()]),
+            }),
         }
     }
 
@@ -219,7 +248,9 @@ impl State<'_> {
             }
             let samples = self.samples(node.inputs[0])?;
             let same = groups.iter_mut().find(|(known, members)| {
-                known == spec && members[0].1.along.rate == samples.along.rate && members[0].1.values.len() == samples.values.len()
+                known == spec
+                    && members[0].1.along.rate == samples.along.rate
+                    && members[0].1.values.len() == samples.values.len()
             });
             match same {
                 Some((_, members)) => members.push((id, samples)),
@@ -230,9 +261,11 @@ impl State<'_> {
             memo.count_filtered(groups.iter().map(|(_, members)| members.len()).sum());
         }
         for (spec, members) in groups {
-            let signals: Vec<&[f64]> = members.iter().map(|(_, samples)| samples.values.as_slice()).collect();
+            let signals: Vec<&[f64]> =
+                members.iter().map(|(_, samples)| samples.values.as_slice()).collect();
             let designed = members[0].1.designed(&spec);
-            let filtered = designed.and_then(|filter| filter.apply_many(&signals).map_err(|error| error.to_string()));
+            let filtered = designed
+                .and_then(|filter| filter.apply_many(&signals).map_err(|error| error.to_string()));
             let filtered = match filtered {
                 Ok(filtered) => filtered,
                 Err(reason) => {
@@ -262,11 +295,19 @@ impl State<'_> {
                     let samples = self.samples(node.inputs[0])?;
                     let over = node.inputs.get(1).map(|&over| self.samples(over)).transpose()?;
                     let axis = over.as_ref().map_or(&samples.along.axis, |over| &over.values);
-                    let value = reducer.run(axis, &samples.values, self.method).filter(|value| value.is_finite());
+                    let value = reducer
+                        .run(axis, &samples.values, self.method)
+                        .filter(|value| value.is_finite());
                     match value {
-                        Some(value) => self.found.push((id, Found::Number(value, samples.values.len()))),
+                        Some(value) => {
+                            self.found.push((id, Found::Number(value, samples.values.len())))
+                        }
                         None => {
-                            let says = format!("the {} of {} samples is not defined", reducer.in_words(), samples.values.len());
+                            let says = format!(
+                                "the {} of {} samples is not defined",
+                                reducer.in_words(),
+                                samples.values.len()
+                            );
                             self.failed[id] = Some(says);
                         }
                     }
@@ -288,7 +329,12 @@ impl State<'_> {
                     continue;
                 }
             };
-            self.found.extend(members.iter().zip(values).map(|((id, _), value)| (*id, Found::Number(value, samples.values.len()))));
+            self.found.extend(
+                members
+                    .iter()
+                    .zip(values)
+                    .map(|((id, _), value)| (*id, Found::Number(value, samples.values.len()))),
+            );
         }
         Ok(())
     }
@@ -300,7 +346,10 @@ impl State<'_> {
             Operation::Read { column } => {
                 let found = self.opened.columns.iter().find(|(name, _)| name == column);
                 let (_, values) = found.ok_or_else(|| format!("no column `{column}`"))?;
-                Ok(Signal::Samples(Samples { along: Arc::clone(&self.opened.along), values: Arc::clone(values) }))
+                Ok(Signal::Samples(Samples {
+                    along: Arc::clone(&self.opened.along),
+                    values: Arc::clone(values),
+                }))
             }
             Operation::Constant(expr) => Ok(Signal::Constant(number(expr, self.known)?)),
             Operation::Level => {
@@ -308,25 +357,37 @@ impl State<'_> {
                     Found::Number(value, _) if *id == node.inputs[0] => Some(*value),
                     _ => None,
                 };
-                Ok(Signal::Constant(self.found.iter().find_map(of).ok_or("a number of the section is missing")?))
+                Ok(Signal::Constant(
+                    self.found.iter().find_map(of).ok_or("a number of the section is missing")?,
+                ))
             }
             Operation::Arithmetic(operator) => arithmetic(*operator, input(0)?, input(1)?),
             Operation::Negative => each(input(0)?, |value| -value),
             Operation::Power(exponent) => each(input(0)?, |value| value.powi(i32::from(*exponent))),
             Operation::Apply(function) => {
-                let inputs = node.inputs.iter().map(|&input| self.signal(input)).collect::<Result<Vec<_>, _>>()?;
+                let inputs = node.inputs.iter().map(|&input| self.signal(input)).collect::<Result<
+                    Vec<_>,
+                    _,
+                >>(
+                )?;
                 apply(&inputs, function.run)
             }
-            Operation::Select(conditions) => Ok(input(chosen(conditions, &node.inputs, self.known)?)?.clone()),
-            Operation::OverAxis(operation) => {
-                Ok(Signal::Samples(self.samples(node.inputs[0])?.over_axis(operation, self.known, self.extent)?))
+            Operation::Select(conditions) => {
+                Ok(input(chosen(conditions, &node.inputs, self.known)?)?.clone())
             }
-            Operation::Step(spec) => Ok(Signal::Samples(self.samples(node.inputs[0])?.stepped(spec)?)),
+            Operation::OverAxis(operation) => Ok(Signal::Samples(
+                self.samples(node.inputs[0])?.over_axis(operation, self.known, self.extent)?,
+            )),
+            Operation::Step(spec) => {
+                Ok(Signal::Samples(self.samples(node.inputs[0])?.stepped(spec)?))
+            }
             Operation::Cut => {
                 let samples = self.samples(node.inputs[0])?;
                 Ok(Signal::Samples(self.cutter.cut(&samples)?))
             }
-            Operation::Window(spec) => Ok(Signal::Samples(self.samples(node.inputs[0])?.windowed(spec, self.extent)?)),
+            Operation::Window(spec) => {
+                Ok(Signal::Samples(self.samples(node.inputs[0])?.windowed(spec, self.extent)?))
+            }
             _ => Err("this node combines records".into()),
         }
     }

@@ -1,9 +1,12 @@
-//! Records of stretches that neighbouring sections share: each is read once, and what no section changes is computed once.
+//! Records of stretches that neighbouring sections share: each is read once, and what no section
+//! changes is computed once.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::{Fault, FileHash, Found, Opened, Sampled, State, Work, chosen, clock, columns, file_of, part};
+use super::{
+    Fault, FileHash, Found, Opened, Sampled, State, Work, chosen, clock, columns, file_of, part,
+};
 use crate::check::evaluate::number;
 use crate::check::plan::{AxisOperation, Kind, Plan, StepSpec};
 use crate::data::campaign::ReadFile;
@@ -43,8 +46,10 @@ impl Stretches {
     }
 }
 
-/// Which records of stretches are sound: all that a protocol reads of them and that no section changes has finite values. A section is evaluated
-/// on its stretch if that is sound, and else on what it reads by itself, whatever is asked of it: its values do not depend on what else is asked.
+/// Which records of stretches are sound: all that a protocol reads of them and that no section
+/// changes has finite values. A section is evaluated on its stretch if that is sound, and else on
+/// what it reads by itself, whatever is asked of it: its values do not depend on what else is
+/// asked.
 #[derive(Debug, Default)]
 pub struct Soundness(Mutex<BTreeMap<RecordOfStretch, bool>>);
 
@@ -58,16 +63,29 @@ impl Soundness {
     }
 }
 
-/// The stretch of a section, if it is sound. Once it is known to be, only the columns are read that are wanted, outside a group of sections.
+/// The stretch of a section, if it is sound. Once it is known to be, only the columns are read that
+/// are wanted, outside a group of sections.
 ///
 /// # Errors
 /// The record cannot be read at all, now.
-pub(super) fn shared(work: &Work<'_>, unit: &Unit, which: WhichRecord, wanted: &[Wanted]) -> Result<Option<Arc<Stretched>>, Fault> {
+pub(super) fn shared(
+    work: &Work<'_>,
+    unit: &Unit,
+    which: WhichRecord,
+    wanted: &[Wanted],
+) -> Result<Option<Arc<Stretched>>, Fault> {
     let Some(stretch) = unit.stretch else { return Ok(None) };
     let key = (stretch.number, which);
-    let read = |wanted: &[Wanted]| match work.campaign(unit).read(which, &unit.cell, wanted, Some(&stretch.part(work.plan))) {
+    let read = |wanted: &[Wanted]| match work.campaign(unit).read(
+        which,
+        &unit.cell,
+        wanted,
+        Some(&stretch.part(work.plan)),
+    ) {
         Ok(read) => Ok(Stretched::new(work.plan, which, read).map(Arc::new)),
-        Err(problems) if problems.iter().any(|problem| problem.code == "file-unreadable") => Err(Fault::of(work.campaign(unit), problems)),
+        Err(problems) if problems.iter().any(|problem| problem.code == "file-unreadable") => {
+            Err(Fault::of(work.campaign(unit), problems))
+        }
         Err(_) => Ok(None),
     };
     match (work.soundness.known(key), work.stretches) {
@@ -76,7 +94,8 @@ pub(super) fn shared(work: &Work<'_>, unit: &Unit, which: WhichRecord, wanted: &
         (_, stretches) => {
             let alone = Stretches::default();
             let found = stretches.unwrap_or(&alone).get(key, || {
-                let all = read(&columns(work, which, &(0..work.graph.nodes.len()).collect(), false))?;
+                let all =
+                    read(&columns(work, which, &(0..work.graph.nodes.len()).collect(), false))?;
                 Ok(all.filter(|stretched| stretched.is_sound(work, unit, which)))
             })?;
             work.soundness.keep(key, found.is_some());
@@ -125,11 +144,16 @@ impl Stretched {
         Some(Self { sampled, read, numbers: Mutex::default(), results: Memo::default() })
     }
 
-    /// Whether the nodes that no section changes have finite values all along. Their values are kept for the sections.
+    /// Whether the nodes that no section changes have finite values all along. Their values are
+    /// kept for the sections.
     fn is_sound(self: &Arc<Self>, work: &Work<'_>, unit: &Unit, which: WhichRecord) -> bool {
         let Sampled { columns, along, .. } = &self.sampled;
-        let (Some(first), Some(last)) = (along.axis.first(), along.axis.last()) else { return false };
-        let nodes = common(work.graph, which.kind == RecordKind::Track, |column| columns.iter().any(|(name, _)| name == column));
+        let (Some(first), Some(last)) = (along.axis.first(), along.axis.last()) else {
+            return false;
+        };
+        let nodes = common(work.graph, which.kind == RecordKind::Track, |column| {
+            columns.iter().any(|(name, _)| name == column)
+        });
         let whole = Opened {
             columns: Arc::clone(columns),
             along: Arc::clone(along),
@@ -147,7 +171,12 @@ impl Stretched {
     }
 
     /// The record as one section sees it; `None` if it does not cover the section.
-    pub(super) fn section(self: &Arc<Self>, work: &Work<'_>, unit: &Unit, which: WhichRecord) -> Option<Opened> {
+    pub(super) fn section(
+        self: &Arc<Self>,
+        work: &Work<'_>,
+        unit: &Unit,
+        which: WhichRecord,
+    ) -> Option<Opened> {
         let (extent, Sampled { columns, along, in_time }) = (unit.extent?, &self.sampled);
         let (first, last) = (*along.axis.first()?, *along.axis.last()?);
         let inside = along.inside(extent);
@@ -155,10 +184,13 @@ impl Stretched {
             return None;
         }
         let times = along.time.as_ref().unwrap_or(&along.axis);
-        let margins = in_time.then(|| (times[inside.start] - times[0], times[times.len() - 1] - times[inside.end - 1]));
+        let margins = in_time.then(|| {
+            (times[inside.start] - times[0], times[times.len() - 1] - times[inside.end - 1])
+        });
         let file: FileHash = file_of(work, unit, which, &self.read);
         let own = part(work.plan, unit).map(|part| (part.from, part.to));
-        let (columns, along, stretch) = (Arc::clone(columns), Arc::clone(along), Some(Arc::clone(self)));
+        let (columns, along, stretch) =
+            (Arc::clone(columns), Arc::clone(along), Some(Arc::clone(self)));
         Some(Opened { columns, along, extent, file, margins, memo: None, own, stretch })
     }
 
@@ -183,7 +215,8 @@ fn far(operation: &Operation) -> bool {
     }
 }
 
-/// Whether a node, or one that leads to it, depends on the place of the section: it is computed on what the section would read by itself.
+/// Whether a node, or one that leads to it, depends on the place of the section: it is computed on
+/// what the section would read by itself.
 fn bound(graph: &Graph, needed: &BTreeSet<NodeId>) -> Vec<bool> {
     let here = |operation: &Operation| match operation {
         Operation::Cut | Operation::Window(_) | Operation::Reduce(_) => true,
@@ -194,7 +227,11 @@ fn bound(graph: &Graph, needed: &BTreeSet<NodeId>) -> Vec<bool> {
 }
 
 /// Nodes with a property, and those that they lead to.
-pub(super) fn leading(graph: &Graph, needed: &BTreeSet<NodeId>, has: impl Fn(&Operation) -> bool) -> Vec<bool> {
+pub(super) fn leading(
+    graph: &Graph,
+    needed: &BTreeSet<NodeId>,
+    has: impl Fn(&Operation) -> bool,
+) -> Vec<bool> {
     let mut found = vec![false; graph.nodes.len()];
     for &id in needed {
         let node = &graph.nodes[id];
@@ -203,15 +240,22 @@ pub(super) fn leading(graph: &Graph, needed: &BTreeSet<NodeId>, has: impl Fn(&Op
     found
 }
 
-/// Nodes that are computed on the whole stretch: columns, and what leads to a value that depends on samples far away.
+/// Nodes that are computed on the whole stretch: columns, and what leads to a value that depends on
+/// samples far away.
 fn early(graph: &Graph, needed: &BTreeSet<NodeId>) -> Vec<bool> {
     let bound = bound(graph, needed);
     let mut early = vec![false; graph.nodes.len()];
     for &id in needed.iter().rev() {
         let node = &graph.nodes[id];
-        early[id] = !bound[id] && (early[id] || far(&node.operation) || matches!(node.operation, Operation::Read { .. }));
+        early[id] = !bound[id]
+            && (early[id]
+                || far(&node.operation)
+                || matches!(node.operation, Operation::Read { .. }));
         if early[id] || far(&node.operation) {
-            node.inputs.iter().filter(|input| needed.contains(input)).for_each(|&input| early[input] = true);
+            node.inputs
+                .iter()
+                .filter(|input| needed.contains(input))
+                .for_each(|&input| early[input] = true);
         }
     }
     early
@@ -224,7 +268,11 @@ fn common(graph: &Graph, track: bool, has: impl Fn(&str) -> bool) -> BTreeSet<No
         let same = match &node.operation {
             Operation::Read { column } => node.track == track && has(column),
             Operation::Constant(of) => matches!(of.kind, Kind::Constant(_)),
-            Operation::Arithmetic(_) | Operation::Negative | Operation::Power(_) | Operation::Apply(_) | Operation::Step(_) => true,
+            Operation::Arithmetic(_)
+            | Operation::Negative
+            | Operation::Power(_)
+            | Operation::Apply(_)
+            | Operation::Step(_) => true,
             Operation::OverAxis(operation) => !matches!(operation, AxisOperation::Shifted(_)),
             _ => false,
         };
@@ -236,8 +284,9 @@ fn common(graph: &Graph, track: bool, has: impl Fn(&str) -> bool) -> BTreeSet<No
 }
 
 impl State<'_> {
-    /// Computes the nodes that must be computed on the whole stretch, or takes their values from sections that did, and shortens them to what
-    /// the section would read by itself: what follows takes no longer, and is the same whoever asks. What is only cut, or averaged in windows of
+    /// Computes the nodes that must be computed on the whole stretch, or takes their values from
+    /// sections that did, and shortens them to what the section would read by itself: what follows
+    /// takes no longer, and is the same whoever asks. What is only cut, or averaged in windows of
     /// the section, stays as it is. Gives which nodes these are.
     ///
     /// # Errors
@@ -306,13 +355,20 @@ impl State<'_> {
     }
 
     /// The number of what each early node does; `None` where only this section has its value.
-    fn numbers(&self, stretch: &Stretched, needed: &BTreeSet<NodeId>, early: &[bool]) -> Vec<Option<usize>> {
+    fn numbers(
+        &self,
+        stretch: &Stretched,
+        needed: &BTreeSet<NodeId>,
+        early: &[bool],
+    ) -> Vec<Option<usize>> {
         let mut numbers: Vec<Option<usize>> = vec![None; early.len()];
         for &id in needed.iter().filter(|&&id| early[id]) {
             let node = &self.graph.nodes[id];
             let of = match &node.operation {
                 Operation::Select(conditions) => {
-                    numbers[id] = chosen(conditions, &node.inputs, self.known).ok().and_then(|input| numbers[node.inputs[input]]);
+                    numbers[id] = chosen(conditions, &node.inputs, self.known)
+                        .ok()
+                        .and_then(|input| numbers[node.inputs[input]]);
                     continue;
                 }
                 Operation::Constant(of) => match number(of, self.known) {
@@ -321,8 +377,10 @@ impl State<'_> {
                 },
                 _ => None,
             };
-            let inputs: Option<Vec<usize>> = node.inputs.iter().map(|&input| numbers[input]).collect();
-            numbers[id] = inputs.map(|inputs| stretch.number(Does { node: id, inputs, number: of }));
+            let inputs: Option<Vec<usize>> =
+                node.inputs.iter().map(|&input| numbers[input]).collect();
+            numbers[id] =
+                inputs.map(|inputs| stretch.number(Does { node: id, inputs, number: of }));
         }
         numbers
     }
@@ -333,7 +391,10 @@ impl State<'_> {
         for &id in needed.iter().filter(|&&id| !early[id]) {
             let node = &self.graph.nodes[id];
             if !matches!(node.operation, Operation::Cut | Operation::Window(_)) {
-                node.inputs.iter().filter(|&&input| early[input]).for_each(|&input| whole[input] = true);
+                node.inputs
+                    .iter()
+                    .filter(|&&input| early[input])
+                    .for_each(|&input| whole[input] = true);
             }
         }
         let mut cutter = Cutter::new(own);

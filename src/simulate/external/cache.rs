@@ -27,8 +27,12 @@ impl Cache {
     /// `write-failed`: it cannot be created.
     pub fn at(folder: &Path) -> Result<Self, Problem> {
         let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_path_buf());
-        disk::make_folder(&folder)
-            .map_err(|error| Problem::error("write-failed", format!("the cache `{}` cannot be created: {error}", folder.display())))?;
+        disk::make_folder(&folder).map_err(|error| {
+            Problem::error(
+                "write-failed",
+                format!("the cache `{}` cannot be created: {error}", folder.display()),
+            )
+        })?;
         Ok(Self { folder: Some(folder), damaged: Arc::default() })
     }
 
@@ -41,7 +45,8 @@ impl Cache {
     /// The default cache: `fishplate-cache` in the system's temporary folder.
     ///
     /// # Errors
-    /// `write-failed`: it cannot be created, or belongs to another user, who could change its records.
+    /// `write-failed`: it cannot be created, or belongs to another user, who could change its
+    /// records.
     pub fn temporary() -> Result<Self, Problem> {
         let cache = Self::at(&std::env::temp_dir().join("fishplate-cache"))?;
         #[cfg(unix)]
@@ -49,7 +54,8 @@ impl Cache {
             && !disk::owner(folder).is_ok_and(|owner| owner == rustix::process::getuid().as_raw())
         {
             let says = format!("the cache `{}` belongs to another user", folder.display());
-            return Err(Problem::error("write-failed", says).help("give a folder with `--cache DIR`, or use none with `--no-cache`"));
+            return Err(Problem::error("write-failed", says)
+                .help("give a folder with `--cache DIR`, or use none with `--no-cache`"));
         }
         Ok(cache)
     }
@@ -77,7 +83,8 @@ impl Cache {
         };
         let record = bytes.and_then(|bytes| {
             let end = memchr::memmem::rfind(&bytes, SEAL.as_bytes())?;
-            let found = bytes[end + SEAL.len()..].trim_ascii_end() == seal(key, &bytes[..end]).as_bytes();
+            let found =
+                bytes[end + SEAL.len()..].trim_ascii_end() == seal(key, &bytes[..end]).as_bytes();
             found.then(|| bytes[..end].to_vec())
         });
         if record.is_none() {
@@ -99,7 +106,9 @@ impl Cache {
         let first = damaged.iter().min()?.display().to_string();
         let says = match damaged.len() {
             1 => format!("the cache entry `{first}` is damaged; its record was simulated again"),
-            count => format!("{count} cache entries are damaged, among them `{first}`; their records were simulated again"),
+            count => format!(
+                "{count} cache entries are damaged, among them `{first}`; their records were simulated again"
+            ),
         };
         damaged.clear();
         Some(Problem::warning("cache-damaged", says))
@@ -135,8 +144,12 @@ impl Key {
     /// # Errors
     /// `file-unreadable`.
     pub fn add_file(&mut self, what: &str, path: &Path) -> Result<(), Problem> {
-        let bytes = disk::read(path, LARGEST_RECORD)
-            .map_err(|error| Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", path.display())))?;
+        let bytes = disk::read(path, LARGEST_RECORD).map_err(|error| {
+            Problem::error(
+                "file-unreadable",
+                format!("`{}` cannot be read: {error}", path.display()),
+            )
+        })?;
         self.add(what, &sha256(&bytes));
         Ok(())
     }
@@ -178,7 +191,11 @@ mod tests {
         std::fs::copy(&paths[1], &paths[0]).expect("copied");
         assert_eq!(cache.get(&keys[0]), None);
         let warning = cache.warning().expect("told");
-        assert!(warning.code == "cache-damaged" && warning.says.contains("cache entries are damaged"), "{}", warning.says);
+        assert!(
+            warning.code == "cache-damaged" && warning.says.contains("cache entries are damaged"),
+            "{}",
+            warning.says
+        );
         assert_eq!(cache.warning(), None);
     }
 

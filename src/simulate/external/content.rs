@@ -13,16 +13,26 @@ use crate::source::Spanned;
 /// Path of the vehicle file, if the campaign names one.
 pub(super) fn vehicle_file(campaign: &Campaign) -> Result<Option<PathBuf>, Problem> {
     let Some(node) = campaign.tree.get("vehicle") else { return Ok(None) };
-    let written = Spanned::new(node.scalar_text().unwrap_or_default().to_string(), node.span.clone());
+    let written =
+        Spanned::new(node.scalar_text().unwrap_or_default().to_string(), node.span.clone());
     Ok(Some(absolute(&campaign.place(&written)?.path)))
 }
 
-/// Hash of the common inputs of all records of a program: its description, the files named in the command and the description, the vehicle
-/// file and the files that it names.
-pub(super) fn basis(campaign: &Campaign, program: &Program, vehicle: Option<&Path>) -> Result<Key, Problem> {
+/// Hash of the common inputs of all records of a program: its description, the files named in the
+/// command and the description, the vehicle file and the files that it names.
+pub(super) fn basis(
+    campaign: &Campaign,
+    program: &Program,
+    vehicle: Option<&Path>,
+) -> Result<Key, Problem> {
     let mut key = Key::default();
     key.add("simulator", &program.source.text);
-    for file in program.command.iter().filter_map(Word::plain).map(|word| program.folder.join(word)).filter(|path| disk::may_be_file(path))
+    for file in program
+        .command
+        .iter()
+        .filter_map(Word::plain)
+        .map(|word| program.folder.join(word))
+        .filter(|path| disk::may_be_file(path))
     {
         key.add_file("program", &file)?;
     }

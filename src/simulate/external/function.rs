@@ -33,7 +33,11 @@ impl External<'_> {
 
     /// The folder of inputs; without one, time and distance of the campaign's simulation.
     fn input_kind(&self) -> RecordKind {
-        if self.campaign.has(RecordKind::Track) { RecordKind::Track } else { RecordKind::Simulation }
+        if self.campaign.has(RecordKind::Track) {
+            RecordKind::Track
+        } else {
+            RecordKind::Simulation
+        }
     }
 
     /// The columns that the function is given, in the units of their file.
@@ -48,13 +52,21 @@ impl External<'_> {
             .map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true })
             .collect();
         let record = read_record(&place.path, &place.inside, &wanted).map_err(first)?;
-        let column =
-            |column: &crate::data::Column| (column.name.clone(), column.values.iter().map(|value| column.unit.from_si(*value)).collect());
+        let column = |column: &crate::data::Column| {
+            (
+                column.name.clone(),
+                column.values.iter().map(|value| column.unit.from_si(*value)).collect(),
+            )
+        };
         Ok(record.columns.iter().map(column).collect())
     }
 
     /// Calls the function for a section; returns the record and its text.
-    pub(super) fn ask(&self, workers: &Workers, task: &Task<'_>) -> Result<(Signals, Vec<u8>), Problem> {
+    pub(super) fn ask(
+        &self,
+        workers: &Workers,
+        task: &Task<'_>,
+    ) -> Result<(Signals, Vec<u8>), Problem> {
         let section = task.section;
         let inputs = self.inputs(section)?;
         let given = || {
@@ -70,11 +82,20 @@ impl External<'_> {
         }
         let made = workers.call(section.name(), &parameters, &given).map_err(|failed| {
             let problem = self.told(&failed, Some(section));
-            let set: Vec<String> = task.settings.iter().map(|(name, value)| format!("{name} = {value}")).collect();
-            if set.is_empty() { problem } else { problem.help(format!("it was called with {}", set.join(", "))) }
+            let set: Vec<String> =
+                task.settings.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+            if set.is_empty() {
+                problem
+            } else {
+                problem.help(format!("it was called with {}", set.join(", ")))
+            }
         })?;
-        let called = |problem: Problem| Problem { says: format!("section `{}`: {}", section.name(), problem.says), ..problem };
-        self.signals(section, &inputs, made).map_err(|problem| called(problem).at(&section.cell.span))
+        let called = |problem: Problem| Problem {
+            says: format!("section `{}`: {}", section.name(), problem.says),
+            ..problem
+        };
+        self.signals(section, &inputs, made)
+            .map_err(|problem| called(problem).at(&section.cell.span))
     }
 
     /// The parameters of the function with the values of the vehicle file.
@@ -82,19 +103,26 @@ impl External<'_> {
         let names = workers.parameters().map_err(|failed| self.told(&failed, None))?;
         let value = |name: &String| {
             let node = self.campaign.vehicle.lookup(name).ok_or_else(|| {
-                let known = self.campaign.vehicle.entries().iter().map(|(key, _)| key.text.as_str());
-                let says = format!("`{}` has the parameter `{name}`, for which the vehicle file has no value", self.program.name);
+                let known =
+                    self.campaign.vehicle.entries().iter().map(|(key, _)| key.text.as_str());
+                let says = format!(
+                    "`{}` has the parameter `{name}`, for which the vehicle file has no value",
+                    self.program.name
+                );
                 let problem = Problem::error("key-missing", says).at(&self.program.span);
                 problem.suggest(name, known.filter(|known| !names.iter().any(|name| name == known)))
             })?;
             let number = node.number().or_else(|| with_unit(node.scalar_text()?));
-            let wrong = || Problem::error("wrong-kind", format!("`{name}` must be a number")).at(&node.span);
+            let wrong = || {
+                Problem::error("wrong-kind", format!("`{name}` must be a number")).at(&node.span)
+            };
             Ok((name.clone(), number.ok_or_else(wrong)?))
         };
         names.iter().map(value).collect()
     }
 
-    /// Checks the parameters of a Python function against the vehicle file and a catalogue, before the first run.
+    /// Checks the parameters of a Python function against the vehicle file and a catalogue, before
+    /// the first run.
     ///
     /// # Errors
     /// The function cannot be loaded; a parameter that one of them has and another has not.
@@ -105,8 +133,13 @@ impl External<'_> {
         let mut problems = Vec::new();
         for effect in catalogue.effects.iter().filter(|effect| effect.action == Action::Simulator) {
             let set = effect.parameters.iter().flat_map(|parameter| &parameter.simulators);
-            for (_, name, _) in set.filter(|(simulator, name, _)| *simulator == self.program.name && !names.contains(name)) {
-                problems.push(Problem { at: Some(effect.span.clone()), ..self.no_parameter(workers, name) });
+            for (_, name, _) in set.filter(|(simulator, name, _)| {
+                *simulator == self.program.name && !names.contains(name)
+            }) {
+                problems.push(Problem {
+                    at: Some(effect.span.clone()),
+                    ..self.no_parameter(workers, name)
+                });
             }
         }
         if problems.is_empty() { Ok(()) } else { Err(problems) }
@@ -117,17 +150,29 @@ impl External<'_> {
         let says = format!("`{}` has no parameter `{name}`", self.program.name);
         let problem = Problem::error("unknown-parameter", says).at(&self.program.span);
         let problem = problem.suggest(name, names.iter().map(String::as_str));
-        if problem.help.is_some() { problem } else { problem.help(format!("its file lists in PARAMETERS: {}", names.join(", "))) }
+        if problem.help.is_some() {
+            problem
+        } else {
+            problem.help(format!("its file lists in PARAMETERS: {}", names.join(", ")))
+        }
     }
 
     /// A record in the units of the campaign's simulation, with its text.
-    fn signals(&self, section: &Section, inputs: &Columns, made: Columns) -> Result<(Signals, Vec<u8>), Problem> {
+    fn signals(
+        &self,
+        section: &Section,
+        inputs: &Columns,
+        made: Columns,
+    ) -> Result<(Signals, Vec<u8>), Problem> {
         let shown = format!("the answer of {}", self.program.name);
         let wrong = |says: String| Problem::error("simulator-output", says);
         let known = self.headings(section);
         let mut columns: Vec<(String, Unit, Vec<f64>)> = Vec::new();
         for (written, values) in made {
-            let heading = listed_headings(&written, &shown).ok().filter(|found| found.len() == 1).and_then(|mut found| found.pop());
+            let heading = listed_headings(&written, &shown)
+                .ok()
+                .filter(|found| found.len() == 1)
+                .and_then(|mut found| found.pop());
             let name = heading.as_ref().map_or(written.clone(), |heading| heading.name.clone());
             let own = unit_in(&known, &name);
             let unit = match heading.filter(|heading| heading.unit.is_some()) {
@@ -143,10 +188,12 @@ impl External<'_> {
         let second = Unit::si(Dimension::TIME);
         let metre = Unit::si(Dimension::LENGTH);
         for (axis, unit) in [(DISTANCE, &metre), (TIME, &second)] {
-            if let (false, Some((_, values))) =
-                (columns.iter().any(|(name, ..)| name == axis), inputs.iter().find(|(name, _)| name == axis))
-            {
-                let unit = unit_in(&self.input_headings(section), axis).unwrap_or_else(|| unit.clone());
+            if let (false, Some((_, values))) = (
+                columns.iter().any(|(name, ..)| name == axis),
+                inputs.iter().find(|(name, _)| name == axis),
+            ) {
+                let unit =
+                    unit_in(&self.input_headings(section), axis).unwrap_or_else(|| unit.clone());
                 columns.insert(0, (axis.into(), unit, values.clone()));
             }
         }
@@ -157,9 +204,16 @@ impl External<'_> {
         let Some(time) = si(TIME) else {
             return Err(wrong(format!("{shown} has no `{TIME}`, and its inputs have none")));
         };
-        let (over_time, axis) = si(DISTANCE).map_or((true, time.clone()), |distance| (false, distance));
-        if let Some((name, _, values)) = columns.iter().find(|(.., values)| values.len() != time.len()) {
-            return Err(wrong(format!("{shown}: `{name}` has {} samples, `{TIME}` has {}", values.len(), time.len())));
+        let (over_time, axis) =
+            si(DISTANCE).map_or((true, time.clone()), |distance| (false, distance));
+        if let Some((name, _, values)) =
+            columns.iter().find(|(.., values)| values.len() != time.len())
+        {
+            return Err(wrong(format!(
+                "{shown}: `{name}` has {} samples, `{TIME}` has {}",
+                values.len(),
+                time.len()
+            )));
         }
         let span = time.last().zip(time.first()).map_or(0.0, |(last, first)| last - first);
         if time.len() < 2 || span <= 0.0 {
@@ -167,11 +221,17 @@ impl External<'_> {
         }
         covers(&axis, section)?;
         if let Some(at) = axis.windows(2).position(|pair| pair[1] <= pair[0]) {
-            return Err(Problem::error("not-increasing", format!("{shown}: the axis does not increase at sample {}", at + 1)));
+            return Err(Problem::error(
+                "not-increasing",
+                format!("{shown}: the axis does not increase at sample {}", at + 1),
+            ));
         }
         let asked = &self.program.channels;
-        let wanted: Vec<&str> =
-            if asked.is_empty() { known.iter().map(|one| one.name.as_str()).collect() } else { asked.iter().map(String::as_str).collect() };
+        let wanted: Vec<&str> = if asked.is_empty() {
+            known.iter().map(|one| one.name.as_str()).collect()
+        } else {
+            asked.iter().map(String::as_str).collect()
+        };
         let names: Vec<&str> = columns.iter().map(|(name, ..)| name.as_str()).collect();
         if let Some(name) = wanted.iter().find(|name| !names.contains(name)) {
             return Err(lacks(&shown, name, &names, &wanted));
@@ -179,17 +239,27 @@ impl External<'_> {
         let text = text(&columns);
         let channel = |(name, unit, values): (String, Unit, Vec<f64>)| {
             let to = unit_in(&known, &name).unwrap_or_else(|| unit.clone());
-            let values =
-                if to.factor == unit.factor { values } else { values.iter().map(|value| to.from_si(unit.to_si(*value))).collect() };
+            let values = if to.factor == unit.factor {
+                values
+            } else {
+                values.iter().map(|value| to.from_si(unit.to_si(*value))).collect()
+            };
             Channel { name, values }
         };
-        let channels = columns.into_iter().filter(|(name, ..)| name != TIME && name != DISTANCE).map(channel).collect();
+        let channels = columns
+            .into_iter()
+            .filter(|(name, ..)| name != TIME && name != DISTANCE)
+            .map(channel)
+            .collect();
         Ok((Signals { axis, over_time, rate: (time.len() - 1) as f64 / span, channels }, text))
     }
 
     fn input_headings(&self, section: &Section) -> Vec<crate::data::Heading> {
         let place = self.campaign.record_place(self.input_kind(), &section.cell);
-        place.ok().and_then(|place| read_headings(&place.path, &place.inside).ok()).unwrap_or_default()
+        place
+            .ok()
+            .and_then(|place| read_headings(&place.path, &place.inside).ok())
+            .unwrap_or_default()
     }
 
     fn told(&self, failed: &Failed, section: Option<&Section>) -> Problem {
@@ -200,20 +270,35 @@ impl External<'_> {
             problem.at(section.map_or(&self.program.span, |section| &section.cell.span))
         };
         let said = |problem: Problem, said: &str, what: &str| {
-            if said.is_empty() { problem } else { problem.also(&Source::new(name.as_str(), said).whole(), what) }
+            if said.is_empty() {
+                problem
+            } else {
+                problem.also(&Source::new(name.as_str(), said).whole(), what)
+            }
         };
         match failed {
-            Failed::NotStarted(error) => problem("simulator-failed", self.program.not_started(error)),
+            Failed::NotStarted(error) => {
+                problem("simulator-failed", self.program.not_started(error))
+            }
             Failed::TimedOut => {
                 let seconds = self.program.timeout.as_secs_f64();
-                problem("simulator-timeout", format!("was terminated after {seconds} s, its time-out"))
+                problem(
+                    "simulator-timeout",
+                    format!("was terminated after {seconds} s, its time-out"),
+                )
             }
-            Failed::Ended(output) => said(problem("simulator-failed", "ended during a call".into()), output, "its last output"),
+            Failed::Ended(output) => said(
+                problem("simulator-failed", "ended during a call".into()),
+                output,
+                "its last output",
+            ),
             Failed::Raised(error) => {
                 let last = error.lines().last().unwrap_or_default();
                 said(problem("simulator-failed", format!("failed: {last}")), error, "its error")
             }
-            Failed::Answer(says) => problem("simulator-output", format!("gave an answer that cannot be read: {says}")),
+            Failed::Answer(says) => {
+                problem("simulator-output", format!("gave an answer that cannot be read: {says}"))
+            }
         }
     }
 }
@@ -230,14 +315,22 @@ fn row(section: &Section) -> Value {
     row.insert("section".into(), json!(section.name()));
     for fact in &section.facts {
         let number = fact.text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-        row.insert(fact.name.clone(), number.map_or_else(|| json!(fact.text), |number| json!(number)));
+        row.insert(
+            fact.name.clone(),
+            number.map_or_else(|| json!(fact.text), |number| json!(number)),
+        );
     }
     Value::Object(row)
 }
 
 /// The record as CSV with every digit, so that one from the cache is the same.
 fn text(columns: &[(String, Unit, Vec<f64>)]) -> Vec<u8> {
-    let mut text = columns.iter().map(|(name, unit, _)| format!("{name} [{unit}]")).collect::<Vec<_>>().join(",") + "\n";
+    let mut text = columns
+        .iter()
+        .map(|(name, unit, _)| format!("{name} [{unit}]"))
+        .collect::<Vec<_>>()
+        .join(",")
+        + "\n";
     for row in 0..columns.first().map_or(0, |(.., values)| values.len()) {
         for (at, (.., values)) in columns.iter().enumerate() {
             let _ = write!(text, "{}{}", if at == 0 { "" } else { "," }, values[row]);

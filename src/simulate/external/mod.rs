@@ -60,8 +60,13 @@ impl<'a> External<'a> {
     /// The campaign lacks a file that the command needs: `key-missing`, `file-unreadable`.
     pub fn new(campaign: &'a Campaign, program: Program, cache: Cache) -> Result<Self, Problem> {
         let lacks = |key: &str| {
-            let says = format!("the campaign has no `{key}`, which the command of `{}` needs", program.name);
-            Problem::error("key-missing", says).at(&campaign.tree.span.part(0..0)).also(&program.span, "here")
+            let says = format!(
+                "the campaign has no `{key}`, which the command of `{}` needs",
+                program.name
+            );
+            Problem::error("key-missing", says)
+                .at(&campaign.tree.span.part(0..0))
+                .also(&program.span, "here")
         };
         let asks = |hole: Hole| program.command.iter().any(|word| word.has(hole));
         if asks(Hole::Track) && !campaign.has(RecordKind::Track) {
@@ -89,7 +94,8 @@ impl<'a> External<'a> {
         (self.calls.load(Ordering::Relaxed), self.found.load(Ordering::Relaxed))
     }
 
-    /// The unit of a channel of a section's record: that of the campaign's simulation, else that of the program's last record.
+    /// The unit of a channel of a section's record: that of the campaign's simulation, else that of
+    /// the program's last record.
     #[must_use]
     pub fn unit(&self, section: &Section, channel: &str) -> Unit {
         let own = || {
@@ -100,13 +106,19 @@ impl<'a> External<'a> {
         unit_in(&self.headings(section), channel).or_else(own).unwrap_or_else(Unit::one)
     }
 
-    /// Deviation of the program without effects from the campaign's simulation of a section, by channel.
+    /// Deviation of the program without effects from the campaign's simulation of a section, by
+    /// channel.
     ///
     /// # Errors
     /// Of the program; the campaign's record cannot be read; the records do not overlap.
     pub fn baseline(&self, section: &Section) -> Result<Vec<Deviation>, Problem> {
-        let (recorded, ..) = recorded(self.campaign, RecordKind::Simulation, section).map_err(first)?;
-        deviations(&self.run(&Task { section, settings: &[], shift: 0.0, inside_only: false })?, &recorded, section)
+        let (recorded, ..) =
+            recorded(self.campaign, RecordKind::Simulation, section).map_err(first)?;
+        deviations(
+            &self.run(&Task { section, settings: &[], shift: 0.0, inside_only: false })?,
+            &recorded,
+            section,
+        )
     }
 
     /// Headings of the campaign's simulation of a section; empty if there is none.
@@ -120,26 +132,39 @@ impl<'a> External<'a> {
         let section = task.section;
         let asks = |hole: Hole| self.program.command.iter().any(|word| word.has(hole));
         let lacks = |what: &str| {
-            let says = format!("section `{}` has no {what}, which the command of `{}` needs", section.name(), self.program.name);
+            let says = format!(
+                "section `{}` has no {what}, which the command of `{}` needs",
+                section.name(),
+                self.program.name
+            );
             Problem::error("section", says).at(&section.cell.span)
         };
         if self.workers.is_none() && !task.settings.is_empty() && !asks(Hole::Set) {
-            let says = format!("`{}` accepts no parameters: its command has no `{{set}}`", self.program.name);
+            let says = format!(
+                "`{}` accepts no parameters: its command has no `{{set}}`",
+                self.program.name
+            );
             return Err(Problem::error("not-simulated", says).at(&self.program.span));
         }
         if asks(Hole::Speed) && section.speed.is_none() {
             return Err(lacks("speed"));
         }
-        if (asks(Hole::Start) || asks(Hole::End)) && !(section.start.is_finite() && section.end.is_finite()) {
+        if (asks(Hole::Start) || asks(Hole::End))
+            && !(section.start.is_finite() && section.end.is_finite())
+        {
             return Err(lacks("start or no end"));
         }
         let track = if asks(Hole::Track) { Some(self.track(section)?) } else { None };
-        let path = |path: Option<&Path>| path.map(|path| path.display().to_string()).unwrap_or_default();
+        let path =
+            |path: Option<&Path>| path.map(|path| path.display().to_string()).unwrap_or_default();
         let fills = |hole: Hole| match hole {
             Hole::Vehicle => path(self.vehicle.as_deref()),
             Hole::Track => path(track.as_deref()),
             Hole::Out => path(Some(out)),
-            Hole::Speed => section.speed.map(|speed| self.program.speed_unit.from_si(speed).to_string()).unwrap_or_default(),
+            Hole::Speed => section
+                .speed
+                .map(|speed| self.program.speed_unit.from_si(speed).to_string())
+                .unwrap_or_default(),
             Hole::Section => section.name().to_string(),
             Hole::Start => (section.start - task.shift).to_string(),
             Hole::End => (section.end - task.shift).to_string(),
@@ -185,7 +210,11 @@ impl<'a> External<'a> {
     fn read(&self, path: &Path, section: &Section) -> Result<Signals, Problem> {
         let shown = format!("{}.csv of {}", section.name(), self.program.name);
         let known = self.headings(section);
-        let made = RecordSource::File(Place { path: path.to_path_buf(), shown: shown.clone(), inside: shown });
+        let made = RecordSource::File(Place {
+            path: path.to_path_buf(),
+            shown: shown.clone(),
+            inside: shown,
+        });
         let (signals, units) = read_made(&made, &known, &self.program.channels)?;
         covers(&signals.axis, section)?;
         if let Ok(mut all) = self.units.lock() {
@@ -197,7 +226,9 @@ impl<'a> External<'a> {
 
     /// Reads a record from the cache.
     fn read_kept(&self, bytes: &[u8], section: &Section) -> Result<Signals, Problem> {
-        let failed = |error: std::io::Error| Problem::error("write-failed", format!("no temporary folder can be created: {error}"));
+        let failed = |error: std::io::Error| {
+            Problem::error("write-failed", format!("no temporary folder can be created: {error}"))
+        };
         let folder = disk::scratch().map_err(failed)?;
         let file = folder.path().join("record.csv");
         crate::data::write::keep(&file, bytes)?;
@@ -217,9 +248,12 @@ impl<'a> External<'a> {
             return self.ask(workers, task);
         }
         let section = task.section;
-        let failed = |error: std::io::Error| Problem::error("write-failed", format!("no temporary folder can be created: {error}"));
+        let failed = |error: std::io::Error| {
+            Problem::error("write-failed", format!("no temporary folder can be created: {error}"))
+        };
         // A record that another machine writes must lie where both see it.
-        let folder = if self.program.launch.is_empty() { disk::scratch() } else { self.cache.scratch() };
+        let folder =
+            if self.program.launch.is_empty() { disk::scratch() } else { self.cache.scratch() };
         let folder = folder.map_err(failed)?;
         let out = folder.path().join("record.csv");
         let words = self.filled(task, &out)?;
@@ -235,33 +269,64 @@ impl<'a> External<'a> {
         self.calls.fetch_add(1, Ordering::Relaxed);
         process::run(&call).map_err(|fault| self.failed(&fault, &words, section))?;
         if !disk::may_be_file(&out) {
-            let says = format!("section `{}`: {} ended without an error, but wrote no record", section.name(), self.program.name);
+            let says = format!(
+                "section `{}`: {} ended without an error, but wrote no record",
+                section.name(),
+                self.program.name
+            );
             let problem = Problem::error("simulator-output", says).at(&section.cell.span);
             return Err(problem.help(format!("the command was: {}", words.join(" "))));
         }
         let signals = self.read(&out, section).map_err(|problem| {
-            let says = format!("section `{}`: the record of {}: {}", section.name(), self.program.name, problem.says);
-            let help = problem.help.clone().unwrap_or_else(|| format!("the command was: {}", words.join(" ")));
+            let says = format!(
+                "section `{}`: the record of {}: {}",
+                section.name(),
+                self.program.name,
+                problem.says
+            );
+            let help = problem
+                .help
+                .clone()
+                .unwrap_or_else(|| format!("the command was: {}", words.join(" ")));
             Problem { says, ..problem }.help(help)
         })?;
-        let bytes = disk::read(&out, LARGEST_RECORD)
-            .map_err(|error| Problem::error("file-unreadable", format!("the record cannot be read: {error}")))?;
+        let bytes = disk::read(&out, LARGEST_RECORD).map_err(|error| {
+            Problem::error("file-unreadable", format!("the record cannot be read: {error}"))
+        })?;
         Ok((signals, bytes))
     }
 
     fn failed(&self, fault: &Fault, words: &[String], section: &Section) -> Problem {
         let told = |code: &'static str, how: &dyn Display, said: &str| {
-            let problem = Problem::error(code, format!("section `{}`: {} {how}", section.name(), self.program.name));
-            let problem = problem.at(&section.cell.span).help(format!("the command was: {}", words.join(" ")));
-            if said.is_empty() { problem } else { problem.also(&Source::new(self.program.name.as_str(), said).whole(), "its last output") }
+            let problem = Problem::error(
+                code,
+                format!("section `{}`: {} {how}", section.name(), self.program.name),
+            );
+            let problem = problem
+                .at(&section.cell.span)
+                .help(format!("the command was: {}", words.join(" ")));
+            if said.is_empty() {
+                problem
+            } else {
+                problem
+                    .also(&Source::new(self.program.name.as_str(), said).whole(), "its last output")
+            }
         };
         match fault {
-            Fault::NotStarted(error) => told("simulator-failed", &self.program.not_started(error), ""),
+            Fault::NotStarted(error) => {
+                told("simulator-failed", &self.program.not_started(error), "")
+            }
             Fault::TimedOut { said } => {
                 let seconds = self.program.timeout.as_secs_f64();
-                told("simulator-timeout", &format!("was terminated after {seconds} s, its time-out"), said)
+                told(
+                    "simulator-timeout",
+                    &format!("was terminated after {seconds} s, its time-out"),
+                    said,
+                )
             }
-            Fault::Failed { status, said } => told("simulator-failed", &format!("failed: {status}"), said),
+            Fault::Failed { status, said } => {
+                told("simulator-failed", &format!("failed: {status}"), said)
+            }
         }
     }
 }
@@ -270,11 +335,17 @@ impl<'a> External<'a> {
 fn covers(axis: &[f64], section: &Section) -> Result<(), Problem> {
     let ([first, second, ..], Some(last)) = (axis, axis.last()) else { return Ok(()) };
     let slack = second - first;
-    if first - slack <= section.start && section.end <= last + slack || !(section.start.is_finite() && section.end.is_finite()) {
+    if first - slack <= section.start && section.end <= last + slack
+        || !(section.start.is_finite() && section.end.is_finite())
+    {
         return Ok(());
     }
-    let says = format!("it goes from {first:.3} to {last:.3}, and the section from {:.3} to {:.3}", section.start, section.end);
-    Err(Problem::error("simulator-output", says).help("the record must cover the section, on the same axis"))
+    let says = format!(
+        "it goes from {first:.3} to {last:.3}, and the section from {:.3} to {:.3}",
+        section.start, section.end
+    );
+    Err(Problem::error("simulator-output", says)
+        .help("the record must cover the section, on the same axis"))
 }
 
 impl Simulator for External<'_> {
@@ -309,7 +380,12 @@ impl Simulator for External<'_> {
                 }
                 Err(_) if tries <= self.program.retries => {}
                 Err(problem) if tries == 1 => return Err(problem),
-                Err(problem) => return Err(Problem { says: format!("{} ({tries} tries)", problem.says), ..problem }),
+                Err(problem) => {
+                    return Err(Problem {
+                        says: format!("{} ({tries} tries)", problem.says),
+                        ..problem
+                    });
+                }
             }
         }
     }

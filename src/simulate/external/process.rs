@@ -59,7 +59,12 @@ pub fn run(call: &Call<'_>) -> Result<(), Fault> {
     let mut output = disk::scratch_file().map_err(Fault::NotStarted)?;
     let to = |file: &File| file.try_clone().map(Stdio::from).map_err(Fault::NotStarted);
     let mut command = launched(call.launch, call.program);
-    command.args(call.arguments).current_dir(call.folder).stdin(Stdio::null()).stdout(to(&output)?).stderr(to(&error)?);
+    command
+        .args(call.arguments)
+        .current_dir(call.folder)
+        .stdin(Stdio::null())
+        .stdout(to(&output)?)
+        .stderr(to(&error)?);
     command.envs(call.environment.iter().map(|(name, value)| (name, value)));
     let mark = Mark::new();
     command.env(started::NAME, mark.value());
@@ -117,7 +122,9 @@ pub(super) fn end(child: &mut Child, mark: &Mark) {
 pub(super) fn last_lines(file: &mut File) -> String {
     let length = file.metadata().map_or(0, |meta| meta.len());
     let mut bytes = Vec::new();
-    let read = file.seek(SeekFrom::Start(length.saturating_sub(BYTES))).and_then(|_| file.take(BYTES).read_to_end(&mut bytes));
+    let read = file
+        .seek(SeekFrom::Start(length.saturating_sub(BYTES)))
+        .and_then(|_| file.take(BYTES).read_to_end(&mut bytes));
     if read.is_err() {
         return String::new();
     }

@@ -1,4 +1,5 @@
-//! A Python function as a simulator: processes that stay, one for each worker, and JSON lines over their pipes.
+//! A Python function as a simulator: processes that stay, one for each worker, and JSON lines over
+//! their pipes.
 
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Write};
@@ -61,7 +62,15 @@ pub type Columns = Vec<(String, Vec<f64>)>;
 impl Workers {
     pub fn new(python: Python, program: &Program) -> Self {
         let Program { launch, environment, folder, timeout, .. } = program.clone();
-        Self { python, launch, environment, folder, timeout, idle: Mutex::default(), parameters: OnceLock::new() }
+        Self {
+            python,
+            launch,
+            environment,
+            folder,
+            timeout,
+            idle: Mutex::default(),
+            parameters: OnceLock::new(),
+        }
     }
 
     /// The parameters that the file declares. A process is started to ask for them.
@@ -73,11 +82,18 @@ impl Workers {
         Ok(self.parameters.get().map_or(&[], Vec::as_slice))
     }
 
-    /// Calls the function. `inputs` is asked for if the process does not have those of the section yet.
-    pub fn call(&self, section: &str, parameters: &[(String, f64)], inputs: &dyn Fn() -> Value) -> Result<Columns, Failed> {
+    /// Calls the function. `inputs` is asked for if the process does not have those of the section
+    /// yet.
+    pub fn call(
+        &self,
+        section: &str,
+        parameters: &[(String, f64)],
+        inputs: &dyn Fn() -> Value,
+    ) -> Result<Columns, Failed> {
         let free = self.idle.lock().ok().and_then(|mut idle| idle.pop());
         let mut worker = free.map_or_else(|| self.start(), Ok)?;
-        let values: Map<String, Value> = parameters.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
+        let values: Map<String, Value> =
+            parameters.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
         let inputs = if worker.known.contains(section) { Value::Null } else { inputs() };
         let asked = json!({"section": section, "inputs": inputs, "parameters": values});
         let answer = worker.ask(&asked, self.timeout)?;
@@ -97,7 +113,10 @@ impl Workers {
         let errors = disk::scratch_file().map_err(Failed::NotStarted)?;
         let mut command = launched(&self.launch, &self.python.interpreter);
         command.args(["-c", WORKER]).arg(&self.python.file).current_dir(&self.folder);
-        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(errors.try_clone().map_err(Failed::NotStarted)?);
+        command
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(errors.try_clone().map_err(Failed::NotStarted)?);
         command.envs(self.environment.iter().map(|(name, value)| (name, value)));
         let mark = Mark::new();
         command.env(started::NAME, mark.value());
@@ -111,7 +130,9 @@ impl Workers {
             std::thread::spawn(move || {
                 let mut output = BufReader::new(output);
                 let mut line = String::new();
-                while matches!(output.read_line(&mut line), Ok(read) if read > 0) && send.send(std::mem::take(&mut line)).is_ok() {}
+                while matches!(output.read_line(&mut line), Ok(read) if read > 0)
+                    && send.send(std::mem::take(&mut line)).is_ok()
+                {}
             });
         }
         let mut worker = Worker { child, input, lines, errors, mark, known: BTreeSet::new() };
@@ -119,8 +140,13 @@ impl Workers {
         if let Some(error) = ready.get("error").and_then(Value::as_str) {
             return Err(Failed::Raised(error.to_string()));
         }
-        let names = ready.get("parameters").and_then(Value::as_array).map(|names| names.iter().filter_map(Value::as_str));
-        let Some(names) = names else { return Err(Failed::Answer("its first line has no `parameters`".into())) };
+        let names = ready
+            .get("parameters")
+            .and_then(Value::as_array)
+            .map(|names| names.iter().filter_map(Value::as_str));
+        let Some(names) = names else {
+            return Err(Failed::Answer("its first line has no `parameters`".into()));
+        };
         let _ = self.parameters.set(names.map(str::to_string).collect());
         Ok(worker)
     }
@@ -141,7 +167,9 @@ impl Worker {
 
     fn answer(&mut self, timeout: Duration) -> Result<Value, Failed> {
         match self.lines.recv_timeout(timeout) {
-            Ok(line) => serde_json::from_str(&line).map_err(|error| Failed::Answer(error.to_string())),
+            Ok(line) => {
+                serde_json::from_str(&line).map_err(|error| Failed::Answer(error.to_string()))
+            }
             Err(RecvTimeoutError::Timeout) => Err(Failed::TimedOut),
             Err(RecvTimeoutError::Disconnected) => {
                 let _ = self.child.wait();
@@ -179,5 +207,9 @@ fn columns(answer: &Value) -> Result<Columns, Failed> {
         let values = values.as_array()?.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>()?;
         Some((name.clone(), values))
     };
-    found.iter().map(column).collect::<Option<_>>().ok_or_else(|| Failed::Answer("a channel is no list of numbers".into()))
+    found
+        .iter()
+        .map(column)
+        .collect::<Option<_>>()
+        .ok_or_else(|| Failed::Answer("a channel is no list of numbers".into()))
 }

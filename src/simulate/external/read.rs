@@ -37,7 +37,8 @@ pub struct Program {
     pub channels: Vec<String>,
     /// Further files on whose content the results depend.
     pub inputs: Vec<PathBuf>,
-    /// Largest deviation from the campaign's simulation: rms of the difference / rms of the channel.
+    /// Largest deviation from the campaign's simulation: rms of the difference / rms of the
+    /// channel.
     pub tolerance: f64,
     /// The place of the command or of the function's file.
     pub span: Span,
@@ -77,15 +78,24 @@ const TOLERANCE: f64 = 0.05;
 
 /// Reads a description; `folder` is the folder of its file.
 ///
-/// Problems: `unknown-key`, `key-missing`, `wrong-kind`, `range`, `unknown-unit`, `unit-mismatch`, `unknown-placeholder`,
-/// `unclosed-brace`, `placeholder-missing`, `no-such-program`, `file-missing`.
-pub fn read_program(source: &Arc<Source>, folder: &Path, problems: &mut Problems) -> Option<Program> {
+/// Problems: `unknown-key`, `key-missing`, `wrong-kind`, `range`, `unknown-unit`, `unit-mismatch`,
+/// `unknown-placeholder`, `unclosed-brace`, `placeholder-missing`, `no-such-program`,
+/// `file-missing`.
+pub fn read_program(
+    source: &Arc<Source>,
+    folder: &Path,
+    problems: &mut Problems,
+) -> Option<Program> {
     let before = problems.errors();
     let tree = yaml::load(source, problems)?;
     let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_path_buf());
     let mut reader = Reader { folder: &folder, problems };
     if !matches!(tree.value, Value::Map(_)) {
-        reader.fault("wrong-kind", format!("a simulator must be a map of keys and values, not {}", tree.kind_in_words()), &tree.span);
+        reader.fault(
+            "wrong-kind",
+            format!("a simulator must be a map of keys and values, not {}", tree.kind_in_words()),
+            &tree.span,
+        );
         return None;
     }
     reader.keys(&tree);
@@ -95,14 +105,19 @@ pub fn read_program(source: &Arc<Source>, folder: &Path, problems: &mut Problems
     }
     reader.one_way(&tree);
     let python = tree.get("python").and_then(|node| reader.python(node, tree.get("interpreter")));
-    let command = tree.get("command").map(|node| reader.words(node, &Hole::OF_COMMAND)).unwrap_or_default();
+    let command =
+        tree.get("command").map(|node| reader.words(node, &Hole::OF_COMMAND)).unwrap_or_default();
     let set = tree.get("set").map(|node| reader.words(node, &Hole::OF_SET)).unwrap_or_default();
-    let speed_unit = tree.get("speed unit").and_then(|node| reader.unit(node, Dimension::LENGTH / Dimension::TIME));
+    let speed_unit = tree
+        .get("speed unit")
+        .and_then(|node| reader.unit(node, Dimension::LENGTH / Dimension::TIME));
     let timeout = tree.get("timeout").and_then(|node| reader.seconds(node));
-    let retries = tree.get("retries").and_then(|node| reader.number(node, "retries", 0.0, MOST_RETRIES));
+    let retries =
+        tree.get("retries").and_then(|node| reader.number(node, "retries", 0.0, MOST_RETRIES));
     let tolerance = tree.get("tolerance").and_then(|node| reader.share(node));
     let environment = reader.environment(&tree);
-    let channels = tree.get("channels").map(|node| reader.texts(node, "channels")).unwrap_or_default();
+    let channels =
+        tree.get("channels").map(|node| reader.texts(node, "channels")).unwrap_or_default();
     let inputs = tree.get("inputs").map(|node| reader.inputs(node)).unwrap_or_default();
     if let Some(node) = tree.get("command") {
         reader.command(node, &command, &set);
@@ -128,7 +143,10 @@ pub fn read_program(source: &Arc<Source>, folder: &Path, problems: &mut Problems
         channels,
         inputs,
         tolerance: tolerance.unwrap_or(TOLERANCE),
-        span: tree.get("command").or_else(|| tree.get("python")).map_or_else(|| tree.span.clone(), |node| node.span.clone()),
+        span: tree
+            .get("command")
+            .or_else(|| tree.get("python"))
+            .map_or_else(|| tree.span.clone(), |node| node.span.clone()),
     })
 }
 
@@ -141,7 +159,8 @@ impl Program {
         }
     }
 
-    /// The file of the program if the command gives its path, else its name, which the system searches.
+    /// The file of the program if the command gives its path, else its name, which the system
+    /// searches.
     #[must_use]
     pub fn executable(&self) -> PathBuf {
         let word = self.command.first().and_then(Word::plain).unwrap_or_default();
@@ -160,8 +179,11 @@ impl Reader<'_> {
     }
 
     fn keys(&mut self, tree: &Node) {
-        for (key, _) in tree.entries().iter().filter(|(key, _)| !KEYS.contains(&key.text.as_str())) {
-            let problem = Problem::error("unknown-key", format!("a simulator has no key `{}`", key.text)).at(&key.span);
+        for (key, _) in tree.entries().iter().filter(|(key, _)| !KEYS.contains(&key.text.as_str()))
+        {
+            let problem =
+                Problem::error("unknown-key", format!("a simulator has no key `{}`", key.text))
+                    .at(&key.span);
             self.problems.push(problem.suggest(&key.text, KEYS));
         }
     }
@@ -170,8 +192,11 @@ impl Reader<'_> {
     fn one_way(&mut self, tree: &Node) {
         let others = match (tree.get("command"), tree.get("python")) {
             (None, None) => {
-                let problem = Problem::error("key-missing", "`command` is missing").at(&tree.span.part(0..0));
-                return self.problems.push(problem.help("a simulator is a `command`, or a function in a `python` file"));
+                let problem =
+                    Problem::error("key-missing", "`command` is missing").at(&tree.span.part(0..0));
+                return self.problems.push(
+                    problem.help("a simulator is a `command`, or a function in a `python` file"),
+                );
             }
             (Some(_), Some(both)) => {
                 let says = "a simulator is either a `command` or a `python` function, not both";
@@ -180,25 +205,39 @@ impl Reader<'_> {
             (Some(_), None) => &OF_PYTHON[..],
             (None, Some(_)) => &OF_COMMAND[..],
         };
-        for (key, _) in tree.entries().iter().filter(|(key, _)| others.contains(&key.text.as_str())) {
+        for (key, _) in tree.entries().iter().filter(|(key, _)| others.contains(&key.text.as_str()))
+        {
             let with = if others == OF_PYTHON { "python" } else { "command" };
-            self.fault("contradiction", format!("`{}` belongs to a `{with}`, which is not given", key.text), &key.span);
+            self.fault(
+                "contradiction",
+                format!("`{}` belongs to a `{with}`, which is not given", key.text),
+                &key.span,
+            );
         }
     }
 
     fn python(&mut self, node: &Node, interpreter: Option<&Node>) -> Option<Python> {
         let Some(text) = node.scalar_text().filter(|text| !text.trim().is_empty()) else {
-            self.fault("wrong-kind", format!("`python` must be the path of a file, not {}", node.kind_in_words()), &node.span);
+            self.fault(
+                "wrong-kind",
+                format!("`python` must be the path of a file, not {}", node.kind_in_words()),
+                &node.span,
+            );
             return None;
         };
         let file = self.folder.join(text);
         if !disk::may_be_file(&file) {
-            self.fault("file-missing", format!("there is no file `{text}` in the folder of this file"), &node.span);
+            self.fault(
+                "file-missing",
+                format!("there is no file `{text}` in the folder of this file"),
+                &node.span,
+            );
         }
         let name = interpreter.map_or(Some(INTERPRETER), Node::scalar_text).unwrap_or_default();
         let span = interpreter.map_or(&node.span, |node| &node.span);
         self.program(name, span);
-        let interpreter = if name.contains(['/', '\\']) { self.folder.join(name) } else { PathBuf::from(name) };
+        let interpreter =
+            if name.contains(['/', '\\']) { self.folder.join(name) } else { PathBuf::from(name) };
         Some(Python { interpreter, file })
     }
 
@@ -218,7 +257,8 @@ impl Reader<'_> {
     }
 
     fn texts(&mut self, node: &Node, key: &str) -> Vec<String> {
-        let texts: Vec<String> = node.items().iter().filter_map(|item| Some(item.scalar_text()?.to_string())).collect();
+        let texts: Vec<String> =
+            node.items().iter().filter_map(|item| Some(item.scalar_text()?.to_string())).collect();
         if texts.is_empty() || texts.len() != node.items().len() {
             self.fault("wrong-kind", format!("`{key}` must be a list of names"), &node.span);
         }
@@ -231,7 +271,8 @@ impl Reader<'_> {
                 Value::List(_) => "the list of words is empty".to_string(),
                 _ => format!("expected a list of words, not {}", node.kind_in_words()),
             };
-            let help = "the command is not split by a shell: write `[program, --option, \"{out}\"]`";
+            let help =
+                "the command is not split by a shell: write `[program, --option, \"{out}\"]`";
             self.problems.push(Problem::error("wrong-kind", says).at(&node.span).help(help));
         }
         node.items().iter().filter_map(|item| Word::read(item, allowed, self.problems)).collect()
@@ -242,11 +283,19 @@ impl Reader<'_> {
         match Unit::parse(text) {
             Ok(unit) if unit.dimension == dimension => Some(unit),
             Ok(unit) => {
-                self.fault("unit-mismatch", format!("{unit} does not have the required dimension"), &node.span);
+                self.fault(
+                    "unit-mismatch",
+                    format!("{unit} does not have the required dimension"),
+                    &node.span,
+                );
                 None
             }
             Err(unknown) => {
-                let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word)).at(&node.span);
+                let problem = Problem::error(
+                    "unknown-unit",
+                    format!("`{}` is not a known unit", unknown.word),
+                )
+                .at(&node.span);
                 self.problems.push(match unknown.near {
                     Some(near) => problem.meant(near),
                     None => problem,
@@ -267,7 +316,11 @@ impl Reader<'_> {
             (Some(number), None) if written.is_empty() => Some(number),
             (Some(number), Some(unit)) if unit.dimension == dimension => Some(unit.to_si(number)),
             _ => {
-                self.fault("wrong-kind", format!("`{text}` is not valid here; expected a value such as `{example}`"), &node.span);
+                self.fault(
+                    "wrong-kind",
+                    format!("`{text}` is not valid here; expected a value such as `{example}`"),
+                    &node.span,
+                );
                 None
             }
         }
@@ -295,11 +348,19 @@ impl Reader<'_> {
         match node.number() {
             Some(number) if (low..=high).contains(&number) && number.fract() == 0.0 => Some(number),
             Some(_) => {
-                self.fault("range", format!("`{key}` must be a whole number from {low} to {high}"), &node.span);
+                self.fault(
+                    "range",
+                    format!("`{key}` must be a whole number from {low} to {high}"),
+                    &node.span,
+                );
                 None
             }
             None => {
-                self.fault("wrong-kind", format!("`{key}` must be a number, not {}", node.kind_in_words()), &node.span);
+                self.fault(
+                    "wrong-kind",
+                    format!("`{key}` must be a number, not {}", node.kind_in_words()),
+                    &node.span,
+                );
                 None
             }
         }
@@ -308,13 +369,26 @@ impl Reader<'_> {
     fn environment(&mut self, tree: &Node) -> Vec<(String, String)> {
         let Some(node) = tree.get("environment") else { return Vec::new() };
         if !matches!(node.value, Value::Map(_)) {
-            self.fault("wrong-kind", format!("`environment` must be a map of names and texts, not {}", node.kind_in_words()), &node.span);
+            self.fault(
+                "wrong-kind",
+                format!(
+                    "`environment` must be a map of names and texts, not {}",
+                    node.kind_in_words()
+                ),
+                &node.span,
+            );
         }
         let mut found = Vec::new();
         for (key, value) in node.entries() {
             match value.scalar_text().filter(|text| !text.contains('\0')) {
-                Some(text) if !key.text.is_empty() && !key.text.contains(['=', '\0']) => found.push((key.text.clone(), text.to_string())),
-                _ => self.fault("wrong-kind", "a variable must have a name without `=`, and a text", &key.span),
+                Some(text) if !key.text.is_empty() && !key.text.contains(['=', '\0']) => {
+                    found.push((key.text.clone(), text.to_string()))
+                }
+                _ => self.fault(
+                    "wrong-kind",
+                    "a variable must have a name without `=`, and a text",
+                    &key.span,
+                ),
             }
         }
         found
@@ -324,7 +398,11 @@ impl Reader<'_> {
         let texts = self.texts(node, "inputs");
         let paths: Vec<PathBuf> = texts.iter().map(|text| self.folder.join(text)).collect();
         for (text, _) in texts.iter().zip(&paths).filter(|(_, path)| !disk::may_be_file(path)) {
-            self.fault("file-missing", format!("there is no file `{text}` in the folder of this file"), &node.span);
+            self.fault(
+                "file-missing",
+                format!("there is no file `{text}` in the folder of this file"),
+                &node.span,
+            );
         }
         paths
     }
@@ -336,15 +414,29 @@ impl Reader<'_> {
         }
         let Some((first, place)) = command.first().zip(node.items().first()) else { return };
         if !command.iter().any(|word| word.has(Hole::Out)) {
-            let problem = Problem::error("placeholder-missing", "the command does not contain the path of the record to be written");
+            let problem = Problem::error(
+                "placeholder-missing",
+                "the command does not contain the path of the record to be written",
+            );
             self.problems.push(problem.at(&node.span).help("add a word with `{out}`"));
         }
         if !set.is_empty() && !command.iter().any(|word| word.is(Hole::Set)) {
-            let problem = Problem::error("placeholder-missing", "the command has no placeholder for the words of `set`");
-            self.problems.push(problem.at(&node.span).help("add the word `{set}`, without other text in that word"));
+            let problem = Problem::error(
+                "placeholder-missing",
+                "the command has no placeholder for the words of `set`",
+            );
+            self.problems.push(
+                problem
+                    .at(&node.span)
+                    .help("add the word `{set}`, without other text in that word"),
+            );
         }
         let Some(name) = first.plain() else {
-            return self.fault("wrong-kind", "the first word must be the program, without placeholders", &place.span);
+            return self.fault(
+                "wrong-kind",
+                "the first word must be the program, without placeholders",
+                &place.span,
+            );
         };
         self.program(name, &place.span);
     }
@@ -353,11 +445,19 @@ impl Reader<'_> {
     fn program(&mut self, name: &str, at: &Span) {
         if name.contains(['/', '\\']) {
             if !disk::may_be_file(&self.folder.join(name)) {
-                self.fault("no-such-program", format!("there is no program `{name}` relative to the folder of this file"), at);
+                self.fault(
+                    "no-such-program",
+                    format!("there is no program `{name}` relative to the folder of this file"),
+                    at,
+                );
             }
         } else if !on_path(name) {
-            let problem = Problem::error("no-such-program", format!("the system finds no program `{name}`")).at(at);
-            self.problems.push(problem.help(format!("write `./{name}` for a program in the folder of this file")));
+            let problem =
+                Problem::error("no-such-program", format!("the system finds no program `{name}`"))
+                    .at(at);
+            self.problems.push(
+                problem.help(format!("write `./{name}` for a program in the folder of this file")),
+            );
         }
     }
 }
@@ -365,5 +465,7 @@ impl Reader<'_> {
 fn on_path(name: &str) -> bool {
     let folders = std::env::var_os("PATH").unwrap_or_default();
     let endings: &[&str] = if cfg!(windows) { &["", ".exe", ".bat", ".cmd"] } else { &[""] };
-    std::env::split_paths(&folders).any(|folder| endings.iter().any(|ending| disk::may_be_file(&folder.join(format!("{name}{ending}")))))
+    std::env::split_paths(&folders).any(|folder| {
+        endings.iter().any(|ending| disk::may_be_file(&folder.join(format!("{name}{ending}"))))
+    })
 }

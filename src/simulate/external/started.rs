@@ -1,7 +1,9 @@
-//! Processes that a program started and that left its process group, found by an inherited environment variable.
+//! Processes that a program started and that left its process group, found by an inherited
+//! environment variable.
 //!
-//! A process group is terminated as a whole, but a process that calls `setsid` leaves it. The variable remains in all child processes
-//! unless they remove it. Only Linux shows the variables of other processes.
+//! A process group is terminated as a whole, but a process that calls `setsid` leaves it. The
+//! variable remains in all child processes unless they remove it. Only Linux shows the variables of
+//! other processes.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -35,7 +37,9 @@ pub(super) fn end(mark: &Mark) {
     for _ in 0..ROUNDS {
         let mut found = false;
         for name in names(std::path::Path::new("/proc")).unwrap_or_default() {
-            let Some(id) = name.to_str().and_then(|name| name.parse::<i32>().ok()) else { continue };
+            let Some(id) = name.to_str().and_then(|name| name.parse::<i32>().ok()) else {
+                continue;
+            };
             let Ok(variables) = process_variables(id) else { continue };
             if variables.split(|byte| *byte == 0).any(|variable| variable == wanted.as_bytes())
                 && let Some(id) = rustix::process::Pid::from_raw(id)

@@ -30,8 +30,16 @@ pub enum Hole {
 
 impl Hole {
     /// Placeholders allowed in a command.
-    pub const OF_COMMAND: [Self; 8] =
-        [Self::Vehicle, Self::Track, Self::Speed, Self::Out, Self::Section, Self::Start, Self::End, Self::Set];
+    pub const OF_COMMAND: [Self; 8] = [
+        Self::Vehicle,
+        Self::Track,
+        Self::Speed,
+        Self::Out,
+        Self::Section,
+        Self::Start,
+        Self::End,
+        Self::Set,
+    ];
     /// Placeholders allowed in the words repeated for each parameter.
     pub const OF_SET: [Self; 2] = [Self::Name, Self::Value];
 
@@ -71,7 +79,13 @@ impl Word {
     /// Problems: `unknown-placeholder` with the nearest, `unclosed-brace`, `wrong-kind`.
     pub fn read(node: &Node, allowed: &[Hole], problems: &mut Problems) -> Option<Self> {
         let Some(text) = node.scalar_text() else {
-            problems.push(Problem::error("wrong-kind", format!("a word must be text, not {}", node.kind_in_words())).at(&node.span));
+            problems.push(
+                Problem::error(
+                    "wrong-kind",
+                    format!("a word must be text, not {}", node.kind_in_words()),
+                )
+                .at(&node.span),
+            );
             return None;
         };
         let mut parts = Vec::new();
@@ -84,16 +98,29 @@ impl Word {
                 at = found + 2;
                 continue;
             }
-            let Some(end) = text[found..].find('}').map(|end| found + end).filter(|_| text[found..].starts_with('{')) else {
+            let Some(end) = text[found..]
+                .find('}')
+                .map(|end| found + end)
+                .filter(|_| text[found..].starts_with('{'))
+            else {
                 let says = "this brace has no matching brace";
                 let help = "write `{{` or `}}` for a literal brace";
-                problems.push(Problem::error("unclosed-brace", says).at(&node.place(found..found + 1)).help(help));
+                problems.push(
+                    Problem::error("unclosed-brace", says)
+                        .at(&node.place(found..found + 1))
+                        .help(help),
+                );
                 return None;
             };
             let name = &text[found + 1..end];
             let Some(hole) = allowed.iter().find(|hole| hole.name() == name) else {
-                let problem = Problem::error("unknown-placeholder", format!("there is no `{{{name}}}` here"));
-                problems.push(problem.at(&node.place(found + 1..end)).suggest(name, allowed.iter().map(|hole| hole.name())));
+                let problem =
+                    Problem::error("unknown-placeholder", format!("there is no `{{{name}}}` here"));
+                problems.push(
+                    problem
+                        .at(&node.place(found + 1..end))
+                        .suggest(name, allowed.iter().map(|hole| hole.name())),
+                );
                 return None;
             };
             if !plain.is_empty() {
@@ -141,9 +168,15 @@ impl Word {
     }
 }
 
-/// The words of a call. `{set}` is repeated for every parameter, in the form of `set` if given, else `name=value`.
+/// The words of a call. `{set}` is repeated for every parameter, in the form of `set` if given,
+/// else `name=value`.
 #[must_use]
-pub fn fill(command: &[Word], set: &[Word], settings: &[(String, f64)], with: &dyn Fn(Hole) -> String) -> Vec<String> {
+pub fn fill(
+    command: &[Word],
+    set: &[Word],
+    settings: &[(String, f64)],
+    with: &dyn Fn(Hole) -> String,
+) -> Vec<String> {
     let mut words = Vec::new();
     for word in command {
         if !word.has(Hole::Set) {
@@ -176,18 +209,31 @@ mod tests {
     fn words(text: &str, allowed: &[Hole]) -> Result<Vec<Word>, Vec<(&'static str, String)>> {
         let mut problems = Problems::default();
         let tree = yaml::load(&Source::new("sim.yaml", text), &mut problems).expect("YAML");
-        let words: Vec<Word> = tree.items().iter().filter_map(|node| Word::read(node, allowed, &mut problems)).collect();
-        let place = |problem: &Problem| problem.at.as_ref().map_or("", |span| span.text()).to_string();
-        if problems.0.is_empty() { Ok(words) } else { Err(problems.0.iter().map(|problem| (problem.code, place(problem))).collect()) }
+        let words: Vec<Word> = tree
+            .items()
+            .iter()
+            .filter_map(|node| Word::read(node, allowed, &mut problems))
+            .collect();
+        let place =
+            |problem: &Problem| problem.at.as_ref().map_or("", |span| span.text()).to_string();
+        if problems.0.is_empty() {
+            Ok(words)
+        } else {
+            Err(problems.0.iter().map(|problem| (problem.code, place(problem))).collect())
+        }
     }
 
     #[test]
     fn parameters_repeat_their_words() {
-        let command = words("[run, '--to={out}', '{set}', '{{x}}']", &Hole::OF_COMMAND).expect("right");
+        let command =
+            words("[run, '--to={out}', '{set}', '{{x}}']", &Hole::OF_COMMAND).expect("right");
         let set = words("[-p, '{name}={value}']", &Hole::OF_SET).expect("right");
         let settings = [("mu".to_string(), 0.5), ("m".to_string(), -3e4)];
         let with = |hole: Hole| hole.name().to_uppercase();
-        assert_eq!(fill(&command, &set, &settings, &with), ["run", "--to=OUT", "-p", "mu=0.5", "-p", "m=-30000", "{x}"]);
+        assert_eq!(
+            fill(&command, &set, &settings, &with),
+            ["run", "--to=OUT", "-p", "mu=0.5", "-p", "m=-30000", "{x}"]
+        );
         assert_eq!(fill(&command, &set, &[], &with), ["run", "--to=OUT", "{x}"]);
         let command = words("[run, '-D{set}']", &Hole::OF_COMMAND).expect("right");
         assert_eq!(fill(&command, &[], &settings, &with), ["run", "-Dmu=0.5", "-Dm=-30000"]);
@@ -195,10 +241,22 @@ mod tests {
 
     #[test]
     fn faults_are_placed() {
-        assert_eq!(words("['{trak}']", &Hole::OF_COMMAND), Err(vec![("unknown-placeholder", "trak".to_string())]));
-        assert_eq!(words("['a{out']", &Hole::OF_COMMAND), Err(vec![("unclosed-brace", "{".to_string())]));
-        assert_eq!(words("['a}']", &Hole::OF_COMMAND), Err(vec![("unclosed-brace", "}".to_string())]));
-        assert_eq!(words("['{name}']", &Hole::OF_COMMAND), Err(vec![("unknown-placeholder", "name".to_string())]));
+        assert_eq!(
+            words("['{trak}']", &Hole::OF_COMMAND),
+            Err(vec![("unknown-placeholder", "trak".to_string())])
+        );
+        assert_eq!(
+            words("['a{out']", &Hole::OF_COMMAND),
+            Err(vec![("unclosed-brace", "{".to_string())])
+        );
+        assert_eq!(
+            words("['a}']", &Hole::OF_COMMAND),
+            Err(vec![("unclosed-brace", "}".to_string())])
+        );
+        assert_eq!(
+            words("['{name}']", &Hole::OF_COMMAND),
+            Err(vec![("unknown-placeholder", "name".to_string())])
+        );
         assert_eq!(words("[[a]]", &Hole::OF_COMMAND), Err(vec![("wrong-kind", "[a]".to_string())]));
     }
 }

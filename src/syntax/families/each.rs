@@ -13,7 +13,8 @@ use crate::syntax::layout::Quotes;
 /// The word of a member for one variable, with its place.
 pub type Word = Arc<Spanned<String>>;
 
-/// Variables whose members belong together: `band, name in (0.4 Hz to 2 Hz, low), (2 Hz to 10 Hz, high)`.
+/// Variables whose members belong together: `band, name in (0.4 Hz to 2 Hz, low), (2 Hz to 10 Hz,
+/// high)`.
 #[derive(Debug)]
 pub struct Group {
     pub variables: Vec<Spanned<String>>,
@@ -33,12 +34,20 @@ pub fn read(text: &Text, places: &Places, problems: &mut Problems) -> Option<Vec
         heads.push(head);
     }
     if heads.first().is_none_or(|head| head.at != first(&text.text)) {
-        let problem = Problem::error("syntax", format!("`{EACH}` needs a variable, `in` and members")).at(&text.span);
-        problems.push(problem.help(format!("write `{EACH}  part in magnitude, phase`, and `{{part}}` where a member is inserted")));
+        let problem =
+            Problem::error("syntax", format!("`{EACH}` needs a variable, `in` and members"))
+                .at(&text.span);
+        problems.push(problem.help(format!(
+            "write `{EACH}  part in magnitude, phase`, and `{{part}}` where a member is inserted"
+        )));
         return None;
     }
     let ends = heads.iter().skip(1).map(|head| head.at).chain([text.text.len()]);
-    let groups: Vec<Option<Group>> = heads.iter().zip(ends).map(|(head, end)| group(text, head, end, &open, places, problems)).collect();
+    let groups: Vec<Option<Group>> = heads
+        .iter()
+        .zip(ends)
+        .map(|(head, end)| group(text, head, end, &open, places, problems))
+        .collect();
     groups.into_iter().collect()
 }
 
@@ -106,15 +115,27 @@ fn head(text: &str, from: usize) -> Option<Head> {
     (begins && apart(at)).then(|| Head { at: from, variables, end: text.len() - rest.len() })
 }
 
-fn group(text: &Text, head: &Head, end: usize, open: &[bool], places: &Places, problems: &mut Problems) -> Option<Group> {
-    let variables: Vec<Spanned<String>> =
-        head.variables.iter().map(|range| Spanned::new(text.text[range.clone()].to_owned(), text.place(range.clone()))).collect();
+fn group(
+    text: &Text,
+    head: &Head,
+    end: usize,
+    open: &[bool],
+    places: &Places,
+    problems: &mut Problems,
+) -> Option<Group> {
+    let variables: Vec<Spanned<String>> = head
+        .variables
+        .iter()
+        .map(|range| Spanned::new(text.text[range.clone()].to_owned(), text.place(range.clone())))
+        .collect();
     let items = items(&text.text, head.end..end, open);
     let at = text.place(head.variables.first()?.start..head.end);
     if let [only] = items.as_slice()
         && only.is_empty()
     {
-        let problem = Problem::error("no-members", format!("`{}` has no members", variables[0].value)).at(&at);
+        let problem =
+            Problem::error("no-members", format!("`{}` has no members", variables[0].value))
+                .at(&at);
         problems.push(problem.help("write members after `in`, separated by commas, or the name of a place for all its members"));
         return None;
     }
@@ -122,7 +143,8 @@ fn group(text: &Text, head: &Head, end: usize, open: &[bool], places: &Places, p
     for item in &items {
         if item.is_empty() {
             let place = text.place(item.start.saturating_sub(1)..item.start);
-            let problem = Problem::error("no-members", "a member is missing at this comma").at(&place);
+            let problem =
+                Problem::error("no-members", "a member is missing at this comma").at(&place);
             problems.push(problem.help("remove the comma or write the member"));
             return None;
         }
@@ -142,8 +164,10 @@ fn group(text: &Text, head: &Head, end: usize, open: &[bool], places: &Places, p
 
 /// The pieces between commas, without leading and trailing blanks.
 fn items(text: &str, within: Range<usize>, open: &[bool]) -> Vec<Range<usize>> {
-    let commas = text[within.clone()].bytes().enumerate().map(|(at, byte)| (within.start + at, byte));
-    let mut ends: Vec<usize> = commas.filter(|(at, byte)| *byte == b',' && !open[*at]).map(|(at, _)| at).collect();
+    let commas =
+        text[within.clone()].bytes().enumerate().map(|(at, byte)| (within.start + at, byte));
+    let mut ends: Vec<usize> =
+        commas.filter(|(at, byte)| *byte == b',' && !open[*at]).map(|(at, _)| at).collect();
     ends.push(within.end);
     let mut start = within.start;
     let mut found = Vec::new();
@@ -157,28 +181,47 @@ fn items(text: &str, within: Range<usize>, open: &[bool]) -> Vec<Range<usize>> {
 }
 
 /// The words of a member in parentheses: `(0.4 Hz to 2 Hz, low)`, one for each variable.
-fn row(text: &Text, item: Range<usize>, count: usize, open: &[bool], problems: &mut Problems) -> Option<Vec<Word>> {
+fn row(
+    text: &Text,
+    item: Range<usize>,
+    count: usize,
+    open: &[bool],
+    problems: &mut Problems,
+) -> Option<Vec<Word>> {
     let written = &text.text[item.clone()];
     let inside = item.start + 1..item.end.saturating_sub(1).max(item.start + 1);
-    let whole = written.starts_with('(') && written.ends_with(')') && open[item.clone()].iter().take(written.len() - 1).all(|open| *open);
+    let whole = written.starts_with('(')
+        && written.ends_with(')')
+        && open[item.clone()].iter().take(written.len() - 1).all(|open| *open);
     let words = if whole {
         let nested: Vec<bool> = open_places(&text.text[inside.clone()]);
         let parts = items(&text.text[inside.clone()], 0..inside.len(), &nested);
-        parts.into_iter().map(|part| inside.start + part.start..inside.start + part.end).filter(|part| !part.is_empty()).collect()
+        parts
+            .into_iter()
+            .map(|part| inside.start + part.start..inside.start + part.end)
+            .filter(|part| !part.is_empty())
+            .collect()
     } else {
         vec![item.clone()]
     };
     if !whole || words.len() != count {
-        let here = if words.len() == 1 { "is one word".to_owned() } else { format!("are {} words", words.len()) };
+        let here = if words.len() == 1 {
+            "is one word".to_owned()
+        } else {
+            format!("are {} words", words.len())
+        };
         let says = format!("{count} variables belong together, but here {here}");
         let problem = Problem::error("member-count", says).at(&text.place(item));
-        problems.push(problem.help("write words that belong together in parentheses: `(Y, kN), (az, m/s^2)`"));
+        problems.push(
+            problem.help("write words that belong together in parentheses: `(Y, kN), (az, m/s^2)`"),
+        );
         return None;
     }
     words.into_iter().map(|part| word(text, part, false, problems)).collect()
 }
 
-/// A member as written, without its quotes. A single member (`alone`) with `and` outside quotes is an error.
+/// A member as written, without its quotes. A single member (`alone`) with `and` outside quotes is
+/// an error.
 fn word(text: &Text, range: Range<usize>, alone: bool, problems: &mut Problems) -> Option<Word> {
     let written = &text.text[range.clone()];
     let place = text.place(range.clone());
@@ -194,7 +237,10 @@ fn word(text: &Text, range: Range<usize>, alone: bool, problems: &mut Problems) 
     if let Some(at) = joined(written).filter(|_| alone) {
         let problem = Problem::error("syntax", "`and` must be followed by a variable and `in`")
             .at(&text.place(range.start + at..range.start + at + 3));
-        problems.push(problem.help("separate members by commas; write a member that contains `and` in quotes"));
+        problems.push(
+            problem
+                .help("separate members by commas; write a member that contains `and` in quotes"),
+        );
         return None;
     }
     Some(Arc::new(Spanned::new(written.split_whitespace().collect::<Vec<_>>().join(" "), place)))
@@ -217,7 +263,9 @@ fn unescaped(quoted: &str) -> String {
 /// The position of an `and` in a member, outside parentheses and quotes.
 fn joined(written: &str) -> Option<usize> {
     let open = open_places(written);
-    let is_and = |at: &usize| written[*at..].strip_prefix("and").is_some_and(|rest| !rest.starts_with(is_word));
+    let is_and = |at: &usize| {
+        written[*at..].strip_prefix("and").is_some_and(|rest| !rest.starts_with(is_word))
+    };
     word_starts(written).filter(|at| !open[*at]).find(is_and)
 }
 
@@ -226,13 +274,18 @@ fn of_place(word: &Word, places: &Places, problems: &mut Problems) -> Option<Vec
     let name = word.value.replace(' ', "_");
     let known = || places.keys().map(String::as_str);
     if let Some(members) = place_called(&name, known()).and_then(|place| places.get(place)) {
-        let put_in = |member: &String| vec![Arc::new(Spanned::new(member.clone(), word.span.clone()))];
+        let put_in =
+            |member: &String| vec![Arc::new(Spanned::new(member.clone(), word.span.clone()))];
         return Some(members.iter().map(put_in).collect());
     }
     // A word similar to the name of a place is probably a misspelling of it.
     if let Some(near) = nearest(&name, known()) {
-        let problem = Problem::error("unknown-place", format!("no place is called `{}`", word.value)).at(&word.span);
-        problems.push(problem.help(format!("did you mean `{near}`? Write a single member that is not a place in quotes")));
+        let problem =
+            Problem::error("unknown-place", format!("no place is called `{}`", word.value))
+                .at(&word.span);
+        problems.push(problem.help(format!(
+            "did you mean `{near}`? Write a single member that is not a place in quotes"
+        )));
         return None;
     }
     Some(vec![vec![Arc::clone(word)]])

@@ -35,14 +35,21 @@ struct Braces {
 
 impl<'a> Template<'a> {
     /// Finds the variables in a text; `None` after a problem if braces contain no variable.
-    pub fn new(text: &'a Text, of: Use, variables: &[Spanned<String>], problems: &mut Problems) -> Option<Self> {
+    pub fn new(
+        text: &'a Text,
+        of: Use,
+        variables: &[Spanned<String>],
+        problems: &mut Problems,
+    ) -> Option<Self> {
         let written = text.text.as_str();
         let mut pieces: Vec<(Range<usize>, Option<Braces>)> = Vec::new();
         let (mut start, mut at, mut sound) = (0, 0, true);
         while let Some(found) = written[at..].find(['{', '}']).map(|found| at + found) {
             let end = written[found..].find('}').map_or(found + 1, |end| found + end + 1);
-            let inside = written[found..end].strip_prefix('{').and_then(|rest| rest.strip_suffix('}'));
-            let variable = inside.and_then(|inside| variables.iter().position(|variable| variable.value == inside));
+            let inside =
+                written[found..end].strip_prefix('{').and_then(|rest| rest.strip_suffix('}'));
+            let variable = inside
+                .and_then(|inside| variables.iter().position(|variable| variable.value == inside));
             at = if of == Use::Pattern { found + 1 } else { end };
             if let Some(variable) = variable {
                 at = end;
@@ -61,7 +68,9 @@ impl<'a> Template<'a> {
     }
 
     pub fn uses(&self, variable: usize) -> bool {
-        self.pieces.iter().any(|(_, braces)| braces.is_some_and(|braces| braces.variable == variable))
+        self.pieces
+            .iter()
+            .any(|(_, braces)| braces.is_some_and(|braces| braces.variable == variable))
     }
 
     /// The text for a member; `words` has a word for each variable.
@@ -71,12 +80,23 @@ impl<'a> Template<'a> {
 
     /// Approximate number of bytes that [`Self::fill`] uses.
     pub fn cost(&self, words: &[Word]) -> usize {
-        self.pieces.iter().map(|(range, braces)| size_of::<Piece>() + self.piece(range, *braces, words).0.len()).sum()
+        self.pieces
+            .iter()
+            .map(|(range, braces)| size_of::<Piece>() + self.piece(range, *braces, words).0.len())
+            .sum()
     }
 
-    fn piece(&self, range: &Range<usize>, braces: Option<Braces>, words: &[Word]) -> (String, Option<Word>) {
+    fn piece(
+        &self,
+        range: &Range<usize>,
+        braces: Option<Braces>,
+        words: &[Word],
+    ) -> (String, Option<Word>) {
         match braces.and_then(|braces| Some((braces, words.get(braces.variable)?))) {
-            Some((braces, word)) => (if braces.in_name { in_name(&word.value) } else { word.value.clone() }, Some(Arc::clone(word))),
+            Some((braces, word)) => (
+                if braces.in_name { in_name(&word.value) } else { word.value.clone() },
+                Some(Arc::clone(word)),
+            ),
             None => (self.text.text[range.clone()].to_owned(), None),
         }
     }
@@ -87,18 +107,27 @@ impl<'a> Template<'a> {
         let mut pieces = Vec::with_capacity(self.pieces.len());
         for (range, braces) in &self.pieces {
             let (piece, put_in) = self.piece(range, *braces, words);
-            pieces.push(Piece { text: text.len()..text.len() + piece.len(), from: range.clone(), put_in });
+            pieces.push(Piece {
+                text: text.len()..text.len() + piece.len(),
+                from: range.clone(),
+                put_in,
+            });
             text.push_str(&piece);
         }
         let filled = Filled { text: text.clone(), member: Arc::clone(member), pieces };
-        Text { text, span: Span { filled: Some(Arc::new(filled)), ..self.text.span.clone() }, exact: self.text.exact }
+        Text {
+            text,
+            span: Span { filled: Some(Arc::new(filled)), ..self.text.span.clone() },
+            exact: self.text.exact,
+        }
     }
 }
 
 /// Whether the braces are next to a part of a name: `{part}_limit`, `{channel}_{part}`.
 fn touches(text: &str, braces: Range<usize>) -> bool {
     let name = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    text[..braces.start].ends_with(|c| name(c) || c == '}') || text[braces.end..].starts_with(|c| name(c) || c == '{')
+    text[..braces.start].ends_with(|c| name(c) || c == '}')
+        || text[braces.end..].starts_with(|c| name(c) || c == '{')
 }
 
 /// The form of a word in a name: `0.4_Hz_to_2_Hz`.
@@ -122,10 +151,14 @@ fn stands_for_nothing(inside: Option<&str>, variables: &[Spanned<String>], at: &
     };
     let names = || variables.iter().map(|variable| variable.value.as_str());
     let word = inside.trim();
-    let problem = Problem::error("unknown-variable", format!("`{{{inside}}}` is not a variable")).at(at);
+    let problem =
+        Problem::error("unknown-variable", format!("`{{{inside}}}` is not a variable")).at(at);
     match names().find(|name| *name == word).or_else(|| nearest(word, names())) {
         Some(near) => problem.help(format!("did you mean `{{{near}}}`?")),
-        None => problem.help(format!("variables here: {}", names().map(|name| format!("`{{{name}}}`")).collect::<Vec<_>>().join(", "))),
+        None => problem.help(format!(
+            "variables here: {}",
+            names().map(|name| format!("`{{{name}}}`")).collect::<Vec<_>>().join(", ")
+        )),
     }
 }
 
@@ -139,10 +172,12 @@ mod tests {
     }
 
     fn filled(of: Use, words: &str, value: &str) -> String {
-        let text = Text { text: words.to_string(), span: Source::new("text", words).whole(), exact: true };
+        let text =
+            Text { text: words.to_string(), span: Source::new("text", words).whole(), exact: true };
         let mut problems = Problems::default();
         let variables = [spanned("x")];
-        let template = Template::new(&text, of, &variables, &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
+        let template = Template::new(&text, of, &variables, &mut problems)
+            .unwrap_or_else(|| panic!("{}", problems.render(false)));
         template.text(&[Arc::new(spanned(value))])
     }
 
@@ -152,7 +187,12 @@ mod tests {
             (Use::Name, "ay_{x}", "0.4 Hz to 2 Hz", "ay_0.4_Hz_to_2_Hz"),
             (Use::Name, "ay_{x}", "m/s^2", "ay_m_s_2"),
             (Use::Name, "ay_{x}", "zero-phase", "ay_zero-phase"),
-            (Use::Phrase, "band-pass {x}, order 4", "0.4 Hz to 2 Hz", "band-pass 0.4 Hz to 2 Hz, order 4"),
+            (
+                Use::Phrase,
+                "band-pass {x}, order 4",
+                "0.4 Hz to 2 Hz",
+                "band-pass 0.4 Hz to 2 Hz, order 4",
+            ),
             (Use::Phrase, "LP_{x}, then {x}", "2 Hz", "LP_2_Hz, then 2 Hz"),
             (Use::Phrase, "|p{x}|", "99.85", "|p99.85|"),
             (Use::Prose, "In {x}.", "kN*m", "In kN*m."),
@@ -165,10 +205,18 @@ mod tests {
 
     #[test]
     fn braces_that_stand_for_nothing_are_told() {
-        let text = Text { text: "{y} { x } {".to_string(), span: Source::new("text", "{y} { x } {").whole(), exact: true };
+        let text = Text {
+            text: "{y} { x } {".to_string(),
+            span: Source::new("text", "{y} { x } {").whole(),
+            exact: true,
+        };
         let mut problems = Problems::default();
         assert!(Template::new(&text, Use::Prose, &[spanned("x")], &mut problems).is_none());
-        let said: Vec<_> = problems.0.iter().map(|problem| (problem.says.as_str(), problem.help.as_deref().unwrap_or(""))).collect();
+        let said: Vec<_> = problems
+            .0
+            .iter()
+            .map(|problem| (problem.says.as_str(), problem.help.as_deref().unwrap_or("")))
+            .collect();
         assert_eq!(
             said,
             [

@@ -1,7 +1,7 @@
 //! Families of blocks: a block with `for each` stands for one block for each member.
 //!
-//! Families are expanded on the document before it is checked, so that all later stages have plain blocks. Printing keeps the
-//! document as written.
+//! Families are expanded on the document before it is checked, so that all later stages have plain
+//! blocks. Printing keeps the document as written.
 
 mod each;
 mod fill;
@@ -23,7 +23,8 @@ use fill::{Template, Use};
 
 /// Largest number of members of a family. More are probably a mistake in a list.
 const MOST_MEMBERS: usize = 1000;
-/// Largest number of blocks of all families of a protocol. Merging compares blocks in pairs by name.
+/// Largest number of blocks of all families of a protocol. Merging compares blocks in pairs by
+/// name.
 const MOST_BLOCKS: usize = 10_000;
 /// Largest size of all expanded families, in bytes: ten times the largest protocol that is read.
 const MOST_BYTES: usize = 20 << 20;
@@ -41,19 +42,40 @@ pub struct Known {
     pub members: Vec<String>,
 }
 
-/// Expands the families of a document. `before` is the merged document of its ancestors, `known` contains their families; those of
-/// the document are added to it. Returns whether every family could be expanded.
-pub fn expand(document: &Document, before: Option<&Document>, known: &mut Vec<Known>, problems: &mut Problems) -> (Document, bool) {
+/// Expands the families of a document. `before` is the merged document of its ancestors, `known`
+/// contains their families; those of the document are added to it. Returns whether every family
+/// could be expanded.
+pub fn expand(
+    document: &Document,
+    before: Option<&Document>,
+    known: &mut Vec<Known>,
+    problems: &mut Problems,
+) -> (Document, bool) {
     let mut places = Places::new();
     let blocks = before.into_iter().chain([document]).flat_map(|document| &document.blocks);
     for block in blocks.filter(|block| block.kind.text == "place") {
         // Errors of a place are reported where the place is checked.
-        let members = block.field("members").and_then(|field| from_pest::list(&field.value, &mut Problems::default()));
+        let members = block
+            .field("members")
+            .and_then(|field| from_pest::list(&field.value, &mut Problems::default()));
         if let Some(members) = members {
-            places.insert(block.name_text().to_owned(), members.into_iter().map(|member| member.node).collect());
+            places.insert(
+                block.name_text().to_owned(),
+                members.into_iter().map(|member| member.node).collect(),
+            );
         }
     }
-    let mut writer = Writer { places, before, known, problems, blocks: Vec::new(), seen: BTreeMap::new(), count: 0, bytes: 0, sound: true };
+    let mut writer = Writer {
+        places,
+        before,
+        known,
+        problems,
+        blocks: Vec::new(),
+        seen: BTreeMap::new(),
+        count: 0,
+        bytes: 0,
+        sound: true,
+    };
     for block in &document.blocks {
         writer.block(block);
     }
@@ -61,8 +83,12 @@ pub fn expand(document: &Document, before: Option<&Document>, known: &mut Vec<Kn
     (Document { blocks, ..document.clone() }, sound)
 }
 
-/// The place with a name in the singular or plural: `wheelset`, `wheelsets`, `axle boxes`, `bodies`.
-pub fn place_called<'a>(word: &str, names: impl Iterator<Item = &'a str> + Clone) -> Option<&'a str> {
+/// The place with a name in the singular or plural: `wheelset`, `wheelsets`, `axle boxes`,
+/// `bodies`.
+pub fn place_called<'a>(
+    word: &str,
+    names: impl Iterator<Item = &'a str> + Clone,
+) -> Option<&'a str> {
     let plural = |name: &str| {
         [format!("{name}s"), format!("{name}es")].contains(&word.to_string())
             || name.strip_suffix('y').is_some_and(|stem| format!("{stem}ies") == word)
@@ -99,28 +125,46 @@ impl Writer<'_> {
             self.add(block.clone(), false);
             return;
         }
-        if let Some(family) = self.known.iter().find(|family| family.kind == of && family.name == name).cloned() {
-            // The fields are those of the variant. The members are those of the parent that still exist.
-            let left: Vec<String> = family.members.into_iter().filter(|member| self.parent_has(of, member)).collect();
+        if let Some(family) =
+            self.known.iter().find(|family| family.kind == of && family.name == name).cloned()
+        {
+            // The fields are those of the variant. The members are those of the parent that still
+            // exist.
+            let left: Vec<String> =
+                family.members.into_iter().filter(|member| self.parent_has(of, member)).collect();
             return self.family(kind, block, &family.each, Some(&left));
         }
         self.sound = false;
-        let says = format!("`{name}` has braces like the name of a family, but the block has no `{EACH}`");
+        let says =
+            format!("`{name}` has braces like the name of a family, but the block has no `{EACH}`");
         let problem = Problem::error("unknown-variable", says).at(block.span());
-        let families: Vec<&str> = self.known.iter().filter(|family| family.kind == of).map(|family| family.name.as_str()).collect();
+        let families: Vec<&str> = self
+            .known
+            .iter()
+            .filter(|family| family.kind == of)
+            .map(|family| family.name.as_str())
+            .collect();
         self.problems.push(match crate::problem::nearest(name, families) {
-            Some(near) => problem.help(format!("the parent has `{near}`: to override it, use that name")),
+            Some(near) => {
+                problem.help(format!("the parent has `{near}`: to override it, use that name"))
+            }
             None => problem.help(format!("add a line `{EACH}  variable in one, another`")),
         });
     }
 
     fn parent_has(&self, kind: &str, name: &str) -> bool {
-        self.before.is_some_and(|before| before.blocks.iter().any(|block| block.kind.text == kind && block.name_text() == name))
+        self.before.is_some_and(|before| {
+            before.blocks.iter().any(|block| block.kind.text == kind && block.name_text() == name)
+        })
     }
 
     /// Reports braces in a block that is not a family.
     fn no_braces(&mut self, kind: &Kind, block: &Block) {
-        for field in block.fields.iter().filter(|field| kind.key(&field.key.text).is_some_and(|key| key.sort == Sort::Phrase)) {
+        for field in block
+            .fields
+            .iter()
+            .filter(|field| kind.key(&field.key.text).is_some_and(|key| key.sort == Sort::Phrase))
+        {
             let mut quotes = Quotes::default();
             let text = &field.value.text;
             let brace = text.char_indices().find(|(_, c)| {
@@ -131,7 +175,9 @@ impl Writer<'_> {
             let end = text[at..].find('}').map_or(at + 1, |end| at + end + 1);
             let says = format!("`{}` is not a variable: the block has no `{EACH}`", &text[at..end]);
             let problem = Problem::error("unknown-variable", says).at(&field.value.place(at..end));
-            self.problems.push(problem.help(format!("add a line `{EACH}  variable in one, another`, and `{{variable}}` to the name")));
+            self.problems.push(problem.help(format!(
+                "add a line `{EACH}  variable in one, another`, and `{{variable}}` to the name"
+            )));
             self.sound = false;
         }
     }
@@ -143,8 +189,11 @@ impl Writer<'_> {
             && (of_family || *other)
         {
             let says = format!("there are two blocks `{} {}`", key.0, key.1);
-            let problem = Problem::error("duplicate-name", says).at(block.span()).also(first, "the first");
-            self.problems.push(problem.help("write what differs between members with a variable, or override it in a variant"));
+            let problem =
+                Problem::error("duplicate-name", says).at(block.span()).also(first, "the first");
+            self.problems.push(problem.help(
+                "write what differs between members with a variable, or override it in a variant",
+            ));
             return;
         }
         self.seen.insert(key, (block.span().clone(), of_family));
@@ -157,17 +206,22 @@ impl Writer<'_> {
             self.sound = false;
             return;
         };
-        let variables: Vec<Spanned<String>> = groups.iter().flat_map(|group| group.variables.iter().cloned()).collect();
+        let variables: Vec<Spanned<String>> =
+            groups.iter().flat_map(|group| group.variables.iter().cloned()).collect();
         let Some(parts) = Parts::new(kind, block, &variables, self.problems) else {
             self.sound = false;
             return;
         };
         if only.is_none() {
-            for (_, variable) in variables.iter().enumerate().filter(|(index, _)| !parts.uses(*index)) {
+            for (_, variable) in
+                variables.iter().enumerate().filter(|(index, _)| !parts.uses(*index))
+            {
                 let says = format!("the variable `{}` is not used", variable.value);
                 let problem = Problem::error("unused-variable", says).at(&variable.span);
-                self.problems
-                    .push(problem.help(format!("write `{{{}}}` where its members are inserted, or remove the variable", variable.value)));
+                self.problems.push(problem.help(format!(
+                    "write `{{{}}}` where its members are inserted, or remove the variable",
+                    variable.value
+                )));
             }
         }
         let mut names: IndexMap<String, Vec<Word>> = IndexMap::new();
@@ -185,66 +239,112 @@ impl Writer<'_> {
             self.bytes += parts.cost(&words);
             if self.count > MOST_BLOCKS || self.bytes > MOST_BYTES {
                 let says = if self.count > MOST_BLOCKS {
-                    format!("the families of the protocol have more than {MOST_BLOCKS} members in total")
+                    format!(
+                        "the families of the protocol have more than {MOST_BLOCKS} members in total"
+                    )
                 } else {
-                    format!("the families of the protocol are longer than {} megabytes when expanded", MOST_BYTES >> 20)
+                    format!(
+                        "the families of the protocol are longer than {} megabytes when expanded",
+                        MOST_BYTES >> 20
+                    )
                 };
-                self.problems.push(Problem::error("too-large", says).at(block.span()).help("use fewer members or shorter texts"));
+                self.problems.push(
+                    Problem::error("too-large", says)
+                        .at(block.span())
+                        .help("use fewer members or shorter texts"),
+                );
                 self.sound = false;
                 return;
             }
-            let member = Arc::new(Member { name: name.clone(), family: block.name_text().to_owned() });
+            let member =
+                Arc::new(Member { name: name.clone(), family: block.name_text().to_owned() });
             let filled = parts.fill(block, &words, &member);
             if !lines::is_name(&name)
                 && let Some(text) = &filled.name
             {
-                let problem = Problem::error("bad-name", format!("`{name}` cannot be a name")).at(&text.span);
+                let problem =
+                    Problem::error("bad-name", format!("`{name}` cannot be a name")).at(&text.span);
                 self.problems.push(problem.help("use letters a to z, digits, `_`, `-` and `.`"));
             }
             self.add(filled, true);
             names.insert(name, words);
         }
         if names.is_empty() {
-            let says = format!("no member of the family `{}` of the parent is left", block.name_text());
-            self.problems.push(Problem::error("no-members", says).at(block.span()).help(format!("give it members with `{EACH}`")));
+            let says =
+                format!("no member of the family `{}` of the parent is left", block.name_text());
+            self.problems.push(
+                Problem::error("no-members", says)
+                    .at(block.span())
+                    .help(format!("give it members with `{EACH}`")),
+            );
         }
         let members: Vec<String> = names.into_keys().collect();
-        let same = |family: &&mut Known| family.kind == block.kind.text && family.name == block.name_text();
+        let same = |family: &&mut Known| {
+            family.kind == block.kind.text && family.name == block.name_text()
+        };
         match self.known.iter_mut().find(same) {
             Some(family) => {
                 family.each = each.to_vec();
-                family.members.extend(members.into_iter().filter(|member| !family.members.contains(member)).collect::<Vec<_>>());
+                family.members.extend(
+                    members
+                        .into_iter()
+                        .filter(|member| !family.members.contains(member))
+                        .collect::<Vec<_>>(),
+                );
             }
-            None => {
-                self.known.push(Known { kind: block.kind.text.clone(), name: block.name_text().to_owned(), each: each.to_vec(), members })
-            }
+            None => self.known.push(Known {
+                kind: block.kind.text.clone(),
+                name: block.name_text().to_owned(),
+                each: each.to_vec(),
+                members,
+            }),
         }
     }
 
     /// The variables and members of a family.
     fn groups(&mut self, block: &Block, each: &[Field]) -> Option<Vec<Group>> {
-        let read: Vec<Option<Vec<Group>>> = each.iter().map(|field| each::read(&field.value, &self.places, self.problems)).collect();
-        let groups: Vec<Group> = read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
+        let read: Vec<Option<Vec<Group>>> = each
+            .iter()
+            .map(|field| each::read(&field.value, &self.places, self.problems))
+            .collect();
+        let groups: Vec<Group> =
+            read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
         let mut sound = true;
         let mut seen: Vec<&Spanned<String>> = Vec::new();
         for variable in groups.iter().flat_map(|group| &group.variables) {
             let name = &variable.value;
             if let Some(first) = seen.iter().find(|known| known.value == *name) {
                 let says = format!("`{name}` is declared twice as a variable of this family");
-                self.problems.push(Problem::error("duplicate-name", says).at(&variable.span).also(&first.span, "the first"));
+                self.problems.push(
+                    Problem::error("duplicate-name", says)
+                        .at(&variable.span)
+                        .also(&first.span, "the first"),
+                );
                 sound = false;
             } else if self.places.contains_key(name) {
-                let problem = Problem::error("name-clash", format!("`{name}` is both a place and a variable")).at(&variable.span);
-                self.problems.push(problem.help(format!("give the variable another name: `{EACH}  x in {name}`")));
+                let problem = Problem::error(
+                    "name-clash",
+                    format!("`{name}` is both a place and a variable"),
+                )
+                .at(&variable.span);
+                self.problems.push(
+                    problem.help(format!("give the variable another name: `{EACH}  x in {name}`")),
+                );
                 sound = false;
             }
             seen.push(variable);
         }
-        let count = groups.iter().fold(1_usize, |count, group| count.saturating_mul(group.rows.len()));
+        let count =
+            groups.iter().fold(1_usize, |count, group| count.saturating_mul(group.rows.len()));
         if count > MOST_MEMBERS {
-            let says = format!("the family `{}` has {count} members; there can be at most {MOST_MEMBERS}", block.name_text());
+            let says = format!(
+                "the family `{}` has {count} members; there can be at most {MOST_MEMBERS}",
+                block.name_text()
+            );
             let at = each.first().map_or(block.span(), |field| &field.value.span);
-            self.problems.push(Problem::error("too-large", says).at(at).help("split it or use fewer members"));
+            self.problems.push(
+                Problem::error("too-large", says).at(at).help("split it or use fewer members"),
+            );
             sound = false;
         }
         sound.then_some(groups)
@@ -274,9 +374,15 @@ struct Parts<'a> {
 
 impl<'a> Parts<'a> {
     /// Reports all braces that contain no variable.
-    fn new(kind: &Kind, block: &'a Block, variables: &[Spanned<String>], problems: &mut Problems) -> Option<Self> {
+    fn new(
+        kind: &Kind,
+        block: &'a Block,
+        variables: &[Spanned<String>],
+        problems: &mut Problems,
+    ) -> Option<Self> {
         let name = Template::new(block.name.as_ref()?, Use::Name, variables, problems);
-        let title = block.title.as_ref().map(|title| Template::new(title, Use::Prose, variables, problems));
+        let title =
+            block.title.as_ref().map(|title| Template::new(title, Use::Prose, variables, problems));
         let mut fields = Vec::new();
         for field in block.fields.iter().filter(|field| field.key.text != EACH) {
             let of = match kind.key(&field.key.text) {
@@ -284,7 +390,10 @@ impl<'a> Parts<'a> {
                 Some(key) if key.sort == Sort::Text => Use::Prose,
                 _ => Use::Phrase,
             };
-            fields.push(Template::new(&field.value, of, variables, problems).map(|template| (&field.key, template)));
+            fields.push(
+                Template::new(&field.value, of, variables, problems)
+                    .map(|template| (&field.key, template)),
+            );
         }
         let title = match title {
             Some(title) => Some(title?),
@@ -294,7 +403,10 @@ impl<'a> Parts<'a> {
     }
 
     fn all(&self) -> impl Iterator<Item = &Template<'a>> {
-        [&self.name].into_iter().chain(&self.title).chain(self.fields.iter().map(|(_, template)| template))
+        [&self.name]
+            .into_iter()
+            .chain(&self.title)
+            .chain(self.fields.iter().map(|(_, template)| template))
     }
 
     fn uses(&self, variable: usize) -> bool {
@@ -307,8 +419,12 @@ impl<'a> Parts<'a> {
 
     fn fill(&self, block: &Block, words: &[Word], member: &Arc<Member>) -> Block {
         let of_member = |key: &Text| {
-            let filled = Filled { text: key.text.clone(), member: Arc::clone(member), pieces: Vec::new() };
-            Text { span: Span { filled: Some(Arc::new(filled)), ..key.span.clone() }, ..key.clone() }
+            let filled =
+                Filled { text: key.text.clone(), member: Arc::clone(member), pieces: Vec::new() };
+            Text {
+                span: Span { filled: Some(Arc::new(filled)), ..key.span.clone() },
+                ..key.clone()
+            }
         };
         let field = |(key, template): &(&Text, Template<'_>)| Field {
             key: of_member(key),
@@ -326,14 +442,30 @@ impl<'a> Parts<'a> {
 }
 
 /// Reports two members of a family with the same name.
-fn same_name(block: &Block, name: &str, first: &[Word], second: &[Word], variables: &[Spanned<String>], written: &Template<'_>) -> Problem {
-    let differs: Vec<usize> = (0..variables.len()).filter(|index| first[*index].value != second[*index].value).collect();
-    let repeated = variables.iter().enumerate().find(|(index, _)| first[*index].span != second[*index].span && !differs.contains(index));
+fn same_name(
+    block: &Block,
+    name: &str,
+    first: &[Word],
+    second: &[Word],
+    variables: &[Spanned<String>],
+    written: &Template<'_>,
+) -> Problem {
+    let differs: Vec<usize> =
+        (0..variables.len()).filter(|index| first[*index].value != second[*index].value).collect();
+    let repeated = variables
+        .iter()
+        .enumerate()
+        .find(|(index, _)| first[*index].span != second[*index].span && !differs.contains(index));
     if let Some((index, _)) = repeated.filter(|_| differs.is_empty()) {
-        let problem = Problem::error("duplicate-name", format!("the member `{}` is given twice", second[index].value));
+        let problem = Problem::error(
+            "duplicate-name",
+            format!("the member `{}` is given twice", second[index].value),
+        );
         return problem.at(&second[index].span).also(&first[index].span, "the first");
     }
-    let problem = Problem::error("duplicate-name", format!("two members of the family are called `{name}`")).at(block.span());
+    let problem =
+        Problem::error("duplicate-name", format!("two members of the family are called `{name}`"))
+            .at(block.span());
     match differs.iter().find(|index| !written.uses(**index)) {
         Some(index) => problem.help(format!("write `{{{}}}` in the name", variables[*index].value)),
         None => problem.help(

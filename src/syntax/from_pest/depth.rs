@@ -3,7 +3,8 @@
 use crate::problem::Problem;
 use crate::syntax::document::Text;
 
-/// Largest nesting of parentheses, magnitudes, `not`, signs and `of`. Rules in use are far below it.
+/// Largest nesting of parentheses, magnitudes, `not`, signs and `of`. Rules in use are far below
+/// it.
 const DEEPEST: usize = 30;
 /// Largest number of operators between two commas. Each operator of a sum adds a level to the tree.
 const MOST_OPERATORS: usize = 60;
@@ -16,7 +17,8 @@ struct Level {
     /// Signs, `not` and `of` since the last word or comma that ends their operand.
     prefixes: usize,
     bars: usize,
-    /// Open `larger of` and `smaller of`, as in `larger of a, larger of b, c`: a comma does not end them.
+    /// Open `larger of` and `smaller of`, as in `larger of a, larger of b, c`: a comma does not end
+    /// them.
     extremes: usize,
     operators: usize,
 }
@@ -88,7 +90,8 @@ impl Measured {
     }
 
     fn look(&mut self) {
-        let depth = self.levels.len() + self.levels.iter().map(|level| level.depth()).sum::<usize>();
+        let depth =
+            self.levels.len() + self.levels.iter().map(|level| level.depth()).sum::<usize>();
         self.deepest = self.deepest.max(depth);
         self.most_operators = self.most_operators.max(self.level().operators);
     }
@@ -96,7 +99,13 @@ impl Measured {
 
 /// A problem if parsing the text could overflow the stack or take too long.
 pub(super) fn too_deep(text: &Text) -> Option<Problem> {
-    let mut found = Measured { levels: vec![Level::default()], deepest: 0, most_operators: 0, tokens: 0, operand: false };
+    let mut found = Measured {
+        levels: vec![Level::default()],
+        deepest: 0,
+        most_operators: 0,
+        tokens: 0,
+        operand: false,
+    };
     let mut word = String::new();
     for c in text.text.chars().chain([' ']) {
         if c.is_alphanumeric() || c == '_' || c == '.' {
@@ -120,10 +129,17 @@ pub(super) fn too_deep(text: &Text) -> Option<Problem> {
     } else if found.tokens > LONGEST {
         format!("this phrase has more than {LONGEST} words, numbers and signs")
     } else if found.most_operators > MOST_OPERATORS {
-        format!("there are {} operators in a row; a rule can have at most {MOST_OPERATORS}", found.most_operators)
+        format!(
+            "there are {} operators in a row; a rule can have at most {MOST_OPERATORS}",
+            found.most_operators
+        )
     } else {
         return None;
     };
     let end = text.text.char_indices().map(|(at, _)| at).nth(40).unwrap_or(text.text.len());
-    Some(Problem::error("too-deep", says).at(&text.place(0..end)).help("give names to parts of it with `define`"))
+    Some(
+        Problem::error("too-deep", says)
+            .at(&text.place(0..end))
+            .help("give names to parts of it with `define`"),
+    )
 }

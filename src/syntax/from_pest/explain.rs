@@ -29,7 +29,8 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
         return problem;
     }
     // Pasted text can contain blanks that look like a space or are invisible.
-    let odd_blank = found.chars().next().filter(|c| c.is_whitespace() || matches!(c, '\u{200b}' | '\u{feff}'));
+    let odd_blank =
+        found.chars().next().filter(|c| c.is_whitespace() || matches!(c, '\u{200b}' | '\u{feff}'));
     let says = if found.is_empty() {
         format!("{} ends too early", in_words(rule))
     } else if let Some(blank) = odd_blank {
@@ -46,13 +47,20 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
             }
         }
     }
-    // Where an operator is possible, `at`, `through` and `over` are possible as well, but seldom meant.
+    // Where an operator is possible, `at`, `through` and `over` are possible as well, but seldom
+    // meant.
     if expected.contains(&OPERATOR) {
-        expected.retain(|word| ![Rule::kw_at, Rule::kw_through, Rule::kw_over].map(in_words).contains(word));
+        expected.retain(|word| {
+            ![Rule::kw_at, Rule::kw_through, Rule::kw_over].map(in_words).contains(word)
+        });
     }
     // So are weights and the groups of an estimate in parentheses.
-    expected.retain(|word| *word != in_words(Rule::kw_weighted) && (rule != Rule::expression || *word != in_words(Rule::kw_for)));
-    // In an exact text, the error is underlined at the word, or at the last word if the text ends too early.
+    expected.retain(|word| {
+        *word != in_words(Rule::kw_weighted)
+            && (rule != Rule::expression || *word != in_words(Rule::kw_for))
+    });
+    // In an exact text, the error is underlined at the word, or at the last word if the text ends
+    // too early.
     let end = text.text.trim_end().len();
     let last = text.text[..end].rfind(char::is_whitespace).map_or(0, |at| at + 1);
     let range = if found.is_empty() { last..end } else { at..at + found.len() };
@@ -61,12 +69,19 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
         return problem.help("write an ordinary space");
     }
     if rule == Rule::expression && joins_places(before) {
-        return problem.help("in an expression, write places without `and`: `Y at wheelset 1 side R`");
+        return problem
+            .help("in an expression, write places without `and`: `Y at wheelset 1 side R`");
     }
-    if rule == Rule::limit && ["+", "-", "*", "/"].contains(&found) && before.split_whitespace().count() == 1 {
+    if rule == Rule::limit
+        && ["+", "-", "*", "/"].contains(&found)
+        && before.split_whitespace().count() == 1
+    {
         return problem.help("write an estimate of several statistics in parentheses: `limit (mean + 3 * std) 60 kN`");
     }
-    if rule == Rule::limit && before.split_whitespace().count() == 2 && found.starts_with(|c: char| c.is_ascii_digit()) {
+    if rule == Rule::limit
+        && before.split_whitespace().count() == 2
+        && found.starts_with(|c: char| c.is_ascii_digit())
+    {
         return problem.help("a statistic is one word, such as `mean`, `std` (standard deviation) or `p95`: `limit std 5 kN`");
     }
     match expected.as_slice() {
@@ -81,14 +96,18 @@ fn decimal_comma(at: usize, text: &Text) -> Option<Problem> {
     let bytes = text.text.as_bytes();
     let digit = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_digit);
     // The comma itself or, where a comma is possible, the text after it.
-    let comma = [Some(at), at.checked_sub(1)].into_iter().flatten().find(|&at| bytes.get(at) == Some(&b','))?;
+    let comma = [Some(at), at.checked_sub(1)]
+        .into_iter()
+        .flatten()
+        .find(|&at| bytes.get(at) == Some(&b','))?;
     if comma == 0 || !digit(comma - 1) || !digit(comma + 1) {
         return None;
     }
     let start = (0..comma).rev().take_while(|&at| digit(at)).last()?;
     let end = (comma + 1..bytes.len()).take_while(|&at| digit(at)).last()? + 1;
     let number = &text.text[start..end];
-    let problem = Problem::error("decimal-comma", format!("`{number}` has a decimal comma")).at(&text.place(start..end));
+    let problem = Problem::error("decimal-comma", format!("`{number}` has a decimal comma"))
+        .at(&text.place(start..end));
     Some(problem.help(format!("write numbers with a point: `{}`", number.replace(',', "."))))
 }
 
@@ -117,12 +136,20 @@ fn unknown_unit(before: &str, found: &str, at: usize, text: &Text) -> Option<Pro
         "hold",
         "holds",
     ];
-    let last = before.trim_end().rsplit(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.'))).next().unwrap_or("");
-    if last.parse::<f64>().is_err() || FOLLOW.contains(&found) || !found.starts_with(char::is_alphabetic) {
+    let last = before
+        .trim_end()
+        .rsplit(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.')))
+        .next()
+        .unwrap_or("");
+    if last.parse::<f64>().is_err()
+        || FOLLOW.contains(&found)
+        || !found.starts_with(char::is_alphabetic)
+    {
         return None;
     }
     let unknown = Unit::parse(found).err()?;
-    let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word)).at(&text.place(at..at + found.len()));
+    let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word))
+        .at(&text.place(at..at + found.len()));
     Some(match unknown.near.filter(|_| !is_name(found)) {
         Some(near) => problem.meant(near),
         None => {
@@ -138,15 +165,19 @@ fn is_name(word: &str) -> bool {
     first.contains('_') || first.contains(|c: char| c.is_ascii_digit())
 }
 
-/// The rest of a product: to the next comma, keyword, or parenthesis that closes more than it opens.
+/// The rest of a product: to the next comma, keyword, or parenthesis that closes more than it
+/// opens.
 fn up_to_keyword(text: &str) -> &str {
-    const END: [&str; 9] = ["when", "for", "only", "doubled", "times", "otherwise", "and", "or", "then"];
+    const END: [&str; 9] =
+        ["when", "for", "only", "doubled", "times", "otherwise", "and", "or", "then"];
     let mut depth = 0_i32;
     let mut word_from = None;
     for (at, c) in text.char_indices() {
         if c.is_alphanumeric() || c == '_' {
             let from = *word_from.get_or_insert(at);
-            let end = text[from..].find(|c: char| !(c.is_alphanumeric() || c == '_')).map_or(text.len(), |end| from + end);
+            let end = text[from..]
+                .find(|c: char| !(c.is_alphanumeric() || c == '_'))
+                .map_or(text.len(), |end| from + end);
             if from == at && END.contains(&&text[from..end]) {
                 return text[..at].trim_end();
             }
@@ -233,7 +264,12 @@ const OPERATOR: &str = "an operator";
 /// Name of a grammar rule in messages; empty where it would not help.
 fn in_words(rule: Rule) -> &'static str {
     match rule {
-        Rule::expression | Rule::cases | Rule::either | Rule::both | Rule::negation | Rule::comparison => "an expression",
+        Rule::expression
+        | Rule::cases
+        | Rule::either
+        | Rule::both
+        | Rule::negation
+        | Rule::comparison => "an expression",
         Rule::sum | Rule::product | Rule::signed | Rule::raised | Rule::primary => "a value",
         Rule::of_places => "a signal and its places",
         Rule::pick | Rule::places => "a selection of places",
@@ -281,7 +317,9 @@ fn in_words(rule: Rule) -> &'static str {
         Rule::verdict => "the rule of a verdict",
         Rule::every_limit => "`every limit holds`",
         Rule::at_least_n => "`at least N quantities hold`",
-        Rule::some_verdict | Rule::all_verdicts | Rule::one_verdict | Rule::named_verdict => "`some_verdict holds`",
+        Rule::some_verdict | Rule::all_verdicts | Rule::one_verdict | Rule::named_verdict => {
+            "`some_verdict holds`"
+        }
         Rule::enough_verdicts => "`at least N of a, b, c hold`",
         Rule::verdict_name => "the name of a verdict",
         Rule::does_not_hold => "`does not hold`",
@@ -311,7 +349,9 @@ fn in_words(rule: Rule) -> &'static str {
         Rule::quantity | Rule::number => "a number",
         Rule::percentile => "a percentile such as `p99.85`",
         Rule::name | Rule::path | Rule::label | Rule::plain => "a name",
-        Rule::unit | Rule::factor | Rule::symbol | Rule::any_unit | Rule::coordinate_unit => "a unit",
+        Rule::unit | Rule::factor | Rule::symbol | Rule::any_unit | Rule::coordinate_unit => {
+            "a unit"
+        }
         Rule::zone => "a zone",
         Rule::kw_at => "`at`",
         Rule::kw_zones => "`zones`",

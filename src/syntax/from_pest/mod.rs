@@ -1,4 +1,5 @@
-//! From the text of a field to [`super::phrase`]: the only module that uses the rules of `phrase.pest`.
+//! From the text of a field to [`super::phrase`]: the only module that uses the rules of
+//! `phrase.pest`.
 
 mod depth;
 mod explain;
@@ -10,7 +11,10 @@ use pest::Parser;
 use pest::iterators::Pair;
 
 use super::document::Text;
-use super::phrase::{Alias, At, Domain, Limit, Minimum, Node, OfPlaces, OverVerdicts, Phrase, Pick, Report, Scope, Step, Verdict};
+use super::phrase::{
+    Alias, At, Domain, Limit, Minimum, Node, OfPlaces, OverVerdicts, Phrase, Pick, Report, Scope,
+    Step, Verdict,
+};
 use crate::problem::Problems;
 use tree::{cases, either, estimate, pick, step, sum};
 
@@ -43,7 +47,8 @@ pub fn list(text: &Text, problems: &mut Problems) -> Option<Vec<At<String>>> {
 }
 
 pub fn alias(text: &Text, problems: &mut Problems) -> Option<Alias> {
-    let mut inner = parts(parse(Rule::alias, text, problems)?).filter(|pair| pair.as_rule() != Rule::is);
+    let mut inner =
+        parts(parse(Rule::alias, text, problems)?).filter(|pair| pair.as_rule() != Rule::is);
     let name = named(&inner.next()?);
     let mut cases = Vec::new();
     while let (Some(member), Some(condition)) = (inner.next(), inner.next()) {
@@ -89,12 +94,21 @@ pub fn limit(text: &Text, problems: &mut Problems) -> Option<Limit> {
     let mut inner = parts(parse(Rule::limit, text, problems)?).peekable();
     let first = inner.next()?;
     let statistic = named(&first);
-    let statistic = At { node: statistic.node.split_whitespace().collect::<Vec<_>>().join(" "), ..statistic };
+    let statistic =
+        At { node: statistic.node.split_whitespace().collect::<Vec<_>>().join(" "), ..statistic };
     let estimate = estimate(first)?;
     let at_least = inner.next_if(|pair| pair.as_rule() == Rule::at_least).is_some();
     let bound = cases(inner.next()?)?;
     let everywhere = At { node: Scope::default(), range: 0..0 };
-    let mut limit = Limit { statistic, estimate, at_least, bound, factors: Vec::new(), only_when: None, scope: everywhere };
+    let mut limit = Limit {
+        statistic,
+        estimate,
+        at_least,
+        bound,
+        factors: Vec::new(),
+        only_when: None,
+        scope: everywhere,
+    };
     for part in inner {
         let part = parts(part).next()?;
         let range = bytes(&part);
@@ -137,7 +151,8 @@ pub fn minimum(text: &Text, problems: &mut Problems) -> Option<Minimum> {
 pub fn report(text: &Text, problems: &mut Problems) -> Option<Report> {
     let mut inner = parts(parse(Rule::report, text, problems)?).peekable();
     let of = cases(inner.next()?)?;
-    let unit = inner.next_if(|pair| pair.as_rule() == Rule::coordinate_unit).map(|unit| named(&unit));
+    let unit =
+        inner.next_if(|pair| pair.as_rule() == Rule::coordinate_unit).map(|unit| named(&unit));
     Some(Report { of, unit, scope: scope_or_all(inner.next())? })
 }
 
@@ -190,14 +205,20 @@ fn over_verdicts(pair: Pair<'_, Rule>) -> Option<OverVerdicts> {
             Some(if not { OverVerdicts::Not(Box::new(over)) } else { over })
         }
         Rule::enough_verdicts => {
-            let mut inner = inner.filter(|pair| !matches!(pair.as_rule(), Rule::at_least | Rule::of));
+            let mut inner =
+                inner.filter(|pair| !matches!(pair.as_rule(), Rule::at_least | Rule::of));
             let count = inner.next()?;
             let range = bytes(&count);
             let node = match count.as_rule() {
-                Rule::number => Node::Number { value: count.as_str().trim().parse().ok()?, unit: None },
+                Rule::number => {
+                    Node::Number { value: count.as_str().trim().parse().ok()?, unit: None }
+                }
                 _ => Node::Path(count.as_str().trim().to_string()),
             };
-            Some(OverVerdicts::AtLeast { count: At { node, range }, of: inner.map(|name| named(&name)).collect() })
+            Some(OverVerdicts::AtLeast {
+                count: At { node, range },
+                of: inner.map(|name| named(&name)).collect(),
+            })
         }
         _ => {
             let name = named(&inner.next()?);
@@ -226,7 +247,8 @@ fn parse<'t>(rule: Rule, text: &'t Text, problems: &mut Problems) -> Option<Pair
     }
 }
 
-/// `each zone and running gear`: a name of several words has `_` between them, as where it is declared.
+/// `each zone and running gear`: a name of several words has `_` between them, as where it is
+/// declared.
 fn keys(pair: Pair<'_, Rule>) -> Vec<At<String>> {
     let key = |pair: Pair<'_, Rule>| {
         let At { node, range } = named(&pair);
@@ -261,12 +283,22 @@ mod tests {
 
     #[test]
     fn a_blank_that_is_no_space_is_named_and_underlined() {
-        for (words, place) in [("e\u{c}\u{2212}ove", 1..2), ("2 \u{a0}kN", 2..4), ("a + \u{feff}b", 4..7)] {
+        for (words, place) in
+            [("e\u{c}\u{2212}ove", 1..2), ("2 \u{a0}kN", 2..4), ("a + \u{feff}b", 4..7)]
+        {
             let mut problems = Problems::default();
             assert!(expression(&text(words), &mut problems).is_none(), "{words:?}");
             let at = problems.0[0].at.as_ref().expect("a place");
-            assert_eq!((at.start..at.end, problems.0[0].help.as_deref()), (place, Some("write an ordinary space")), "{words:?}");
-            assert!(problems.0[0].says.starts_with("the special blank U+"), "{}", problems.0[0].says);
+            assert_eq!(
+                (at.start..at.end, problems.0[0].help.as_deref()),
+                (place, Some("write an ordinary space")),
+                "{words:?}"
+            );
+            assert!(
+                problems.0[0].says.starts_with("the special blank U+"),
+                "{}",
+                problems.0[0].says
+            );
         }
     }
 
@@ -275,7 +307,11 @@ mod tests {
         meaning
             .split('{')
             .enumerate()
-            .map(|(at, part)| if at == 0 { part } else { part.split_once('}').map_or(part, |(_, rest)| rest) })
+            .map(
+                |(at, part)| {
+                    if at == 0 { part } else { part.split_once('}').map_or(part, |(_, rest)| rest) }
+                },
+            )
             .collect()
     }
 
@@ -287,20 +323,27 @@ mod tests {
             ("larger of |p0.15|, |p99.85|", "larger(|p0.15| |p99.85|)"),
             ("|simulated| - |measured|", "(Subtract |simulated| |measured|)"),
             ("400 m <= radius <= 600 m", "(And (LessEqual 400 radius) (LessEqual radius 600))"),
-            ("vehicle.category is freight or not vehicle.x", "(Or (Is vehicle.category freight) (not vehicle.x))"),
+            (
+                "vehicle.category is freight or not vehicle.x",
+                "(Or (Is vehicle.category freight) (not vehicle.x))",
+            ),
             ("Y at side R + Y at side L", "(Add Y@side.R Y@side.L)"),
             ("(Y through LP20) / (Q through LP20)", "(Divide Y>LP20 Q>LP20)"),
             (
                 "250 m when zone is 1 and v <= 220 km/h, 500 m when zone is 1, otherwise 70 m",
                 "[250?(And (Is zone 1) (LessEqual v 61.1111111111)), 500?(Is zone 1); 70]",
             ),
-            ("range of curvature <= 5 % * |mean of curvature|", "(LessEqual range of curvature (Multiply 0.05 |mean of curvature|))"),
+            (
+                "range of curvature <= 5 % * |mean of curvature|",
+                "(LessEqual range of curvature (Multiply 0.05 |mean of curvature|))",
+            ),
             ("-p0.15", "(neg p0.15)"),
             ("x^2 is not 3", "(IsNot x^2 3)"),
             ("1\tm + 2\n  m", "(Add 1 2)"),
         ] {
             let mut problems = Problems::default();
-            let phrase = expression(&text(words), &mut problems).unwrap_or_else(|| panic!("{}", problems.render(false)));
+            let phrase = expression(&text(words), &mut problems)
+                .unwrap_or_else(|| panic!("{}", problems.render(false)));
             assert_eq!(without_units(&phrase.meaning()), want, "{words}");
         }
     }
@@ -308,18 +351,25 @@ mod tests {
     #[test]
     fn limits_have_factors_conditions_and_scopes() {
         let mut problems = Problems::default();
-        let found = limit(&text("std 0.40 m/s^2, doubled when soft, for zones 3, 4"), &mut problems).expect("a limit");
+        let found =
+            limit(&text("std 0.40 m/s^2, doubled when soft, for zones 3, 4"), &mut problems)
+                .expect("a limit");
         assert_eq!(found.statistic.node, "std");
         assert_eq!(found.factors.len(), 1);
         assert!(found.scope.node.zones.len() == 2);
-        let found = limit(&text("p95 at least 0.8 only when a is b for each zone"), &mut problems).expect("a limit");
-        assert!(found.at_least && found.only_when.is_some() && found.scope.node.each[0].node == "zone");
+        let found = limit(&text("p95 at least 0.8 only when a is b for each zone"), &mut problems)
+            .expect("a limit");
+        assert!(
+            found.at_least && found.only_when.is_some() && found.scope.node.each[0].node == "zone"
+        );
     }
 
     #[test]
     fn minima_have_scopes() {
         let mut problems = Problems::default();
-        let found = minimum(&text("needed - 1 for each zone and running gear where v > 3"), &mut problems).expect("a minimum");
+        let found =
+            minimum(&text("needed - 1 for each zone and running gear where v > 3"), &mut problems)
+                .expect("a minimum");
         let keys: Vec<&str> = found.scope.node.each.iter().map(|key| key.node.as_str()).collect();
         assert_eq!(keys, ["zone", "running_gear"]);
         assert!(found.scope.node.condition.is_some());
@@ -329,7 +379,11 @@ mod tests {
     #[test]
     fn chains_split_into_steps_and_parts() {
         let mut problems = Problems::default();
-        let found = chain(&text("low-pass 20 Hz, order 4, zero-phase, then sliding mean 2 m every 0.5 m"), &mut problems).expect("a chain");
+        let found = chain(
+            &text("low-pass 20 Hz, order 4, zero-phase, then sliding mean 2 m every 0.5 m"),
+            &mut problems,
+        )
+        .expect("a chain");
         assert_eq!(found.len(), 2);
         assert_eq!(found[0].node.parts.len(), 3);
         assert_eq!(found[1].node.parts[0].len(), 5);
@@ -339,7 +393,8 @@ mod tests {
     fn every_unit_symbol_can_follow_a_number() {
         for symbol in SYMBOLS.iter().filter(|symbol| !["-", "1"].contains(&symbol.symbol)) {
             let mut problems = Problems::default();
-            let phrase = expression(&text(&format!("1 {}", symbol.symbol)), &mut problems).unwrap_or_else(|| panic!("{}", symbol.symbol));
+            let phrase = expression(&text(&format!("1 {}", symbol.symbol)), &mut problems)
+                .unwrap_or_else(|| panic!("{}", symbol.symbol));
             assert!(matches!(phrase.node, Node::Number { unit: Some(_), .. }), "{}", symbol.symbol);
         }
     }

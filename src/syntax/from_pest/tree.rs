@@ -10,7 +10,8 @@ pub(super) fn pick(pair: Pair<'_, Rule>) -> Pick {
     let text = pair.as_str();
     let start = pair.as_span().start();
     let comma = text.find(',').map_or(usize::MAX, |at| start + at);
-    let (words, more) = parts(pair).map(|word| named(&word)).partition(|word| word.range.start < comma);
+    let (words, more) =
+        parts(pair).map(|word| named(&word)).partition(|word| word.range.start < comma);
     Pick { words, more }
 }
 
@@ -65,7 +66,11 @@ pub(super) fn cases(pair: Pair<'_, Rule>) -> Option<Phrase> {
 }
 
 /// Folds `a op b op c` from the left.
-fn fold(pair: Pair<'_, Rule>, one: fn(Pair<'_, Rule>) -> Option<Phrase>, operator: fn(&str) -> Operator) -> Option<Phrase> {
+fn fold(
+    pair: Pair<'_, Rule>,
+    one: fn(Pair<'_, Rule>) -> Option<Phrase>,
+    operator: fn(&str) -> Operator,
+) -> Option<Phrase> {
     let mut inner = parts(pair);
     let mut left = one(inner.next()?)?;
     while let Some(next) = inner.next() {
@@ -123,7 +128,8 @@ fn comparison(pair: Pair<'_, Rule>) -> Option<Phrase> {
             _ => Operator::Is,
         };
         let range = left.range.start..right.range.end;
-        let this = At { node: Node::Binary(operator, Box::new(left), Box::new(right.clone())), range };
+        let this =
+            At { node: Node::Binary(operator, Box::new(left), Box::new(right.clone())), range };
         all = Some(match all {
             None => this,
             Some(before) => {
@@ -203,7 +209,8 @@ fn primary(pair: Pair<'_, Rule>) -> Option<Phrase> {
             let all: Vec<Pair<'_, Rule>> = parts(first).collect();
             let of_sections = all.iter().any(|pair| pair.as_rule() == Rule::of);
             let condition = all.iter().find(|pair| pair.as_rule() == Rule::either)?;
-            let share = Node::Share { of_sections, condition: Box::new(either(condition.clone())?) };
+            let share =
+                Node::Share { of_sections, condition: Box::new(either(condition.clone())?) };
             match all.into_iter().find(|pair| pair.as_rule() == Rule::weighted) {
                 Some(by) => weighted(At { node: share, range: range.clone() }, by)?.node,
                 None => share,
@@ -235,8 +242,8 @@ fn primary(pair: Pair<'_, Rule>) -> Option<Phrase> {
     Some(phrase)
 }
 
-/// The estimate of a limit: the name of a statistic or estimate, a percentile, the end of an interval, or an expression in
-/// parentheses.
+/// The estimate of a limit: the name of a statistic or estimate, a percentile, the end of an
+/// interval, or an expression in parentheses.
 pub(super) fn estimate(pair: Pair<'_, Rule>) -> Option<Phrase> {
     let mut inner = parts(pair);
     let first = inner.next()?;
@@ -299,7 +306,14 @@ fn bound_of(pair: Pair<'_, Rule>) -> Option<Node> {
 fn fit(pair: Pair<'_, Rule>) -> Option<Fit> {
     let mut inner = parts(pair);
     let prediction = inner.next()?.as_str().trim() == "prediction";
-    let mut fit = Fit { prediction, over: Vec::new(), at: Vec::new(), confidence: None, one_sided: false, lower: false };
+    let mut fit = Fit {
+        prediction,
+        over: Vec::new(),
+        at: Vec::new(),
+        confidence: None,
+        one_sided: false,
+        lower: false,
+    };
     for part in inner {
         match part.as_rule() {
             Rule::regressor => {

@@ -23,13 +23,22 @@ pub(super) const FOR_EACH: Key = many(phrase(
     "Makes the block a family: one block for each member, which replaces `{variable}`.",
     "channel in Y, Q and part in magnitude, phase",
 ));
-pub(super) const CLAUSE: Key = text("clause", "Clause of the standard for the rule.", "Annex T, T.3");
-pub(super) const SOURCE: Key = text("source", "Publication of the rule or number.", "Goetz & Polach, Table 1");
+pub(super) const CLAUSE: Key =
+    text("clause", "Clause of the standard for the rule.", "Annex T, T.3");
+pub(super) const SOURCE: Key =
+    text("source", "Publication of the rule or number.", "Goetz & Polach, Table 1");
 pub(super) const UNCONFIRMED: Key = text(
     "unconfirmed",
     "Why its number is not from a checked source. The report prints \"to be confirmed\" beside it, \"against the standard\" if the protocol has a `source`.",
     "Read in a secondary source; the standard was not to hand.",
 );
-pub(super) const WORDS: Key =
-    phrase("words", "The two words of the verdict: the word if it holds, and the word if it does not.", "accepted, not accepted");
-pub(super) const NOTE: Key = many(text("note", "A remark printed with the rule.", "Absolute values of simulation and measurement."));
+pub(super) const WORDS: Key = phrase(
+    "words",
+    "The two words of the verdict: the word if it holds, and the word if it does not.",
+    "accepted, not accepted",
+);
+pub(super) const NOTE: Key = many(text(
+    "note",
+    "A remark printed with the rule.",
+    "Absolute values of simulation and measurement.",
+));

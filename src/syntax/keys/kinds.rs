@@ -1,7 +1,9 @@
 //! The table of blocks and fields.
 
 use super::Kind;
-use super::fields::{CLAUSE, FOR_EACH, NOTE, SOURCE, UNCONFIRMED, WORDS, many, pattern, phrase, text};
+use super::fields::{
+    CLAUSE, FOR_EACH, NOTE, SOURCE, UNCONFIRMED, WORDS, many, pattern, phrase, text,
+};
 
 /// Every kind of block, in the order of the canonical text.
 pub const KINDS: &[Kind] = &[
@@ -20,9 +22,21 @@ pub const KINDS: &[Kind] = &[
             text("edition", "The standard and its edition.", "EN 14363:2016, Annex T"),
             SOURCE,
             text("author", "The author of the protocol.", "Working group 10"),
-            text("scope", "The purpose, in one or two sentences.", "Models for on-track tests of vehicles with bogies."),
-            phrase("axis", "The channel that sections are cut along and plots are drawn over.", "distance in m"),
-            phrase("time", "The channel with the time of the samples. Filters need it.", "time in s"),
+            text(
+                "scope",
+                "The purpose, in one or two sentences.",
+                "Models for on-track tests of vehicles with bogies.",
+            ),
+            phrase(
+                "axis",
+                "The channel that sections are cut along and plots are drawn over.",
+                "distance in m",
+            ),
+            phrase(
+                "time",
+                "The channel with the time of the samples. Filters need it.",
+                "time in s",
+            ),
             NOTE,
         ],
     },
@@ -33,13 +47,33 @@ pub const KINDS: &[Kind] = &[
         single: true,
         about: "In a variant: rules of the parent that do not apply.",
         keys: &[
-            many(phrase("quantity", "A quantity of the parent, a family as written there, or `every` for all.", "az_max")),
+            many(phrase(
+                "quantity",
+                "A quantity of the parent, a family as written there, or `every` for all.",
+                "az_max",
+            )),
             many(phrase("zone", "A zone of the parent, a family, or `every` for all.", "4")),
-            many(phrase("check", "A section check of the parent, a family, or `every` for all.", "full_curve")),
-            many(phrase("plausibility", "A plausibility rule of the parent, a family, or `every` for all.", "wheel_load")),
-            many(phrase("find", "A condition on found sections of the parent, a family, or `every` for all.", "steady_speed")),
+            many(phrase(
+                "check",
+                "A section check of the parent, a family, or `every` for all.",
+                "full_curve",
+            )),
+            many(phrase(
+                "plausibility",
+                "A plausibility rule of the parent, a family, or `every` for all.",
+                "wheel_load",
+            )),
+            many(phrase(
+                "find",
+                "A condition on found sections of the parent, a family, or `every` for all.",
+                "steady_speed",
+            )),
             many(phrase("domain", "A domain of the parent, or `every` one.", "application")),
-            many(phrase("verdict", "A named verdict of the parent, a family, or `every` for all.", "inspection")),
+            many(phrase(
+                "verdict",
+                "A named verdict of the parent, a family, or `every` for all.",
+                "inspection",
+            )),
             many(phrase(
                 "limit",
                 "Limits of a quantity of the parent, of a family or of `every` quantity: write the quantity, then the statistic, or no statistic for all limits.",
@@ -55,10 +89,18 @@ pub const KINDS: &[Kind] = &[
         about: "A number or a choice that a campaign, a variant or the command line can set.",
         keys: &[
             FOR_EACH,
-            phrase("default", "The default value: a number with its unit, or one of the choices.", "20 Hz"),
+            phrase(
+                "default",
+                "The default value: a number with its unit, or one of the choices.",
+                "20 Hz",
+            ),
             phrase("one of", "The possible words of a choice.", "oriented, signed, magnitudes"),
             phrase("range", "The smallest and the largest allowed value.", "10 Hz to 40 Hz"),
-            phrase("at", "The place whose positions are selected. The default is then a list of positions.", "wheelset"),
+            phrase(
+                "at",
+                "The place whose positions are selected. The default is then a list of positions.",
+                "wheelset",
+            ),
             UNCONFIRMED,
             CLAUSE,
             SOURCE,
@@ -91,8 +133,16 @@ pub const KINDS: &[Kind] = &[
             FOR_EACH,
             phrase("in", "The unit of a number.", "kN"),
             phrase("one of", "The possible words of a choice.", "passenger, locomotive, freight"),
-            phrase("key", "The key in the vehicle file, if it differs from the name.", "static_wheel_load"),
-            phrase("range", "The smallest and the largest allowed value of a number.", "10 kN to 200 kN"),
+            phrase(
+                "key",
+                "The key in the vehicle file, if it differs from the name.",
+                "static_wheel_load",
+            ),
+            phrase(
+                "range",
+                "The smallest and the largest allowed value of a number.",
+                "10 kN to 200 kN",
+            ),
             phrase(
                 "default",
                 "The value if the file has none. Without a default, the file must have it. `not stated`: it may be missing and then has no value.",
@@ -110,13 +160,21 @@ pub const KINDS: &[Kind] = &[
         keys: &[
             FOR_EACH,
             phrase("in", "The unit of a number.", "m"),
-            phrase("one of", "The possible words of a choice; `zones` stands for the names of all zones.", "right, left, straight"),
+            phrase(
+                "one of",
+                "The possible words of a choice; `zones` stands for the names of all zones.",
+                "right, left, straight",
+            ),
             text(
                 "column",
                 "The column header without the unit, if it differs from the name with blanks for underscores.",
                 "cant deficiency",
             ),
-            phrase("default", "The value of an empty cell. Without a default, an empty cell is a missing value.", "0 mm"),
+            phrase(
+                "default",
+                "The value of an empty cell. Without a default, an empty cell is a missing value.",
+                "0 mm",
+            ),
             phrase(
                 "found",
                 "The value of a section that is found in a run: an expression of values of its signals and of other section data.",
@@ -148,10 +206,22 @@ pub const KINDS: &[Kind] = &[
         about: "A measured and simulated signal, with one column of the records for each position.",
         keys: &[
             FOR_EACH,
-            phrase("in", "The unit of printed values. Columns in other units of the same dimension are converted.", "kN"),
+            phrase(
+                "in",
+                "The unit of printed values. Columns in other units of the same dimension are converted.",
+                "kN",
+            ),
             phrase("at", "The places at which it is measured.", "each wheelset and side"),
-            pattern(text("column", "The column header without the unit, with places in braces.", "Y_{wheelset}{side}")),
-            phrase("record", "The kind of record that contains it, if not simulation and measurement: `track`.", "track"),
+            pattern(text(
+                "column",
+                "The column header without the unit, with places in braces.",
+                "Y_{wheelset}{side}",
+            )),
+            phrase(
+                "record",
+                "The kind of record that contains it, if not simulation and measurement: `track`.",
+                "track",
+            ),
             NOTE,
         ],
     },
@@ -164,9 +234,17 @@ pub const KINDS: &[Kind] = &[
         keys: &[
             FOR_EACH,
             phrase("is", "The expression.", "Y at side R + Y at side L"),
-            phrase("at", "The places at which it exists, without those that the expression fixes.", "each wheelset"),
+            phrase(
+                "at",
+                "The places at which it exists, without those that the expression fixes.",
+                "each wheelset",
+            ),
             phrase("in", "The unit of printed values.", "kN"),
-            pattern(text("named", "The name of a position in tables, with places in braces.", "SigmaY_{wheelset}")),
+            pattern(text(
+                "named",
+                "The name of a position in tables, with places in braces.",
+                "SigmaY_{wheelset}",
+            )),
             CLAUSE,
             SOURCE,
             NOTE,
@@ -180,7 +258,11 @@ pub const KINDS: &[Kind] = &[
         about: "A chain of filter steps with a name.",
         keys: &[
             FOR_EACH,
-            many(phrase("step", "One step of the chain, in order.", "low-pass 20 Hz, order 4, zero-phase")),
+            many(phrase(
+                "step",
+                "One step of the chain, in order.",
+                "low-pass 20 Hz, order 4, zero-phase",
+            )),
             CLAUSE,
             SOURCE,
             NOTE,
@@ -194,7 +276,11 @@ pub const KINDS: &[Kind] = &[
         about: "A name for an expression: a condition, a factor, a table by zone or speed.",
         keys: &[
             FOR_EACH,
-            phrase("is", "The expression.", "vehicle.category is freight or not vehicle.secondary_suspension"),
+            phrase(
+                "is",
+                "The expression.",
+                "vehicle.category is freight or not vehicle.secondary_suspension",
+            ),
             UNCONFIRMED,
             CLAUSE,
             SOURCE,
@@ -209,9 +295,17 @@ pub const KINDS: &[Kind] = &[
         about: "A test zone: a class of sections.",
         keys: &[
             FOR_EACH,
-            phrase("where", "The condition that a section of the zone must satisfy.", "400 m <= radius <= 600 m"),
+            phrase(
+                "where",
+                "The condition that a section of the zone must satisfy.",
+                "400 m <= radius <= 600 m",
+            ),
             phrase("minimum sections", "The number of used sections that the zone needs.", "3"),
-            phrase("minimum length", "The minimum length of a section.", "250 m when admissible_speed <= 220 km/h, otherwise 500 m"),
+            phrase(
+                "minimum length",
+                "The minimum length of a section.",
+                "250 m when admissible_speed <= 220 km/h, otherwise 500 m",
+            ),
             UNCONFIRMED,
             CLAUSE,
             SOURCE,
@@ -232,7 +326,11 @@ pub const KINDS: &[Kind] = &[
                 "range of curvature <= 5 % * |mean of curvature|",
             ),
             phrase("unless", "Sections that do not need to satisfy it.", "direction is straight"),
-            phrase("otherwise", "The treatment of a section that does not meet it: `not used` (the default), `note` or `stop`.", "note"),
+            phrase(
+                "otherwise",
+                "The treatment of a section that does not meet it: `not used` (the default), `note` or `stop`.",
+                "note",
+            ),
             CLAUSE,
             SOURCE,
             NOTE,
@@ -257,7 +355,11 @@ pub const KINDS: &[Kind] = &[
                 "The condition. It is checked for simulation and measurement separately, or for both together where it names a metric or a side.",
                 "median near 2 * Q0 within a factor of 1.4",
             ),
-            phrase("distinct", "In place of a condition: signals that must not have the same samples.", "channels, sections, sides"),
+            phrase(
+                "distinct",
+                "In place of a condition: signals that must not have the same samples.",
+                "channels, sections, sides",
+            ),
             phrase(
                 "exchanged",
                 "In place of a condition: from which correlation on a measured channel is reported that agrees with another simulated channel of the rule, and by how much more than with its own.",
@@ -269,7 +371,11 @@ pub const KINDS: &[Kind] = &[
                 "The consequence of a finding: `note` (the default), `not used` (the section), `not assessable` (the campaign) or `stop`.",
                 "not used",
             ),
-            text("cause", "The probable cause of a finding.", "the load of an axle in place of that of a wheel"),
+            text(
+                "cause",
+                "The probable cause of a finding.",
+                "the load of an axle in place of that of a wheel",
+            ),
             CLAUSE,
             SOURCE,
             NOTE,
@@ -288,10 +394,22 @@ pub const KINDS: &[Kind] = &[
                 "sections",
             ),
             phrase("zone", "The section column with the zone, if there are zones.", "zone"),
-            phrase("where", "Only sections that satisfy this condition are used.", "speed >= 60 km/h"),
-            phrase("faulty", "The consequence of a faulty record: `not used` (the section, with the reason) or `stop`.", "not used"),
+            phrase(
+                "where",
+                "Only sections that satisfy this condition are used.",
+                "speed >= 60 km/h",
+            ),
+            phrase(
+                "faulty",
+                "The consequence of a faulty record: `not used` (the section, with the reason) or `stop`.",
+                "not used",
+            ),
             phrase("minimum", "The total number of used sections that the campaign needs.", "12"),
-            phrase("step", "Of found sections: the distance between two places that are tried.", "1 m"),
+            phrase(
+                "step",
+                "Of found sections: the distance between two places that are tried.",
+                "1 m",
+            ),
             phrase(
                 "length",
                 "Of found sections: their length. Without this field, the minimum length of the zone.",
@@ -317,7 +435,11 @@ pub const KINDS: &[Kind] = &[
                 "A number of the data of the sections used, of all or of each group: it is printed and decides nothing.",
                 "total of length in km for each zone",
             )),
-            phrase("percentiles", "The interpolation rule of percentiles, by the name of Hyndman & Fan.", "linear"),
+            phrase(
+                "percentiles",
+                "The interpolation rule of percentiles, by the name of Hyndman & Fan.",
+                "linear",
+            ),
             NOTE,
         ],
     },
@@ -329,7 +451,11 @@ pub const KINDS: &[Kind] = &[
         about: "A condition on every section that is found in a run. The conditions are tried in the order of the text.",
         keys: &[
             FOR_EACH,
-            phrase("require", "The condition on values of signals and on the data of the section.", "range of running_speed <= 2 km/h"),
+            phrase(
+                "require",
+                "The condition on values of signals and on the data of the section.",
+                "range of running_speed <= 2 km/h",
+            ),
             phrase("lead", "How far before the section its signals are looked at too.", "30 m"),
             phrase("tail", "How far behind the section its signals are looked at too.", "15 m"),
             CLAUSE,
@@ -367,14 +493,22 @@ pub const KINDS: &[Kind] = &[
         about: "A validation quantity: its signals, their processing, the comparison and the limits.",
         keys: &[
             FOR_EACH,
-            phrase("like", "Another quantity whose fields hold here, except those that are given.", "SigmaY_max"),
+            phrase(
+                "like",
+                "Another quantity whose fields hold here, except those that are given.",
+                "SigmaY_max",
+            ),
             text("symbol", "The symbol in tables.", "(Y/Q)max"),
             many(phrase(
                 "of",
                 "The signal and the positions at which it is evaluated, with `when` for a condition on the section. Several fields are possible.",
                 "Y at wheelsets 1, 3",
             )),
-            phrase("filter", "Filters in order: names or steps.", "LP20, then sliding mean 2 m every 0.5 m"),
+            phrase(
+                "filter",
+                "Filters in order: names or steps.",
+                "LP20, then sliding mean 2 m every 0.5 m",
+            ),
             phrase(
                 "from",
                 "In place of a comparison: the records whose values are assessed: `simulated`, `measured`, or a declared record.",
@@ -391,14 +525,26 @@ pub const KINDS: &[Kind] = &[
                 "simulated with mean of simulated",
             ),
             phrase("difference", "The difference of the two values.", "|simulated| - |measured|"),
-            phrase("metric", "In place of value and difference: one number computed from both signals.", "sprague-geers magnitude"),
-            many(phrase("limit", "A statistic or estimate over all values, or over those of each group, and its limit.", "std 9 kN")),
+            phrase(
+                "metric",
+                "In place of value and difference: one number computed from both signals.",
+                "sprague-geers magnitude",
+            ),
+            many(phrase(
+                "limit",
+                "A statistic or estimate over all values, or over those of each group, and its limit.",
+                "std 9 kN",
+            )),
             many(phrase(
                 "report",
                 "A statistic or estimate without a limit, over all values or those of each group: it is printed and decides nothing.",
                 "maximum for each zone and wheelset",
             )),
-            text("reported", "Why it has no limit: it is reported, and decides nothing.", "A factor of the metric above."),
+            text(
+                "reported",
+                "Why it has no limit: it is reported, and decides nothing.",
+                "A factor of the metric above.",
+            ),
             phrase("minimum signals", "The number of signals that it needs.", "2"),
             many(phrase(
                 "minimum pairs",
@@ -406,7 +552,11 @@ pub const KINDS: &[Kind] = &[
                 "24",
             )),
             phrase("in", "The unit of printed values, if it is not that of the signal.", "kN"),
-            phrase("where", "Only sections that satisfy this condition are used.", "direction is not straight"),
+            phrase(
+                "where",
+                "Only sections that satisfy this condition are used.",
+                "direction is not straight",
+            ),
             UNCONFIRMED,
             CLAUSE,
             SOURCE,
@@ -419,7 +569,14 @@ pub const KINDS: &[Kind] = &[
         named: true,
         single: false,
         about: "A name for an estimate from the values of a group: an expression of statistics, regressions and shares.",
-        keys: &[FOR_EACH, phrase("is", "The expression.", "mean + 3 * std"), UNCONFIRMED, CLAUSE, SOURCE, NOTE],
+        keys: &[
+            FOR_EACH,
+            phrase("is", "The expression.", "mean + 3 * std"),
+            UNCONFIRMED,
+            CLAUSE,
+            SOURCE,
+            NOTE,
+        ],
     },
     Kind {
         word: "verdict",
@@ -434,7 +591,11 @@ pub const KINDS: &[Kind] = &[
                 "when every limit holds",
             ),
             WORDS,
-            phrase("minimum signals", "The number of signals that a quantity needs, unless the quantity states it.", "2"),
+            phrase(
+                "minimum signals",
+                "The number of signals that a quantity needs, unless the quantity states it.",
+                "2",
+            ),
             many(phrase(
                 "minimum pairs",
                 "The number of section x signal pairs that a quantity needs, in all or in each group, unless the quantity states it.",

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use arrow_array::cast::AsArray;
 use arrow_array::types::{
-    ArrowPrimitiveType, Float16Type, Float32Type, Float64Type, Int8Type, Int16Type, Int32Type, Int64Type, UInt8Type, UInt16Type,
-    UInt32Type, UInt64Type,
+    ArrowPrimitiveType, Float16Type, Float32Type, Float64Type, Int8Type, Int16Type, Int32Type,
+    Int64Type, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
 };
 use arrow_array::{Array, RecordBatch};
 use arrow_schema::DataType;
@@ -24,25 +24,35 @@ use crate::data::faults::Faults;
 use crate::data::record::decoded::Numbers;
 use crate::problem::Problem;
 
-/// Rows decoded at a time: the numbers of twenty channels take 1 MB, which stays in the second-level cache.
+/// Rows decoded at a time: the numbers of twenty channels take 1 MB, which stays in the
+/// second-level cache.
 const BATCH: usize = 1 << 13;
 
 /// The bytes of a column in a group.
 fn range_of(chunk: &ColumnChunkMetaData) -> Option<Range<u64>> {
     let start = chunk.dictionary_page_offset().unwrap_or(chunk.data_page_offset());
-    let (start, length) = (u64::try_from(start).ok()?, u64::try_from(chunk.compressed_size()).ok()?);
+    let (start, length) =
+        (u64::try_from(start).ok()?, u64::try_from(chunk.compressed_size()).ok()?);
     Some(start..start.checked_add(length)?)
 }
 
-/// Called after each batch with the columns and the row of the file with which the batch begins; it may empty the columns.
+/// Called after each batch with the columns and the row of the file with which the batch begins; it
+/// may empty the columns.
 pub(super) type Each<'e> = &'e mut dyn FnMut(&mut [Column], usize);
 
-/// Takes the numbers of a batch into the columns; the last argument gives the place of each column in the batch.
+/// Takes the numbers of a batch into the columns; the last argument gives the place of each column
+/// in the batch.
 type Take<'t> = &'t mut dyn FnMut(&RecordBatch, &mut [Column], &[usize]) -> Result<(), String>;
 
 impl Opened<'_> {
     /// Appends the numbers of a group to the columns, in SI units.
-    pub(super) fn group(&mut self, group: usize, columns: &mut [Column], faults: &mut Faults<'_>, each: Each<'_>) -> Result<(), Problem> {
+    pub(super) fn group(
+        &mut self,
+        group: usize,
+        columns: &mut [Column],
+        faults: &mut Faults<'_>,
+        each: Each<'_>,
+    ) -> Result<(), Problem> {
         let rows = self.layout.rows_of(group);
         self.rows_in(group, rows, columns, faults, each)
     }
@@ -59,19 +69,29 @@ impl Opened<'_> {
         let (shown, layout) = (self.shown, Arc::clone(&self.layout));
         let mut fault = |row: usize, column: &Column, value: Option<f64>| {
             let place = format!("row {}, in row group {}", row + 1, group + 1);
-            faults.push(|| wrong(shown, &layout.headings()[column.position], row, value).label(place));
+            faults.push(|| {
+                wrong(shown, &layout.headings()[column.position], row, value).label(place)
+            });
         };
         self.rows_told(group, rows, columns, &mut fault, each)
     }
 
     /// The numbers of some columns in some rows of a group; `None` for a column with a fault there.
-    pub(super) fn block(&mut self, group: usize, rows: Range<usize>, columns: &[Column]) -> Vec<Numbers> {
-        let empty = |column: &Column| Column { values: Vec::with_capacity(rows.len()), ..column.clone() };
+    pub(super) fn block(
+        &mut self,
+        group: usize,
+        rows: Range<usize>,
+        columns: &[Column],
+    ) -> Vec<Numbers> {
+        let empty =
+            |column: &Column| Column { values: Vec::with_capacity(rows.len()), ..column.clone() };
         let mut columns: Vec<Column> = columns.iter().map(empty).collect();
         let mut faulty = vec![false; self.layout.headings().len()];
         let mut fault = |_: usize, column: &Column, _: Option<f64>| faulty[column.position] = true;
         let done = self.rows_told(group, rows, &mut columns, &mut fault, &mut |_, _| {});
-        let good = |column: Column| (done.is_ok() && !faulty[column.position]).then(|| Arc::new(column.values));
+        let good = |column: Column| {
+            (done.is_ok() && !faulty[column.position]).then(|| Arc::new(column.values))
+        };
         columns.into_iter().map(good).collect()
     }
 
@@ -134,10 +154,14 @@ impl Opened<'_> {
         self.store.ahead(&self.ranges(group, columns), shown)?;
         for column in columns {
             let place = || format!("row group {}, column `{}`", group + 1, column.name);
-            let Some(leaf) = self.layout.leaf(column.position) else { return Err(damaged(shown, &format!("{}: no values", place()))) };
+            let Some(leaf) = self.layout.leaf(column.position) else {
+                return Err(damaged(shown, &format!("{}: no values", place())));
+            };
             let chunk = self.layout.metadata.metadata().row_group(group).column(leaf);
             let range = range_of(chunk).filter(|range| range.end <= self.store.size());
-            let range = range.ok_or_else(|| damaged(shown, &format!("{}: its values lie outside the file", place())))?;
+            let range = range.ok_or_else(|| {
+                damaged(shown, &format!("{}: its values lie outside the file", place()))
+            })?;
             let width = match chunk.column_type() {
                 Type::DOUBLE | Type::INT64 => 8,
                 Type::FLOAT | Type::INT32 => 4,
@@ -146,8 +170,12 @@ impl Opened<'_> {
             let values = u64::try_from(chunk.num_values()).unwrap_or(0);
             memory += range.end - range.start;
             self.within(memory, "a row group")?;
-            let pages = self.store.add(range, &mut chunks, shown, |bytes| guard::pages(bytes, values, width))?;
-            let pages = pages.map_err(|why| damaged(shown, &format!("row group {}, column `{}`: {why}", group + 1, column.name)))?;
+            let pages = self
+                .store
+                .add(range, &mut chunks, shown, |bytes| guard::pages(bytes, values, width))?;
+            let pages = pages.map_err(|why| {
+                damaged(shown, &format!("row group {}, column `{}`: {why}", group + 1, column.name))
+            })?;
             memory += pages.memory;
             self.within(memory, "a row group")?;
         }
@@ -158,7 +186,11 @@ impl Opened<'_> {
     fn ranges(&self, group: usize, columns: &[Column]) -> Vec<Range<u64>> {
         let group = self.layout.metadata.metadata().row_group(group);
         let leaves = columns.iter().filter_map(|column| self.layout.leaf(column.position));
-        leaves.filter_map(|leaf| range_of(group.column(leaf)).filter(|range| range.end <= self.store.size())).collect()
+        leaves
+            .filter_map(|leaf| {
+                range_of(group.column(leaf)).filter(|range| range.end <= self.store.size())
+            })
+            .collect()
     }
 
     fn decode(
@@ -178,27 +210,40 @@ impl Opened<'_> {
         let part = rows.start - all.start..rows.end - all.start;
         guarded(|| {
             let said = |error: parquet::errors::ParquetError| error.to_string();
-            let mut builder = ParquetPushDecoderBuilder::new_with_metadata(self.layout.metadata.clone())
-                .with_row_groups(vec![group])
-                .with_projection(mask)
-                .with_batch_size(BATCH)
-                .with_buffers(chunks.clone());
+            let mut builder =
+                ParquetPushDecoderBuilder::new_with_metadata(self.layout.metadata.clone())
+                    .with_row_groups(vec![group])
+                    .with_projection(mask)
+                    .with_batch_size(BATCH)
+                    .with_buffers(chunks.clone());
             if *rows != all {
-                builder = builder.with_row_selection(RowSelection::from_consecutive_ranges([part].into_iter(), all.len()));
+                builder = builder.with_row_selection(RowSelection::from_consecutive_ranges(
+                    [part].into_iter(),
+                    all.len(),
+                ));
             }
             let mut decoder = builder.build().map_err(said)?;
             loop {
                 match decoder.try_decode().map_err(said)? {
                     DecodeResult::Data(batch) => take(&batch, columns, &order)?,
                     DecodeResult::Finished => return Ok(()),
-                    DecodeResult::NeedsData(_) => return Err("its values lie outside the column".into()),
+                    DecodeResult::NeedsData(_) => {
+                        return Err("its values lie outside the column".into());
+                    }
                 }
             }
         })
     }
 
     /// Which column is damaged: each is decoded alone.
-    fn where_damaged(&self, group: usize, rows: &Range<usize>, chunks: &PushBuffers, columns: &[Column], why: &str) -> Problem {
+    fn where_damaged(
+        &self,
+        group: usize,
+        rows: &Range<usize>,
+        chunks: &PushBuffers,
+        columns: &[Column],
+        why: &str,
+    ) -> Problem {
         for column in columns {
             let mut found = 0;
             let mut one = [Column { values: Vec::new(), ..column.clone() }];
@@ -212,26 +257,51 @@ impl Opened<'_> {
                 Err(why) => why,
             };
             let row = rows.start + found;
-            let problem = damaged(self.shown, &format!("row group {}, column `{}`: {why}", group + 1, column.name));
-            return problem.at(&value_at(self.shown, &self.layout.headings()[column.position], row, "?"));
+            let problem = damaged(
+                self.shown,
+                &format!("row group {}, column `{}`: {why}", group + 1, column.name),
+            );
+            return problem.at(&value_at(
+                self.shown,
+                &self.layout.headings()[column.position],
+                row,
+                "?",
+            ));
         }
         damaged(self.shown, &format!("row group {}: {why}", group + 1))
     }
 }
 
 /// A value that is missing or not finite.
-pub(in crate::data::record) fn wrong(shown: &str, heading: &Heading, row: usize, value: Option<f64>) -> Problem {
+pub(in crate::data::record) fn wrong(
+    shown: &str,
+    heading: &Heading,
+    row: usize,
+    value: Option<f64>,
+) -> Problem {
     let (code, says, text) = match value {
-        None => ("not-a-number", "the value is missing (null); expected a number".to_string(), "null".to_string()),
-        Some(value) => ("not-finite", format!("`{value}` is not a finite number"), value.to_string()),
+        None => (
+            "not-a-number",
+            "the value is missing (null); expected a number".to_string(),
+            "null".to_string(),
+        ),
+        Some(value) => {
+            ("not-finite", format!("`{value}` is not a finite number"), value.to_string())
+        }
     };
-    Problem::error(code, format!("`{}`: {says}", heading.name)).at(&value_at(shown, heading, row, &text))
+    Problem::error(code, format!("`{}`: {says}", heading.name))
+        .at(&value_at(shown, heading, row, &text))
 }
 
 pub(in crate::data::record) type Fault<'f> = &'f mut dyn FnMut(usize, &Column, Option<f64>);
 
 /// Appends the numbers of an array; `first` is the row of its first one.
-pub(in crate::data::record) fn append(array: &dyn Array, column: &mut Column, first: usize, fault: Fault<'_>) -> Result<(), String> {
+pub(in crate::data::record) fn append(
+    array: &dyn Array,
+    column: &mut Column,
+    first: usize,
+    fault: Fault<'_>,
+) -> Result<(), String> {
     macro_rules! numbers {
         ($kind:ty, $convert:expr) => {
             extend::<$kind>(array, column, first, fault, $convert)
@@ -261,11 +331,13 @@ fn extend<T: ArrowPrimitiveType>(
     fault: Fault<'_>,
     convert: impl Fn(T::Native) -> f64,
 ) -> Result<(), String> {
-    let array = array.as_primitive_opt::<T>().ok_or("an array of another type than its schema says")?;
+    let array =
+        array.as_primitive_opt::<T>().ok_or("an array of another type than its schema says")?;
     let factor = column.unit.factor;
     let from = column.values.len();
     column.values.extend(array.values().iter().map(|value| convert(*value) * factor));
-    let good = array.null_count() == 0 && column.values[from..].iter().all(|value| value.is_finite());
+    let good =
+        array.null_count() == 0 && column.values[from..].iter().all(|value| value.is_finite());
     if !good {
         for row in 0..array.len() {
             let value = (!array.is_null(row)).then(|| convert(array.value(row)));

@@ -1,15 +1,19 @@
 //! Sizes that a Parquet file declares, checked before the decoder sees them.
 //!
-//! The decoder reserves memory for as many elements, values and bytes as a footer or a page header declares. A declared size of terabytes
-//! would end the process, which no handler can prevent. Footers and page headers are therefore walked first. They are structures of the
-//! Thrift compact protocol: each declared length is compared with the bytes that follow, and sizes of pages with the limits below.
+//! The decoder reserves memory for as many elements, values and bytes as a footer or a page header
+//! declares. A declared size of terabytes would end the process, which no handler can prevent.
+//! Footers and page headers are therefore walked first. They are structures of the Thrift compact
+//! protocol: each declared length is compared with the bytes that follow, and sizes of pages with
+//! the limits below.
 
-/// Maximum nesting of a footer, and of the columns of its schema. The deepest part of a footer is the statistics of a column, level 6.
+/// Maximum nesting of a footer, and of the columns of its schema. The deepest part of a footer is
+/// the statistics of a column, level 6.
 const DEEPEST: usize = 16;
-/// Maximum number of elements of all lists of a footer: 1000 channels in 250 row groups, with about four list elements each. The decoder
-/// takes up to 1 kB for an element.
+/// Maximum number of elements of all lists of a footer: 1000 channels in 250 row groups, with about
+/// four list elements each. The decoder takes up to 1 kB for an element.
 const MOST_ELEMENTS: usize = 1 << 20;
-/// Maximum size of a page in bytes after decompression: eight million numbers. Writers make pages of 1 MB.
+/// Maximum size of a page in bytes after decompression: eight million numbers. Writers make pages
+/// of 1 MB.
 pub(super) const LARGEST_PAGE: u64 = 64 << 20;
 
 const STOP: u8 = 0;
@@ -17,8 +21,8 @@ const STOP: u8 = 0;
 const SCHEMA: [i64; 1] = [2];
 const CHILDREN: [i64; 3] = [2, 0, 5];
 const DICTIONARY_PAGE: i64 = 2;
-/// Encodings of Parquet that are read, by number: plain, dictionary (both forms), run lengths, deltas of integers, split bytes. Those of
-/// texts by deltas declare sizes inside the page.
+/// Encodings of Parquet that are read, by number: plain, dictionary (both forms), run lengths,
+/// deltas of integers, split bytes. Those of texts by deltas declare sizes inside the page.
 const ENCODINGS: [i64; 6] = [0, 2, 3, 5, 8, 9];
 
 /// Walks the bytes of a structure.
@@ -31,7 +35,8 @@ struct Walk<'a> {
     fields: Vec<(Vec<i64>, i64)>,
     /// Fields deeper than this are not kept.
     kept: usize,
-    /// Numbers of children of the columns of a schema that are still to come, from the root; only in a footer.
+    /// Numbers of children of the columns of a schema that are still to come, from the root; only
+    /// in a footer.
     open: Option<Vec<u64>>,
 }
 
@@ -145,14 +150,18 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    /// A column of the schema, which is a tree: each column is followed by its children. The decoder calls itself for each level, and
-    /// reserves memory for as many children as a column declares.
+    /// A column of the schema, which is a tree: each column is followed by its children. The
+    /// decoder calls itself for each level, and reserves memory for as many children as a column
+    /// declares.
     fn column(&mut self, left: u64) -> Checked<()> {
         let children = self.fields.pop().map_or(0, |(_, number)| number);
         self.fields.clear();
         let children = u64::try_from(children).ok().filter(|children| *children <= left);
-        let children =
-            children.ok_or_else(|| format!("a column of its schema declares more children than the {left} columns that follow"))?;
+        let children = children.ok_or_else(|| {
+            format!(
+                "a column of its schema declares more children than the {left} columns that follow"
+            )
+        })?;
         let open = self.open.get_or_insert_default();
         open.push(children);
         if open.len() > DEEPEST {
@@ -197,14 +206,22 @@ pub(crate) fn pages(chunk: &[u8], values: u64, width: u64) -> Checked<Pages> {
         };
         let (inflated, stored) = (size(2)?, size(3)?);
         if inflated > LARGEST_PAGE {
-            return Err(format!("a page of {} MB, where {} MB are the maximum", inflated >> 20, LARGEST_PAGE >> 20));
+            return Err(format!(
+                "a page of {} MB, where {} MB are the maximum",
+                inflated >> 20,
+                LARGEST_PAGE >> 20
+            ));
         }
-        // Fields 5, 7 and 8 are the headers of data pages, dictionary pages and data pages of version 2.
+        // Fields 5, 7 and 8 are the headers of data pages, dictionary pages and data pages of
+        // version 2.
         let counts = [5, 7, 8].into_iter().filter_map(|kind| walk.field(&[kind, 1]));
         let count = counts.map(|count| u64::try_from(count).unwrap_or(u64::MAX)).max().unwrap_or(0);
-        let encoding = [[5, 2], [7, 2], [8, 4]].into_iter().find_map(|path| walk.field(&path)).unwrap_or(0);
+        let encoding =
+            [[5, 2], [7, 2], [8, 4]].into_iter().find_map(|path| walk.field(&path)).unwrap_or(0);
         if !ENCODINGS.contains(&encoding) {
-            return Err(format!("a page has the encoding {encoding} of Parquet, which is not read; write it with dictionaries or plain"));
+            return Err(format!(
+                "a page has the encoding {encoding} of Parquet, which is not read; write it with dictionaries or plain"
+            ));
         }
         if walk.field(&[1]) == Some(DICTIONARY_PAGE) {
             if count.saturating_mul(width) > inflated {
@@ -235,24 +252,36 @@ mod tests {
     fn declared_lengths_are_compared_with_the_bytes() {
         assert_eq!(footer(&[0x15, 2, 0]), Ok(()));
         // Field 4, a list of 2^30 structures.
-        assert!(footer(&[0x49, 0xfc, 0x80, 0x80, 0x80, 0x80, 0x04, 0]).is_err_and(|why| why.contains("1073741824 elements")));
+        assert!(
+            footer(&[0x49, 0xfc, 0x80, 0x80, 0x80, 0x80, 0x04, 0])
+                .is_err_and(|why| why.contains("1073741824 elements"))
+        );
         // Field 1, a text of 2^40 bytes.
-        assert!(footer(&[0x18, 0x80, 0x80, 0x80, 0x80, 0x80, 0x20, 0]).is_err_and(|why| why.contains("1099511627776 bytes")));
+        assert!(
+            footer(&[0x18, 0x80, 0x80, 0x80, 0x80, 0x80, 0x20, 0])
+                .is_err_and(|why| why.contains("1099511627776 bytes"))
+        );
         assert!(footer(&[0x1c; 1000]).is_err_and(|why| why.contains("nested")));
         assert!(footer(&[0x19, 0x19, 0x19, 0x19].repeat(9)).is_err());
         assert!(footer(&[0x15]).is_err());
-        assert!(footer(&[0x15, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff]).is_err());
+        assert!(
+            footer(&[0x15, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff])
+                .is_err()
+        );
     }
 
     #[test]
     fn the_schema_is_a_tree_of_bounded_depth() {
         // Field 2 of the footer: a list of structures with field 5, the number of children.
         let walk = |children: &[u8]| {
-            let elements: Vec<u8> = children.iter().flat_map(|count| [0x55, 2 * count, 0]).collect();
+            let elements: Vec<u8> =
+                children.iter().flat_map(|count| [0x55, 2 * count, 0]).collect();
             footer(&[&[0x29, 0xfc, children.len() as u8][..], &elements, &[0]].concat())
         };
         assert_eq!(walk(&[2, 0, 1, 0]), Ok(()));
-        assert!(walk(&[9, 0, 0]).is_err_and(|why| why.contains("more children than the 2 columns")));
+        assert!(
+            walk(&[9, 0, 0]).is_err_and(|why| why.contains("more children than the 2 columns"))
+        );
         let deep: Vec<u8> = std::iter::repeat_n(1, DEEPEST + 4).chain([0]).collect();
         assert!(walk(&deep).is_err_and(|why| why.contains("nested")));
     }
@@ -260,9 +289,15 @@ mod tests {
     #[test]
     fn a_page_that_inflates_to_gigabytes_is_refused() {
         // Fields 1 to 3: a data page (0) of 2^30 bytes, stored in 4; field 5.1: 10 values.
-        let page = |inflated: &[u8], count: u8| [&[0x15, 0, 0x15][..], inflated, &[0x15, 8, 0x2c, 0x15, 2 * count, 0, 0], &[0; 4]].concat();
+        let page = |inflated: &[u8], count: u8| {
+            [&[0x15, 0, 0x15][..], inflated, &[0x15, 8, 0x2c, 0x15, 2 * count, 0, 0], &[0; 4]]
+                .concat()
+        };
         assert_eq!(pages(&page(&[80], 10), 10, 8), Ok(Pages { memory: 40 }));
-        assert!(pages(&page(&[0x80, 0x80, 0x80, 0x80, 0x08], 10), 10, 8).is_err_and(|why| why.contains("1024 MB")));
+        assert!(
+            pages(&page(&[0x80, 0x80, 0x80, 0x80, 0x08], 10), 10, 8)
+                .is_err_and(|why| why.contains("1024 MB"))
+        );
         assert!(pages(&page(&[80], 11), 10, 8).is_err_and(|why| why.contains("11 values")));
         assert!(pages(&page(&[80], 10)[..14], 10, 8).is_err_and(|why| why.contains("4 bytes")));
     }

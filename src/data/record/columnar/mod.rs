@@ -50,7 +50,8 @@ pub(super) fn read(at: At<'_>, shown: &str, wanted: &[Wanted]) -> Result<Record,
             (opened, hash, Origin::File(path.to_path_buf()))
         }
         At::Object(stored) => {
-            let (opened, hash) = runs::open_object(stored, shown, &Known::default()).map_err(one)?;
+            let (opened, hash) =
+                runs::open_object(stored, shown, &Known::default()).map_err(one)?;
             (opened, hash, Origin::Object(stored.clone()))
         }
     };
@@ -60,7 +61,9 @@ pub(super) fn read(at: At<'_>, shown: &str, wanted: &[Wanted]) -> Result<Record,
     if rows == 0 {
         return Err(vec![no_rows(shown)]);
     }
-    opened.within((rows as u64).saturating_mul(8 * columns.len() as u64), "the record").map_err(one)?;
+    opened
+        .within((rows as u64).saturating_mul(8 * columns.len() as u64), "the record")
+        .map_err(one)?;
     for column in &mut columns {
         column.values.reserve_exact(rows);
     }
@@ -90,10 +93,20 @@ pub(super) fn raw(path: &Path, shown: &str) -> Result<Vec<FileColumn>, Vec<Probl
     let one = |problem: Problem| vec![problem];
     let mut opened = open_file(At::Disk(path), shown)?;
     let headings = opened.layout.headings().to_vec();
-    opened.within((opened.layout.rows() as u64).saturating_mul(8 * headings.len() as u64), "the record").map_err(one)?;
+    opened
+        .within(
+            (opened.layout.rows() as u64).saturating_mul(8 * headings.len() as u64),
+            "the record",
+        )
+        .map_err(one)?;
     let mut columns = Vec::new();
     for (position, heading) in headings.iter().enumerate() {
-        let mut column = [Column { name: heading.name.clone(), unit: Unit::one(), values: Vec::new(), position }];
+        let mut column = [Column {
+            name: heading.name.clone(),
+            unit: Unit::one(),
+            values: Vec::new(),
+            position,
+        }];
         if let Some(problem) = opened.other_codec(&column[0]) {
             return Err(one(problem));
         }
@@ -111,7 +124,11 @@ pub(super) fn raw(path: &Path, shown: &str) -> Result<Vec<FileColumn>, Vec<Probl
             let [column] = column;
             Values::Numbers(column.values)
         };
-        columns.push(FileColumn { heading: heading.span.text().to_string(), values, digits: opened.layout.digits(position) });
+        columns.push(FileColumn {
+            heading: heading.span.text().to_string(),
+            values,
+            digits: opened.layout.digits(position),
+        });
     }
     Ok(columns)
 }
@@ -123,7 +140,9 @@ pub(super) fn headings(at: At<'_>, shown: &str) -> Result<Vec<Heading>, Vec<Prob
 }
 
 fn open_file<'a>(at: At<'_>, shown: &'a str) -> Result<Opened<'a>, Vec<Problem>> {
-    Store::at(at, shown).and_then(|store| Opened::open(store, shown)).map_err(|problem| vec![problem])
+    Store::at(at, shown)
+        .and_then(|store| Opened::open(store, shown))
+        .map_err(|problem| vec![problem])
 }
 
 /// The place of a sample, from 0, or of its value in a column.
@@ -140,7 +159,8 @@ pub(super) fn place(at: At<'_>, shown: &str, row: usize, column: Option<&Column>
     Some(value_at(shown, &opened.layout.headings()[column.position], row, &value.to_string()))
 }
 
-/// A Parquet file has no text: the place shows `name [unit] = value`, in the line with the number of the row, from 1.
+/// A Parquet file has no text: the place shows `name [unit] = value`, in the line with the number
+/// of the row, from 1.
 pub(super) fn value_at(shown: &str, heading: &Heading, row: usize, value: &str) -> Span {
     let name = format!("{} = ", heading.span.text());
     let from = name.len();

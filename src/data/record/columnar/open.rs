@@ -25,8 +25,8 @@ const LARGEST_FOOTER: u64 = 32 << 20;
 /// Bytes after the footer: its length and the magic number.
 const TAIL: u64 = 8;
 
-/// Most bytes of numbers and pages for a byte of the file, above [`FREE`]: a record of one section has 10 to 50, a column that never
-/// changes more. A file of some kilobytes can declare gigabytes.
+/// Most bytes of numbers and pages for a byte of the file, above [`FREE`]: a record of one section
+/// has 10 to 50, a column that never changes more. A file of some kilobytes can declare gigabytes.
 const MOST_INFLATION: u64 = 1000;
 /// Bytes of numbers and pages that any file may need: a page of the maximum size.
 const FREE: u64 = guard::LARGEST_PAGE;
@@ -101,7 +101,9 @@ impl Store {
         match self {
             Self::Memory(whole, _) => {
                 let count = usize::try_from(range.end - range.start).unwrap_or(usize::MAX);
-                let bytes = whole.get_bytes(range.start, count).map_err(|error| damaged(shown, &error.to_string()))?;
+                let bytes = whole
+                    .get_bytes(range.start, count)
+                    .map_err(|error| damaged(shown, &error.to_string()))?;
                 Ok(look(&bytes))
             }
             Self::Disk { .. } | Self::Object(_) => {
@@ -134,7 +136,8 @@ impl Store {
     pub fn ahead(&self, ranges: &[Range<u64>], shown: &str) -> Result<(), Problem> {
         let Self::Object(Stored { object, held }) = self else { return Ok(()) };
         let name = Path::new(object.url());
-        let lacking: Vec<Range<u64>> = ranges.iter().filter(|range| held.get(name, range).is_none()).cloned().collect();
+        let lacking: Vec<Range<u64>> =
+            ranges.iter().filter(|range| held.get(name, range).is_none()).cloned().collect();
         let read = object.read(&lacking).map_err(|why| unreadable(shown, &why))?;
         for (range, bytes) in lacking.iter().zip(read) {
             held.keep(name, range.start, bytes);
@@ -146,16 +149,22 @@ impl Store {
         if range.start > range.end || range.end > self.size() {
             return Err(damaged(shown, "a part of it lies outside the file"));
         }
-        let count = usize::try_from(range.end - range.start).map_err(|_| damaged(shown, "a part of it is too large"))?;
+        let count = usize::try_from(range.end - range.start)
+            .map_err(|_| damaged(shown, "a part of it is too large"))?;
         match self {
-            Self::Memory(whole, _) => whole.get_bytes(range.start, count).map_err(|error| damaged(shown, &error.to_string())),
+            Self::Memory(whole, _) => whole
+                .get_bytes(range.start, count)
+                .map_err(|error| damaged(shown, &error.to_string())),
             Self::Disk { file, path, held, .. } => {
                 if let Some(kept) = held.as_ref().and_then(|held| held.get(path, &range)) {
                     return Ok(kept);
                 }
                 let mut bytes = vec![0; count];
-                let done = file.seek(SeekFrom::Start(range.start)).and_then(|_| file.read_exact(&mut bytes));
-                let bytes = done.map(|()| Bytes::from(bytes)).map_err(|error| unreadable(shown, &error))?;
+                let done = file
+                    .seek(SeekFrom::Start(range.start))
+                    .and_then(|_| file.read_exact(&mut bytes));
+                let bytes =
+                    done.map(|()| Bytes::from(bytes)).map_err(|error| unreadable(shown, &error))?;
                 if let Some(held) = held {
                     held.keep(path, range.start, bytes.clone());
                 }
@@ -166,7 +175,9 @@ impl Store {
                 if let Some(kept) = held.get(name, &range) {
                     return Ok(kept);
                 }
-                let read = object.read(std::slice::from_ref(&range)).map_err(|why| unreadable(shown, &why))?;
+                let read = object
+                    .read(std::slice::from_ref(&range))
+                    .map_err(|why| unreadable(shown, &why))?;
                 let bytes = read.into_iter().next().unwrap_or_default();
                 held.keep(name, range.start, bytes.clone());
                 Ok(bytes)
@@ -200,25 +211,36 @@ impl<'a> Opened<'a> {
 
     /// Refuses a part of the file that needs too much memory.
     pub fn within(&self, memory: u64, what: &str) -> Result<(), Problem> {
-        let most = LARGEST_RECORD.min(FREE.saturating_add(MOST_INFLATION.saturating_mul(self.store.size())));
+        let most = LARGEST_RECORD
+            .min(FREE.saturating_add(MOST_INFLATION.saturating_mul(self.store.size())));
         if memory <= most {
             return Ok(());
         }
-        let says = format!("{what} of `{}` needs {} MB for the wanted columns; the maximum is {} MB", self.shown, memory >> 20, most >> 20);
-        Err(Problem::error("file-too-large", says).help("split the record, or write it with row groups of 10 000 to 100 000 rows"))
+        let says = format!(
+            "{what} of `{}` needs {} MB for the wanted columns; the maximum is {} MB",
+            self.shown,
+            memory >> 20,
+            most >> 20
+        );
+        Err(Problem::error("file-too-large", says)
+            .help("split the record, or write it with row groups of 10 000 to 100 000 rows"))
     }
 
     /// The wanted columns, which must hold numbers.
     pub fn find(&self, wanted: &[Wanted]) -> Result<Vec<Column>, Vec<Problem>> {
         let columns = find_columns(self.layout.headings(), wanted, self.shown)?;
-        let mut problems: Vec<Problem> = columns.iter().filter_map(|column| self.not_numbers(column)).collect();
+        let mut problems: Vec<Problem> =
+            columns.iter().filter_map(|column| self.not_numbers(column)).collect();
         problems.extend(columns.iter().find_map(|column| self.other_codec(column)));
         if problems.is_empty() { Ok(columns) } else { Err(problems) }
     }
 
     /// A problem for a column that does not hold numbers.
     pub(super) fn not_numbers(&self, column: &Column) -> Option<Problem> {
-        let (field, heading) = (self.layout.fields.get(column.position)?, self.layout.headings().get(column.position)?);
+        let (field, heading) = (
+            self.layout.fields.get(column.position)?,
+            self.layout.headings().get(column.position)?,
+        );
         let problem = not_numbers(&field.kind, &column.name, &heading.span)?;
         Some(problem.help("convert the column to float64 where the file is written"))
     }
@@ -226,12 +248,27 @@ impl<'a> Opened<'a> {
     /// A problem for a column with a compression that is not read.
     pub(super) fn other_codec(&self, column: &Column) -> Option<Problem> {
         let leaf = self.layout.leaf(column.position)?;
-        let codecs = self.layout.metadata.metadata().row_groups().iter().map(|group| group.column(leaf).compression());
-        let other =
-            codecs.into_iter().find(|codec| !matches!(codec, Compression::UNCOMPRESSED | Compression::SNAPPY | Compression::ZSTD(_)))?;
-        let name: String = other.to_string().chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').collect();
+        let codecs = self
+            .layout
+            .metadata
+            .metadata()
+            .row_groups()
+            .iter()
+            .map(|group| group.column(leaf).compression());
+        let other = codecs.into_iter().find(|codec| {
+            !matches!(codec, Compression::UNCOMPRESSED | Compression::SNAPPY | Compression::ZSTD(_))
+        })?;
+        let name: String = other
+            .to_string()
+            .chars()
+            .take_while(|c| c.is_ascii_alphanumeric() || *c == '_')
+            .collect();
         let says = format!("the column `{}` is compressed with {name}", column.name);
-        let problem = Problem::error("format-not-read", says).at(&self.layout.headings().get(column.position)?.span);
+        let problem = Problem::error("format-not-read", says).at(&self
+            .layout
+            .headings()
+            .get(column.position)?
+            .span);
         Some(problem.help("write the file with `zstd` or `snappy`, or without compression"))
     }
 }
@@ -257,23 +294,36 @@ pub(super) fn footer(store: &mut Store, shown: &str) -> Result<Bytes, Problem> {
     }
     let length = tail.first_chunk::<4>().map_or(0, |length| u64::from(u32::from_le_bytes(*length)));
     if length > size - 4 - TAIL {
-        return Err(damaged(shown, &format!("it declares a footer of {length} bytes in a file of {size}")));
+        return Err(damaged(
+            shown,
+            &format!("it declares a footer of {length} bytes in a file of {size}"),
+        ));
     }
     if length > LARGEST_FOOTER {
-        let says = format!("`{shown}` has a footer of {} MB; the maximum is {} MB", length >> 20, LARGEST_FOOTER >> 20);
-        return Err(Problem::error("file-too-large", says).help("write fewer columns, or larger row groups"));
+        let says = format!(
+            "`{shown}` has a footer of {} MB; the maximum is {} MB",
+            length >> 20,
+            LARGEST_FOOTER >> 20
+        );
+        return Err(Problem::error("file-too-large", says)
+            .help("write fewer columns, or larger row groups"));
     }
     store.read(size - TAIL - length..size - TAIL, shown)
 }
 
 fn mislabelled(start: &[u8], shown: &str) -> Problem {
     let line = start.split(|byte| *byte == b'\n').next().unwrap_or_default();
-    let text = std::str::from_utf8(line).ok().filter(|line| !line.chars().any(|c| c.is_control() && !matches!(c, '\r' | '\t')));
+    let text = std::str::from_utf8(line)
+        .ok()
+        .filter(|line| !line.chars().any(|c| c.is_control() && !matches!(c, '\r' | '\t')));
     let problem = Problem::error("format-mislabelled", format!("`{shown}` is not a Parquet file"));
     match text {
         Some(text) => {
             let line = Source::excerpt(shown, shortened(text.trim_end()), 1).whole();
-            problem.at(&line).label("it begins with this text").help("if it is a CSV file, its name must end in `.csv`")
+            problem
+                .at(&line)
+                .label("it begins with this text")
+                .help("if it is a CSV file, its name must end in `.csv`")
         }
         None => problem.help("its first bytes are not those of Parquet; export it again"),
     }

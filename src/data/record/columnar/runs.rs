@@ -34,7 +34,12 @@ pub(crate) fn stream(
     let mut faults = Faults::new(shown);
     for group in 0..opened.layout.groups() {
         let done = opened.group(group, &mut columns, &mut faults, &mut |columns, first_row| {
-            each(&Block { first_row, rows: columns.first().map_or(0, |column| column.values.len()), columns, bytes: (0, 0) });
+            each(&Block {
+                first_row,
+                rows: columns.first().map_or(0, |column| column.values.len()),
+                columns,
+                bytes: (0, 0),
+            });
             columns.iter_mut().for_each(|column| column.values.clear());
         });
         done.map_err(|problem| vec![problem])?;
@@ -46,8 +51,9 @@ pub(crate) fn stream(
     Ok(Run { channels, rows: opened.layout.rows(), columns, sha256, bytes: opened.store.size() })
 }
 
-/// The rows whose axis lies in a range. Row groups whose statistics exclude the range are not decoded; of the others, the blocks that lie
-/// in it, once for all stretches that follow each other along the run.
+/// The rows whose axis lies in a range. Row groups whose statistics exclude the range are not
+/// decoded; of the others, the blocks that lie in it, once for all stretches that follow each other
+/// along the run.
 pub(crate) fn stretch(
     at: At<'_>,
     shown: &str,
@@ -78,22 +84,28 @@ pub(crate) fn stretch(
     for (group, rows, part) in parts {
         let first = rows.start + part.start;
         if let Some(numbers) = opened.numbers(group, &rows, &columns, known) {
-            stretch.add(&numbers.iter().map(|column| &column[part.clone()]).collect::<Vec<_>>(), first);
+            stretch.add(
+                &numbers.iter().map(|column| &column[part.clone()]).collect::<Vec<_>>(),
+                first,
+            );
             continue;
         }
-        // Not all numbers of the block are sound: those outside the range do not concern the stretch.
+        // Not all numbers of the block are sound: those outside the range do not concern the
+        // stretch.
         let part = first..first + part.len();
-        let done = opened.rows_in(group, part, &mut columns, &mut faults, &mut |columns, first_row| {
-            stretch.add(&values(columns), first_row);
-            columns.iter_mut().for_each(|column| column.values.clear());
-        });
+        let done =
+            opened.rows_in(group, part, &mut columns, &mut faults, &mut |columns, first_row| {
+                stretch.add(&values(columns), first_row);
+                columns.iter_mut().for_each(|column| column.values.clear());
+            });
         done.map_err(|problem| vec![problem])?;
         if !faults.is_empty() {
             return Err(faults.into_vec());
         }
     }
     let channels = opened.layout.headings().iter().map(|heading| heading.name.clone()).collect();
-    let run = Run { channels, rows: opened.layout.rows(), columns, sha256, bytes: opened.store.size() };
+    let run =
+        Run { channels, rows: opened.layout.rows(), columns, sha256, bytes: opened.store.size() };
     let from = match at {
         At::Disk(path) => Origin::File(path.to_path_buf()),
         At::Object(stored) => Origin::Object(stored.clone()),
@@ -108,17 +120,26 @@ fn blocks(rows: Range<usize>) -> impl Iterator<Item = Range<usize>> {
 
 impl Opened<'_> {
     /// The numbers of columns in a block; `None` if not all are sound.
-    fn numbers(&mut self, group: usize, rows: &Range<usize>, columns: &[Column], known: &Known) -> Option<Vec<Arc<Vec<f64>>>> {
+    fn numbers(
+        &mut self,
+        group: usize,
+        rows: &Range<usize>,
+        columns: &[Column],
+        known: &Known,
+    ) -> Option<Vec<Arc<Vec<f64>>>> {
         let positions: Vec<usize> = columns.iter().map(|column| column.position).collect();
         let place = Place::new(self.store.name(), rows.start);
         let numbers = known.held.decoded.get(place, &positions, |lacking| {
-            let of = |position: &usize| columns.iter().find(|column| column.position == *position).cloned();
+            let of = |position: &usize| {
+                columns.iter().find(|column| column.position == *position).cloned()
+            };
             self.block(group, rows.clone(), &lacking.iter().filter_map(of).collect::<Vec<_>>())
         });
         numbers.into_iter().collect()
     }
 
-    /// From the first to the last row of a block, counted from its start, whose axis lies in a range.
+    /// From the first to the last row of a block, counted from its start, whose axis lies in a
+    /// range.
     fn inside(
         &mut self,
         group: usize,
@@ -129,7 +150,9 @@ impl Opened<'_> {
         faults: &mut Faults<'_>,
     ) -> Result<Option<Range<usize>>, Problem> {
         let inside = |value: &f64| *value >= range.start && *value <= range.end;
-        let ends = |values: &[f64]| Some(values.iter().position(inside)?..values.iter().rposition(inside)? + 1);
+        let ends = |values: &[f64]| {
+            Some(values.iter().position(inside)?..values.iter().rposition(inside)? + 1)
+        };
         if let Some(numbers) = self.numbers(group, rows, std::slice::from_ref(axis), known) {
             return Ok(numbers.first().and_then(|values| ends(values)));
         }
@@ -138,13 +161,19 @@ impl Opened<'_> {
         Ok(ends(&alone[0].values))
     }
 
-    /// Whether the statistics of a group say that no value of a column lies in a range of SI units. They are trusted.
+    /// Whether the statistics of a group say that no value of a column lies in a range of SI units.
+    /// They are trusted.
     fn without(&self, group: usize, column: &Column, range: &Range<f64>) -> bool {
-        let statistics =
-            self.layout.leaf(column.position).and_then(|leaf| self.layout.metadata.metadata().row_group(group).column(leaf).statistics());
+        let statistics = self.layout.leaf(column.position).and_then(|leaf| {
+            self.layout.metadata.metadata().row_group(group).column(leaf).statistics()
+        });
         let ends = match statistics {
             Some(Statistics::Double(of)) => of.min_opt().copied().zip(of.max_opt().copied()),
-            Some(Statistics::Float(of)) => of.min_opt().copied().zip(of.max_opt().copied()).map(|(min, max)| (min.into(), max.into())),
+            Some(Statistics::Float(of)) => of
+                .min_opt()
+                .copied()
+                .zip(of.max_opt().copied())
+                .map(|(min, max)| (min.into(), max.into())),
             _ => None,
         };
         let factor = column.unit.factor;
@@ -152,9 +181,13 @@ impl Opened<'_> {
     }
 }
 
-/// The file and its hash. A small file is read once, and kept for the stretches that follow. A larger one is read to its end for the
-/// hash, and the row groups that are needed once more.
-fn open<'a>(at: At<'_>, shown: &'a str, known: &Known) -> Result<(Opened<'a>, String), Vec<Problem>> {
+/// The file and its hash. A small file is read once, and kept for the stretches that follow. A
+/// larger one is read to its end for the hash, and the row groups that are needed once more.
+fn open<'a>(
+    at: At<'_>,
+    shown: &'a str,
+    known: &Known,
+) -> Result<(Opened<'a>, String), Vec<Problem>> {
     let one = |problem: Problem| vec![problem];
     let path = match at {
         At::Disk(path) => path,
@@ -173,14 +206,21 @@ fn open<'a>(at: At<'_>, shown: &'a str, known: &Known) -> Result<(Opened<'a>, St
         let bytes = hash.add_all(&mut file)?;
         Ok(KnownFile { sha256: hash.finish(), bytes, index: None })
     };
-    let file = known.or(|_| true, compute).map_err(|error: std::io::Error| one(unreadable(shown, &error)))?;
+    let file = known
+        .or(|_| true, compute)
+        .map_err(|error: std::io::Error| one(unreadable(shown, &error)))?;
     let opened = Opened::again(store, shown, &known.held).map_err(one)?;
     Ok((opened, file.sha256.clone()))
 }
 
-/// An object, and a hash that stands for it. Its bytes are not all read: the hash is that of its size, of its version in the store and of
-/// its footer, which has the place, the size and the extremes of each part.
-pub(super) fn open_object<'a>(stored: &Stored, shown: &'a str, known: &Known) -> Result<(Opened<'a>, String), Problem> {
+/// An object, and a hash that stands for it. Its bytes are not all read: the hash is that of its
+/// size, of its version in the store and of its footer, which has the place, the size and the
+/// extremes of each part.
+pub(super) fn open_object<'a>(
+    stored: &Stored,
+    shown: &'a str,
+    known: &Known,
+) -> Result<(Opened<'a>, String), Problem> {
     let mut store = Store::at(At::Object(stored), shown)?;
     let file = known.or(
         |_| true,
