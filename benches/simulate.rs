@@ -11,7 +11,7 @@
     clippy::cast_sign_loss
 )]
 
-#[path = "../tests/model/common.rs"]
+#[path = "../tests/simulation/model/common.rs"]
 #[allow(dead_code)]
 mod common;
 

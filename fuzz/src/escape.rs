@@ -3,7 +3,7 @@
 //! and subscripts may differ: symbols of quantities are set with them.
 //!
 //! The PDF has no escape that could fail: Typst reads texts as data of a JSON file, and no template
-//! evaluates text (`tests/templates.rs`).
+//! evaluates text (`tests/language/templates.rs`).
 
 use std::sync::LazyLock;
 

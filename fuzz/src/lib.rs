@@ -1,7 +1,7 @@
 //! What is fuzzed, and what must hold of every input. Each target takes any bytes and panics where
 //! a promise is broken.
 //!
-//! The fuzzer's programs (`fuzz_targets`) call these functions; `tests/fuzz` of the main package
+//! The fuzzer's programs (`fuzz_targets`) call these functions; `tests/project/fuzz` of the main package
 //! calls them with every seed and every input that once failed, so that they are tried wherever the
 //! tests run.
 

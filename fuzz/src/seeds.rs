@@ -26,7 +26,9 @@ pub type Seed = (&'static str, Vec<u8>);
 /// All seeds, from the folder of the package.
 pub fn seeds(root: &Path) -> Vec<Seed> {
     let mut files = Vec::new();
-    for folder in ["protocols", "effects", "examples", "tests/cases", "tests/foreign/data/small"] {
+    for folder in
+        ["protocols", "effects", "examples", "tests/cases", "tests/campaigns/foreign/data/small"]
+    {
         walk(&root.join(folder), &mut files);
     }
     files.sort();

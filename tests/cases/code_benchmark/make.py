@@ -1,4 +1,4 @@
-"""Deviations of examples/code-benchmark from the reference, with SciPy 1.17.1 and NumPy 2.4.6: the numbers in tests/records.rs."""
+"""Deviations of examples/code-benchmark from the reference, with SciPy 1.17.1 and NumPy 2.4.6: the numbers in tests/campaigns/records.rs."""
 import csv
 import pathlib
 

@@ -1,4 +1,4 @@
-"""Expected numbers of tests/domain.rs, with SciPy 1.17.1 and NumPy 2.4.6: python3 make.py > expected.json
+"""Expected numbers of tests/evaluation/domain.rs, with SciPy 1.17.1 and NumPy 2.4.6: python3 make.py > expected.json
 
 Points inside: no facet of scipy.spatial.ConvexHull is exceeded by more than 1e-9. The nearest point: the nearest of the nearest points of
 all facets, each a triangle (or an edge in two dimensions), in closed form. Coordinates are divided by their range over the sections.

@@ -1,0 +1,21 @@
+//! Numbers and verdicts, compared with independent sources.
+
+#[path = "../common"]
+mod common {
+    pub mod campaign;
+    pub mod pools;
+    pub mod program;
+    pub mod straight;
+}
+
+mod domain;
+mod estimates;
+mod metrics;
+mod parts;
+mod peer;
+mod pooled;
+mod procedures;
+mod shipped_numbers;
+mod slurm;
+mod values;
+mod verdicts;

@@ -1,0 +1,5 @@
+//! The project itself: structure, documentation, fuzzing.
+
+mod docs;
+mod fuzz;
+mod layering;

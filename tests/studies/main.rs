@@ -1,0 +1,12 @@
+//! Studies of selections, and protocols side by side.
+
+#[path = "../common"]
+mod common {
+    pub mod pools;
+}
+
+mod compare;
+mod study;
+mod study_command;
+mod study_flips;
+mod study_large;
