@@ -6,6 +6,14 @@ mod common {
     pub mod program;
 }
 
+// Faults of campaigns, put in by the example.
+#[path = "../../examples/plausibility_faults/faults.rs"]
+mod faults;
+#[path = "../../examples/plausibility_faults/folder.rs"]
+mod folder;
+#[path = "../../examples/plausibility_faults/score.rs"]
+mod score;
+
 mod campaign_faults;
 mod campaign_vehicle;
 mod data;

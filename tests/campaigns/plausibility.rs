@@ -1,21 +1,15 @@
 //! Plausibility rules: faults of the kinds that real campaigns have are told by name, sound
 //! campaigns are left alone.
 
-#[path = "../../examples/plausibility_faults/faults.rs"]
-mod faults;
-#[path = "../../examples/plausibility_faults/folder.rs"]
-mod folder;
-#[path = "../../examples/plausibility_faults/score.rs"]
-mod score;
-
 use std::fs;
 use std::path::Path;
 
 use crate::common::campaign::{certified, copy};
+use crate::faults;
+use crate::folder::{Folder, Side};
+use crate::score::{self, Outcome};
 use fishplate::result::{Certification, Consequence, Verdict};
-use folder::{Folder, Side};
 use rayon::prelude::*;
-use score::Outcome;
 
 const SOUND: &str = "examples/coach-good";
 

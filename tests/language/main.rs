@@ -5,6 +5,7 @@ mod common {
     pub mod campaign;
     pub mod program;
     pub mod straight;
+    #[expect(dead_code, reason = "the contents of elements are for the tests of figures")]
     pub mod xml;
 }
 

@@ -5,8 +5,9 @@ use std::fs;
 
 use serde_json::Value;
 
-use super::cases::SETS;
-use super::{fishplate, folder, write};
+use super::{fishplate, folder};
+use crate::cases::SETS;
+use crate::write;
 
 #[test]
 fn campaigns_with_withheld_truths_are_diagnosed_and_scored() {

@@ -11,21 +11,6 @@
     clippy::cast_possible_wrap
 )]
 
-// The generator of withheld truths.
-#[path = "../../../examples/blind_campaigns/cases.rs"]
-#[allow(dead_code)]
-mod cases;
-#[path = "../../../examples/blind_campaigns/hidden.rs"]
-mod hidden;
-#[path = "../../../examples/blind_campaigns/line.rs"]
-mod line;
-#[path = "../../../examples/blind_campaigns/truth.rs"]
-mod truth;
-#[path = "../../../examples/blind_campaigns/vehicles.rs"]
-mod vehicles;
-#[path = "../../../examples/blind_campaigns/write.rs"]
-mod write;
-
 mod blind;
 mod closed_form;
 mod metamorphic;

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::{copy, fishplate, folder, hidden};
+use super::{copy, fishplate, folder};
+use crate::hidden;
 
 #[path = "../../../examples/turned_campaigns/base.rs"]
 mod base;
