@@ -7,6 +7,7 @@ mod common {
     pub mod certification;
     pub mod coach;
     pub mod program;
+    pub mod tools;
     pub mod xml;
 }
 

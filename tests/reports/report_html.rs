@@ -257,7 +257,7 @@ addEventListener("error", () => { window.errors += 1; }, true);</script>"#;
 #[test]
 fn in_a_browser_the_script_runs_and_hostile_texts_do_not() {
     let Some(browser) = browser() else {
-        eprintln!("skipped: no chromium found");
+        crate::common::tools::skip("chromium");
         return;
     };
     let folder = tempfile::tempdir().expect("a temporary folder");

@@ -57,7 +57,7 @@ fn poppler(tool: &str, arguments: &[&str], pdf: &Pdf) -> Option<Vec<u8>> {
     {
         Ok(output) => Some(output.stdout),
         Err(_) => {
-            eprintln!("skipped: {tool} is not installed");
+            crate::common::tools::skip(tool);
             None
         }
     }

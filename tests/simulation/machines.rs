@@ -25,7 +25,7 @@ fn has_python() -> bool {
         .output()
         .is_ok_and(|output| output.status.success());
     if !found {
-        eprintln!("skipped: there is no python3");
+        crate::common::tools::skip("python3");
     }
     found
 }

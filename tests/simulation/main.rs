@@ -3,6 +3,7 @@
 #[path = "../common"]
 mod common {
     pub mod program;
+    pub mod tools;
 }
 
 // The generator of withheld truths.

@@ -283,7 +283,7 @@ fn many_protocols_and_strange_titles_make_a_report() {
             && page.contains("{{ 7 * 7 }}")
     );
     let Ok(text) = Command::new("pdftotext").arg(out.join("report.pdf")).arg("-").output() else {
-        eprintln!("pdftotext is missing: skipped");
+        crate::common::tools::skip("pdftotext");
         return;
     };
     let text = String::from_utf8_lossy(&text.stdout).into_owned();

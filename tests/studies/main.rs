@@ -3,6 +3,7 @@
 #[path = "../common"]
 mod common {
     pub mod pools;
+    pub mod tools;
 }
 
 mod compare;

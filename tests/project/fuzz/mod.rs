@@ -28,6 +28,60 @@ fn seeds_keep_the_promises() {
     }
 }
 
+/// Inputs of each target that are made from its seeds; the slower a target, the fewer.
+const CHANGED: usize = 200;
+
+/// A short fuzzing, the same at every run: parts of seeds are cut out, doubled, exchanged with
+/// those of other seeds, or written over. `fuzz/run` is the long one, which follows the edges of
+/// the program.
+#[test]
+fn changed_seeds_keep_the_promises() {
+    let seeds = targets::seeds::seeds(root());
+    for (target, _) in targets::TARGETS {
+        let own: Vec<&[u8]> = seeds
+            .iter()
+            .filter(|(name, input)| *name == target && input.len() <= LONGEST)
+            .map(|(_, input)| input.as_slice())
+            .collect();
+        let tries = if SLOW.contains(&target) { CHANGED / 10 } else { CHANGED };
+        let mut random = fastrand::Rng::with_seed(1);
+        for number in 0..tries {
+            let input = changed(&own, &mut random);
+            let ran = std::panic::catch_unwind(|| targets::run(target, &input));
+            assert!(ran.is_ok(), "{target}, input {number}: {}", input.escape_ascii());
+        }
+    }
+}
+
+/// Targets that take a hundredth of a second or more for an input.
+const SLOW: [&str; 7] =
+    ["protocol_text", "protocol_yaml", "check", "campaign", "vehicle", "sections", "report"];
+
+/// Seeds that are longer are not changed [bytes]: a reader takes long for them.
+const LONGEST: usize = 16_384;
+
+fn changed(seeds: &[&[u8]], random: &mut fastrand::Rng) -> Vec<u8> {
+    let Some(seed) = random.choice(seeds) else { return Vec::new() };
+    let mut input = seed.to_vec();
+    for _ in 0..random.usize(1..=4) {
+        let at = random.usize(..=input.len());
+        let end = (at + random.usize(..=16)).min(input.len());
+        match random.u8(..5) {
+            0 => drop(input.drain(at..end)),
+            1 => drop(input.splice(at..at, input[at..end].to_vec())),
+            2 => {
+                let other: &[u8] = random.choice(seeds).map_or(&[], |other| other);
+                let from = random.usize(..=other.len());
+                let to = (from + random.usize(..=32)).min(other.len());
+                drop(input.splice(at..end, other[from..to].iter().copied()));
+            }
+            3 => input[at..end].iter_mut().for_each(|byte| *byte = random.u8(..)),
+            _ => input.truncate(if random.u8(..8) == 0 { at } else { input.len() }),
+        }
+    }
+    input
+}
+
 #[test]
 fn inputs_that_once_failed_do_so_no_more() {
     let folder = root().join("tests/cases/fuzz");

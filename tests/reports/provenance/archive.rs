@@ -19,7 +19,7 @@ fn told(tool: &str, arguments: &[&str]) -> Option<String> {
                 + &String::from_utf8_lossy(&output.stderr),
         ),
         Err(_) => {
-            eprintln!("skipped: {tool} is not installed");
+            crate::common::tools::skip(tool);
             None
         }
     }

@@ -244,7 +244,7 @@ fn minisign_and_fishplate_read_each_other() {
     let Ok(output) =
         Command::new("minisign").args(["-Vm", &file, "-p", &format!("{name}.pub")]).output()
     else {
-        eprintln!("skipped: minisign is not installed");
+        crate::common::tools::skip("minisign");
         return;
     };
     let said = String::from_utf8_lossy(&output.stdout).into_owned();

@@ -76,7 +76,7 @@ print('read')";
         Ok(output) if output.status.code() != Some(77) => {
             panic!("{}", String::from_utf8_lossy(&output.stderr))
         }
-        _ => eprintln!("skipped: the Python package in-toto-attestation is not installed"),
+        _ => crate::common::tools::skip("in-toto-attestation"),
     }
 }
 

@@ -273,7 +273,7 @@ mod programs {
         if !std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default())
             .any(|folder| folder.join("setsid").is_file())
         {
-            eprintln!("skipped: there is no setsid");
+            crate::common::tools::skip("setsid");
             return;
         }
         let command =
