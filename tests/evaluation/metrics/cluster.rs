@@ -189,7 +189,7 @@ fn what_has_no_bound_is_told() {
 
 /// Shares of 95 % intervals that hold the true value, as `docs/definitions.md` states them: 12
 /// sites of 6 normal values with standard deviation 1, correlated within a site. Takes half a
-/// minute: `cargo test --test metrics -- --ignored --nocapture coverage`.
+/// minute: `cargo test --test evaluation -- --ignored --nocapture coverage`.
 #[test]
 #[ignore = "half a minute"]
 fn coverage() {

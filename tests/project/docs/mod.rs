@@ -1,7 +1,7 @@
 //! The documentation says what is so: generated parts are current, protocols check, commands print
 //! what is shown, tests and links that are named exist.
 //!
-//! `UPDATE_EXPECT=1 cargo test --release --test docs` rewrites the generated parts and the problems
+//! `UPDATE_EXPECT=1 cargo test --release --test project docs::` rewrites the generated parts and the problems
 //! of what fails.
 //!
 //! Code blocks say by the words after the fence what they are:
