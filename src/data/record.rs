@@ -341,4 +341,160 @@ fn find_columns(
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const FORCE: Dimension = Dimension([1, 1, -2, 0, 0, 0]);
+
+    fn read(bytes: &[u8], wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
+        let file = tempfile::NamedTempFile::new().expect("a temporary file");
+        std::fs::write(file.path(), bytes).expect("writable");
+        read_record(file.path(), "r.csv", wanted)
+    }
+
+    fn wanted() -> [Wanted; 2] {
+        [Wanted::new("time", Dimension::TIME), Wanted::new("Y", FORCE)]
+    }
+
+    /// Code and `line:column` of each problem.
+    fn faults(text: &str) -> Vec<(&'static str, String)> {
+        let problems = read(text.as_bytes(), &wanted()).expect_err(text);
+        problems
+            .iter()
+            .map(|problem| {
+                (
+                    problem.code,
+                    problem.at.as_ref().map_or(String::new(), |at| at.to_string()[6..].to_string()),
+                )
+            })
+            .collect()
+    }
+
+    #[test]
+    fn wanted_columns_in_si_and_in_the_order_asked_for() {
+        let text = "\u{feff}\"Y [kN]\",note [-],time [ms],x\r\n1.5,\"a, b\",5,-\r\n -2e1 ,,\"10\",\r\n\r\n";
+        let record =
+            read(text.as_bytes(), &wanted()).unwrap_or_else(|problems| panic!("{problems:?}"));
+        assert_eq!(
+            record.columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>(),
+            ["time", "Y"]
+        );
+        assert_eq!(record.columns[0].values, [0.005, 0.01]);
+        assert_eq!(record.columns[1].values, [1500.0, -20_000.0]);
+        assert_eq!(
+            (record.rows, record.channels.len(), record.columns[1].unit.text.as_str()),
+            (2, 4, "kN")
+        );
+        assert_eq!(record.bytes, text.len());
+    }
+
+    #[test]
+    fn an_optional_column_may_be_missing() {
+        let wanted = [
+            Wanted::new("time", Dimension::TIME),
+            Wanted::new("Z", FORCE).if_there(),
+            Wanted::new("time", Dimension::TIME),
+        ];
+        assert_eq!(read(b"time [s]\n1", &wanted).map(|record| record.columns.len()).ok(), Some(1));
+        assert_eq!(read(b"time [s]\n1\n2\n", &[]).map(|record| record.rows).ok(), Some(2));
+    }
+
+    #[test]
+    fn each_fault_at_its_row_and_column() {
+        for (text, code, at) in [
+            ("time [s],Y [kN]\n0,1\n0.1,NaN\n", "not-finite", "3:5"),
+            ("time [s],Y [kN]\n0,1\n0.1,1e999\n", "not-finite", "3:5"),
+            ("time [s],Y [kN]\n0,1\n0.1,\n", "not-a-number", "3:5"),
+            ("time [s],Y [kN]\n0,1\n0.1,#N/A\n", "not-a-number", "3:5"),
+            ("time [s],Y [kN]\n0,1\n0.1,1 000\n", "not-a-number", "3:5"),
+            ("time [s],Y [kN]\n0,1\n0.1,\"1,23\"\n", "decimal-comma", "3:6"),
+            ("time [s],Y [kN]\n0,0,1,5\n", "decimal-comma", "2:1"),
+            ("time [s],Y [kN]\n0,1\n0.1,1,9.5\n0.2,3\n", "ragged-row", "3:7"),
+            ("time [s],Y [kN]\n0\n1,2\n", "ragged-row", "2:1"),
+            ("time [s],Y [kN]\n0,1\n0.1", "truncated-row", "3:1"),
+            ("time [s],Y [kN]\n0,1\n\n0.1,2\n", "blank-line", "3:1"),
+            ("time [s],Y [kN]\n0,1\n\"0,1\n", "stray-quote", "3:1"),
+            ("time [s],Y [kN]\n", "no-rows", ""),
+            ("time [s],Y [kN]\n\n\n", "no-rows", ""),
+            ("", "file-empty", ""),
+            ("\n\n", "file-empty", ""),
+            ("time [s];Y [kN]\n0;1\n", "semicolon-separated", "1:9"),
+            ("time [s]\tY [kN]\n0\t1\n", "tab-separated", "1:9"),
+            ("time [s],Y [kN]\r0,1\r1,1\r", "line-ends", "1:1"),
+            ("time [s],Y\n0,1\n", "unit-missing", "1:10"),
+            ("time [s],Y [kn]\n0,1\n", "unknown-unit", "1:13"),
+            ("time [s],Y [m/s^2]\n0,1\n", "unit-mismatch", "1:13"),
+            ("time [s],Y_1 [kN]\n0,1\n", "unknown-channel", "1:1"),
+            ("time [s],Y [kN],Y [N]\n0,1,2\n", "duplicate-column", "1:17"),
+            ("time [s],\"Y [kN]\n0,1\n", "stray-quote", "1:10"),
+        ] {
+            assert_eq!(faults(text), [(code, at.to_string())], "{text}");
+        }
+    }
+
+    #[test]
+    fn a_problem_far_down_keeps_only_its_line_and_many_are_counted() {
+        let mut text = String::from("time [s],Y [kN]\n");
+        for n in 0..30_000 {
+            text += if n >= 29_990 { "1,x\n" } else { "1,2\n" };
+        }
+        let problems = read(text.as_bytes(), &wanted()).expect_err("ten faults");
+        assert_eq!(problems.len(), 6);
+        assert_eq!(
+            problems[0].at.as_ref().map(|at| (at.to_string(), at.source.text.as_str())),
+            Some(("r.csv:29992:3".into(), "1,x"))
+        );
+        assert_eq!(problems[5].says, "and 5 more problems in `r.csv`");
+    }
+
+    #[test]
+    fn a_place_is_found_again() {
+        let mut file = tempfile::NamedTempFile::new().expect("a temporary file");
+        std::io::Write::write_all(&mut file, "Y [kN],time [s]\r\n1,2\r\n3,45\r\n".as_bytes())
+            .expect("writable");
+        let record = read_record(file.path(), "r.csv", &wanted()).expect("good");
+        let place = record.place(1, record.column("time")).expect("there");
+        assert_eq!((place.to_string(), place.text()), ("r.csv:3:3".into(), "45"));
+    }
+
+    const SAMPLE: &str =
+        "time [s],\"x [-]\",Y [kN]\r\n0.000,a,-1.25\r\n0.005,\"b, c\",1e-3\n0.010,,7\n";
+
+    #[test]
+    fn every_prefix_is_survived() {
+        (0..=SAMPLE.len()).for_each(|at| drop(read(&SAMPLE.as_bytes()[..at], &wanted())));
+    }
+
+    proptest! {
+        #[test]
+        fn flipped_bytes_are_survived(flips in prop::collection::vec((0..SAMPLE.len(), any::<u8>()), 1..5)) {
+            let mut bytes = SAMPLE.as_bytes().to_vec();
+            for (at, byte) in flips {
+                bytes[at] = byte;
+            }
+            match read(&bytes, &wanted()) {
+                Ok(record) => prop_assert!(record.columns.iter().all(|column| column.values.len() == record.rows)),
+                Err(problems) => problems.iter().for_each(|problem| drop(problem.render(false))),
+            }
+        }
+
+        /// The `csv` crate and the standard library read the same numbers.
+        #[test]
+        fn reads_as_the_csv_crate(rows in prop::collection::vec((-1e6..1e6f64, "[a-z]{0,3}", any::<i16>(), 0..6usize), 1..20)) {
+            let mut text = String::from("time [s],note [-],Y [N]\n");
+            for (time, note, y, decimals) in &rows {
+                text += &format!("{time:.decimals$},{note},{y}\n");
+            }
+            let record = read(text.as_bytes(), &wanted()).expect("well formed");
+            let mut reader = csv::Reader::from_reader(text.as_bytes());
+            for (at, line) in reader.records().enumerate() {
+                let line = line.expect("well formed");
+                prop_assert_eq!(record.columns[0].values[at].to_bits(), line[0].parse::<f64>().expect("a number").to_bits());
+                prop_assert_eq!(record.columns[1].values[at], line[2].parse::<f64>().expect("a number"));
+            }
+            prop_assert_eq!(record.rows, rows.len());
+        }
+    }
+}

@@ -233,3 +233,156 @@ pub(super) fn open_object<'a>(
     )?;
     Ok((Opened::again(store, shown, &known.held)?, file.sha256.clone()))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+    use std::sync::Arc;
+
+    use arrow_array::{ArrayRef, Float64Array, RecordBatch};
+    use parquet::arrow::ArrowWriter;
+    use parquet::file::properties::WriterProperties;
+
+    use super::*;
+    use crate::data::record::decoded::ROWS;
+    use crate::data::record::read_stretch;
+    use crate::units::Dimension;
+
+    const FORCE: Dimension = Dimension([1, 1, -2, 0, 0, 0]);
+
+    /// Rows of the file: some row groups, and some blocks in the largest of them.
+    const LENGTH: usize = 100_000;
+
+    fn force(row: usize) -> f64 {
+        (row as f64 * 0.01).sin()
+    }
+
+    /// A file with row groups of so many rows, and its stretches from one time to another [s]; a
+    /// row is 5 ms.
+    struct File {
+        path: PathBuf,
+        known: Known,
+        _folder: tempfile::TempDir,
+    }
+
+    impl File {
+        fn new(group: usize, time: impl Fn(usize) -> f64, force: impl Fn(usize) -> f64) -> Self {
+            let folder = tempfile::tempdir().expect("a folder");
+            let path = folder.path().join("r.parquet");
+            let array = |value: &dyn Fn(usize) -> f64| {
+                Arc::new(Float64Array::from_iter_values((0..LENGTH).map(value))) as ArrayRef
+            };
+            let columns = [
+                ("time [s]", array(&time)),
+                ("Y [kN]", array(&force)),
+                ("Q [kN]", array(&|row| -force(row))),
+            ];
+            let batch = RecordBatch::try_from_iter(columns).expect("columns of one length");
+            let properties =
+                WriterProperties::builder().set_max_row_group_row_count(Some(group)).build();
+            let mut bytes = Vec::new();
+            let mut writer = ArrowWriter::try_new(&mut bytes, batch.schema(), Some(properties))
+                .expect("a writer");
+            writer.write(&batch).expect("written");
+            writer.close().expect("closed");
+            std::fs::write(&path, bytes).expect("written");
+            Self { path, known: Known::default(), _folder: folder }
+        }
+
+        fn sound(group: usize) -> Self {
+            Self::new(group, |row| row as f64 * 0.005, force)
+        }
+
+        fn stretch(&self, from: f64, to: f64, names: &[&str]) -> Result<Record, Vec<Problem>> {
+            let of = |name: &&str| Wanted::new(*name, FORCE);
+            let wanted: Vec<Wanted> = [Wanted::new("time", Dimension::TIME)]
+                .into_iter()
+                .chain(names.iter().map(of))
+                .collect();
+            read_stretch(&self.path, "r.parquet", &wanted, "time", from..to, &self.known)
+        }
+
+        /// Columns of blocks that were decoded.
+        fn made(&self) -> usize {
+            self.known.held.decoded.made()
+        }
+    }
+
+    #[test]
+    fn a_row_group_is_decoded_once_for_all_sections() {
+        let file = File::sound(20_000);
+        // 100 s are a row group; a section each 2 s, with what is beside it.
+        for section in 0..240 {
+            let from = 2.0 * f64::from(section);
+            let record = file.stretch(from, from + 10.0, &["Y"]).expect("inside");
+            assert!((2000..=2001).contains(&record.rows), "{} rows", record.rows);
+        }
+        assert_eq!(file.made(), 5 * 2, "five row groups of two columns");
+        file.stretch(0.0, 10.0, &["Q", "Y"]).expect("inside");
+        assert_eq!(file.made(), 5 * 2 + 1, "a column that was not asked for before");
+    }
+
+    #[test]
+    fn a_stretch_is_the_same_in_row_groups_of_any_length() {
+        let files = [7_000, 20_000, 60_000, LENGTH].map(File::sound);
+        for (from, to) in [
+            (0.0, 3.0),
+            (95.0, 105.0),
+            (160.0, 170.0),
+            (320.0, 330.0),
+            (20.0, 470.0),
+            (490.0, 600.0),
+        ] {
+            let [one, others @ ..] =
+                files.each_ref().map(|file| file.stretch(from, to, &["Y", "Q"]).expect("inside"));
+            let rows: Vec<usize> =
+                (0..LENGTH).filter(|row| (from..=to).contains(&(*row as f64 * 0.005))).collect();
+            assert_eq!((one.first_row, one.rows), (rows[0], rows.len()));
+            for (at, row) in rows.iter().enumerate() {
+                assert_eq!(one.columns[1].values[at], force(*row) * 1000.0);
+                assert_eq!(one.columns[2].values[at], -force(*row) * 1000.0);
+            }
+            for other in others {
+                assert_eq!(
+                    (one.columns.as_slice(), one.first_row),
+                    (other.columns.as_slice(), other.first_row)
+                );
+            }
+        }
+        let whole = &files[3];
+        assert_eq!(whole.made(), 3 * LENGTH.div_ceil(ROWS), "a long row group is parted");
+    }
+
+    /// Only rows of the stretch concern it; the axis must be sound wherever it is looked at.
+    #[test]
+    fn a_fault_beside_a_stretch_does_not_concern_it() {
+        let time = |row: usize| row as f64 * 0.005;
+        let file = File::new(20_000, time, |row| if row == 10_000 { f64::NAN } else { force(row) });
+        for _ in 0..2 {
+            let good = file.stretch(60.0, 70.0, &["Y"]).expect("inside");
+            assert_eq!((good.rows, good.columns[1].values[0]), (2001, force(12_000) * 1000.0));
+            assert!(file.stretch(45.0, 55.0, &[]).is_ok());
+            let fault = file.stretch(45.0, 55.0, &["Y"]).expect_err("no number");
+            assert_eq!(
+                (fault[0].code, fault[0].at.as_ref().map(ToString::to_string)),
+                ("not-finite", Some("r.parquet:10001:10".into()))
+            );
+        }
+        let file = File::new(20_000, |row| if row == 10_000 { f64::NAN } else { time(row) }, force);
+        assert_eq!(file.stretch(60.0, 70.0, &["Y"]).expect_err("no number")[0].code, "not-finite");
+        assert!(file.stretch(160.0, 170.0, &["Y"]).is_ok());
+    }
+
+    #[test]
+    fn the_axis_is_searched_in_all_blocks_of_a_row_group() {
+        let back = |row: usize| {
+            if row < 70_000 { row as f64 * 0.005 } else { (row - 70_000) as f64 * 0.005 }
+        };
+        let file = File::new(LENGTH, back, force);
+        assert_eq!(
+            file.stretch(10.0, 20.0, &["Y"]).expect_err("twice")[0].code,
+            "axis-not-increasing"
+        );
+        assert!(file.stretch(200.0, 210.0, &["Y"]).is_ok());
+    }
+}
