@@ -17,6 +17,7 @@ mod runs;
 
 use std::path::Path;
 
+pub(crate) use groups::numbers;
 pub(super) use groups::{append, wrong};
 pub(super) use layout::Layout;
 pub(crate) use layout::guarded;
@@ -25,11 +26,11 @@ pub(super) use open::At;
 use open::{Opened, Store};
 pub(super) use runs::{stream, stretch};
 
-use super::{Column, Known, Origin, Record, Wanted, find_columns};
+use super::{Column, Known, Run, Wanted, find_columns};
 use crate::data::cells::Heading;
 use crate::data::faults::Faults;
 use crate::data::hash::sha256;
-use crate::data::text::read_plain;
+use crate::data::text::{LARGEST_RECORD, read_file};
 use crate::data::write::{FileColumn, Values};
 use crate::problem::Problem;
 use crate::source::{Source, Span};
@@ -39,49 +40,30 @@ use crate::units::Unit;
 pub(super) const MAGIC: &[u8; 4] = b"PAR1";
 
 /// Reads the wanted columns of a record.
-pub(super) fn read(at: At<'_>, shown: &str, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
-    let one = |problem: Problem| vec![problem];
-    let (mut opened, hash, from) = match at {
+pub(super) fn read(at: At<'_>, shown: &str, wanted: &[Wanted]) -> Result<Run, Vec<Problem>> {
+    let (mut opened, hash) = match at {
         At::Disk(path) => {
-            let mut bytes = Vec::new();
-            read_plain(path, shown, &mut bytes).map_err(one)?;
+            let bytes = read_file(path, shown, LARGEST_RECORD)?;
             let hash = sha256(&bytes);
-            let opened = Opened::open(Store::memory(bytes), shown).map_err(one)?;
-            (opened, hash, Origin::File(path.to_path_buf()))
+            (Opened::open(Store::memory(bytes), shown)?, hash)
         }
-        At::Object(stored) => {
-            let (opened, hash) =
-                runs::open_object(stored, shown, &Known::default()).map_err(one)?;
-            (opened, hash, Origin::Object(stored.clone()))
-        }
+        At::Object(stored) => runs::open_object(stored, shown, &Known::default())?,
     };
-    let size = usize::try_from(opened.store.size()).unwrap_or(usize::MAX);
     let mut columns = opened.find(wanted)?;
     let rows = opened.layout.rows();
     if rows == 0 {
         return Err(vec![no_rows(shown)]);
     }
-    opened
-        .within((rows as u64).saturating_mul(8 * columns.len() as u64), "the record")
-        .map_err(one)?;
+    opened.within((rows as u64).saturating_mul(8 * columns.len() as u64), "the record")?;
     for column in &mut columns {
         column.values.reserve_exact(rows);
     }
     let mut faults = Faults::new(shown);
     for group in 0..opened.layout.groups() {
-        opened.group(group, &mut columns, &mut faults, &mut |_, _| {}).map_err(one)?;
+        opened.group(group, &mut columns, &mut faults, &mut |_, _| {})?;
     }
     faults.finish(())?;
-    Ok(Record {
-        shown: shown.to_string(),
-        columns,
-        channels: opened.layout.headings().iter().map(|heading| heading.name.clone()).collect(),
-        rows,
-        first_row: 0,
-        sha256: hash,
-        bytes: size,
-        from,
-    })
+    Ok(opened.run(columns, hash))
 }
 
 pub(super) fn no_rows(shown: &str) -> Problem {
@@ -90,15 +72,12 @@ pub(super) fn no_rows(shown: &str) -> Problem {
 
 /// Every column as it is in the file: numbers in the unit of the file, or texts.
 pub(super) fn raw(path: &Path, shown: &str) -> Result<Vec<FileColumn>, Vec<Problem>> {
-    let one = |problem: Problem| vec![problem];
     let mut opened = open_file(At::Disk(path), shown)?;
     let headings = opened.layout.headings().to_vec();
-    opened
-        .within(
-            (opened.layout.rows() as u64).saturating_mul(8 * headings.len() as u64),
-            "the record",
-        )
-        .map_err(one)?;
+    opened.within(
+        (opened.layout.rows() as u64).saturating_mul(8 * headings.len() as u64),
+        "the record",
+    )?;
     let mut columns = Vec::new();
     for (position, heading) in headings.iter().enumerate() {
         let mut column = [Column {
@@ -108,17 +87,17 @@ pub(super) fn raw(path: &Path, shown: &str) -> Result<Vec<FileColumn>, Vec<Probl
             position,
         }];
         if let Some(problem) = opened.other_codec(&column[0]) {
-            return Err(one(problem));
+            return Err(vec![problem]);
         }
         let values = if opened.layout.is_text(position) {
-            Values::Texts(opened.texts(&column[0]).map_err(one)?)
+            Values::Texts(opened.texts(&column[0])?)
         } else {
             if let Some(problem) = opened.not_numbers(&column[0]) {
-                return Err(one(problem));
+                return Err(vec![problem]);
             }
             let mut faults = Faults::new(shown);
             for group in 0..opened.layout.groups() {
-                opened.group(group, &mut column, &mut faults, &mut |_, _| {}).map_err(one)?;
+                opened.group(group, &mut column, &mut faults, &mut |_, _| {})?;
             }
             faults.finish(())?;
             let [column] = column;
@@ -174,7 +153,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::data::record::{Known, Record, read_headings, read_record, read_stretch, stream};
+    use crate::data::record::{Known, Record, RecordSource, read_headings, read_record};
     use crate::data::write::{FileColumn, Values, parquet};
     use crate::units::Dimension;
 
@@ -271,7 +250,9 @@ mod tests {
         for (name, bytes) in [("r.parquet", bytes.clone()), ("r.csv", csv(&whole).into_bytes())] {
             with(&bytes, name, |path| {
                 let mut joined: Vec<Vec<f64>> = vec![Vec::new(); 2];
-                let run = stream(path, name, &wanted(), |block| {
+                let known = Known::default();
+                let source = RecordSource::at(path, name);
+                let run = source.stream(&wanted(), "time", &known, |block| {
                     assert_eq!(
                         (block.first_row, block.rows),
                         (joined[0].len(), block.columns[0].values.len())
@@ -288,15 +269,9 @@ mod tests {
                 );
                 assert_eq!(joined[0], whole.columns[0].values, "{name}");
                 for range in [100.0..101.0, 0.0..0.0, 199.9..1e9, 81.9..82.0] {
-                    let part = read_stretch(
-                        path,
-                        name,
-                        &wanted(),
-                        "time",
-                        range.clone(),
-                        &Known::default(),
-                    )
-                    .expect("inside");
+                    let part = RecordSource::at(path, name)
+                        .stretch(&wanted(), "time", range.clone(), &Known::default())
+                        .expect("inside");
                     let (first, rows) = (part.first_row, part.rows);
                     let times = &whole.columns[0].values;
                     assert!(first == 0 || times[first - 1] < range.start);
@@ -311,9 +286,9 @@ mod tests {
                         Some(part.row_shown(0))
                     );
                 }
-                let none =
-                    read_stretch(path, name, &wanted(), "time", 500.0..600.0, &Known::default())
-                        .expect_err("outside");
+                let none = RecordSource::at(path, name)
+                    .stretch(&wanted(), "time", 500.0..600.0, &Known::default())
+                    .expect_err("outside");
                 assert_eq!(none[0].code, "outside-record");
             });
         }
@@ -329,9 +304,9 @@ mod tests {
             ]
         };
         with(&parquet(&columns()).expect("written"), "r.parquet", |path| {
-            let problems =
-                read_stretch(path, "r.parquet", &wanted(), "time", 10.0..20.0, &Known::default())
-                    .expect_err("twice");
+            let problems = RecordSource::at(path, "r.parquet")
+                .stretch(&wanted(), "time", 10.0..20.0, &Known::default())
+                .expect_err("twice");
             assert_eq!(problems[0].code, "axis-not-increasing");
             assert!(problems[0].says.contains("row 181"), "{}", problems[0].says);
         });
@@ -408,7 +383,12 @@ mod tests {
                 }
                 Err(problems) => problems.iter().for_each(|problem| drop(problem.render(false))),
             }
-            drop(read_stretch(path, "r.parquet", &wanted(), "time", 0.1..0.2, &Known::default()));
+            drop(RecordSource::at(path, "r.parquet").stretch(
+                &wanted(),
+                "time",
+                0.1..0.2,
+                &Known::default(),
+            ));
         });
     }
 
@@ -454,7 +434,8 @@ mod tests {
         let (known, before) = (Known::default(), read());
         for start in 0..20 {
             let start = 1_200.0 + 50.0 * f64::from(start);
-            read_stretch(path, "north", &wanted, "distance", start..start + 100.0, &known)
+            RecordSource::at(path, "north")
+                .stretch(&wanted, "distance", start..start + 100.0, &known)
                 .expect("inside");
         }
         let more = read() - before;

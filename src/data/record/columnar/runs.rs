@@ -13,7 +13,7 @@ use crate::data::record::decoded::{self, Place};
 use crate::data::record::held::Held;
 use crate::data::record::known::{Known, KnownFile};
 use crate::data::record::stretch::{Block, Run, Stretch, axis_of, values};
-use crate::data::record::{Origin, Record, Stored, Wanted};
+use crate::data::record::{Stored, Wanted};
 use crate::data::text::unreadable;
 use crate::disk;
 use crate::problem::Problem;
@@ -42,13 +42,12 @@ pub(crate) fn stream(
             });
             columns.iter_mut().for_each(|column| column.values.clear());
         });
-        done.map_err(|problem| vec![problem])?;
+        done?;
         if !faults.is_empty() {
             return Err(faults.into_vec());
         }
     }
-    let channels = opened.layout.headings().iter().map(|heading| heading.name.clone()).collect();
-    Ok(Run { channels, rows: opened.layout.rows(), columns, sha256, bytes: opened.store.size() })
+    Ok(opened.run(columns, sha256))
 }
 
 /// The rows whose axis lies in a range. Row groups whose statistics exclude the range are not
@@ -60,7 +59,7 @@ pub(crate) fn stretch(
     wanted: &[Wanted],
     (axis, range): (&str, &Range<f64>),
     known: &Known,
-) -> Result<Record, Vec<Problem>> {
+) -> Result<(Run, Stretch), Vec<Problem>> {
     let (mut opened, sha256) = open(at, shown, known)?;
     let mut columns = opened.find(wanted)?;
     let place = axis_of(&columns, axis, shown)?;
@@ -98,19 +97,12 @@ pub(crate) fn stretch(
                 stretch.add(&values(columns), first_row);
                 columns.iter_mut().for_each(|column| column.values.clear());
             });
-        done.map_err(|problem| vec![problem])?;
+        done?;
         if !faults.is_empty() {
             return Err(faults.into_vec());
         }
     }
-    let channels = opened.layout.headings().iter().map(|heading| heading.name.clone()).collect();
-    let run =
-        Run { channels, rows: opened.layout.rows(), columns, sha256, bytes: opened.store.size() };
-    let from = match at {
-        At::Disk(path) => Origin::File(path.to_path_buf()),
-        At::Object(stored) => Origin::Object(stored.clone()),
-    };
-    stretch.record(run, from, shown)
+    Ok((opened.run(columns, sha256), stretch))
 }
 
 /// A row group in parts of at most so many rows as a block has.
@@ -119,6 +111,18 @@ fn blocks(rows: Range<usize>) -> impl Iterator<Item = Range<usize>> {
 }
 
 impl Opened<'_> {
+    /// What is known of the file and the columns that were read.
+    pub(super) fn run(&self, columns: Vec<Column>, sha256: String) -> Run {
+        let headings = self.layout.headings().iter();
+        Run {
+            channels: headings.map(|heading| heading.name.clone()).collect(),
+            rows: self.layout.rows(),
+            columns,
+            sha256,
+            bytes: self.store.size(),
+        }
+    }
+
     /// The numbers of columns in a block; `None` if not all are sound.
     fn numbers(
         &mut self,
@@ -188,12 +192,11 @@ fn open<'a>(
     shown: &'a str,
     known: &Known,
 ) -> Result<(Opened<'a>, String), Vec<Problem>> {
-    let one = |problem: Problem| vec![problem];
     let path = match at {
         At::Disk(path) => path,
-        At::Object(stored) => return open_object(stored, shown, known).map_err(one),
+        At::Object(stored) => return open_object(stored, shown, known).map_err(Vec::from),
     };
-    let store = Store::held(path, shown, &known.held).map_err(one)?;
+    let store = Store::held(path, shown, &known.held)?;
     let compute = || {
         if Held::takes_whole(store.size()) {
             let whole = disk::read(path, store.size())?;
@@ -208,8 +211,8 @@ fn open<'a>(
     };
     let file = known
         .or(|_| true, compute)
-        .map_err(|error: std::io::Error| one(unreadable(shown, &error)))?;
-    let opened = Opened::again(store, shown, &known.held).map_err(one)?;
+        .map_err(|error: std::io::Error| vec![unreadable(shown, &error)])?;
+    let opened = Opened::again(store, shown, &known.held)?;
     Ok((opened, file.sha256.clone()))
 }
 
@@ -245,7 +248,7 @@ mod tests {
 
     use super::*;
     use crate::data::record::decoded::ROWS;
-    use crate::data::record::read_stretch;
+    use crate::data::record::{Record, RecordSource};
     use crate::units::Dimension;
 
     const FORCE: Dimension = Dimension([1, 1, -2, 0, 0, 0]);
@@ -299,7 +302,12 @@ mod tests {
                 .into_iter()
                 .chain(names.iter().map(of))
                 .collect();
-            read_stretch(&self.path, "r.parquet", &wanted, "time", from..to, &self.known)
+            RecordSource::at(&self.path, "r.parquet").stretch(
+                &wanted,
+                "time",
+                from..to,
+                &self.known,
+            )
         }
 
         /// Columns of blocks that were decoded.
