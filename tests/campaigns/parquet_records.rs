@@ -227,7 +227,7 @@ fn a_record_that_cannot_be_converted_leaves_nothing() {
 /// would else be another number.
 #[test]
 fn checksums_of_pages_are_looked_at() {
-    let whole = include_bytes!("cases/data/checksums.parquet");
+    let whole = include_bytes!("../cases/data/checksums.parquet");
     let folder = tempfile::tempdir().expect("a temporary folder");
     let wanted =
         [Wanted::new("distance", Dimension::LENGTH), Wanted::new("ay", Dimension::ACCELERATION)];
