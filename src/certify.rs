@@ -5,12 +5,11 @@ mod again;
 mod pool;
 
 use indexmap::IndexMap;
-use sha2::{Digest, Sha256};
 
 use crate::check::plan::{DatumKind, Parameter, Plan, Scalar, SetBy};
 use crate::check::{self, Overrides, diff, family::Family};
 use crate::data::Campaigns;
-use crate::data::hash::{hexadecimal, sha256};
+use crate::data::hash::{Hasher, sha256};
 use crate::graph::{self, Graph};
 use crate::problem::Problems;
 use crate::result::{
@@ -138,10 +137,8 @@ pub fn protocol_info(compiled: &Compiled) -> ProtocolInfo {
             text: source.text.clone(),
         })
         .collect();
-    let mut all = Sha256::new();
-    for source in &family.sources {
-        all.update(source.text.as_bytes());
-    }
+    let mut all = Hasher::default();
+    family.sources.iter().for_each(|source| all.add(source.text.as_bytes()));
     ProtocolInfo {
         name: plan.name.clone(),
         title: plan.title.clone(),
@@ -149,7 +146,7 @@ pub fn protocol_info(compiled: &Compiled) -> ProtocolInfo {
         source: plan.source.clone(),
         scope: plan.scope.clone(),
         notes: plan.notes.clone(),
-        sha256: hexadecimal(&all.finalize()),
+        sha256: all.finish(),
         files,
         deviations: family
             .parent

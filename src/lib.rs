@@ -26,6 +26,7 @@ pub mod disk;
 pub mod effects;
 pub mod foreign;
 pub mod graph;
+pub mod hash;
 pub mod import;
 pub mod init;
 pub mod library;

@@ -5,8 +5,6 @@
 
 mod load;
 mod scalar;
-#[cfg(test)]
-mod tests;
 
 pub use load::{Remark, load, load_as_written, remarks};
 
@@ -111,6 +109,217 @@ impl Node {
             Value::Text(_) => "text",
             Value::List(_) => "a list",
             Value::Map(_) => "a map",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::problem::Problems;
+    use crate::source::Source;
+
+    fn read(text: &str) -> Node {
+        let mut problems = Problems::default();
+        let node = load(&Source::new("t.yaml", text), &mut problems);
+        node.unwrap_or_else(|| panic!("{}", problems.render(false)))
+    }
+
+    /// Code and `line:column` of each problem.
+    fn faults(text: &str) -> Vec<(&'static str, String)> {
+        let mut problems = Problems::default();
+        assert!(load(&Source::new("t", text), &mut problems).is_none(), "{text}");
+        problems
+            .0
+            .iter()
+            .map(|problem| {
+                (
+                    problem.code,
+                    problem.at.as_ref().map_or(String::new(), |at| at.to_string()[2..].to_string()),
+                )
+            })
+            .collect()
+    }
+
+    #[test]
+    fn every_scalar_keeps_its_words_and_its_place() {
+        let text = "\u{feff}# head\r\nname: Köln 7  # end\r\n\"a key\": 1.50\r\nflag: no\r\nlist: [ 'it', \"x\\ty\", ~, true ]\r\nsub:\r\n  - 0x10\r\n  - k: two\r\n      lines\r\n";
+        let root = read(text);
+        let raw = |path: &str| {
+            root.lookup(path).map(|node| (node.raw.as_str(), node.exact, node.span.text()))
+        };
+        assert_eq!(raw("name"), Some(("Köln 7", true, "Köln 7")));
+        assert_eq!(raw("a key"), Some(("1.50", true, "1.50")));
+        assert_eq!(raw("flag"), Some(("no", true, "no")));
+        assert_eq!(root.get("flag").map(|node| &node.value), Some(&Value::Text("no".into())));
+        assert_eq!(root.entries()[1].0.span.text(), "a key");
+        let list = root.get("list").map_or(&[][..], Node::items);
+        assert_eq!((list[0].raw.as_str(), list[0].exact, list[0].span.text()), ("it", true, "it"));
+        assert_eq!(
+            (list[1].raw.as_str(), list[1].exact, list[1].span.text()),
+            ("x\ty", false, "\"x\\ty\"")
+        );
+        assert_eq!((&list[2].value, &list[3].value), (&Value::Null, &Value::Bool(true)));
+        assert_eq!(
+            root.get("list").map(|node| node.span.text()),
+            Some("[ 'it', \"x\\ty\", ~, true ]")
+        );
+        let sub = root.get("sub").map_or(&[][..], Node::items);
+        assert_eq!(sub[0].number(), Some(16.0));
+        assert_eq!(
+            (sub[1].items().len(), sub[1].lookup("k").map(|node| (node.raw.as_str(), node.exact))),
+            (0, Some(("two lines", false)))
+        );
+        assert_eq!(sub[1].get("k").map(|node| node.span.to_string()), Some("t.yaml:8:8".into()));
+    }
+
+    #[test]
+    fn dotted_paths_find_nested_values_and_dotted_keys() {
+        let root = read("a:\n  b:\n    c: 1\n  b.d: 2\na.x: 3\n");
+        assert_eq!(root.lookup("a.b.c").and_then(Node::number), Some(1.0));
+        assert_eq!(root.lookup("a.b.d").and_then(Node::number), Some(2.0));
+        assert_eq!(root.lookup("a.x").and_then(Node::number), Some(3.0));
+        assert!(
+            root.lookup("a.q").is_none() && root.lookup("").is_none() && root.lookup(".").is_none()
+        );
+    }
+
+    #[test]
+    fn block_scalars_and_empty_texts() {
+        let root = read("note: |\n  one\n  two\nfold: >-\n  one\n  two\nnone:\n");
+        assert_eq!(root.get("note").map(|node| node.raw.as_str()), Some("one\ntwo\n"));
+        assert_eq!(
+            root.get("fold").map(|node| (node.raw.as_str(), node.exact)),
+            Some(("one two", false))
+        );
+        assert_eq!(root.get("none").map(|node| &node.value), Some(&Value::Null));
+        for empty in ["", "\n\n", "# only a comment\n", "---\n", "\u{feff}"] {
+            assert_eq!(read(empty).value, Value::Null, "{empty:?}");
+        }
+    }
+
+    #[test]
+    fn aliases_are_written_out() {
+        let root = read("base: &b {x: 1}\nsame: *b\n");
+        assert_eq!(root.lookup("same.x").and_then(Node::number), Some(1.0));
+        assert_eq!(root.get("same").map(|node| node.span.text()), Some("{x: 1}"));
+        assert_eq!(
+            read("v: !!str 5\nw: ! 7").get("v").map(|node| &node.value),
+            Some(&Value::Text("5".into()))
+        );
+    }
+
+    #[test]
+    fn problems_are_at_their_place() {
+        for (text, code, at) in [
+            ("a: 1\nb: [1, 2\n", "yaml-syntax", "2:4"),
+            ("a: 1\n\tb: 2\n", "tab-indentation", "2:1"),
+            ("a: b: c\n", "yaml-syntax", "1:5"),
+            ("a: 'open\nb: 1\n", "yaml-syntax", "2:1"),
+            ("a: 1\nb: 2\na: 3\n", "duplicate-key", "3:1"),
+            ("a: 1\n'a': 3\n", "duplicate-key", "2:2"),
+            ("x: *none\n", "yaml-syntax", "1:4"),
+            ("x: &a [*a]\n", "yaml-syntax", "1:8"),
+            ("a: 1\n---\nb: 2\n", "yaml-syntax", "2:1"),
+            ("? [1, 2]\n: 3\n", "yaml-key", "1:3"),
+            ("max: .inf\n", "not-finite", "1:6"),
+            ("max: 1e999\n", "not-finite", "1:6"),
+            ("max: !limit 5\n", "yaml-tag", "1:13"),
+            ("a: 1\n  b: 2\n", "yaml-syntax", "2:4"),
+            ("a: @x\n", "yaml-syntax", "1:4"),
+        ] {
+            assert_eq!(faults(text), [(code, at.to_string())], "{text}");
+        }
+        assert_eq!(faults("a: .nan\nb: 1\nb: 2\nc: !x 1\n").len(), 3);
+    }
+
+    #[test]
+    fn a_tree_as_written_keeps_repeated_keys() {
+        let mut problems = Problems::default();
+        let tree = load_as_written(&Source::new("t", "a: 1\nb: .nan\na: 3\n"), &mut problems)
+            .expect("a tree");
+        assert_eq!(
+            tree.entries().iter().map(|(key, _)| key.text.as_str()).collect::<Vec<_>>(),
+            ["a", "b", "a"]
+        );
+        assert_eq!(
+            problems.0.iter().map(|problem| problem.code).collect::<Vec<_>>(),
+            ["not-finite"]
+        );
+    }
+
+    #[test]
+    fn an_alias_bomb_is_refused_at_once() {
+        let mut bomb = String::from("a0: &a0 [x, x, x, x, x, x, x, x, x]\n");
+        for n in 1..9 {
+            let again = format!("*a{}, ", n - 1).repeat(9);
+            bomb += &format!("a{n}: &a{n} [{again}]\n");
+        }
+        assert_eq!(faults(&bomb)[0].0, "yaml-too-large");
+        assert_eq!(faults(&("[".repeat(100) + &"]".repeat(100)))[0].0, "yaml-too-deep");
+        assert_eq!(faults(&"- ".repeat(100_000)).len(), 1);
+    }
+
+    #[test]
+    fn remarks_tell_beside_from_above() {
+        let source = Source::new("t", "# head\na: 1  # why\n\n#tail\n");
+        let found: Vec<_> = remarks(&source)
+            .into_iter()
+            .map(|remark| (remark.text, remark.beside, remark.span.line()))
+            .collect();
+        assert_eq!(
+            found,
+            [("head".into(), false, 1), ("why".into(), true, 2), ("tail".into(), false, 4)]
+        );
+    }
+
+    const SAMPLE: &str = "name: &n Köln\nlist: [1, 'two', \"th\\tree\", {a: *n}]\nmap:\n  - k: |\n      text\n    v: 1e3\n  - # none\n? x\n: y\n";
+
+    /// Whatever the bytes, loading ends with a value or a problem, and every span lies on the text.
+    fn survives(text: &str) {
+        fn spans(node: &Node, source: &Arc<Source>) {
+            assert!(
+                source.text.get(node.span.start..node.span.end).is_some(),
+                "{:?} {:?}",
+                source.text,
+                node.span
+            );
+            node.items().iter().for_each(|item| spans(item, source));
+            node.entries().iter().for_each(|(_, value)| spans(value, source));
+        }
+        let source = Source::new("t", text);
+        let mut problems = Problems::default();
+        match load(&source, &mut problems) {
+            Some(node) => spans(&node, &source),
+            None => assert!(problems.any_error(), "{text:?}"),
+        }
+        let _ = (remarks(&source), problems.render(false));
+    }
+
+    #[test]
+    fn every_prefix_is_survived() {
+        (0..=SAMPLE.len())
+            .filter(|at| SAMPLE.is_char_boundary(*at))
+            .for_each(|at| survives(&SAMPLE[..at]));
+    }
+
+    proptest! {
+        #[test]
+        fn flipped_bytes_are_survived(flips in prop::collection::vec((0..SAMPLE.len(), any::<u8>()), 1..6)) {
+            let mut bytes = SAMPLE.as_bytes().to_vec();
+            for (at, byte) in flips {
+                bytes[at] = byte;
+            }
+            survives(&String::from_utf8_lossy(&bytes));
+        }
+
+        #[test]
+        fn any_text_is_survived(text in r#"[ \n\t:#'"\[\]{},&*!|>%@a0-9.\-?é]{0,40}"#) {
+            survives(&text);
         }
     }
 }

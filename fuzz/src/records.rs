@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use fishplate::data::checks::check_axis;
 use fishplate::data::record::{
-    Record, Wanted, read_headings, read_raw, read_record, read_stretch, stream,
+    Known, Record, RecordSource, Wanted, read_headings, read_raw, read_record,
 };
 use fishplate::data::table::Table;
 use fishplate::problem::Problems;
@@ -87,19 +87,14 @@ pub fn parquet(input: &[u8]) {
         assert_eq!(values.len(), record.rows, "{}", heading.name);
         assert!(values.iter().all(|value| value.is_finite()), "{}", heading.name);
         let mut rows = 0;
-        let run = stream(&path, "record.parquet", &wanted, |block| {
+        let (source, known) = (RecordSource::at(&path, "record.parquet"), Known::default());
+        let run = source.stream(&wanted, &heading.name, &known, |block| {
             assert_eq!(block.columns[0].values, values[rows..rows + block.rows]);
             rows += block.rows;
         });
         assert!(run.is_ok() && rows == record.rows, "{}", heading.name);
-        if let Err(problems) = read_stretch(
-            &path,
-            "record.parquet",
-            &wanted,
-            &heading.name,
-            0.0..1.0,
-            &fishplate::data::record::Known::default(),
-        ) {
+        let stretch = source.stretch(&wanted, &heading.name, 0.0..1.0, &Known::default());
+        if let Err(problems) = stretch {
             promise::told(&problems);
         }
     }

@@ -294,7 +294,7 @@ pub(super) fn number(text: &str) -> Result<f64, (&'static str, String)> {
 }
 
 /// Cell text for a message, shortened, since a cell can be as long as the file.
-pub(super) fn shortened(text: &str) -> String {
+pub(crate) fn shortened(text: &str) -> String {
     const MOST: usize = 40;
     if text.chars().count() <= MOST {
         text.to_string()

@@ -75,7 +75,7 @@ pub fn check_axis(
         return Err(problems);
     };
     let rows = match section {
-        Some(section) => check_section(record, axis, section).map_err(|problem| vec![problem])?,
+        Some(section) => check_section(record, axis, section)?,
         None => 0..record.rows,
     };
     let times = &clock.values;

@@ -7,11 +7,11 @@ use super::hash::sha256;
 use super::origin::{ORIGIN_FILE, ORIGIN_KEY};
 use super::record::{Format, read_raw};
 use super::text::read_any;
-use super::write::{Entry, Outputs, campaign_yaml, csv, parquet, table_csv, yaml_text};
+use super::write::{Entry, Outputs, campaign_yaml, csv, parquet, table_csv};
 use super::{Campaign, RecordKind};
-use crate::problem::{Problem, Problems};
-use crate::source::{Source, Spanned};
-use crate::yaml::{self, Node, Value};
+use crate::problem::Problem;
+use crate::source::Spanned;
+use crate::yaml::{Node, Value};
 
 /// The key of `campaign.yaml` that names the table of converted records.
 const KEY: &str = "records_converted";
@@ -44,7 +44,6 @@ pub fn convert(
     to: Format,
     outputs: &mut Outputs,
 ) -> Result<Converted, Vec<Problem>> {
-    let one = |problem: Problem| vec![problem];
     let (mut pairs, mut done, mut seen) = (Vec::new(), Converted::default(), BTreeSet::new());
     for which in RecordKind::ALL
         .into_iter()
@@ -59,22 +58,22 @@ pub fn convert(
                     done.missing += 1;
                     continue;
                 }
-                Err(problem) => return Err(one(problem)),
+                Err(problem) => return Err(vec![problem]),
             };
-            let before = read_any(&place.path, &place.shown).map_err(one)?;
+            let before = read_any(&place.path, &place.shown)?;
             if Format::of(&place.path) == to {
-                outputs.add(&place.inside, &before).map_err(one)?;
+                outputs.add(&place.inside, &before)?;
                 done.copied += 1;
                 continue;
             }
             let columns = read_raw(&place.path, &place.shown)?;
             let after = match to {
                 Format::Csv => csv(&columns),
-                Format::Parquet => parquet(&columns).map_err(one)?,
+                Format::Parquet => parquet(&columns)?,
             };
             let stem = Format::stem(&place.inside).unwrap_or(&place.inside);
             let inside = format!("{stem}.{}", to.ending());
-            outputs.add(&inside, &after).map_err(one)?;
+            outputs.add(&inside, &after)?;
             pairs.push(Pair {
                 before: (place.inside.clone(), sha256(&before)),
                 after: (inside, sha256(&after)),
@@ -82,7 +81,7 @@ pub fn convert(
             done.converted += 1;
         }
     }
-    rest(campaign, &pairs, outputs).map_err(one)?;
+    rest(campaign, &pairs, outputs)?;
     Ok(done)
 }
 
@@ -116,13 +115,18 @@ fn rest(campaign: &Campaign, pairs: &[Pair], outputs: &mut Outputs) -> Result<()
     }
     let kept =
         campaign.tree.entries().iter().filter(|(key, _)| key.text != KEY && key.text != ORIGIN_KEY);
-    let mut entries: Vec<(&str, Entry<'_>)> =
-        kept.map(|(key, node)| (key.text.as_str(), Entry::Node(node))).collect();
+    let runs = campaign.tree.get(RUNS).map(|runs| of_runs(runs, pairs));
+    let mut entries: Vec<(&str, Entry<'_>)> = kept
+        .map(|(key, node)| {
+            let runs = runs.as_ref().filter(|_| key.text == RUNS);
+            (key.text.as_str(), Entry::Node(runs.unwrap_or(node)))
+        })
+        .collect();
     if node.is_some() {
         entries.push((ORIGIN_KEY, Entry::Text(&origin_inside)));
     }
     entries.push((KEY, Entry::Text(TABLE)));
-    outputs.add(CAMPAIGN_FILE, of_runs(campaign_yaml(&entries), pairs).as_bytes())?;
+    outputs.add(CAMPAIGN_FILE, campaign_yaml(&entries).as_bytes())?;
     let mut rows =
         vec![["record", "sha256", "converted from", "sha256 before"].map(str::to_string).to_vec()];
     rows.extend(pairs.iter().map(|Pair { before, after }| {
@@ -131,53 +135,38 @@ fn rest(campaign: &Campaign, pairs: &[Pair], outputs: &mut Outputs) -> Result<()
     outputs.add(TABLE, table_csv(&rows).as_bytes())
 }
 
-/// The text of `campaign.yaml` with the converted records in place of those that it names, which
-/// are those of runs.
-fn of_runs(text: String, pairs: &[Pair]) -> String {
-    let Some(tree) =
-        yaml::load(&Source::new(CAMPAIGN_FILE, text.clone()), &mut Problems::default())
-    else {
-        return text;
-    };
-    let runs = tree.get(RUNS).map(Node::entries).unwrap_or_default();
-    let files = runs
-        .iter()
-        .flat_map(|(_, run)| run.entries())
-        .filter_map(|(_, file)| Some((file.span.clone(), file.scalar_text()?)));
-    let of = |path: &str| pairs.iter().find(|pair| pair.before.0 == path.trim());
-    let changes = files
-        .filter_map(|(span, path)| Some((span.start..span.end, yaml_text(&of(path)?.after.0))))
-        .collect();
-    replaced(text, changes)
-}
-
-/// The text with other words at some places.
-fn replaced(mut text: String, mut changes: Vec<(std::ops::Range<usize>, String)>) -> String {
-    changes.sort_by_key(|(range, _)| std::cmp::Reverse(range.start));
-    changes.into_iter().for_each(|(range, new)| text.replace_range(range, &new));
-    text
+/// The runs of a campaign with the converted records in place of those that they name.
+fn of_runs(runs: &Node, pairs: &[Pair]) -> Node {
+    let mut runs = runs.clone();
+    let Value::Map(entries) = &mut runs.value else { return runs };
+    for (_, run) in entries {
+        let Value::Map(files) = &mut run.value else { continue };
+        for (_, file) in files {
+            let path = file.scalar_text().map(str::trim);
+            if let Some(pair) = pairs.iter().find(|pair| path == Some(pair.before.0.as_str())) {
+                file.value = Value::Text(pair.after.0.clone());
+            }
+        }
+    }
+    runs
 }
 
 /// The origin with the converted records in place of those to which the simulation was fitted:
 /// `certify` recognises them by their hash.
 fn fitted(text: String, pairs: &[Pair]) -> String {
-    let Some(tree) = yaml::load(&Source::new(ORIGIN_FILE, text.clone()), &mut Problems::default())
-    else {
-        return text;
-    };
-    let Some(Value::List(items)) = tree.get("fitted to").map(|node| &node.value) else {
-        return text;
-    };
-    let mut changes = Vec::new();
-    for item in items {
-        let (Some(path), Some(hash)) = (item.get("path"), item.get("sha256")) else { continue };
-        let pair = pairs.iter().find(|pair| hash.scalar_text() == Some(pair.before.1.as_str()));
-        if let Some(Pair { after, .. }) = pair {
-            changes.push((path.span.start..path.span.end, yaml_text(&after.0)));
-            changes.push((hash.span.start..hash.span.end, yaml_text(&after.1)));
+    let Ok(mut origin) = serde_yaml::from_str::<serde_yaml::Value>(&text) else { return text };
+    let files = origin.get_mut("fitted to").and_then(serde_yaml::Value::as_sequence_mut);
+    let mut changed = false;
+    for file in files.into_iter().flatten() {
+        let hash = file.get("sha256").and_then(serde_yaml::Value::as_str);
+        let pair = pairs.iter().find(|pair| hash == Some(pair.before.1.as_str()));
+        if let (Some(Pair { after, .. }), Some(file)) = (pair, file.as_mapping_mut()) {
+            file.insert("path".into(), after.0.as_str().into());
+            file.insert("sha256".into(), after.1.as_str().into());
+            changed = true;
         }
     }
-    replaced(text, changes)
+    if changed { serde_yaml::to_string(&origin).unwrap_or(text) } else { text }
 }
 
 #[cfg(test)]
@@ -188,10 +177,10 @@ mod tests {
     fn only_the_records_fitted_to_are_replaced() {
         let pair = Pair {
             before: ("m/S.csv".into(), "aa".into()),
-            after: ("m/S.parquet".into(), "bb".into()),
+            after: ("m/S.parquet".into(), "12e4".into()),
         };
         let text = "sources:\n- path: m/S.csv\n  sha256: aa\nfitted to:\n- path: m/S.csv\n  sha256: aa\n- path: m/T.csv\n  sha256: cc\n";
-        let expected = "sources:\n- path: m/S.csv\n  sha256: aa\nfitted to:\n- path: m/S.parquet\n  sha256: bb\n- path: m/T.csv\n  sha256: cc\n";
+        let expected = "sources:\n- path: m/S.csv\n  sha256: aa\nfitted to:\n- path: m/S.parquet\n  sha256: '12e4'\n- path: m/T.csv\n  sha256: cc\n";
         assert_eq!(fitted(text.to_string(), &[pair]), expected);
         assert_eq!(fitted("effects: []\n".to_string(), &[]), "effects: []\n");
     }

@@ -35,20 +35,21 @@ pub fn cut(
     format: Format,
     outputs: &mut Outputs,
 ) -> Result<usize, Vec<Problem>> {
-    let one = |problem: Problem| vec![problem];
     if campaign.runs().is_empty() {
         let problem = Problem::error("no-runs", "the campaign has no runs to cut sections from")
             .at(&campaign.tree.span.part(0..0));
-        return Err(one(problem.help("each of its sections has records of its own already")));
+        return Err(vec![problem.help("each of its sections has records of its own already")]);
     }
     let Some(table) = &campaign.sections else {
         let problem = Problem::error(
             "no-sections",
             "the campaign has no table of sections, and none were looked for",
         );
-        return Err(one(problem
-            .at(&campaign.runs_span())
-            .help("name a protocol with `use found sections`, or a table with a column `run`")));
+        return Err(vec![
+            problem
+                .at(&campaign.runs_span())
+                .help("name a protocol with `use found sections`, or a table with a column `run`"),
+        ]);
     };
     let mut rows = vec![
         ["record", "sha256", "run", "cut from", "sha256 of that file"].map(str::to_string).to_vec(),
@@ -57,15 +58,17 @@ pub fn cut(
     for name in &campaign.names {
         let Some(run) = campaign.run_of(name) else {
             let says = format!("section `{}` is not part of a run", name.value);
-            return Err(one(Problem::error("unknown-run", says)
-                .at(&name.span)
-                .help(format!("name the run in the column `{RUN_COLUMN}`"))));
+            return Err(vec![
+                Problem::error("unknown-run", says)
+                    .at(&name.span)
+                    .help(format!("name the run in the column `{RUN_COLUMN}`")),
+            ]);
         };
         for kind in RecordKind::ALL.into_iter().filter(|kind| run.has(*kind)) {
             let (record, from) = stretch(campaign, table, run, kind, name)?;
             let inside = format!("{}/{}.{}", kind.key(), name.value, format.ending());
-            let bytes = bytes(&record, format).map_err(one)?;
-            outputs.add(&inside, &bytes).map_err(one)?;
+            let bytes = bytes(&record, format)?;
+            outputs.add(&inside, &bytes)?;
             rows.push(vec![
                 inside,
                 sha256(&bytes),
@@ -77,8 +80,8 @@ pub fn cut(
         }
     }
     let records = rows.len() - 1;
-    rest(campaign, table, kinds.keys().copied().collect(), outputs).map_err(one)?;
-    outputs.add(TABLE, table_csv(&rows).as_bytes()).map_err(one)?;
+    rest(campaign, table, kinds.keys().copied().collect(), outputs)?;
+    outputs.add(TABLE, table_csv(&rows).as_bytes())?;
     Ok(records)
 }
 
@@ -90,13 +93,10 @@ fn stretch(
     kind: RecordKind,
     name: &Cell,
 ) -> Result<(Record, String), Vec<Problem>> {
-    let one = |problem: Problem| vec![problem];
-    let source = campaign.run_source(run, kind).map_err(one)?;
+    let source = campaign.run_source(run, kind)?;
     let (axis, start, end) = extent(table, name)?;
     let moved = match kind {
-        RecordKind::Measurement => {
-            campaign.offset(name).map_err(one)?.map_or(0.0, |(_, offset)| offset)
-        }
+        RecordKind::Measurement => campaign.offset(name)?.map_or(0.0, |(_, offset)| offset),
         RecordKind::Simulation | RecordKind::Track => 0.0,
     };
     // As much as the evaluation of a section in a run reads.
@@ -111,15 +111,14 @@ fn stretch(
 
 /// The axis of a section, its start and its end.
 fn extent(table: &Table, name: &Cell) -> Result<(&'static str, f64, f64), Vec<Problem>> {
-    let one = |problem: Problem| vec![problem];
     let number = |column: &str| -> Result<(Dimension, f64), Vec<Problem>> {
-        let column = table.need_column(column).map_err(one)?;
-        let dimension = table.columns[column].unit(None).map_err(one)?.dimension;
+        let column = table.need_column(column)?;
+        let dimension = table.columns[column].unit(None)?.dimension;
         let row = table.row_named(&name.value).unwrap_or(0);
         let value = table.numbers(column, Some(dimension))?.get(row).copied().flatten();
         value.map(|value| (dimension, value)).ok_or_else(|| {
             let says = format!("section `{}` has no start or no end", name.value);
-            one(Problem::error("not-a-number", says).at(&name.span))
+            vec![Problem::error("not-a-number", says).at(&name.span)]
         })
     };
     let ((dimension, start), (_, end)) = (number("start")?, number("end")?);

@@ -7,7 +7,7 @@ use crate::problem::{Problem, Problems};
 const SHOWN: usize = 5;
 
 #[derive(Debug)]
-pub(super) struct Faults<'a> {
+pub(crate) struct Faults<'a> {
     file: &'a str,
     problems: Vec<Problem>,
     more: usize,

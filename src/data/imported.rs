@@ -2,10 +2,10 @@
 //! with their numbers.
 
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
-use super::write::yaml_text;
 use crate::problem::{Problem, Problems};
-use crate::yaml::{Node, Value};
+use crate::yaml::{self, Node};
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Imported {
@@ -43,7 +43,7 @@ impl Imported {
         }
         let mut records = Vec::new();
         for item in node.get("records").map_or(&[][..], Node::items) {
-            if !matches!(item.value, Value::Map(_)) {
+            if !matches!(item.value, yaml::Value::Map(_)) {
                 let says =
                     format!("a record of `records` must be a map, not {}", item.kind_in_words());
                 problems.push(Problem::error("wrong-kind", says).at(&item.span));
@@ -68,65 +68,31 @@ impl Imported {
         Some(Self { mapping, channels, records })
     }
 
-    pub(super) fn text(&self) -> String {
-        let mut out = String::from("channels:\n");
-        for (side, lines) in &self.channels {
-            out +=
-                &format!("  {}:{}\n", yaml_text(side), if lines.is_empty() { " []" } else { "" });
-            out.extend(lines.iter().map(|line| format!("  - {}\n", yaml_text(line))));
-        }
-        if self.channels.is_empty() {
-            out = "channels: {}\n".into();
-        }
-        out += if self.records.is_empty() { "records: []\n" } else { "records:\n" };
-        for record in &self.records {
-            for (index, (key, value)) in [
-                ("side", &record.side),
-                ("section", &record.section),
-                ("file", &record.file),
-                ("read as", &record.read_as),
-            ]
-            .into_iter()
-            .enumerate()
-            {
-                out += &format!(
-                    "{} {key}: {}\n",
-                    if index == 0 { "-" } else { " " },
-                    yaml_text(value)
-                );
-            }
-            out += if record.steps.is_empty() { "  steps: []\n" } else { "  steps:\n" };
-            out.extend(record.steps.iter().map(|step| format!("  - {}\n", yaml_text(step))));
-        }
-        out + &literal("mapping", &self.mapping)
+    /// The entries of an import in `origin.yaml`.
+    pub(super) fn entries(&self) -> [(String, Value); 3] {
+        let records = self.records.iter().map(|record| {
+            json!({
+                "side": record.side,
+                "section": record.section,
+                "file": record.file,
+                "read as": record.read_as,
+                "steps": record.steps,
+            })
+        });
+        let channels = self.channels.iter().map(|(side, lines)| (side.clone(), json!(lines)));
+        [
+            ("channels".into(), Value::Object(channels.collect())),
+            ("records".into(), records.collect()),
+            ("mapping".into(), json!(self.mapping.replace("\r\n", "\n"))),
+        ]
     }
-}
-
-/// A text as a block in which its lines stand as they are; quoted if it has characters that a block
-/// cannot hold.
-fn literal(key: &str, text: &str) -> String {
-    let text = text.replace("\r\n", "\n");
-    let whole = text.trim_end_matches('\n');
-    let plain = |letter: char| {
-        letter == '\n'
-            || !(letter.is_control()
-                || matches!(letter, '\u{85}' | '\u{2028}' | '\u{2029}' | '\u{feff}'))
-    };
-    if whole.is_empty() || !whole.chars().all(plain) {
-        return format!("{key}: {}\n", yaml_text(&text));
-    }
-    let lines: String = whole
-        .split('\n')
-        .map(|line| if line.is_empty() { "\n".to_string() } else { format!("  {line}\n") })
-        .collect();
-    format!("{key}: |2\n{lines}")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::origin::Origin;
     use crate::source::Source;
-    use crate::yaml;
 
     #[test]
     fn what_is_written_is_read_back() {
@@ -145,17 +111,26 @@ mod tests {
             ],
             records: vec![record, ImportedRecord::default()],
         };
-        for mapping in [imported.mapping.clone(), "name: \u{7}\n".into()] {
-            imported.mapping = mapping;
+        let own = imported.mapping.clone();
+        for mapping in [
+            own.as_str(),
+            "name: \u{7}\n",
+            "",
+            "\n",
+            "a\n\n\n",
+            "\n\n a\n",
+            "no",
+            "\u{feff}a: \u{2028}\n",
+            "a\tb \n \n",
+        ] {
+            imported.mapping = mapping.into();
             let mut problems = Problems::default();
-            let node = yaml::load(&Source::new("origin.yaml", imported.text()), &mut problems)
-                .unwrap_or_else(|| panic!("{}", imported.text()));
-            assert_eq!(
-                Imported::read(&node, &mut problems).as_ref(),
-                Some(&imported),
-                "{}",
-                imported.text()
-            );
+            let origin = Origin { imported: Some(imported.clone()), ..Origin::default() };
+            let text = origin.text();
+            let node = yaml::load(&Source::new("origin.yaml", text.as_str()), &mut problems)
+                .unwrap_or_else(|| panic!("{text}"));
+            let found = Imported::read(&node, &mut problems);
+            assert_eq!(found.as_ref(), Some(&imported), "{text}");
         }
         let node =
             yaml::load(&Source::new("o", "effects: []\n"), &mut Problems::default()).expect("YAML");

@@ -4,10 +4,10 @@
 pub use super::imported::{Imported, ImportedRecord};
 
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
-use super::write::yaml_text;
 use crate::problem::{Problem, Problems};
-use crate::yaml::{Node, Value};
+use crate::yaml::{self, Node};
 
 /// Name of the file.
 pub const ORIGIN_FILE: &str = "origin.yaml";
@@ -54,6 +54,21 @@ pub struct OriginFile {
 }
 
 impl OriginEffect {
+    fn value(&self) -> Value {
+        let parameters = self.parameters.iter();
+        let parameters: Vec<Value> = parameters
+            .map(|(name, value, unit)| json!({ "name": name, "value": value, "unit": unit }))
+            .collect();
+        let mut all = json!({ "effect": self.effect, "parameters": parameters });
+        if !self.channels.is_empty() {
+            all["channels"] = json!(self.channels);
+        }
+        if let Some(sections) = &self.confined_to {
+            all["confined to"] = json!(sections);
+        }
+        all
+    }
+
     /// `friction = 0.23`, `sensor_gain: gain = 0.8 on Y_3R`, `payload: payload.mass = 3500 kg in
     /// zone 4`
     pub fn in_words(&self, equals: &str) -> String {
@@ -99,7 +114,7 @@ impl Origin {
     ///
     /// Problems: `wrong-kind`.
     pub fn read(node: &Node, problems: &mut Problems) -> Option<Self> {
-        if !matches!(node.value, Value::Map(_)) {
+        if !matches!(node.value, yaml::Value::Map(_)) {
             let says =
                 format!("an origin must be a map of keys and values, not {}", node.kind_in_words());
             problems.push(Problem::error("wrong-kind", says).at(&node.span));
@@ -131,48 +146,28 @@ impl Origin {
 
     /// The text of `origin.yaml`.
     pub fn text(&self) -> String {
-        let mut out = format!(
-            "program: {}\ncommand: {}\ncampaign: {}\n",
-            yaml_text(&self.program),
-            yaml_text(&self.command),
-            yaml_text(&self.campaign)
-        );
-        if let Some(simulator) = &self.simulator {
-            out += &format!("simulator: {}\n", yaml_text(simulator));
+        let files = |files: &[OriginFile]| {
+            files.iter().map(|file| json!({ "path": file.path, "sha256": file.sha256 })).collect()
+        };
+        let (fitted_to, sources): (Vec<Value>, Vec<Value>) =
+            (files(&self.fitted_to), files(&self.sources));
+        let effects: Vec<Value> = self.effects.iter().map(OriginEffect::value).collect();
+        let mut all = json!({
+            "program": self.program,
+            "command": self.command,
+            "campaign": self.campaign,
+            "simulator": self.simulator,
+            "effects": effects,
+            "fitted to": fitted_to,
+            "sources": sources,
+        });
+        let imported = self.imported.as_ref().map(Imported::entries);
+        if let Value::Object(all) = &mut all {
+            all.retain(|_, value| !value.is_null());
+            all.extend(imported.into_iter().flatten());
         }
-        out += if self.effects.is_empty() { "effects: []\n" } else { "effects:\n" };
-        for effect in &self.effects {
-            out += &format!("- effect: {}\n", yaml_text(&effect.effect));
-            out +=
-                if effect.parameters.is_empty() { "  parameters: []\n" } else { "  parameters:\n" };
-            for (name, value, unit) in &effect.parameters {
-                out += &format!(
-                    "  - name: {}\n    value: {value}\n    unit: {}\n",
-                    yaml_text(name),
-                    yaml_text(unit)
-                );
-            }
-            if !effect.channels.is_empty() {
-                out += "  channels:\n";
-                out.extend(
-                    effect.channels.iter().map(|channel| format!("  - {}\n", yaml_text(channel))),
-                );
-            }
-            if let Some(place) = &effect.confined_to {
-                out += &format!("  confined to: {}\n", yaml_text(place));
-            }
-        }
-        for (key, files) in [("fitted to", &self.fitted_to), ("sources", &self.sources)] {
-            out += &format!("{key}:{}\n", if files.is_empty() { " []" } else { "" });
-            for file in files {
-                out += &format!(
-                    "- path: {}\n  sha256: {}\n",
-                    yaml_text(&file.path),
-                    yaml_text(&file.sha256)
-                );
-            }
-        }
-        out + &self.imported.as_ref().map_or(String::new(), Imported::text)
+        // Texts, numbers, lists and maps can always be written.
+        serde_yaml::to_string(&all).unwrap_or_default()
     }
 }
 
@@ -181,8 +176,8 @@ fn items<'a>(node: &'a Node, key: &str, problems: &mut Problems) -> Vec<&'a Node
     match node.get(key) {
         None => Vec::new(),
         Some(list) => match &list.value {
-            Value::List(items) => items.iter().collect(),
-            Value::Null => Vec::new(),
+            yaml::Value::List(items) => items.iter().collect(),
+            yaml::Value::Null => Vec::new(),
             _ => {
                 let says = format!("`{key}` must be a list, not {}", list.kind_in_words());
                 problems.push(Problem::error("wrong-kind", says).at(&list.span));
@@ -234,7 +229,6 @@ fn effect(node: &Node, problems: &mut Problems) -> Option<OriginEffect> {
 mod tests {
     use super::*;
     use crate::source::Source;
-    use crate::yaml;
 
     fn read(text: &str) -> (Option<Origin>, Problems) {
         let mut problems = Problems::default();

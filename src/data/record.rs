@@ -1,50 +1,37 @@
 //! One sampled record: the requested columns as numbers in SI units.
 //!
-//! Records are almost all of the data of a campaign. A row is therefore parsed in one pass over its
-//! bytes (`rows`); only an irregular row is parsed again cell by cell to determine the fault
-//! (`fault`).
+//! Records are almost all of the data of a campaign. A row of a text is therefore parsed in one pass
+//! over its bytes (`rows`); only an irregular row is parsed again cell by cell to determine the
+//! fault (`fault`).
 
 mod columnar;
 mod decoded;
 mod fault;
 mod header_fault;
 mod held;
-mod indexed;
 mod known;
-mod lanes;
-mod marks;
 mod memory;
-mod number;
 mod raw;
+mod recent;
 mod rows;
-mod runs;
-mod sink;
 mod source;
 mod stored;
 mod stretch;
-#[cfg(target_arch = "x86_64")]
-mod wide;
+mod text;
 
-pub(crate) use columnar::{guard, guarded};
+pub(crate) use columnar::{guard, guarded, numbers};
 pub use held::Held;
 pub use known::Known;
 pub use memory::{Frame, ReadFrom};
 pub use raw::read_raw;
-pub use runs::{read_stretch, stream, stream_known};
 pub use source::RecordSource;
 pub use stored::Stored;
 pub use stretch::{Block, Run};
 
-use std::cell::RefCell;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-
-use columnar::At;
+use std::path::Path;
 
 use super::cells::{self, Heading};
 use super::faults::Faults;
-use super::hash::Hasher;
-use super::text::{decode, read_large, read_line};
 use crate::problem::Problem;
 use crate::source::{Source, Span};
 use crate::units::{Dimension, Unit};
@@ -83,21 +70,13 @@ pub struct Record {
     pub channels: Vec<String>,
     /// Number of samples.
     pub rows: usize,
-    /// Number of samples of the file before these: 0 but for a [stretch](read_stretch).
+    /// Number of samples of the file before these: 0 but for a [stretch](RecordSource::stretch).
     pub first_row: usize,
     /// SHA-256 of the file.
     pub sha256: String,
     /// Size of the file.
     pub bytes: usize,
-    from: Origin,
-}
-
-/// Where a record was read from.
-#[derive(Clone, Debug)]
-enum Origin {
-    File(PathBuf),
-    Object(Stored),
-    Memory(Arc<Frame>),
+    from: RecordSource,
 }
 
 /// Format of a record, which is told by the ending of its name.
@@ -154,131 +133,30 @@ impl Record {
     /// The number of sample `row` (from 0) in messages: the line of a text, whose header is line 1;
     /// else the row, from 1.
     pub fn row_shown(&self, row: usize) -> usize {
-        let before = match &self.from {
-            Origin::File(path) if Format::of(path) == Format::Csv => 2,
-            Origin::File(_) | Origin::Object(_) | Origin::Memory(_) => 1,
-        };
-        self.first_row + row + before
+        self.first_row + row + self.from.first_row()
     }
 
     /// The place in the file of sample `row` (from 0), or of its cell in a column. The file is read
     /// again.
     pub fn place(&self, row: usize, column: Option<&Column>) -> Option<Span> {
-        let row = self.first_row + row;
-        let path = match &self.from {
-            Origin::Memory(frame) => return frame.place(row, column),
-            Origin::Object(stored) => {
-                return columnar::place(At::Object(stored), &self.shown, row, column);
-            }
-            Origin::File(path) if Format::of(path) == Format::Parquet => {
-                return columnar::place(At::Disk(path), &self.shown, row, column);
-            }
-            Origin::File(path) => path,
-        };
-        let mut bytes = Vec::new();
-        read_large(path, &self.shown, &mut bytes).ok()?;
-        let text = decode(&bytes, &self.shown).ok()?;
-        // There are no blank lines between rows, so sample 0 is in line 2.
-        let line = text.split('\n').nth(row + 1)?.trim_end_matches('\r');
-        let whole = Source::excerpt(self.shown.as_str(), line, row + 2).whole();
-        let cell = column
-            .and_then(|column| Some(cells::split(line).ok()?.get(column.position)?.place.clone()));
-        Some(cell.map_or(whole.clone(), |place| whole.part(place)))
+        self.from.place(self.first_row + row, column)
     }
 }
 
-/// Reads the requested columns of a record; all other cells are ignored.
-///
-/// `shown` is the name of the file in messages.
+/// As [`RecordSource::read`], of a file by its path; `shown` is its name in messages.
 ///
 /// # Errors
-/// At most a handful of problems and how many more there are. Of the file: `file-missing`,
-/// `file-unreadable`, `file-empty`, `file-too-large`, `encoding`, `no-rows`. Of its header:
-/// `semicolon-separated`, `tab-separated`, `stray-quote`, `duplicate-column`, `unknown-channel`,
-/// `unit-missing`, `unknown-unit`, `unit-mismatch`, `units-in-row`, `units-in-cell`. Of a row:
-/// `header-repeated`, `ragged-row`, `truncated-row`, `blank-line`, `stray-quote`, `not-a-number`,
-/// `not-finite`, `decimal-comma`.
-///
-/// Of a Parquet file: `format-mislabelled`, `format-not-read` (compression, encryption),
-/// `file-damaged`, `unit-conflict`.
+/// As [`RecordSource::read`].
 pub fn read_record(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
-    if Format::of(path) == Format::Parquet {
-        return columnar::read(At::Disk(path), shown, wanted);
-    }
-    let mut buffer = BUFFER.take();
-    let record = read_into(&mut buffer, path, shown, wanted);
-    if buffer.capacity() <= KEPT {
-        BUFFER.set(buffer);
-    }
-    record
+    RecordSource::at(path, shown).read(wanted)
 }
 
-/// Buffers up to this size are kept by the thread.
-const KEPT: usize = 32 << 20;
-
-thread_local! {
-    /// Buffer for the text of a record, reused since allocation costs about as much as reading.
-    static BUFFER: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
-}
-
-fn read_into(
-    bytes: &mut Vec<u8>,
-    path: &Path,
-    shown: &str,
-    wanted: &[Wanted],
-) -> Result<Record, Vec<Problem>> {
-    read_large(path, shown, bytes).map_err(|problem| vec![problem])?;
-    if bytes.starts_with(columnar::MAGIC) && bytes.ends_with(columnar::MAGIC) {
-        let problem = Problem::error("format-mislabelled", format!("`{shown}` is a Parquet file"));
-        return Err(vec![problem.help("its name must end in `.parquet`")]);
-    }
-    let text = decode(bytes, shown).map_err(|problem| vec![problem])?;
-    let (headings, body) = header(text, shown)?;
-    let found = find_columns(&headings, wanted, shown);
-    let mut columns = found.map_err(|problems| {
-        match header_fault::units_elsewhere(text, body, &headings, shown) {
-            Some(problem) => vec![problem],
-            None => problems,
-        }
-    })?;
-    let mut hash = Hasher::default();
-    // The byte order mark.
-    hash.add(&bytes[..bytes.len() - text.len()]);
-    let read = rows::read(
-        text,
-        body,
-        headings.len(),
-        &mut columns,
-        rows::Part { shown, before: 0 },
-        Some(&mut hash),
-    );
-    let rows = read.map_err(|problems| {
-        header_fault::repeated(text, body, shown).map_or(problems, |problem| vec![problem])
-    })?;
-    let channels = headings.into_iter().map(|heading| heading.name).collect();
-    Ok(Record {
-        shown: shown.to_string(),
-        columns,
-        channels,
-        rows,
-        first_row: 0,
-        sha256: hash.finish(),
-        bytes: bytes.len(),
-        from: Origin::File(path.to_path_buf()),
-    })
-}
-
-/// The headings of a record.
+/// As [`RecordSource::headings`], of a file by its path.
 ///
 /// # Errors
-/// As [`read_record`], of the file and its header.
+/// As [`RecordSource::headings`].
 pub fn read_headings(path: &Path, shown: &str) -> Result<Vec<Heading>, Vec<Problem>> {
-    if Format::of(path) == Format::Parquet {
-        return columnar::headings(At::Disk(path), shown);
-    }
-    let bytes = read_line(path, shown).map_err(|problem| vec![problem])?;
-    let text = decode(&bytes, shown).map_err(|problem| vec![problem])?;
-    header(text, shown).map(|(headings, _)| headings)
+    RecordSource::at(path, shown).headings()
 }
 
 /// The headings of a list in the form of a header, such as `Y_1R [kN], ay_I [m/s^2]`.
@@ -286,21 +164,18 @@ pub fn read_headings(path: &Path, shown: &str) -> Result<Vec<Heading>, Vec<Probl
 /// # Errors
 /// As of a header; `file-empty`.
 pub fn listed_headings(text: &str, shown: &str) -> Result<Vec<Heading>, Vec<Problem>> {
-    header(text, shown).map(|(headings, _)| headings)
+    header(text, shown)
 }
 
-/// The headings, and the start of the first row.
-fn header(text: &str, shown: &str) -> Result<(Vec<Heading>, usize), Vec<Problem>> {
-    let end = text.find('\n').unwrap_or(text.len());
-    let line = Source::new(shown, text[..end].trim_end_matches('\r')).whole();
+/// The headings in the first line of a text.
+fn header(text: &str, shown: &str) -> Result<Vec<Heading>, Vec<Problem>> {
+    let line = text.split('\n').next().unwrap_or_default();
+    let line = Source::new(shown, line.trim_end_matches('\r')).whole();
     if text.trim().is_empty() {
         return Err(vec![Problem::error("file-empty", format!("`{shown}` is empty"))]);
     }
     let mut problems = Vec::new();
-    match cells::headings(&line, &mut problems) {
-        Some(headings) => Ok((headings, (end + 1).min(text.len()))),
-        None => Err(problems),
-    }
+    cells::headings(&line, &mut problems).ok_or(problems)
 }
 
 fn find_columns(
@@ -341,4 +216,160 @@ fn find_columns(
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const FORCE: Dimension = Dimension([1, 1, -2, 0, 0, 0]);
+
+    fn read(bytes: &[u8], wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
+        let file = tempfile::NamedTempFile::new().expect("a temporary file");
+        std::fs::write(file.path(), bytes).expect("writable");
+        read_record(file.path(), "r.csv", wanted)
+    }
+
+    fn wanted() -> [Wanted; 2] {
+        [Wanted::new("time", Dimension::TIME), Wanted::new("Y", FORCE)]
+    }
+
+    /// Code and `line:column` of each problem.
+    fn faults(text: &str) -> Vec<(&'static str, String)> {
+        let problems = read(text.as_bytes(), &wanted()).expect_err(text);
+        problems
+            .iter()
+            .map(|problem| {
+                (
+                    problem.code,
+                    problem.at.as_ref().map_or(String::new(), |at| at.to_string()[6..].to_string()),
+                )
+            })
+            .collect()
+    }
+
+    #[test]
+    fn wanted_columns_in_si_and_in_the_order_asked_for() {
+        let text = "\u{feff}\"Y [kN]\",note [-],time [ms],x\r\n1.5,\"a, b\",5,-\r\n -2e1 ,,\"10\",\r\n\r\n";
+        let record =
+            read(text.as_bytes(), &wanted()).unwrap_or_else(|problems| panic!("{problems:?}"));
+        assert_eq!(
+            record.columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>(),
+            ["time", "Y"]
+        );
+        assert_eq!(record.columns[0].values, [0.005, 0.01]);
+        assert_eq!(record.columns[1].values, [1500.0, -20_000.0]);
+        assert_eq!(
+            (record.rows, record.channels.len(), record.columns[1].unit.text.as_str()),
+            (2, 4, "kN")
+        );
+        assert_eq!(record.bytes, text.len());
+    }
+
+    #[test]
+    fn an_optional_column_may_be_missing() {
+        let wanted = [
+            Wanted::new("time", Dimension::TIME),
+            Wanted::new("Z", FORCE).if_there(),
+            Wanted::new("time", Dimension::TIME),
+        ];
+        assert_eq!(read(b"time [s]\n1", &wanted).map(|record| record.columns.len()).ok(), Some(1));
+        assert_eq!(read(b"time [s]\n1\n2\n", &[]).map(|record| record.rows).ok(), Some(2));
+    }
+
+    #[test]
+    fn each_fault_at_its_row_and_column() {
+        for (text, code, at) in [
+            ("time [s],Y [kN]\n0,1\n0.1,NaN\n", "not-finite", "3:5"),
+            ("time [s],Y [kN]\n0,1\n0.1,1e999\n", "not-finite", "3:5"),
+            ("time [s],Y [kN]\n0,1\n0.1,\n", "not-a-number", "3:5"),
+            ("time [s],Y [kN]\n0,1\n0.1,#N/A\n", "not-a-number", "3:5"),
+            ("time [s],Y [kN]\n0,1\n0.1,1 000\n", "not-a-number", "3:5"),
+            ("time [s],Y [kN]\n0,1\n0.1,\"1,23\"\n", "decimal-comma", "3:6"),
+            ("time [s],Y [kN]\n0,0,1,5\n", "decimal-comma", "2:1"),
+            ("time [s],Y [kN]\n0,1\n0.1,1,9.5\n0.2,3\n", "ragged-row", "3:7"),
+            ("time [s],Y [kN]\n0\n1,2\n", "ragged-row", "2:1"),
+            ("time [s],Y [kN]\n0,1\n0.1", "truncated-row", "3:1"),
+            ("time [s],Y [kN]\n0,1\n\n0.1,2\n", "blank-line", "3:1"),
+            ("time [s],Y [kN]\n0,1\n\"0,1\n", "stray-quote", "3:1"),
+            ("time [s],Y [kN]\n", "no-rows", ""),
+            ("time [s],Y [kN]\n\n\n", "no-rows", ""),
+            ("", "file-empty", ""),
+            ("\n\n", "file-empty", ""),
+            ("time [s];Y [kN]\n0;1\n", "semicolon-separated", "1:9"),
+            ("time [s]\tY [kN]\n0\t1\n", "tab-separated", "1:9"),
+            ("time [s],Y [kN]\r0,1\r1,1\r", "line-ends", "1:1"),
+            ("time [s],Y\n0,1\n", "unit-missing", "1:10"),
+            ("time [s],Y [kn]\n0,1\n", "unknown-unit", "1:13"),
+            ("time [s],Y [m/s^2]\n0,1\n", "unit-mismatch", "1:13"),
+            ("time [s],Y_1 [kN]\n0,1\n", "unknown-channel", "1:1"),
+            ("time [s],Y [kN],Y [N]\n0,1,2\n", "duplicate-column", "1:17"),
+            ("time [s],\"Y [kN]\n0,1\n", "stray-quote", "1:10"),
+        ] {
+            assert_eq!(faults(text), [(code, at.to_string())], "{text}");
+        }
+    }
+
+    #[test]
+    fn a_problem_far_down_keeps_only_its_line_and_many_are_counted() {
+        let mut text = String::from("time [s],Y [kN]\n");
+        for n in 0..30_000 {
+            text += if n >= 29_990 { "1,x\n" } else { "1,2\n" };
+        }
+        let problems = read(text.as_bytes(), &wanted()).expect_err("ten faults");
+        assert_eq!(problems.len(), 6);
+        assert_eq!(
+            problems[0].at.as_ref().map(|at| (at.to_string(), at.source.text.as_str())),
+            Some(("r.csv:29992:3".into(), "1,x"))
+        );
+        assert_eq!(problems[5].says, "and 5 more problems in `r.csv`");
+    }
+
+    #[test]
+    fn a_place_is_found_again() {
+        let mut file = tempfile::NamedTempFile::new().expect("a temporary file");
+        std::io::Write::write_all(&mut file, "Y [kN],time [s]\r\n1,2\r\n3,45\r\n".as_bytes())
+            .expect("writable");
+        let record = read_record(file.path(), "r.csv", &wanted()).expect("good");
+        let place = record.place(1, record.column("time")).expect("there");
+        assert_eq!((place.to_string(), place.text()), ("r.csv:3:3".into(), "45"));
+    }
+
+    const SAMPLE: &str =
+        "time [s],\"x [-]\",Y [kN]\r\n0.000,a,-1.25\r\n0.005,\"b, c\",1e-3\n0.010,,7\n";
+
+    #[test]
+    fn every_prefix_is_survived() {
+        (0..=SAMPLE.len()).for_each(|at| drop(read(&SAMPLE.as_bytes()[..at], &wanted())));
+    }
+
+    proptest! {
+        #[test]
+        fn flipped_bytes_are_survived(flips in prop::collection::vec((0..SAMPLE.len(), any::<u8>()), 1..5)) {
+            let mut bytes = SAMPLE.as_bytes().to_vec();
+            for (at, byte) in flips {
+                bytes[at] = byte;
+            }
+            match read(&bytes, &wanted()) {
+                Ok(record) => prop_assert!(record.columns.iter().all(|column| column.values.len() == record.rows)),
+                Err(problems) => problems.iter().for_each(|problem| drop(problem.render(false))),
+            }
+        }
+
+        /// The `csv` crate and the standard library read the same numbers.
+        #[test]
+        fn reads_as_the_csv_crate(rows in prop::collection::vec((-1e6..1e6f64, "[a-z]{0,3}", any::<i16>(), 0..6usize), 1..20)) {
+            let mut text = String::from("time [s],note [-],Y [N]\n");
+            for (time, note, y, decimals) in &rows {
+                text += &format!("{time:.decimals$},{note},{y}\n");
+            }
+            let record = read(text.as_bytes(), &wanted()).expect("well formed");
+            let mut reader = csv::Reader::from_reader(text.as_bytes());
+            for (at, line) in reader.records().enumerate() {
+                let line = line.expect("well formed");
+                prop_assert_eq!(record.columns[0].values[at].to_bits(), line[0].parse::<f64>().expect("a number").to_bits());
+                prop_assert_eq!(record.columns[1].values[at], line[2].parse::<f64>().expect("a number"));
+            }
+            prop_assert_eq!(record.rows, rows.len());
+        }
+    }
+}

@@ -192,7 +192,7 @@ impl Table {
         dimension: Option<Dimension>,
     ) -> Result<Vec<Option<f64>>, Vec<Problem>> {
         let Some(heading) = self.columns.get(column) else { return Ok(Vec::new()) };
-        let unit = heading.unit(dimension).map_err(|problem| vec![problem])?;
+        let unit = heading.unit(dimension)?;
         let mut faults = Faults::new(&self.source.name);
         let mut values = Vec::with_capacity(self.rows.len());
         for cell in self.rows.iter().filter_map(|row| row.get(column)) {

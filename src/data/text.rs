@@ -20,8 +20,6 @@ pub const LARGEST_RECORD: u64 = 1 << 30;
 pub const LONGEST_LINE: usize = 1 << 20;
 /// Maximum length of a line of a small text in bytes: a table with a thousand columns.
 const LONGEST_TEXT_LINE: usize = 64 << 10;
-/// Bytes read at a time.
-const CHUNK: u64 = 1 << 20;
 /// Number of bytes of a long line in a message.
 const SHOWN: usize = 80;
 
@@ -30,9 +28,7 @@ const SHOWN: usize = 80;
 /// # Errors
 /// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`, `encoding`.
 pub fn read_text(path: &Path, shown: &str) -> Result<(Arc<Source>, String), Problem> {
-    let mut bytes = Vec::new();
-    read_bounded(path, shown, SMALL, None, &mut bytes)?;
-    text_of(&bytes, shown)
+    text_of(&read_bytes(path, shown, SMALL)?, shown)
 }
 
 /// As [`read_text`], of bytes in memory.
@@ -73,24 +69,25 @@ pub fn check_lines(text: &str, shown: &str) -> Result<(), Problem> {
     }
 }
 
-/// Reads all bytes of a record into the buffer, replacing its content.
-pub(super) fn read_large(path: &Path, shown: &str, buffer: &mut Vec<u8>) -> Result<(), Problem> {
-    read_bounded(path, shown, LARGEST_RECORD, Some(LONGEST_LINE), buffer)
-}
-
-/// Reads all bytes of a record that is not a text.
-pub(super) fn read_plain(path: &Path, shown: &str, buffer: &mut Vec<u8>) -> Result<(), Problem> {
-    read_whole(path, shown, LARGEST_RECORD, None, buffer)
-}
-
-/// Reads all bytes of a plain file of any format, not larger than a limit.
+/// Reads all bytes of a plain file of any format, which is not empty and not larger than a limit.
 ///
 /// # Errors
-/// As [`read_bytes`], without a look at the ending.
+/// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`.
 pub fn read_file(path: &Path, shown: &str, limit: u64) -> Result<Vec<u8>, Problem> {
-    let mut bytes = Vec::new();
-    read_whole(path, shown, limit, None, &mut bytes)?;
-    Ok(bytes)
+    size(path, shown, limit)?;
+    let bytes = disk::read(path, limit).map_err(|error| unreadable(shown, &error))?;
+    if bytes.is_empty() { Err(empty(shown)) } else { Ok(bytes) }
+}
+
+/// As [`read_file`], of a file that is not of another format by its name.
+///
+/// # Errors
+/// As [`read_file`]; `format-not-read`.
+pub fn read_bytes(path: &Path, shown: &str, limit: u64) -> Result<Vec<u8>, Problem> {
+    match other_format(path, shown) {
+        Some(problem) => Err(problem),
+        None => read_file(path, shown, limit),
+    }
 }
 
 /// The size of a record of any length that is not a text.
@@ -112,10 +109,9 @@ pub(super) fn open_text(path: &Path, shown: &str) -> Result<BufReader<disk::Read
 /// # Errors
 /// As [`read_text`], but for `encoding`; a file may be empty.
 pub fn read_any(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
-    let mut bytes = Vec::new();
-    match read_whole(path, shown, LARGEST_RECORD, None, &mut bytes) {
-        Err(problem) if problem.code != "file-empty" => Err(problem),
-        _ => Ok(bytes),
+    match read_file(path, shown, LARGEST_RECORD) {
+        Err(problem) if problem.code == "file-empty" => Ok(Vec::new()),
+        read => read,
     }
 }
 
@@ -128,11 +124,9 @@ pub(super) fn long_line(start: &[u8], line: usize, shown: &str) -> Problem {
         .help("a record is a text file with one line per sample; export it again")
 }
 
-/// The first line of a record file.
-pub(super) fn read_line(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
-    size(path, shown, LARGEST_RECORD)?;
-    let file = disk::open(path).map_err(|error| unreadable(shown, &error))?;
-    read_line_of(&mut BufReader::new(file), shown)
+/// Refuses a record that is too large to be read as a whole.
+pub(super) fn record_size(path: &Path, shown: &str) -> Result<(), Problem> {
+    size(path, shown, LARGEST_RECORD).map(|_| ())
 }
 
 /// The first line of an open record file.
@@ -167,81 +161,6 @@ fn size(path: &Path, shown: &str, limit: u64) -> Result<u64, Problem> {
         .help("split it, or leave out channels and samples that are not needed")),
         Some(Kind::File(size)) => Ok(size),
     }
-}
-
-/// Reads a plain file that is not empty and not larger than a limit.
-///
-/// # Errors
-/// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`.
-pub fn read_bytes(
-    path: &Path,
-    shown: &str,
-    limit: u64,
-    buffer: &mut Vec<u8>,
-) -> Result<(), Problem> {
-    read_bounded(path, shown, limit, None, buffer)
-}
-
-/// Refuses a file of another format by its name.
-fn read_bounded(
-    path: &Path,
-    shown: &str,
-    limit: u64,
-    longest: Option<usize>,
-    buffer: &mut Vec<u8>,
-) -> Result<(), Problem> {
-    match other_format(path, shown) {
-        Some(problem) => Err(problem),
-        None => read_whole(path, shown, limit, longest, buffer),
-    }
-}
-
-/// With a maximum line length, reading stops at a longer line.
-fn read_whole(
-    path: &Path,
-    shown: &str,
-    limit: u64,
-    longest: Option<usize>,
-    buffer: &mut Vec<u8>,
-) -> Result<(), Problem> {
-    let unreadable = |error: std::io::Error| unreadable(shown, &error);
-    let size = size(path, shown, limit)?;
-    buffer.clear();
-    let mut file = disk::open(path).map_err(unreadable)?.take(limit + 1);
-    let longest_line = longest.unwrap_or(usize::MAX);
-    if let Some(longest) = longest {
-        let first = usize::try_from(size).unwrap_or(usize::MAX).min(longest + 1);
-        disk::reserve(buffer, first, path).map_err(unreadable)?;
-        (&mut file).take(first as u64).read_to_end(buffer).map_err(unreadable)?;
-        if buffer.len() > longest && memchr::memchr(b'\n', buffer).is_none() {
-            return Err(long_line(buffer, 1, shown));
-        }
-    }
-    // One byte more than the size, so that the end is detected without reallocation.
-    let rest =
-        usize::try_from(size).unwrap_or(usize::MAX).saturating_sub(buffer.len()).saturating_add(1);
-    disk::reserve(buffer, rest, path).map_err(unreadable)?;
-    let mut line = memchr::memrchr(b'\n', buffer).map_or(0, |end| end + 1);
-    loop {
-        let before = buffer.len();
-        if (&mut file).take(CHUNK).read_to_end(buffer).map_err(unreadable)? == 0 {
-            break;
-        }
-        if let Some(end) = memchr::memrchr(b'\n', &buffer[before..]) {
-            line = before + end + 1;
-        }
-        if buffer.len() - line > longest_line {
-            let number = 1 + memchr::memchr_iter(b'\n', &buffer[..line]).count();
-            return Err(long_line(&buffer[line..], number, shown));
-        }
-    }
-    if buffer.len() as u64 > limit {
-        return Err(Problem::error(
-            "file-too-large",
-            format!("`{shown}` grew beyond {} MB while it was read", limit >> 20),
-        ));
-    }
-    if buffer.is_empty() { Err(empty(shown)) } else { Ok(()) }
 }
 
 /// File formats of measuring systems and simulation programs that are not supported.
@@ -280,14 +199,15 @@ fn empty(shown: &str) -> Problem {
 /// `encoding`: the name of the encoding if it can be detected, else the first byte that is not
 /// UTF-8, with its row.
 pub fn decode<'a>(bytes: &'a [u8], shown: &str) -> Result<&'a str, Problem> {
-    decode_from(bytes, shown, 1)
+    decode_from(bytes, shown, 1, 0)
 }
 
-/// The same of a part of a file that begins with a line.
+/// The same of a part of a file that begins with a line, after so many bytes.
 pub(super) fn decode_from<'a>(
     bytes: &'a [u8],
     shown: &str,
     first_line: usize,
+    before: u64,
 ) -> Result<&'a str, Problem> {
     const HELP: &str = "save the file as UTF-8";
     let wide = match bytes {
@@ -311,10 +231,8 @@ pub(super) fn decode_from<'a>(
     std::str::from_utf8(bytes).map(without_mark).map_err(|error| {
         let at = error.valid_up_to();
         let byte = bytes.get(at).copied().unwrap_or(0);
-        let says = match first_line {
-            1 => format!("byte {} of `{shown}`, hexadecimal {byte:02x}, is not UTF-8", at + 1),
-            _ => format!("a byte of `{shown}`, hexadecimal {byte:02x}, is not UTF-8"),
-        };
+        let number = before + at as u64 + 1;
+        let says = format!("byte {number} of `{shown}`, hexadecimal {byte:02x}, is not UTF-8");
         let problem =
             Problem::error("encoding", says).at(&line_of_bytes(bytes, at, shown, first_line));
         match latin(byte) {

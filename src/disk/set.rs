@@ -10,13 +10,12 @@ use std::collections::HashSet;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use sha2::{Digest, Sha256};
-
 use super::journal::{JOURNAL, Journal, plain};
 use super::{
     Hold, Kind, ScratchFile, Writer, create, hold, is_file, is_folder, is_link, kind, make_folders,
     names, read, remove_file, remove_folder, rename, sync_folder, sync_together,
 };
+use crate::hash::{Hasher, sha256};
 
 /// Prefix of the names that this module uses in an output folder.
 const OWN: &str = ".fishplate-";
@@ -151,7 +150,7 @@ impl Set {
         }
         self.begin()?;
         let file = create(&self.folder.join(NEW).join(self.paths.len().to_string()))?;
-        Ok(Open { inside: inside.to_string(), file, hash: Sha256::new() })
+        Ok(Open { inside: inside.to_string(), file, hash: Hasher::default() })
     }
 
     /// Ends a file. On return its bytes are written, but not in their place.
@@ -160,7 +159,7 @@ impl Set {
     /// The system's error.
     pub fn close(&mut self, open: Open) -> io::Result<()> {
         self.paths.push(open.inside);
-        self.hashes.push(in_hex(&open.hash.finalize()));
+        self.hashes.push(open.hash.finish());
         self.written(open.file)
     }
 
@@ -267,7 +266,7 @@ impl Set {
         let changed = |path: &str, hash: Option<&String>| {
             let before = read(&self.folder.join(path), LARGEST_SIGNED);
             hash.is_none()
-                || !before.is_ok_and(|bytes| hash.is_some_and(|hash| *hash == hashed(&bytes)))
+                || !before.is_ok_and(|bytes| hash.is_some_and(|hash| *hash == sha256(&bytes)))
         };
         let written = self.paths.iter().zip(&self.hashes).map(|(path, hash)| (path, Some(hash)));
         let mut outdated = Vec::new();
@@ -291,27 +290,19 @@ impl Set {
 pub struct Open {
     inside: String,
     file: Writer,
-    hash: Sha256,
+    hash: Hasher,
 }
 
 impl Write for Open {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.file.write(bytes)?;
-        self.hash.update(bytes);
+        self.hash.add(bytes);
         Ok(bytes.len())
     }
 
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
     }
-}
-
-fn hashed(bytes: &[u8]) -> String {
-    in_hex(&Sha256::digest(bytes))
-}
-
-fn in_hex(hash: &[u8]) -> String {
-    hash.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 impl Drop for Set {

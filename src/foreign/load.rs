@@ -1,9 +1,8 @@
 //! The bytes of a file, and the limits of what is read from it.
 
-use std::io::Read;
 use std::path::Path;
 
-use crate::disk::{self, Kind};
+use crate::data::text::read_file;
 use crate::problem::Problem;
 
 /// Maximum size of a file in bytes, as for a record of a campaign.
@@ -17,43 +16,13 @@ pub(super) const MOST_VALUES: usize = 1 << 28;
 pub(super) const MOST_CHANNELS: usize = 100_000;
 
 /// All bytes of a plain file.
-pub(super) fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, Vec<Problem>> {
-    let unreadable = |why: &dyn std::fmt::Display| {
-        vec![Problem::error(
-            "file-unreadable",
-            format!("`{shown}` {} {why}", crate::data::text::UNREADABLE),
-        )]
-    };
-    let too_large = |size: u64| {
-        let says = format!("`{shown}` has {} MB; the maximum is {} MB", size >> 20, LARGEST >> 20);
-        vec![
-            Problem::error("file-too-large", says)
-                .help("export it in parts, or leave out channels that are not needed"),
-        ]
-    };
-    // Other kinds are refused before they are opened, since reading a pipe could block for ever.
-    let size = match disk::kind(path).map_err(|error| unreadable(&error))? {
-        None => {
-            return Err(vec![Problem::error(
-                "file-missing",
-                format!("there is no file `{shown}`"),
-            )]);
+pub(super) fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
+    read_file(path, shown, LARGEST).map_err(|problem| match problem.code {
+        "file-too-large" => {
+            problem.help("export it in parts, or leave out channels that are not needed")
         }
-        Some(Kind::Folder) => return Err(unreadable(&"it is a folder")),
-        Some(Kind::Other) => return Err(unreadable(&"it is not a plain file")),
-        Some(Kind::File(size)) if size > LARGEST => return Err(too_large(size)),
-        Some(Kind::File(size)) => size,
-    };
-    let mut bytes = Vec::new();
-    let wanted = usize::try_from(size).unwrap_or(usize::MAX).saturating_add(1);
-    disk::reserve(&mut bytes, wanted, path).map_err(|error| unreadable(&error))?;
-    let file = disk::open(path).map_err(|error| unreadable(&error))?;
-    file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(|error| unreadable(&error))?;
-    match bytes.len() as u64 {
-        0 => Err(vec![Problem::error("file-empty", format!("`{shown}` is empty"))]),
-        grown if grown > LARGEST => Err(too_large(grown)),
-        _ => Ok(bytes),
-    }
+        _ => problem,
+    })
 }
 
 /// Bytes that any file may hold when it is unpacked, and the multiple of its size that it may hold

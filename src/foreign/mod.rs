@@ -9,10 +9,13 @@
 //! | `format` | the formats; recognition by content; formats that are not read |
 //! | `load` | the bytes of a file; limits of memory |
 //! | `guard` | calls of readers of other projects |
+//! | `binary` | bytes within their bounds, and numbers in them |
 //! | `text/` | CSV of any dialect, columns of an ASCII export |
 //! | `mat/` | MATLAB files |
 //! | `mdf4`, `tdms`, `xlsx`, `columnar` | MDF 4, TDMS, Excel, Parquet and Arrow |
 
+#[cfg(feature = "foreign")]
+mod binary;
 mod columnar;
 mod format;
 mod guard;

@@ -6,15 +6,16 @@
 
 use indexmap::IndexMap;
 
+use super::binary::Cursor;
 use super::guard::damaged;
 use super::load::{Budget, MOST_CHANNELS};
 use super::{Channel, Format, Input, Place, Read, Table};
 use crate::problem::Problem;
 
-mod bytes;
 mod scale;
+mod value;
 
-use bytes::{Bytes, Property};
+use value::Property;
 
 /// Bytes of a lead-in.
 const LEAD_IN: usize = 28;
@@ -108,7 +109,7 @@ impl Reader {
     ) -> Result<usize, Failure> {
         let rest = &bytes[at..];
         let mut lead =
-            Bytes::new(rest.get(..LEAD_IN).ok_or("the file ends within its lead-in")?, false);
+            Cursor::new(rest.get(..LEAD_IN).ok_or("the file ends within its lead-in")?, false);
         if lead.take(4)? != b"TDSm" {
             return Err("it does not begin with `TDSm`".into());
         }
@@ -135,7 +136,7 @@ impl Reader {
                 let objects = &mut self.objects;
                 self.active.drain(..).for_each(|at| objects[at].listed = false);
             }
-            self.meta_data(Bytes::new(&rest[LEAD_IN..raw], lead.big))?;
+            self.meta_data(Cursor::new(&rest[LEAD_IN..raw], lead.big))?;
         }
         if contents & RAW_DATA != 0 && raw < end {
             if contents & DAQMX != 0 {
@@ -150,10 +151,10 @@ impl Reader {
         Ok(at + end)
     }
 
-    fn meta_data(&mut self, mut bytes: Bytes<'_>) -> Result<(), Failure> {
+    fn meta_data(&mut self, mut bytes: Cursor<'_>) -> Result<(), Failure> {
         let objects = bytes.u32()?;
         for _ in 0..objects {
-            let path = bytes.text()?;
+            let path = value::text(&mut bytes)?;
             let length = bytes.u32()?;
             if self.objects.len() > MOST_CHANNELS {
                 return Err(format!("more than {MOST_CHANNELS} objects").into());
@@ -174,11 +175,11 @@ impl Reader {
                     let kind = bytes.u32()?;
                     let _dimension = bytes.u32()?;
                     let count = size(bytes.u64()?)?;
-                    let bytes_of = match bytes::size_of(kind) {
+                    let bytes_of = match value::size_of(kind) {
                         Some(width) => count
                             .checked_mul(width)
                             .ok_or_else(|| format!("`{path}` declares {count} values"))?,
-                        None if kind == bytes::TEXT => size(bytes.u64()?)?,
+                        None if kind == value::TEXT => size(bytes.u64()?)?,
                         None => {
                             return Err(format!(
                                 "`{path}` has values of the unknown type {kind:#x}"
@@ -192,8 +193,8 @@ impl Reader {
             };
             let properties = bytes.u32()?;
             for _ in 0..properties {
-                let name = bytes.text()?;
-                let value = bytes.property()?;
+                let name = value::text(&mut bytes)?;
+                let value = value::property(&mut bytes)?;
                 object.properties.insert(name, value);
             }
             if has_data && !object.listed {
@@ -258,7 +259,7 @@ impl Reader {
         place: &str,
     ) -> Result<(), Failure> {
         let widths: Option<Vec<usize>> =
-            parts.iter().map(|(_, index)| bytes::size_of(index.kind)).collect();
+            parts.iter().map(|(_, index)| value::size_of(index.kind)).collect();
         let widths = widths.ok_or("it has interleaved texts")?;
         let row: usize = widths.iter().sum();
         if !part.len().is_multiple_of(row)
@@ -286,8 +287,8 @@ impl Reader {
         place: &str,
     ) -> Result<(), Failure> {
         let object = &mut self.objects[at];
-        let Some(numbers) = bytes::numbers(index.kind, data, big) else {
-            object.left_out = Some(bytes::what(index.kind).into());
+        let Some(numbers) = value::numbers(index.kind, data, big) else {
+            object.left_out = Some(value::what(index.kind).into());
             return Ok(());
         };
         budget.add(numbers.len(), place).map_err(Failure::Problem)?;
@@ -381,7 +382,7 @@ fn tables(objects: IndexMap<String, Object>) -> Read {
                 .map(|text| text.trim().to_string())
                 .filter(|text| !text.is_empty())
         };
-        let time = object.index.is_some_and(|index| index.kind == bytes::TIME);
+        let time = object.index.is_some_and(|index| index.kind == value::TIME);
         table.channels.push(Channel {
             name,
             unit: text("unit_string")

@@ -27,6 +27,7 @@
 //! | [`along`] | signal over an axis | derivative, integral, shifted signal |
 //! | [`rank`] | pairs of values | rank correlation |
 //! | [`disturb`] | signal | the signal with an offset, a gain, a delay or noise of a stated size |
+//! | [`random`] | seed | numbers that are the same on every machine |
 //! | [`hysteresis`] | two loops of output over input | their difference, branch by branch |
 
 pub mod along;
@@ -42,6 +43,7 @@ mod incomplete_beta;
 pub mod interval;
 pub mod pair;
 pub mod percentile;
+pub mod random;
 pub mod random_effects;
 pub mod rank;
 pub mod reduction;

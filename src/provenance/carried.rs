@@ -89,9 +89,7 @@ pub fn open(path: &Path) -> Result<Carried, Problem> {
 }
 
 fn file(path: &Path, most: u64) -> Result<Vec<u8>, Problem> {
-    let mut bytes = Vec::new();
-    read_bytes(path, &path.display().to_string(), most, &mut bytes)?;
-    Ok(bytes)
+    read_bytes(path, &path.display().to_string(), most)
 }
 
 /// Opens results.json. A report in the same folder with the same results provides the protocol.

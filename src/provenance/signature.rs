@@ -31,9 +31,7 @@ pub fn beside(path: &Path) -> PathBuf {
 
 fn text(path: &Path) -> Result<String, Problem> {
     let shown = path.display().to_string();
-    let mut bytes = Vec::new();
-    read_bytes(path, &shown, SMALL, &mut bytes)?;
-    crate::data::text::decode(&bytes, &shown).map(str::to_string)
+    crate::data::text::decode(&read_bytes(path, &shown, SMALL)?, &shown).map(str::to_string)
 }
 
 /// Reads a file to be signed or checked.
@@ -41,9 +39,7 @@ fn text(path: &Path) -> Result<String, Problem> {
 /// # Errors
 /// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`.
 pub fn content(path: &Path) -> Result<Vec<u8>, Problem> {
-    let mut bytes = Vec::new();
-    read_bytes(path, &path.display().to_string(), LARGE, &mut bytes)?;
-    Ok(bytes)
+    read_bytes(path, &path.display().to_string(), LARGE)
 }
 
 /// A new pair of keys as the texts of two files, secret and public.

@@ -11,6 +11,7 @@ use serde_json::{Map, Value, json};
 use super::check::Check;
 use crate::data::fingerprint::fingerprint;
 use crate::data::hash::sha256;
+use crate::data::text::read_bytes;
 use crate::disk;
 use crate::result::Certification;
 
@@ -91,11 +92,12 @@ pub fn check(folder: &Path) -> Option<Check> {
     if !disk::may_exist(&path) {
         return None;
     }
-    let mut bytes = Vec::new();
-    let read = crate::data::text::read_bytes(&path, FILE, LARGEST, &mut bytes);
-    if let Err(problem) = read {
-        return Some(Check::differs(NAME, "the statement cannot be read", vec![problem.says]));
-    }
+    let bytes = match read_bytes(&path, FILE, LARGEST) {
+        Ok(bytes) => bytes,
+        Err(problem) => {
+            return Some(Check::differs(NAME, "the statement cannot be read", vec![problem.says]));
+        }
+    };
     let value: Value = serde_json::from_slice(&bytes).unwrap_or(Value::Null);
     let subjects = value["subject"].as_array().filter(|_| value["_type"] == STATEMENT);
     let Some(subjects) = subjects else {

@@ -8,12 +8,14 @@ mod symbols;
 
 use std::collections::BTreeMap;
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::{Environment, UndefinedBehavior, Value, context};
 use serde::Serialize;
 use serde_json::Value as Json;
-use sha2::{Digest, Sha256};
 
+use crate::hash::sha256_base64;
 use crate::problem::{Problem, Problems};
 use crate::report::study::{Chapter, Document};
 use crate::report::view::ReportData;
@@ -117,7 +119,7 @@ fn filled(
     let graph = figures
         .iter()
         .find(|(name, _)| name == GRAPH)
-        .map(|(_, svg)| format!("data:image/svg+xml;base64,{}", base64(svg.as_bytes())));
+        .map(|(_, svg)| format!("data:image/svg+xml;base64,{}", STANDARD.encode(svg)));
     let page = environment.get_template(frame).map_err(said)?;
     page.render(context! {
         data => shown(&data),
@@ -141,7 +143,7 @@ fn said(error: minijinja::Error) -> String {
 /// Content security policy: only the page's own style and script, identified by their hashes, and
 /// embedded images are allowed.
 fn policy() -> String {
-    let known = |text: &str| format!("'sha256-{}'", base64(&Sha256::digest(text.as_bytes())));
+    let known = |text: &str| format!("'sha256-{}'", sha256_base64(text.as_bytes()));
     format!(
         "default-src 'none'; style-src {}; script-src {}; img-src data:; base-uri 'none'; form-action 'none'",
         known(CSS),
@@ -161,44 +163,6 @@ fn shown(value: &Json) -> Value {
         Json::Array(items) => Value::from(items.iter().map(shown).collect::<Vec<_>>()),
         Json::Object(map) => {
             Value::from_pairs(map.iter().map(|(key, item)| (key.clone(), shown(item))))
-        }
-    }
-}
-
-/// RFC 4648, with padding.
-fn base64(bytes: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for part in bytes.chunks(3) {
-        let mut group = [0; 3];
-        group[..part.len()].copy_from_slice(part);
-        let bits = u32::from_be_bytes([0, group[0], group[1], group[2]]);
-        for at in 0..4 {
-            let letter = LETTERS[(bits >> (18 - 6 * at)) as usize & 63];
-            text.push(if at <= part.len() { char::from(letter) } else { '=' });
-        }
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::base64;
-
-    /// RFC 4648, section 10.
-    #[test]
-    fn base64_vectors_of_the_rfc() {
-        let vectors = [
-            ("", ""),
-            ("f", "Zg=="),
-            ("fo", "Zm8="),
-            ("foo", "Zm9v"),
-            ("foob", "Zm9vYg=="),
-            ("fooba", "Zm9vYmE="),
-            ("foobar", "Zm9vYmFy"),
-        ];
-        for (plain, coded) in vectors {
-            assert_eq!(base64(plain.as_bytes()), coded);
         }
     }
 }

@@ -1,33 +1,24 @@
 //! Random selections, reproducible from a seed on every machine.
 
 use super::case::Case;
+use crate::metrics::random::SplitMix64;
 
-/// A stream of random numbers: SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number
-/// generators", 2014).
+/// A stream of random numbers.
 #[derive(Clone, Debug)]
-pub struct Random(u64);
+pub struct Random(SplitMix64);
 
 impl Random {
     /// Streams of different numbers are independent.
     pub fn new(seed: u64, stream: u64) -> Self {
-        let mut random = Self(seed ^ stream.wrapping_mul(0xd134_2543_de82_ef95));
+        let mut random = SplitMix64(seed ^ stream.wrapping_mul(0xd134_2543_de82_ef95));
         random.number();
-        random
-    }
-
-    /// A uniformly distributed 64-bit number.
-    pub fn number(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        Self(random)
     }
 
     /// A uniformly distributed number below `n` (Lemire's multiplication; its bias is below n /
     /// 2^64).
     pub fn below(&mut self, n: usize) -> usize {
-        ((u128::from(self.number()) * n as u128) >> 64) as usize
+        ((u128::from(self.0.number()) * n as u128) >> 64) as usize
     }
 }
 

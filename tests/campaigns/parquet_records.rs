@@ -8,7 +8,9 @@ use std::time::{Duration, Instant};
 use crate::common::campaign::copy;
 use crate::common::program::{certify, files, fishplate};
 use fishplate::data::hash::sha256;
+use fishplate::data::record::{Wanted, read_record};
 use fishplate::data::write::{FileColumn, Values, parquet};
+use fishplate::units::Dimension;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -219,4 +221,29 @@ fn a_record_that_cannot_be_converted_leaves_nothing() {
     let ran = fishplate(&["convert-records", &words[0], "--to", "parquet", "--out", &words[1]]);
     assert_eq!(ran.code, 2, "{}", ran.stderr);
     assert!(ran.stderr.contains("simulation/S02.csv") && !out.exists(), "{}", ran.stderr);
+}
+
+/// Written by Arrow C++ with a checksum for each page, uncompressed: a changed byte of a value
+/// would else be another number.
+#[test]
+fn checksums_of_pages_are_looked_at() {
+    let whole = include_bytes!("../cases/data/checksums.parquet");
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let wanted =
+        [Wanted::new("distance", Dimension::LENGTH), Wanted::new("ay", Dimension::ACCELERATION)];
+    let read = |bytes: &[u8]| {
+        let path = folder.path().join("r.parquet");
+        fs::write(&path, bytes).expect("written");
+        read_record(&path, "r.parquet", &wanted)
+    };
+    let record = read(whole).expect("sound");
+    let distances: Vec<f64> = (0..40).map(|row| 0.5 * f64::from(row)).collect();
+    assert_eq!(record.columns[0].values, distances);
+    let value = 2.5_f64.to_le_bytes();
+    let at = whole.windows(8).position(|bytes| bytes == value).expect("the sixth distance");
+    let mut changed = whole.to_vec();
+    changed[at + 6] ^= 1;
+    let problems = read(&changed).expect_err("another number");
+    let Some(problem) = problems.first() else { panic!("no problem") };
+    assert!(problem.code == "file-damaged" && problem.says.contains("CRC"), "{}", problem.says);
 }

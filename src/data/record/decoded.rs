@@ -1,9 +1,11 @@
 //! Decoded numbers that neighbouring stretches have in common: decoded once, and kept for the next
 //! stretch within a bound.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
+
+use super::held::locked;
+use super::recent::Recent;
 
 /// Rows of a block: a row group with at most so many is one block, a longer one is parted, since
 /// some programs write a million rows in a group. At 200 Hz a block has 160 s; 24 channels of both
@@ -19,7 +21,7 @@ const MOST: usize = 32 << 20;
 pub(super) type Numbers = Option<Arc<Vec<f64>>>;
 
 /// Rows of a file that are decoded together.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Place {
     pub file: PathBuf,
     pub first_row: usize,
@@ -33,25 +35,14 @@ impl Place {
 
 /// The blocks that were used last; shared by all files of a campaign.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Decoded(Arc<Mutex<Kept>>);
-
-#[derive(Debug, Default)]
-struct Kept {
-    blocks: BTreeMap<Place, Entry>,
-    bytes: usize,
-    /// Counts the uses.
-    now: u64,
+pub(super) struct Decoded {
+    blocks: Arc<Mutex<Recent<Kept>>>,
     /// Columns of blocks that were decoded.
     #[cfg(test)]
-    made: usize,
+    made: Arc<std::sync::atomic::AtomicUsize>,
 }
 
-#[derive(Debug, Default)]
-struct Entry {
-    block: Arc<Block>,
-    bytes: usize,
-    used: u64,
-}
+type Kept = (Place, Arc<Block>);
 
 /// Columns of a block by their position in the file. Who decodes holds the lock, so that others
 /// wait instead of decoding the same.
@@ -59,11 +50,6 @@ struct Entry {
 struct Block(Mutex<Vec<(usize, Numbers)>>);
 
 impl Decoded {
-    fn kept(&self) -> MutexGuard<'_, Kept> {
-        // Nothing is half-written under the lock, so a panic of another thread does no harm.
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// The numbers of some columns of a block, given by their positions in the file. `decode` gives
     /// those that are not kept, in the order in which it is asked for them.
     pub fn get(
@@ -72,8 +58,17 @@ impl Decoded {
         positions: &[usize],
         decode: impl FnOnce(&[usize]) -> Vec<Numbers>,
     ) -> Vec<Numbers> {
-        let block = self.kept().block(place.clone());
-        let mut columns = block.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let most = MOST * rayon::current_num_threads();
+        let block = {
+            let mut blocks = locked(&self.blocks);
+            let kept = blocks.find(|(known, block)| (*known == place).then(|| Arc::clone(block)));
+            kept.unwrap_or_else(|| {
+                let new = Arc::new(Block::default());
+                blocks.add((place, Arc::clone(&new)), 0, most);
+                new
+            })
+        };
+        let mut columns = locked(&block.0);
         let known = |columns: &[(usize, Numbers)], position: usize| {
             columns.iter().position(|(known, _)| *known == position)
         };
@@ -86,12 +81,9 @@ impl Decoded {
             let new = decode(&lacking);
             let bytes = new.iter().flatten().map(|numbers| numbers.len() * size_of::<f64>()).sum();
             columns.extend(lacking.iter().copied().zip(new));
-            let mut kept = self.kept();
             #[cfg(test)]
-            {
-                kept.made += lacking.len();
-            }
-            kept.grown(&place, &block, bytes);
+            self.made.fetch_add(lacking.len(), std::sync::atomic::Ordering::Relaxed);
+            locked(&self.blocks).grow(|(_, kept)| Arc::ptr_eq(kept, &block), bytes, most);
         }
         positions
             .iter()
@@ -102,38 +94,7 @@ impl Decoded {
     /// Columns of blocks that were decoded so far.
     #[cfg(test)]
     pub fn made(&self) -> usize {
-        self.kept().made
-    }
-}
-
-impl Kept {
-    fn block(&mut self, place: Place) -> Arc<Block> {
-        self.now += 1;
-        let entry = self.blocks.entry(place).or_default();
-        entry.used = self.now;
-        Arc::clone(&entry.block)
-    }
-
-    /// Counts what was added to a block; the blocks that were not used for the longest time go.
-    fn grown(&mut self, place: &Place, block: &Arc<Block>, bytes: usize) {
-        // A block that went meanwhile is not counted: it lives as long as who reads it.
-        let Some(entry) =
-            self.blocks.get_mut(place).filter(|entry| Arc::ptr_eq(&entry.block, block))
-        else {
-            return;
-        };
-        entry.bytes += bytes;
-        self.bytes += bytes;
-        let most = MOST * rayon::current_num_threads();
-        while self.bytes > most {
-            let oldest = self
-                .blocks
-                .iter()
-                .min_by_key(|(_, entry)| entry.used)
-                .map(|(place, _)| place.clone());
-            let Some(gone) = oldest.and_then(|place| self.blocks.remove(&place)) else { return };
-            self.bytes -= gone.bytes;
-        }
+        self.made.load(std::sync::atomic::Ordering::Relaxed)
     }
 }
 
@@ -204,12 +165,12 @@ mod tests {
         assert_eq!([4, 0, 1].map(get), [true, false, true], "the second went for the fifth");
         for row in 5..30 {
             get(row);
-            let kept = decoded.kept();
-            assert!(kept.bytes <= most && kept.blocks.len() <= 4, "{} bytes of {most}", kept.bytes);
+            let (count, bytes) = locked(&decoded.blocks).extent();
+            assert!(bytes <= most && count <= 4, "{bytes} bytes of {most}");
         }
         decoded.get(Place::new(Path::new("a"), 99), &[0], |_| {
             vec![numbers(most / size_of::<f64>() + 1)]
         });
-        assert!(decoded.kept().bytes <= most, "one that is too large is not kept");
+        assert!(locked(&decoded.blocks).extent().1 <= most, "one that is too large is not kept");
     }
 }

@@ -1,6 +1,6 @@
 //! Slow parsing of an irregular row, with a description of its fault.
 
-use super::sink::Sink;
+use super::Column;
 use crate::data::cells::{self, StrayQuote};
 use crate::data::faults::Faults;
 use crate::problem::Problem;
@@ -24,7 +24,7 @@ impl Line<'_> {
 }
 
 /// Number of rows before the last one that determine the expected decimals of its last number.
-const BEFORE: usize = 8;
+pub(super) const BEFORE: usize = 8;
 
 /// Detects a file that was cut off inside its last number: it ends without a line break, and the
 /// number has fewer decimals than those above it, which all have the same number. If these vary,
@@ -60,7 +60,12 @@ pub(super) fn cut_number(
 
 /// Parses a row with quotes or blanks, or reports its fault. After a fault, columns may have
 /// different lengths.
-pub(super) fn slow_row(line: &Line<'_>, width: usize, sinks: &mut [Sink], faults: &mut Faults<'_>) {
+pub(super) fn slow_row(
+    line: &Line<'_>,
+    width: usize,
+    columns: &mut [&mut Column],
+    faults: &mut Faults<'_>,
+) {
     if line.text.trim().is_empty() {
         faults
             .push(|| Problem::error("blank-line", "blank line between the rows").at(&line.span()));
@@ -83,12 +88,12 @@ pub(super) fn slow_row(line: &Line<'_>, width: usize, sinks: &mut [Sink], faults
     if cells.len() != width {
         return faults.push(|| cells::ragged(&line.span(), &cells, width));
     }
-    for sink in sinks {
-        let cell = &cells[sink.position];
+    for column in columns {
+        let cell = &cells[column.position];
         match cells::number(&cell.text) {
-            Ok(number) => sink.values.push(number * sink.factor),
+            Ok(number) => column.values.push(number * column.unit.factor),
             Err((code, says)) => faults.push(|| {
-                Problem::error(code, format!("`{}`: {says}", sink.name))
+                Problem::error(code, format!("`{}`: {says}", column.name))
                     .at(&line.span().part(cell.place.clone()))
             }),
         }

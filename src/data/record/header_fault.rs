@@ -1,7 +1,11 @@
 //! What is wrong with the header of a record, told once for all columns that have it.
 
+use std::io::BufRead;
+use std::path::Path;
+
 use super::Wanted;
 use crate::data::cells::{self, Heading};
+use crate::data::text::open_text;
 use crate::problem::Problem;
 use crate::source::Source;
 use crate::units::Unit;
@@ -31,10 +35,11 @@ pub(super) fn alike(wrong: Vec<(&Heading, Problem)>) -> Vec<Problem> {
 }
 
 /// The header once more between the rows: files that were put one behind another.
-pub(super) fn repeated(text: &str, body: usize, shown: &str) -> Option<Problem> {
-    let header = text[..body].trim_end();
-    let mut lines =
-        text.split('\n').enumerate().skip(1).filter(|(_, line)| line.trim_end() == header);
+pub(super) fn repeated(path: &Path, shown: &str) -> Option<Problem> {
+    let mut lines = open_text(path, shown).ok()?.lines().map_while(Result::ok).enumerate();
+    let (_, first) = lines.next()?;
+    let header = first.strip_prefix('\u{feff}').unwrap_or(&first).trim_end();
+    let mut lines = lines.filter(|(_, line)| line.trim_end() == header);
     let (at, line) = lines.next()?;
     let more = match lines.count() {
         0 => String::new(),
@@ -51,22 +56,16 @@ pub(super) fn repeated(text: &str, body: usize, shown: &str) -> Option<Problem> 
     Some(problem.help("one file holds one record: give each its own file and section"))
 }
 
-/// Units that stand in a row or in cells of their own.
-pub(super) fn units_elsewhere(
-    text: &str,
-    body: usize,
-    headings: &[Heading],
-    shown: &str,
-) -> Option<Problem> {
-    units_in_row(text, body, headings, shown).or_else(|| cells::unit_in_cell(headings))
+/// Units that stand in the first row or in cells of their own.
+pub(super) fn units_elsewhere(row: &str, headings: &[Heading], shown: &str) -> Option<Problem> {
+    units_in_row(row, headings, shown).or_else(|| cells::unit_in_cell(headings))
 }
 
 /// Units in a row of their own below the names, which no heading has.
-fn units_in_row(text: &str, body: usize, headings: &[Heading], shown: &str) -> Option<Problem> {
-    let line = text[body..]
-        .lines()
-        .next()
-        .filter(|_| headings.iter().all(|heading| heading.unit.is_none()))?;
+fn units_in_row(line: &str, headings: &[Heading], shown: &str) -> Option<Problem> {
+    if headings.iter().any(|heading| heading.unit.is_some()) {
+        return None;
+    }
     let cells = cells::split(line).ok()?;
     let unit = |text: &str| Unit::parse(text.trim_matches(['[', ']', '(', ')'])).is_ok();
     if cells.len() != headings.len()

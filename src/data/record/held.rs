@@ -1,16 +1,16 @@
 //! Bytes of files that neighbouring stretches have in common: read once, and kept for the next
 //! stretch within a bound.
 
-use std::collections::VecDeque;
 use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use bytes::Bytes;
 
 use super::columnar::Layout;
 use super::decoded::Decoded;
+use super::recent::Recent;
 
 /// Most bytes that are kept in all: both sides and the track of a run of 60 km with 24 channels, or
 /// some row groups of longer ones. It bounds the memory of a worker, whatever the length of the
@@ -27,20 +27,14 @@ const FOOTERS: usize = 4;
 /// campaign.
 #[derive(Clone, Default)]
 pub struct Held {
-    parts: Arc<Mutex<Parts>>,
-    /// Footers of Parquet files; the one that was used last is the first.
-    layouts: Arc<Mutex<Layouts>>,
+    parts: Arc<Mutex<Recent<Part>>>,
+    /// Footers of Parquet files.
+    layouts: Arc<Mutex<Recent<Footer>>>,
     pub(super) decoded: Decoded,
 }
 
-type Layouts = VecDeque<(PathBuf, Arc<Layout>)>;
-
-#[derive(Default)]
-struct Parts {
-    /// The one that was used last is the first.
-    parts: VecDeque<Part>,
-    bytes: usize,
-}
+/// What the footer of a file says.
+type Footer = (PathBuf, Arc<Layout>);
 
 struct Part {
     file: PathBuf,
@@ -49,12 +43,17 @@ struct Part {
 }
 
 impl Part {
-    fn of(&self, file: &Path, range: &Range<u64>) -> Option<Bytes> {
+    fn bytes(&self, file: &Path, range: &Range<u64>) -> Option<Bytes> {
         let from = usize::try_from(range.start.checked_sub(self.start)?).ok()?;
         let to = usize::try_from(range.end.checked_sub(self.start)?).ok()?;
         (from <= to && to <= self.bytes.len() && self.file == file)
             .then(|| self.bytes.slice(from..to))
     }
+}
+
+/// Nothing is half-written under a lock, so a panic of another thread does no harm.
+pub(super) fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
+    of.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl fmt::Debug for Held {
@@ -71,42 +70,25 @@ impl Held {
 
     /// What the footer of a file says, if it is kept.
     pub(super) fn layout(&self, file: &Path) -> Option<Arc<Layout>> {
-        let mut layouts = self.layouts.lock().unwrap_or_else(PoisonError::into_inner);
-        let at = layouts.iter().position(|(known, _)| known == file)?;
-        let used = layouts.remove(at)?;
-        let layout = Arc::clone(&used.1);
-        layouts.push_front(used);
-        Some(layout)
+        locked(&self.layouts).find(|(known, layout)| (known == file).then(|| Arc::clone(layout)))
     }
 
     /// Keeps what the footer of a file says.
     pub(super) fn keep_layout(&self, file: &Path, layout: &Arc<Layout>) {
-        let mut layouts = self.layouts.lock().unwrap_or_else(PoisonError::into_inner);
-        layouts.push_front((file.to_path_buf(), Arc::clone(layout)));
-        layouts.truncate(FOOTERS * rayon::current_num_threads());
+        let most = FOOTERS * rayon::current_num_threads();
+        locked(&self.layouts).add((file.to_path_buf(), Arc::clone(layout)), 1, most);
     }
 
     /// A part of a file, if it is kept.
     pub fn get(&self, file: &Path, range: &Range<u64>) -> Option<Bytes> {
-        let mut held = self.parts.lock().unwrap_or_else(PoisonError::into_inner);
-        let at = held.parts.iter().position(|part| part.of(file, range).is_some())?;
-        let part = held.parts.remove(at)?;
-        let found = part.of(file, range);
-        held.parts.push_front(part);
-        found
+        locked(&self.parts).find(|part| part.bytes(file, range))
     }
 
     /// Keeps a part of a file; those that were not used for the longest time go.
     pub fn keep(&self, file: &Path, start: u64, bytes: Bytes) {
-        if bytes.len() > MOST {
-            return;
-        }
-        let mut held = self.parts.lock().unwrap_or_else(PoisonError::into_inner);
-        held.bytes += bytes.len();
-        held.parts.push_front(Part { file: file.to_path_buf(), start, bytes });
-        while held.bytes > MOST {
-            let Some(last) = held.parts.pop_back() else { return };
-            held.bytes -= last.bytes.len();
+        let size = bytes.len();
+        if size <= MOST {
+            locked(&self.parts).add(Part { file: file.to_path_buf(), start, bytes }, size, MOST);
         }
     }
 }
@@ -141,6 +123,6 @@ mod tests {
         assert_eq!(kept, [true, false, true, true, true]);
         held.keep(Path::new("large"), 0, Bytes::from(vec![0_u8; MOST + 1]));
         assert_eq!(held.get(Path::new("large"), &(0..1)), None);
-        assert!(held.parts.lock().expect("held").bytes <= MOST);
+        assert!(locked(&held.parts).extent().1 <= MOST);
     }
 }

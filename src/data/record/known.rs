@@ -4,7 +4,7 @@
 use std::ops::Range;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use super::held::Held;
+use super::held::{Held, locked};
 use super::stored::refused;
 use super::{Column, Stored};
 use crate::data::folder::Place;
@@ -107,8 +107,7 @@ impl Known {
         enough: impl FnOnce(&KnownFile) -> bool,
         compute: impl FnOnce() -> Result<KnownFile, E>,
     ) -> Result<Arc<KnownFile>, E> {
-        // Nothing is half-written under the lock, so a panic of another thread does no harm.
-        let mut known = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut known = locked(&self.file);
         match &*known {
             Some(file) if enough(file) => Ok(Arc::clone(file)),
             _ => compute().map(|file| Arc::clone(known.insert(Arc::new(file)))),
@@ -124,6 +123,6 @@ impl Known {
 
     /// Keeps what was found in passing.
     pub fn keep(&self, file: KnownFile) {
-        *self.file.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(file));
+        *locked(&self.file) = Some(Arc::new(file));
     }
 }

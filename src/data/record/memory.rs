@@ -9,15 +9,14 @@ use arrow_array::types::Float64Type;
 use arrow_array::{Array, RecordBatch};
 use arrow_schema::{DataType, Schema};
 
-use super::columnar::{append, headings_of, no_rows, not_numbers, value_at, wrong};
+use super::columnar::{append, headings_of, no_rows, not_numbers, numbers, value_at, wrong};
 use super::stretch::{Run, Stretch, axis_of, values};
-use super::{Column, Record, Wanted, find_columns};
+use super::{Column, Wanted, find_columns};
 use crate::data::cells::Heading;
 use crate::data::faults::Faults;
 use crate::data::hash::Hasher;
 use crate::problem::Problem;
 use crate::source::{Source, Span};
-use crate::units::Unit;
 
 /// Numbers hashed at a time where they do not lie as 64-bit numbers in memory; it does not change
 /// the result.
@@ -98,34 +97,27 @@ impl Frame {
     }
 
     /// The wanted columns, with their numbers in SI units.
-    pub(super) fn read(self: &Arc<Self>, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
-        let columns = self.columns(wanted)?;
-        Ok(Record {
-            shown: self.name.clone(),
-            columns,
-            channels: self.channels(),
+    pub(super) fn read(&self, wanted: &[Wanted]) -> Result<Run, Vec<Problem>> {
+        Ok(Run {
+            channels: self.headings.iter().map(|heading| heading.name.clone()).collect(),
             rows: self.rows,
-            first_row: 0,
+            columns: self.columns(wanted)?,
             sha256: self.sha256(),
-            bytes: self.bytes(),
-            from: super::Origin::Memory(Arc::clone(self)),
+            bytes: self.bytes() as u64,
         })
     }
 
     /// The rows whose axis lies in a range of SI units.
     pub(super) fn stretch(
-        self: &Arc<Self>,
+        &self,
         wanted: &[Wanted],
-        axis: &str,
-        range: Range<f64>,
-    ) -> Result<Record, Vec<Problem>> {
-        let columns = self.columns(wanted)?;
-        let at = axis_of(&columns, axis, &self.name)?;
-        let mut stretch = Stretch::new(range, at, &columns);
-        stretch.add(&values(&columns), 0);
-        let (bytes, sha256) = (self.bytes() as u64, self.sha256());
-        let run = Run { channels: self.channels(), rows: self.rows, columns, sha256, bytes };
-        stretch.record(run, super::Origin::Memory(Arc::clone(self)), &self.name)
+        (axis, range): (&str, &Range<f64>),
+    ) -> Result<(Run, Stretch), Vec<Problem>> {
+        let run = self.read(wanted)?;
+        let at = axis_of(&run.columns, axis, &self.name)?;
+        let mut stretch = Stretch::new(range.clone(), at, &run.columns);
+        stretch.add(&values(&run.columns), 0);
+        Ok((run, stretch))
     }
 
     fn columns(&self, wanted: &[Wanted]) -> Result<Vec<Column>, Vec<Problem>> {
@@ -169,10 +161,6 @@ impl Frame {
         faults.finish(columns)
     }
 
-    fn channels(&self) -> Vec<String> {
-        self.headings.iter().map(|heading| heading.name.clone()).collect()
-    }
-
     /// Bytes of the file, or of the numbers.
     fn bytes(&self) -> usize {
         if let Some(bytes) = self.bytes {
@@ -191,50 +179,12 @@ impl Frame {
                 hash.add(heading.span.text().as_bytes());
                 hash.add(&[0]);
                 for batch in &self.batches {
-                    self.add(&mut hash, batch.column(position), heading, position);
+                    add(&mut hash, batch.column(position));
                 }
             }
             hash.finish()
         };
         self.hash.get_or_init(compute).clone()
-    }
-
-    fn add(&self, hash: &mut Hasher, array: &Arc<dyn Array>, heading: &Heading, position: usize) {
-        if let Some(numbers) =
-            array.as_primitive_opt::<Float64Type>().filter(|numbers| numbers.null_count() == 0)
-            && cfg!(target_endian = "little")
-        {
-            return hash.add(numbers.values().inner().as_slice());
-        }
-        let mut texts = |texts: &mut dyn Iterator<Item = Option<&str>>| {
-            texts.for_each(|text| {
-                [text.unwrap_or_default().as_bytes(), &[0]]
-                    .into_iter()
-                    .for_each(|bytes| hash.add(bytes))
-            });
-        };
-        match array.data_type() {
-            DataType::Utf8 => return texts(&mut array.as_string::<i32>().iter()),
-            DataType::LargeUtf8 => return texts(&mut array.as_string::<i64>().iter()),
-            DataType::Utf8View => return texts(&mut array.as_string_view().iter()),
-            _ => {}
-        }
-        let mut column =
-            Column { name: heading.name.clone(), unit: Unit::one(), values: Vec::new(), position };
-        let mut missing: Vec<usize> = Vec::new();
-        let numbers = append(array.as_ref(), &mut column, 0, &mut |row, _, value| {
-            if value.is_none() {
-                missing.push(row);
-            }
-        });
-        if numbers.is_err() {
-            // What is neither numbers nor text is never read.
-            return hash.add(array.data_type().to_string().as_bytes());
-        }
-        missing.into_iter().for_each(|row| column.values[row] = f64::NAN);
-        for block in column.values.chunks(BLOCK) {
-            hash.add(&block.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>());
-        }
     }
 
     /// The place of a sample, from 0, or of its value in a column.
@@ -247,23 +197,49 @@ impl Frame {
         let mut first = 0;
         for batch in &self.batches {
             if row < first + batch.num_rows() {
-                let mut one = Column { values: Vec::new(), unit: Unit::one(), ..column.clone() };
-                append(
-                    batch.column(column.position).slice(row - first, 1).as_ref(),
-                    &mut one,
-                    row,
-                    &mut |_, _, _| {},
-                )
-                .ok()?;
+                let mut value = Vec::new();
+                let array = batch.column(column.position).slice(row - first, 1);
+                numbers(array.as_ref(), 1.0, &mut value)?;
                 return Some(value_at(
                     &self.name,
                     self.headings.get(column.position)?,
                     row,
-                    &one.values.first()?.to_string(),
+                    &value.first()?.to_string(),
                 ));
             }
             first += batch.num_rows();
         }
         None
+    }
+}
+
+/// Adds the values of an array to a hash.
+fn add(hash: &mut Hasher, array: &Arc<dyn Array>) {
+    if let Some(numbers) =
+        array.as_primitive_opt::<Float64Type>().filter(|numbers| numbers.null_count() == 0)
+        && cfg!(target_endian = "little")
+    {
+        return hash.add(numbers.values().inner().as_slice());
+    }
+    let mut texts = |texts: &mut dyn Iterator<Item = Option<&str>>| {
+        texts.for_each(|text| {
+            [text.unwrap_or_default().as_bytes(), &[0]]
+                .into_iter()
+                .for_each(|bytes| hash.add(bytes))
+        });
+    };
+    match array.data_type() {
+        DataType::Utf8 => return texts(&mut array.as_string::<i32>().iter()),
+        DataType::LargeUtf8 => return texts(&mut array.as_string::<i64>().iter()),
+        DataType::Utf8View => return texts(&mut array.as_string_view().iter()),
+        _ => {}
+    }
+    let mut values = Vec::new();
+    if numbers(array.as_ref(), 1.0, &mut values).is_none() {
+        // What is neither numbers nor text is never read.
+        return hash.add(array.data_type().to_string().as_bytes());
+    }
+    for block in values.chunks(BLOCK) {
+        hash.add(&block.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>());
     }
 }

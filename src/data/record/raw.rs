@@ -5,7 +5,7 @@ use std::path::Path;
 use super::{Format, columnar, fault, header};
 use crate::data::cells::{self, RawCell, StrayQuote};
 use crate::data::faults::Faults;
-use crate::data::text::{decode, read_large};
+use crate::data::text::{LARGEST_RECORD, LONGEST_LINE, decode, long_line, read_bytes};
 use crate::data::write::{Digits, FileColumn, Values};
 use crate::problem::Problem;
 
@@ -17,17 +17,20 @@ pub fn read_raw(path: &Path, shown: &str) -> Result<Vec<FileColumn>, Vec<Problem
     if Format::of(path) == Format::Parquet {
         return columnar::raw(path, shown);
     }
-    let one = |problem: Problem| vec![problem];
-    let mut bytes = Vec::new();
-    read_large(path, shown, &mut bytes).map_err(one)?;
-    let text = decode(&bytes, shown).map_err(one)?;
-    let (headings, body) = header(text, shown)?;
-    let rows = text[body..].trim_end();
+    let bytes = read_bytes(path, shown, LARGEST_RECORD)?;
+    let text = decode(&bytes, shown)?;
+    if let Some((at, line)) =
+        text.split('\n').enumerate().find(|(_, line)| line.len() > LONGEST_LINE)
+    {
+        return Err(vec![long_line(line.as_bytes(), at + 1, shown)]);
+    }
+    let headings = header(text, shown)?;
+    let rows = text.split_once('\n').map_or("", |(_, rows)| rows).trim_end();
     if rows.is_empty() {
-        return Err(one(Problem::error(
+        return Err(vec![Problem::error(
             "no-rows",
             format!("`{shown}` has a header and no samples"),
-        )));
+        )]);
     }
     let mut faults = Faults::new(shown);
     let mut columns: Vec<Numbers> = vec![Numbers::default(); headings.len()];

@@ -1,14 +1,13 @@
-//! Where a record is: in a file, in an object store, or in memory. All readers of records of a
-//! campaign go through here.
+//! Where a record is: in a file, in an object store, or in memory. All readers of records go through
+//! here.
 
 use std::ops::Range;
+use std::path::Path;
 use std::sync::Arc;
 
+use super::columnar::{self, At};
 use super::memory::Frame;
-use super::{
-    Block, Format, Known, Record, Run, Stored, Wanted, read_headings, read_record, read_stretch,
-    stream_known,
-};
+use super::{Block, Column, Format, Known, Record, Run, Stored, Wanted, text};
 use crate::data::cells::Heading;
 use crate::data::folder::Place;
 use crate::problem::Problem;
@@ -22,7 +21,20 @@ pub enum RecordSource {
     Memory(Arc<Frame>),
 }
 
+/// How the rows of a record lie.
+enum Form<'a> {
+    Text(&'a Path),
+    Parquet(At<'a>),
+    Memory(&'a Arc<Frame>),
+}
+
 impl RecordSource {
+    /// A file that is not part of a campaign; `shown` is its name in messages.
+    pub fn at(path: &Path, shown: &str) -> Self {
+        let (path, shown) = (path.to_path_buf(), shown.to_string());
+        Self::File(Place { path, inside: shown.clone(), shown })
+    }
+
     /// The name in messages and results: the path inside the campaign.
     pub fn inside(&self) -> &str {
         match self {
@@ -32,38 +44,67 @@ impl RecordSource {
         }
     }
 
+    fn form(&self) -> Form<'_> {
+        match self {
+            Self::File(place) => match Format::of(&place.path) {
+                Format::Csv => Form::Text(&place.path),
+                Format::Parquet => Form::Parquet(At::Disk(&place.path)),
+            },
+            Self::Object(stored) => Form::Parquet(At::Object(stored)),
+            Self::Memory(frame) => Form::Memory(frame),
+        }
+    }
+
     /// Number of the first row in messages: the header of a text is row 1.
     pub fn first_row(&self) -> usize {
-        match self {
-            Self::File(place) if Format::of(&place.path) == Format::Csv => 2,
-            Self::File(_) | Self::Object(_) | Self::Memory(_) => 1,
+        match self.form() {
+            Form::Text(_) => 2,
+            Form::Parquet(_) | Form::Memory(_) => 1,
         }
     }
 
-    /// # Errors
-    /// As [`read_headings`].
-    pub fn headings(&self) -> Result<Vec<Heading>, Vec<Problem>> {
-        match self {
-            Self::File(place) => read_headings(&place.path, &place.inside),
-            Self::Object(stored) => stored.headings(),
-            Self::Memory(frame) => Ok(frame.headings()),
-        }
-    }
-
-    /// # Errors
-    /// As [`read_record`]; of a record in memory those of its columns and values.
-    pub fn read(&self, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
-        match self {
-            Self::File(place) => read_record(&place.path, &place.inside, wanted),
-            Self::Object(stored) => stored.read(wanted),
-            Self::Memory(frame) => frame.read(wanted),
-        }
-    }
-
-    /// The rows whose axis lies in a range; `known` is what is known of the file.
+    /// The headings of all columns.
     ///
     /// # Errors
-    /// As [`read_stretch`].
+    /// As [`Self::read`], of the file and its header.
+    pub fn headings(&self) -> Result<Vec<Heading>, Vec<Problem>> {
+        match self.form() {
+            Form::Text(path) => text::headings(path, self.inside()),
+            Form::Parquet(at) => columnar::headings(at, self.inside()),
+            Form::Memory(frame) => Ok(frame.headings()),
+        }
+    }
+
+    /// Reads the requested columns; all other cells are ignored.
+    ///
+    /// # Errors
+    /// At most a handful of problems and how many more there are. Of the file: `file-missing`,
+    /// `file-unreadable`, `file-empty`, `file-too-large`, `encoding`, `no-rows`. Of its header:
+    /// `semicolon-separated`, `tab-separated`, `stray-quote`, `duplicate-column`,
+    /// `unknown-channel`, `unit-missing`, `unknown-unit`, `unit-mismatch`, `units-in-row`,
+    /// `units-in-cell`. Of a row: `header-repeated`, `ragged-row`, `truncated-row`, `blank-line`,
+    /// `stray-quote`, `not-a-number`, `not-finite`, `decimal-comma`, `line-too-long`.
+    ///
+    /// Of a Parquet file: `format-mislabelled`, `format-not-read` (compression, encryption),
+    /// `file-damaged`, `unit-conflict`. Of a record in memory those of its columns and values.
+    pub fn read(&self, wanted: &[Wanted]) -> Result<Record, Vec<Problem>> {
+        let run = match self.form() {
+            Form::Text(path) => text::read(path, self.inside(), wanted),
+            Form::Parquet(at) => columnar::read(at, self.inside(), wanted),
+            Form::Memory(frame) => frame.read(wanted),
+        };
+        Ok(run?.record(0, self))
+    }
+
+    /// Reads the rows of a record whose axis lies in a range, in SI units with both ends, with the
+    /// hash of the whole file. `axis` is one of the wanted columns; `known` is what is known of the
+    /// file, if it was read before. Row groups of a Parquet file whose statistics exclude the range
+    /// are not decoded. A text is read to its end once, for its hash and an index; then only the
+    /// blocks that touch the range.
+    ///
+    /// # Errors
+    /// As [`Self::read`], of the rows that are decoded; `axis-not-increasing` if rows outside lie
+    /// between those inside; `outside-record` if none lies inside.
     pub fn stretch(
         &self,
         wanted: &[Wanted],
@@ -71,19 +112,23 @@ impl RecordSource {
         range: Range<f64>,
         known: &Known,
     ) -> Result<Record, Vec<Problem>> {
-        match self {
-            Self::File(place) => {
-                read_stretch(&place.path, &place.inside, wanted, axis, range, known)
-            }
-            Self::Object(stored) => stored.stretch(wanted, axis, range, known),
-            Self::Memory(frame) => frame.stretch(wanted, axis, range),
-        }
+        let (shown, part) = (self.inside(), (axis, &range));
+        let (run, stretch) = match self.form() {
+            Form::Text(path) => text::stretch(path, shown, wanted, part, known),
+            Form::Parquet(at) => columnar::stretch(at, shown, wanted, part, known),
+            Form::Memory(frame) => frame.stretch(wanted, part),
+        }?;
+        stretch.record(run, self)
     }
 
-    /// All rows, block by block; `axis` is one of the wanted columns.
+    /// Reads the requested columns of a record of any length, block by block in the order of the
+    /// file; `axis` is one of them. What [`Self::stretch`] needs to know of the file is kept in
+    /// `known`. Memory does not grow with the length of a text; of a Parquet file one row group of
+    /// these columns is held, compressed.
     ///
     /// # Errors
-    /// As [`stream_known`]; `record-in-memory`.
+    /// As [`Self::read`]; blocks before the first one with a fault were given to `each`.
+    /// `record-in-memory`.
     pub fn stream(
         &self,
         wanted: &[Wanted],
@@ -91,12 +136,20 @@ impl RecordSource {
         known: &Known,
         mut each: impl FnMut(&Block<'_>),
     ) -> Result<Run, Vec<Problem>> {
-        match self {
-            Self::File(place) => {
-                stream_known(&place.path, &place.inside, wanted, (axis, known), each)
-            }
-            Self::Object(stored) => stored.stream(wanted, known, &mut each),
-            Self::Memory(frame) => Err(vec![in_memory(frame)]),
+        let shown = self.inside();
+        match self.form() {
+            Form::Text(path) => text::stream_known(path, shown, wanted, (axis, known), &mut each),
+            Form::Parquet(at) => columnar::stream(at, shown, wanted, known, &mut each),
+            Form::Memory(frame) => Err(vec![in_memory(frame)]),
+        }
+    }
+
+    /// The place of sample `row`, from 0, or of its cell in a column. The file is read again.
+    pub(super) fn place(&self, row: usize, column: Option<&Column>) -> Option<Span> {
+        match self.form() {
+            Form::Text(path) => text::place(path, self.inside(), row, column),
+            Form::Parquet(at) => columnar::place(at, self.inside(), row, column),
+            Form::Memory(frame) => frame.place(row, column),
         }
     }
 

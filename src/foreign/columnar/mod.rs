@@ -15,7 +15,6 @@ use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::{
     ArrowReaderMetadata, ArrowReaderOptions, ParquetRecordBatchReaderBuilder,
 };
-use parquet::basic::Type;
 use parquet::file::metadata::ParquetMetaData;
 
 use super::guard::damaged;
@@ -113,23 +112,12 @@ fn pages(
                     chunk.column_path().string()
                 )
             };
-            let start = chunk
-                .dictionary_page_offset()
-                .filter(|at| *at > 0)
-                .unwrap_or(chunk.data_page_offset());
-            let part =
-                usize::try_from(start).ok().zip(usize::try_from(chunk.compressed_size()).ok());
-            let part = part.and_then(|(start, size)| bytes.get(start..start.checked_add(size)?));
+            let part = guard::range(chunk).and_then(|range| {
+                bytes.get(usize::try_from(range.start).ok()?..usize::try_from(range.end).ok()?)
+            });
             let part =
                 part.ok_or_else(|| (place(), "its values are beyond the file".to_string()))?;
-            let width = match chunk.column_type() {
-                Type::DOUBLE | Type::INT64 => 8,
-                Type::FLOAT | Type::INT32 => 4,
-                // A truth value takes a bit, which has no dictionary.
-                _ => 1,
-            };
-            let values = u64::try_from(chunk.num_values()).unwrap_or(0);
-            guard::pages(part, values, width).map_err(|why| (place(), why))?;
+            guard::pages(part, chunk).map_err(|why| (place(), why))?;
         }
     }
     Ok(())

@@ -1,24 +1,16 @@
 //! Columns of Arrow arrays as numbers.
 
 use arrow_array::cast::AsArray;
-use arrow_array::types::{
-    ArrowPrimitiveType, DurationMicrosecondType, DurationMillisecondType, DurationNanosecondType,
-    DurationSecondType, Float16Type, Float32Type, Float64Type, Int8Type, Int16Type, Int32Type,
-    Int64Type, TimestampMicrosecondType, TimestampMillisecondType, TimestampNanosecondType,
-    TimestampSecondType, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
-};
-use arrow_array::{Array, PrimitiveArray};
-use arrow_schema::{DataType, TimeUnit};
+use arrow_array::{Array, Int64Array};
+use arrow_schema::{ArrowError, DataType, TimeUnit};
+
+use crate::data::record::numbers;
 
 /// Whether a type is read as numbers, or why not.
 pub(super) fn readable(kind: &DataType) -> Result<(), String> {
-    use DataType::{
-        Boolean, Duration, Float16, Float32, Float64, Int8, Int16, Int32, Int64, Timestamp, UInt8,
-        UInt16, UInt32, UInt64,
-    };
     match kind {
-        Boolean | Float16 | Float32 | Float64 | Timestamp(..) | Duration(_) => Ok(()),
-        Int8 | Int16 | Int32 | Int64 | UInt8 | UInt16 | UInt32 | UInt64 => Ok(()),
+        DataType::Boolean | DataType::Timestamp(..) | DataType::Duration(_) => Ok(()),
+        kind if kind.is_integer() || kind.is_floating() => Ok(()),
         DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View => {
             Err("its cells are text".into())
         }
@@ -38,70 +30,40 @@ pub(super) fn add(
     column: &dyn Array,
     origin: &mut Option<i64>,
 ) -> Result<(), String> {
-    macro_rules! plain {
-        ($type:ty) => {
-            primitive::<$type>(to, column, |value| value as f64)
-        };
-    }
-    macro_rules! seconds {
-        ($type:ty, $parts:expr) => {
-            primitive::<$type>(to, column, |value| value as f64 / $parts)
-        };
-    }
-    macro_rules! times {
-        ($type:ty, $parts:expr) => {{
-            let stamps: Option<&PrimitiveArray<$type>> = column.as_primitive_opt();
-            if let Some(first) = stamps.and_then(|stamps| stamps.iter().flatten().next()) {
-                origin.get_or_insert(first);
-            }
-            let first = origin.unwrap_or(0);
-            primitive::<$type>(to, column, |value| value.saturating_sub(first) as f64 / $parts)
-        }};
-    }
-    match column.data_type() {
-        DataType::Int8 => plain!(Int8Type),
-        DataType::Int16 => plain!(Int16Type),
-        DataType::Int32 => plain!(Int32Type),
-        DataType::Int64 => plain!(Int64Type),
-        DataType::UInt8 => plain!(UInt8Type),
-        DataType::UInt16 => plain!(UInt16Type),
-        DataType::UInt32 => plain!(UInt32Type),
-        DataType::UInt64 => plain!(UInt64Type),
-        DataType::Float16 => primitive::<Float16Type>(to, column, |value| value.to_f64()),
-        DataType::Float32 => plain!(Float32Type),
-        DataType::Float64 => plain!(Float64Type),
-        DataType::Duration(TimeUnit::Second) => seconds!(DurationSecondType, 1.0),
-        DataType::Duration(TimeUnit::Millisecond) => seconds!(DurationMillisecondType, 1e3),
-        DataType::Duration(TimeUnit::Microsecond) => seconds!(DurationMicrosecondType, 1e6),
-        DataType::Duration(TimeUnit::Nanosecond) => seconds!(DurationNanosecondType, 1e9),
-        DataType::Timestamp(TimeUnit::Second, _) => times!(TimestampSecondType, 1.0),
-        DataType::Timestamp(TimeUnit::Millisecond, _) => times!(TimestampMillisecondType, 1e3),
-        DataType::Timestamp(TimeUnit::Microsecond, _) => times!(TimestampMicrosecondType, 1e6),
-        DataType::Timestamp(TimeUnit::Nanosecond, _) => times!(TimestampNanosecondType, 1e9),
+    let kind = column.data_type();
+    let first = |counts: &Int64Array, origin: &mut Option<i64>| {
+        *origin = origin.or_else(|| counts.iter().flatten().next());
+        origin.unwrap_or(0)
+    };
+    match kind {
         DataType::Boolean => {
-            to.extend(
-                column
-                    .as_boolean()
-                    .iter()
-                    .map(|value| value.map_or(f64::NAN, |yes| f64::from(u8::from(yes)))),
-            );
-            Some(())
+            let number = |yes: bool| f64::from(u8::from(yes));
+            to.extend(column.as_boolean().iter().map(|value| value.map_or(f64::NAN, number)));
         }
-        _ => None,
+        DataType::Duration(unit) | DataType::Timestamp(unit, _) => {
+            let counts = counts(column).map_err(|error| error.to_string())?;
+            let from =
+                if matches!(kind, DataType::Duration(_)) { 0 } else { first(&counts, origin) };
+            let seconds = |count: i64| count.saturating_sub(from) as f64 / parts(*unit);
+            to.extend(counts.iter().map(|count| count.map_or(f64::NAN, seconds)));
+        }
+        _ => numbers(column, 1.0, to).ok_or_else(|| format!("values of the type {kind}"))?,
     }
-    .ok_or_else(|| format!("values of the type {}", column.data_type()))
+    Ok(())
 }
 
-fn primitive<T: ArrowPrimitiveType>(
-    to: &mut Vec<f64>,
-    column: &dyn Array,
-    number: impl Fn(T::Native) -> f64,
-) -> Option<()> {
-    let column: &PrimitiveArray<T> = column.as_primitive_opt()?;
-    if column.null_count() == 0 {
-        to.extend(column.values().iter().map(|value| number(*value)));
-    } else {
-        to.extend(column.iter().map(|value| value.map_or(f64::NAN, &number)));
+/// Times or durations as whole numbers of their unit, which is how they are stored.
+fn counts(column: &dyn Array) -> Result<Int64Array, ArrowError> {
+    let data = column.to_data().into_builder().data_type(DataType::Int64).build()?;
+    Ok(Int64Array::from(data))
+}
+
+/// Parts of a second.
+fn parts(unit: TimeUnit) -> f64 {
+    match unit {
+        TimeUnit::Second => 1.0,
+        TimeUnit::Millisecond => 1e3,
+        TimeUnit::Microsecond => 1e6,
+        TimeUnit::Nanosecond => 1e9,
     }
-    Some(())
 }

@@ -7,6 +7,7 @@ use std::io::Read;
 
 use flate2::read::ZlibDecoder;
 
+use super::super::binary::{Cursor, Number};
 use super::super::guard::damaged;
 use super::super::load::{Budget, most_unpacked, unpacks_to_more};
 use super::super::{Format, Input};
@@ -52,39 +53,40 @@ pub(super) fn variables(
     let shown = input.shown;
     let bad = |place: String, why: &str| damaged(Format::Mat, shown, &place, why);
     let big = input.bytes.get(126..128) == Some(b"MI");
-    let mut rest = Bytes { bytes: input.bytes.get(HEADER..).unwrap_or(&[]), big };
+    let mut rest = Cursor::new(input.bytes.get(HEADER..).unwrap_or(&[]), big);
     let mut found = Vec::new();
     let mut unpacked = 0usize;
-    while !rest.bytes.is_empty() {
+    while !rest.rest.is_empty() {
         let place = format!(
             "variable {} (byte {})",
             found.len() + 1,
-            input.bytes.len() - rest.bytes.len() + 1
+            input.bytes.len() - rest.rest.len() + 1
         );
         // Some writers fill the end with zeros.
-        if rest.bytes.iter().all(|byte| *byte == 0) {
+        if rest.rest.iter().all(|byte| *byte == 0) {
             break;
         }
-        let (kind, data) = rest.element(false).map_err(|why| bad(place.clone(), &why))?;
+        let (kind, data) = element(&mut rest, false).map_err(|why| bad(place.clone(), &why))?;
         let most = most_unpacked(input.bytes.len()).saturating_sub(unpacked);
         let (matrix, inflated);
         match kind {
-            MATRIX => matrix = Bytes { bytes: data, big },
+            MATRIX => matrix = Cursor::new(data, big),
             COMPRESSED => {
                 inflated = inflate(data, most).map_err(|why| match why {
                     Some(why) => bad(place.clone(), &why),
                     None => unpacks_to_more(shown, &place, input.bytes.len()),
                 })?;
                 unpacked += inflated.len();
-                let mut element = Bytes { bytes: &inflated, big };
-                let (kind, data) = element.element(true).map_err(|why| bad(place.clone(), &why))?;
+                let mut packed = Cursor::new(&inflated, big);
+                let (kind, data) =
+                    element(&mut packed, true).map_err(|why| bad(place.clone(), &why))?;
                 if kind != MATRIX {
                     return Err(bad(
                         place,
                         &format!("an element of type {kind} in place of an array"),
                     ));
                 }
-                matrix = Bytes { bytes: data, big };
+                matrix = Cursor::new(data, big);
             }
             other => {
                 return Err(bad(
@@ -140,7 +142,7 @@ impl From<Reason> for Failure {
 
 /// The name and value of an array. `names` keeps the path to a failure.
 fn array(
-    mut bytes: Bytes<'_>,
+    mut bytes: Cursor<'_>,
     depth: usize,
     budget: &mut Budget<'_>,
     names: &mut String,
@@ -150,20 +152,20 @@ fn array(
         return Err(format!("cells or structs nested more than {DEEPEST} deep").into());
     }
     // An empty cell may have no content at all.
-    if bytes.bytes.is_empty() {
+    if bytes.rest.is_empty() {
         return Ok((String::new(), Value::Numbers { rows: 0, columns: 0, values: Vec::new() }));
     }
     let big = bytes.big;
-    let (_, flags) = bytes.element(true)?;
+    let (_, flags) = element(&mut bytes, true)?;
     let word =
-        Bytes { bytes: flags, big }.u32().ok_or("the flags of the array are not complete")?;
+        Cursor::new(flags, big).u32().map_err(|_| "the flags of the array are not complete")?;
     let (class, complex) = (word as u8, word & 0x0800 != 0);
     if matches!(class, 16..=18)
         || !(NUMERIC.contains(&class) || matches!(class, CELL | STRUCT | CHAR | SPARSE | 3))
     {
         return Ok((names_of_object(bytes), Value::Other(OBJECT)));
     }
-    let (kind, sizes) = bytes.element(true)?;
+    let (kind, sizes) = element(&mut bytes, true)?;
     let sizes: Vec<usize> = numbers(kind, sizes, big)?
         .into_iter()
         .map(|size| if size >= 0.0 { size as usize } else { 0 })
@@ -172,7 +174,7 @@ fn array(
     let count = count.ok_or("the declared size of the array is beyond any memory")?;
     let rows = sizes.first().copied().unwrap_or(0);
     let columns = count.checked_div(rows).unwrap_or(0);
-    let (_, name) = bytes.element(true)?;
+    let (_, name) = element(&mut bytes, true)?;
     let name = latin(name);
     let before = names.len();
     if !name.is_empty() {
@@ -182,13 +184,13 @@ fn array(
         CHAR => Value::Text(text(&mut bytes, rows, columns)?),
         CELL => {
             // Each cell has a tag of eight bytes at least.
-            bytes.holds(count, 8, "cells")?;
+            holds(&bytes, count, 8, "cells")?;
             let mut cells = Vec::with_capacity(count);
             for index in 0..count {
                 let length = names.len();
                 names.push_str(&format!("{{{}}}", index + 1));
-                let (_, data) = bytes.element(true)?;
-                cells.push(array(Bytes { bytes: data, big }, depth + 1, budget, names, place)?.1);
+                let (_, data) = element(&mut bytes, true)?;
+                cells.push(array(Cursor::new(data, big), depth + 1, budget, names, place)?.1);
                 names.truncate(length);
             }
             Value::Cells(cells)
@@ -198,9 +200,8 @@ fn array(
         3 => Value::Other(OBJECT),
         _ if complex => Value::Other("complex numbers; save their parts as arrays of their own"),
         _ => {
-            let (kind, data) = bytes.element(true)?;
-            let size =
-                size_of(kind).ok_or_else(|| format!("numbers of the unknown type {kind}"))?;
+            let (kind, data) = element(&mut bytes, true)?;
+            let size = number(kind)?.size();
             if data.len() / size != count || data.len() % size != 0 {
                 let has = data.len() / size;
                 return Err(format!(
@@ -217,8 +218,8 @@ fn array(
 }
 
 /// The name of an object, which follows its flags; empty if it cannot be found.
-fn names_of_object(mut bytes: Bytes<'_>) -> String {
-    let name = bytes.element(true).map(|(_, name)| latin(name)).unwrap_or_default();
+fn names_of_object(mut bytes: Cursor<'_>) -> String {
+    let name = element(&mut bytes, true).map(|(_, name)| latin(name)).unwrap_or_default();
     let plain = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     if plain { name } else { String::new() }
 }
@@ -226,7 +227,7 @@ fn names_of_object(mut bytes: Bytes<'_>) -> String {
 type Fields = Vec<(String, Value)>;
 
 fn structs(
-    bytes: &mut Bytes<'_>,
+    bytes: &mut Cursor<'_>,
     count: usize,
     depth: usize,
     budget: &mut Budget<'_>,
@@ -234,9 +235,9 @@ fn structs(
     place: &str,
 ) -> Result<Vec<Fields>, Failure> {
     let big = bytes.big;
-    let (kind, length) = bytes.element(true)?;
+    let (kind, length) = element(bytes, true)?;
     let length = numbers(kind, length, big)?.first().map_or(0, |length| *length as usize);
-    let (_, list) = bytes.element(true)?;
+    let (_, list) = element(bytes, true)?;
     if length == 0 || length > 1024 {
         return Err(format!("a length of {length} for names of fields").into());
     }
@@ -245,35 +246,35 @@ fn structs(
         .len()
         .checked_mul(count)
         .ok_or("the declared size of the struct is beyond any memory")?;
-    bytes.holds(total, 8, "fields")?;
+    holds(bytes, total, 8, "fields")?;
     if fields.is_empty() {
         return Ok(vec![Vec::new(); count.min(1)]);
     }
     let mut found = Vec::with_capacity(count);
     for _ in 0..count {
-        let mut element = Vec::with_capacity(fields.len());
+        let mut values = Vec::with_capacity(fields.len());
         for field in &fields {
             let before = names.len();
             names.push_str(&format!(".{field}"));
-            let (_, data) = bytes.element(true)?;
-            element.push((
+            let (_, data) = element(bytes, true)?;
+            values.push((
                 field.clone(),
-                array(Bytes { bytes: data, big }, depth + 1, budget, names, place)?.1,
+                array(Cursor::new(data, big), depth + 1, budget, names, place)?.1,
             ));
             names.truncate(before);
         }
-        found.push(element);
+        found.push(values);
     }
     Ok(found)
 }
 
 /// A char array; the rows of a matrix are joined by line breaks.
-fn text(bytes: &mut Bytes<'_>, rows: usize, columns: usize) -> Result<String, Reason> {
+fn text(bytes: &mut Cursor<'_>, rows: usize, columns: usize) -> Result<String, Reason> {
     let big = bytes.big;
     if rows == 0 || columns == 0 {
         return Ok(String::new());
     }
-    let (kind, data) = bytes.element(true)?;
+    let (kind, data) = element(bytes, true)?;
     if kind == UTF8 && rows == 1 {
         return Ok(String::from_utf8_lossy(data).into_owned());
     }
@@ -308,92 +309,53 @@ fn latin(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes.split(|byte| *byte == 0).next().unwrap_or(&[])).into_owned()
 }
 
-fn size_of(kind: u32) -> Option<usize> {
-    match kind {
-        INT8 | UINT8 | UTF8 => Some(1),
-        INT16 | UINT16 | UTF16 => Some(2),
-        INT32 | UINT32 | SINGLE | UTF32 => Some(4),
-        DOUBLE | INT64 | UINT64 => Some(8),
-        _ => None,
-    }
-}
-
-/// Numbers of an element. MATLAB stores doubles that are small integers as bytes.
-fn numbers(kind: u32, data: &[u8], big: bool) -> Result<Vec<f64>, Reason> {
-    macro_rules! each {
-        ($type:ty) => {
-            data.as_chunks::<{ size_of::<$type>() }>()
-                .0
-                .iter()
-                .map(|bytes| if big { <$type>::from_be_bytes(*bytes) } else { <$type>::from_le_bytes(*bytes) } as f64)
-                .collect()
-        };
-    }
-    use std::mem::size_of;
+/// The numbers of a type of elements.
+fn number(kind: u32) -> Result<Number, Reason> {
     Ok(match kind {
-        INT8 => each!(i8),
-        UINT8 | UTF8 => each!(u8),
-        INT16 => each!(i16),
-        UINT16 | UTF16 => each!(u16),
-        INT32 => each!(i32),
-        UINT32 | UTF32 => each!(u32),
-        SINGLE => each!(f32),
-        DOUBLE => each!(f64),
-        INT64 => each!(i64),
-        UINT64 => each!(u64),
+        INT8 => Number::Signed(1),
+        UINT8 | UTF8 => Number::Unsigned(1),
+        INT16 => Number::Signed(2),
+        UINT16 | UTF16 => Number::Unsigned(2),
+        INT32 => Number::Signed(4),
+        UINT32 | UTF32 => Number::Unsigned(4),
+        INT64 => Number::Signed(8),
+        UINT64 => Number::Unsigned(8),
+        SINGLE => Number::Float(4),
+        DOUBLE => Number::Float(8),
         other => return Err(format!("numbers of the unknown type {other}")),
     })
 }
 
-/// Bytes that are read from the front.
-#[derive(Clone, Copy)]
-struct Bytes<'a> {
-    bytes: &'a [u8],
-    big: bool,
+/// Numbers of an element. MATLAB stores doubles that are small integers as bytes.
+fn numbers(kind: u32, data: &[u8], big: bool) -> Result<Vec<f64>, Reason> {
+    Ok(number(kind)?.read(data, big).unwrap_or_default())
 }
 
-impl<'a> Bytes<'a> {
-    fn u32(&mut self) -> Option<u32> {
-        let (word, rest) = self.bytes.split_first_chunk::<4>()?;
-        self.bytes = rest;
-        Some(if self.big { u32::from_be_bytes(*word) } else { u32::from_le_bytes(*word) })
+/// Type and data of the next element; inside an array they are padded to eight bytes.
+fn element<'a>(bytes: &mut Cursor<'a>, padded: bool) -> Result<(u32, &'a [u8]), Reason> {
+    let cut = |_: String| "the file ends within an element".to_string();
+    let tag = bytes.u32().map_err(cut)?;
+    // A small element has its size in the upper half of the tag and up to four bytes of data.
+    if tag >> 16 != 0 {
+        let size = (tag >> 16) as usize;
+        let data = bytes.take(4).map_err(cut)?.get(..size);
+        return Ok((tag & 0xffff, data.ok_or_else(|| format!("a small element of {size} bytes"))?));
     }
+    let size = bytes.u32().map_err(cut)? as usize;
+    let left = bytes.rest.len();
+    let data = bytes
+        .take(size)
+        .map_err(|_| format!("an element is declared with {size} bytes; {left} are left"))?;
+    let padding = if padded { size.next_multiple_of(8) - size } else { 0 };
+    bytes.rest = bytes.rest.get(padding..).unwrap_or(&[]);
+    Ok((tag, data))
+}
 
-    /// Type and data of the next element; inside an array they are padded to eight bytes.
-    fn element(&mut self, padded: bool) -> Result<(u32, &'a [u8]), Reason> {
-        let cut = || "the file ends within an element".to_string();
-        let tag = self.u32().ok_or_else(cut)?;
-        // A small element has its size in the upper half of the tag and up to four bytes of data.
-        if tag >> 16 != 0 {
-            let size = (tag >> 16) as usize;
-            let (data, rest) = self.bytes.split_at_checked(4).ok_or_else(cut)?;
-            self.bytes = rest;
-            return Ok((
-                tag & 0xffff,
-                data.get(..size).ok_or_else(|| format!("a small element of {size} bytes"))?,
-            ));
-        }
-        let size = self.u32().ok_or_else(cut)? as usize;
-        if size > self.bytes.len() {
-            return Err(format!(
-                "an element is declared with {size} bytes; {} are left",
-                self.bytes.len()
-            ));
-        }
-        let (data, rest) = self.bytes.split_at(size);
-        let padding = if padded { size.next_multiple_of(8) - size } else { 0 };
-        self.bytes = rest.get(padding..).unwrap_or(&[]);
-        Ok((tag, data))
+/// Refuses a number of parts that the bytes cannot hold.
+fn holds(bytes: &Cursor<'_>, count: usize, each: usize, what: &str) -> Result<(), Reason> {
+    let most = bytes.rest.len() / each;
+    if count > most {
+        return Err(format!("{count} {what} are declared; the file has bytes for {most}"));
     }
-
-    /// Refuses a number of parts that the bytes cannot hold.
-    fn holds(&self, count: usize, each: usize, what: &str) -> Result<(), Reason> {
-        if count > self.bytes.len() / each {
-            return Err(format!(
-                "{count} {what} are declared; the file has bytes for {}",
-                self.bytes.len() / each
-            ));
-        }
-        Ok(())
-    }
+    Ok(())
 }

@@ -7,6 +7,7 @@ use hdf5_reader::error::Error;
 use hdf5_reader::group::Group;
 use hdf5_reader::{Dataset, Datatype, Hdf5File, OpenOptions};
 
+use super::super::binary::Number;
 use super::super::guard::damaged;
 use super::super::load::{Budget, most_unpacked};
 use super::super::{Format, Input};
@@ -183,31 +184,17 @@ impl Reader<'_, '_> {
 
     fn numbers(&self, set: &Dataset, path: &str) -> Result<Vec<f64>, Problem> {
         let bytes = set.read_native_bytes().map_err(|error| self.bad(path, error))?;
-        macro_rules! each {
-            ($type:ty) => {
-                bytes
-                    .as_chunks::<{ size_of::<$type>() }>()
-                    .0
-                    .iter()
-                    .map(|bytes| <$type>::from_ne_bytes(*bytes) as f64)
-                    .collect()
-            };
-        }
-        Ok(match set.dtype() {
-            Datatype::FloatingPoint { size: 8, .. } => each!(f64),
-            Datatype::FloatingPoint { size: 4, .. } => each!(f32),
-            Datatype::FixedPoint { size: 1, signed: true, .. } => each!(i8),
-            Datatype::FixedPoint { size: 1, .. } => each!(u8),
-            Datatype::FixedPoint { size: 2, signed: true, .. } => each!(i16),
-            Datatype::FixedPoint { size: 2, .. } => each!(u16),
-            Datatype::FixedPoint { size: 4, signed: true, .. } => each!(i32),
-            Datatype::FixedPoint { size: 4, .. } => each!(u32),
-            Datatype::FixedPoint { size: 8, signed: true, .. } => each!(i64),
-            Datatype::FixedPoint { size: 8, .. } => each!(u64),
-            other => {
-                return Err(self.bad(path, format!("numbers of the type {other:?} are not read")));
+        let number = match set.dtype() {
+            Datatype::FloatingPoint { size, .. } => Some(Number::Float(usize::from(*size))),
+            Datatype::FixedPoint { size, signed: true, .. } => {
+                Some(Number::Signed(usize::from(*size)))
             }
-        })
+            Datatype::FixedPoint { size, .. } => Some(Number::Unsigned(usize::from(*size))),
+            _ => None,
+        };
+        number.and_then(|number| number.read(&bytes, cfg!(target_endian = "big"))).ok_or_else(
+            || self.bad(path, format!("numbers of the type {:?} are not read", set.dtype())),
+        )
     }
 }
 

@@ -2,7 +2,7 @@
 
 use indexmap::IndexMap;
 
-use super::bytes::Property;
+use super::value::Property;
 
 /// Most scales and coefficients of a channel; a card has one or two scales and a polynomial of the
 /// third degree.

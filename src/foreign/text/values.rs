@@ -7,11 +7,10 @@ use super::dialect::{self, Dialect, Line};
 use super::header::Heading;
 use super::stamps::{self, DAY, NANOSECONDS, Stamp};
 use super::{Text, at, numbers};
+use crate::data::cells::shortened;
+use crate::data::faults::Faults;
 use crate::problem::Problem;
 use crate::source::Span;
-
-/// Problems shown of a file; one in a wrong dialect has one in every row.
-const SHOWN: usize = 5;
 
 /// A column while it is read.
 enum Column {
@@ -33,8 +32,7 @@ pub(super) fn read(
     table: &mut Table,
 ) -> Result<(), Vec<Problem>> {
     let mut columns: Vec<Column> = (0..dialect.columns).map(|_| Column::Unknown(0)).collect();
-    let mut problems: Vec<Problem> = Vec::new();
-    let mut more = 0;
+    let mut faults = Faults::new(text.shown);
     for line in rows.iter().filter(|line| super::is_row(text, **line)) {
         let found: Result<(), Problem> = row(text, *line, dialect).and_then(|cells| {
             let mut each = columns.iter_mut().zip(&headings).zip(cells);
@@ -43,19 +41,10 @@ pub(super) fn read(
             })
         });
         if let Err(problem) = found {
-            if problems.len() < SHOWN { problems.push(problem) } else { more += 1 }
+            faults.push(|| problem);
         }
     }
-    if more > 0 {
-        let word = if more == 1 { "problem" } else { "problems" };
-        problems.push(Problem::error(
-            "more-problems",
-            format!("and {more} more {word} in `{}`", text.shown),
-        ));
-    }
-    if !problems.is_empty() {
-        return Err(problems);
-    }
+    faults.finish(())?;
     let place = |column: usize, row: usize| {
         let line = *rows.iter().filter(|line| super::is_row(text, **line)).nth(row)?;
         let cell = self::row(text, line, dialect).ok()?.get(column)?.clone();
@@ -182,16 +171,6 @@ fn add(
     Err(Problem::error(code, format!("`{}`: `{}` {fact}", heading.name, shortened(word)))
         .at(&at(text.shown, line, cell))
         .help(help))
-}
-
-/// A cell for a message; it can be as long as the line.
-fn shortened(word: &str) -> String {
-    const MOST: usize = 40;
-    if word.chars().count() <= MOST {
-        word.to_string()
-    } else {
-        word.chars().take(MOST).chain(['…']).collect()
-    }
 }
 
 /// Columns of numbers and times as channels. `cell`: the text and the place of a cell, by its

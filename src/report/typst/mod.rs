@@ -10,12 +10,12 @@ mod world;
 
 use serde::Serialize;
 use serde_json::{Value, json};
-use sha2::{Digest, Sha256};
 use typst::diag::SourceDiagnostic;
 use typst::foundations::Smart;
 use typst_layout::PagedDocument;
 use typst_pdf::{PdfOptions, PdfStandard, PdfStandards, Timestamp};
 
+use crate::hash::Hasher;
 use crate::problem::{Problem, Problems};
 use crate::report::pdf::{Attachment, Pdf};
 use crate::report::study::Document;
@@ -137,10 +137,10 @@ fn filled(data: &ReportData) -> Result<String, Problems> {
 
 /// Document identifier: the hash of all inputs.
 fn ident(value: &Value, figures: &[(String, String)], attachments: &[Attachment<'_>]) -> String {
-    let mut hash = Sha256::new();
+    let mut hash = Hasher::default();
     let mut part = |bytes: &[u8]| {
-        hash.update((bytes.len() as u64).to_le_bytes());
-        hash.update(bytes);
+        hash.add(&(bytes.len() as u64).to_le_bytes());
+        hash.add(bytes);
     };
     part(value.to_string().as_bytes());
     for (name, svg) in figures {
@@ -151,7 +151,7 @@ fn ident(value: &Value, figures: &[(String, String)], attachments: &[Attachment<
         part(attachment.name.as_bytes());
         part(attachment.bytes);
     }
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hash.finish()
 }
 
 /// An error of Typst with its place in the template. Templates are part of the program, so no user

@@ -14,8 +14,6 @@ use parquet::DecodeResult;
 use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::RowSelection;
 use parquet::arrow::push_decoder::{ParquetPushDecoderBuilder, PushBuffers};
-use parquet::basic::Type;
-use parquet::file::metadata::ColumnChunkMetaData;
 
 use super::layout::{damaged, guarded};
 use super::open::Opened;
@@ -27,14 +25,6 @@ use crate::problem::Problem;
 /// Rows decoded at a time: the numbers of twenty channels take 1 MB, which stays in the
 /// second-level cache.
 const BATCH: usize = 1 << 13;
-
-/// The bytes of a column in a group.
-fn range_of(chunk: &ColumnChunkMetaData) -> Option<Range<u64>> {
-    let start = chunk.dictionary_page_offset().unwrap_or(chunk.data_page_offset());
-    let (start, length) =
-        (u64::try_from(start).ok()?, u64::try_from(chunk.compressed_size()).ok()?);
-    Some(start..start.checked_add(length)?)
-}
 
 /// Called after each batch with the columns and the row of the file with which the batch begins; it
 /// may empty the columns.
@@ -158,21 +148,14 @@ impl Opened<'_> {
                 return Err(damaged(shown, &format!("{}: no values", place())));
             };
             let chunk = self.layout.metadata.metadata().row_group(group).column(leaf);
-            let range = range_of(chunk).filter(|range| range.end <= self.store.size());
+            let range = guard::range(chunk).filter(|range| range.end <= self.store.size());
             let range = range.ok_or_else(|| {
                 damaged(shown, &format!("{}: its values lie outside the file", place()))
             })?;
-            let width = match chunk.column_type() {
-                Type::DOUBLE | Type::INT64 => 8,
-                Type::FLOAT | Type::INT32 => 4,
-                _ => 2,
-            };
-            let values = u64::try_from(chunk.num_values()).unwrap_or(0);
             memory += range.end - range.start;
             self.within(memory, "a row group")?;
-            let pages = self
-                .store
-                .add(range, &mut chunks, shown, |bytes| guard::pages(bytes, values, width))?;
+            let pages =
+                self.store.add(range, &mut chunks, shown, |bytes| guard::pages(bytes, chunk))?;
             let pages = pages.map_err(|why| {
                 damaged(shown, &format!("row group {}, column `{}`: {why}", group + 1, column.name))
             })?;
@@ -188,7 +171,7 @@ impl Opened<'_> {
         let leaves = columns.iter().filter_map(|column| self.layout.leaf(column.position));
         leaves
             .filter_map(|leaf| {
-                range_of(group.column(leaf)).filter(|range| range.end <= self.store.size())
+                guard::range(group.column(leaf)).filter(|range| range.end <= self.store.size())
             })
             .collect()
     }
@@ -293,58 +276,66 @@ pub(in crate::data::record) fn wrong(
         .at(&value_at(shown, heading, row, &text))
 }
 
+/// Takes a faulty value: its row in the file, its column, and what stands there.
 pub(in crate::data::record) type Fault<'f> = &'f mut dyn FnMut(usize, &Column, Option<f64>);
 
-/// Appends the numbers of an array; `first` is the row of its first one.
+/// Appends the numbers of an array to a column, in SI units; `first` is the row of its first one.
 pub(in crate::data::record) fn append(
     array: &dyn Array,
     column: &mut Column,
     first: usize,
     fault: Fault<'_>,
 ) -> Result<(), String> {
-    macro_rules! numbers {
-        ($kind:ty, $convert:expr) => {
-            extend::<$kind>(array, column, first, fault, $convert)
-        };
-    }
-    match array.data_type() {
-        DataType::Float64 => numbers!(Float64Type, |value| value),
-        DataType::Float32 => numbers!(Float32Type, f64::from),
-        DataType::Float16 => numbers!(Float16Type, f64::from),
-        DataType::Int8 => numbers!(Int8Type, f64::from),
-        DataType::Int16 => numbers!(Int16Type, f64::from),
-        DataType::Int32 => numbers!(Int32Type, f64::from),
-        DataType::UInt8 => numbers!(UInt8Type, f64::from),
-        DataType::UInt16 => numbers!(UInt16Type, f64::from),
-        DataType::UInt32 => numbers!(UInt32Type, f64::from),
-        // Integers from 2^53 are rounded to the nearest double, as the same digits in a text are.
-        DataType::Int64 => numbers!(Int64Type, |value| value as f64),
-        DataType::UInt64 => numbers!(UInt64Type, |value| value as f64),
-        other => Err(format!("the column `{}` holds {other} instead of numbers", column.name)),
-    }
-}
-
-fn extend<T: ArrowPrimitiveType>(
-    array: &dyn Array,
-    column: &mut Column,
-    first: usize,
-    fault: Fault<'_>,
-    convert: impl Fn(T::Native) -> f64,
-) -> Result<(), String> {
-    let array =
-        array.as_primitive_opt::<T>().ok_or("an array of another type than its schema says")?;
-    let factor = column.unit.factor;
-    let from = column.values.len();
-    column.values.extend(array.values().iter().map(|value| convert(*value) * factor));
-    let good =
-        array.null_count() == 0 && column.values[from..].iter().all(|value| value.is_finite());
-    if !good {
-        for row in 0..array.len() {
-            let value = (!array.is_null(row)).then(|| convert(array.value(row)));
-            if value.is_none_or(|value| !(value * factor).is_finite()) {
-                fault(first + row, column, value);
+    let (from, factor) = (column.values.len(), column.unit.factor);
+    numbers(array, factor, &mut column.values).ok_or_else(|| {
+        format!("the column `{}` holds {} instead of numbers", column.name, array.data_type())
+    })?;
+    if column.values[from..].iter().any(|value| !value.is_finite()) {
+        let mut written = Vec::new();
+        numbers(array, 1.0, &mut written);
+        for (row, value) in written.into_iter().enumerate() {
+            if !column.values[from + row].is_finite() {
+                fault(first + row, column, array.is_valid(row).then_some(value));
             }
         }
     }
     Ok(())
+}
+
+/// Appends the numbers of an array times a factor; NaN where it has none. `None` if it holds no
+/// numbers. Integers from 2^53 are rounded to the nearest double, as the same digits in a text are.
+pub(crate) fn numbers(array: &dyn Array, factor: f64, to: &mut Vec<f64>) -> Option<()> {
+    macro_rules! all {
+        ($($kind:ident => $type:ty),*) => {
+            match array.data_type() {
+                $(DataType::$kind => extend::<$type>(array, factor, to, |value| value as f64),)*
+                DataType::Float16 => {
+                    extend::<Float16Type>(array, factor, to, |value| value.to_f64())
+                }
+                _ => None,
+            }
+        };
+    }
+    all!(
+        Float64 => Float64Type, Float32 => Float32Type, Int8 => Int8Type, Int16 => Int16Type,
+        Int32 => Int32Type, Int64 => Int64Type, UInt8 => UInt8Type, UInt16 => UInt16Type,
+        UInt32 => UInt32Type, UInt64 => UInt64Type
+    )
+}
+
+fn extend<T: ArrowPrimitiveType>(
+    array: &dyn Array,
+    factor: f64,
+    to: &mut Vec<f64>,
+    convert: impl Fn(T::Native) -> f64,
+) -> Option<()> {
+    let array = array.as_primitive_opt::<T>()?;
+    if array.null_count() == 0 {
+        to.extend(array.values().iter().map(|value| convert(*value) * factor));
+    } else {
+        to.extend(
+            array.iter().map(|value| value.map_or(f64::NAN, |value| convert(value) * factor)),
+        );
+    }
+    Some(())
 }

@@ -6,6 +6,11 @@
 //! protocol: each declared length is compared with the bytes that follow, and sizes of pages with
 //! the limits below.
 
+use std::ops::Range;
+
+use parquet::basic::Type;
+use parquet::file::metadata::ColumnChunkMetaData;
+
 /// Maximum nesting of a footer, and of the columns of its schema. The deepest part of a footer is
 /// the statistics of a column, level 6.
 const DEEPEST: usize = 16;
@@ -194,8 +199,26 @@ pub(crate) struct Pages {
     pub memory: u64,
 }
 
-/// Checks the headers of the pages of a column chunk, which has `values` numbers of `width` bytes.
-pub(crate) fn pages(chunk: &[u8], values: u64, width: u64) -> Checked<Pages> {
+/// Where the bytes of a column of a row group are declared to be.
+pub(crate) fn range(chunk: &ColumnChunkMetaData) -> Option<Range<u64>> {
+    let start = chunk.dictionary_page_offset().filter(|at| *at > 0);
+    let start = u64::try_from(start.unwrap_or(chunk.data_page_offset())).ok()?;
+    Some(start..start.checked_add(u64::try_from(chunk.compressed_size()).ok()?)?)
+}
+
+/// Checks the headers of the pages of a column of a row group, which are in these bytes.
+pub(crate) fn pages(bytes: &[u8], chunk: &ColumnChunkMetaData) -> Checked<Pages> {
+    let width = match chunk.column_type() {
+        Type::DOUBLE | Type::INT64 => 8,
+        Type::FLOAT | Type::INT32 => 4,
+        // A truth value takes a bit, which has no dictionary.
+        _ => 1,
+    };
+    pages_of(bytes, u64::try_from(chunk.num_values()).unwrap_or(0), width)
+}
+
+/// The same of a column of `values` numbers of `width` bytes.
+fn pages_of(chunk: &[u8], values: u64, width: u64) -> Checked<Pages> {
     let (mut largest, mut dictionary, mut at) = (0, 0, 0);
     while at < chunk.len() {
         let mut walk = Walk::new(&chunk[at..], 2);
@@ -293,12 +316,12 @@ mod tests {
             [&[0x15, 0, 0x15][..], inflated, &[0x15, 8, 0x2c, 0x15, 2 * count, 0, 0], &[0; 4]]
                 .concat()
         };
-        assert_eq!(pages(&page(&[80], 10), 10, 8), Ok(Pages { memory: 40 }));
+        assert_eq!(pages_of(&page(&[80], 10), 10, 8), Ok(Pages { memory: 40 }));
         assert!(
-            pages(&page(&[0x80, 0x80, 0x80, 0x80, 0x08], 10), 10, 8)
+            pages_of(&page(&[0x80, 0x80, 0x80, 0x80, 0x08], 10), 10, 8)
                 .is_err_and(|why| why.contains("1024 MB"))
         );
-        assert!(pages(&page(&[80], 11), 10, 8).is_err_and(|why| why.contains("11 values")));
-        assert!(pages(&page(&[80], 10)[..14], 10, 8).is_err_and(|why| why.contains("4 bytes")));
+        assert!(pages_of(&page(&[80], 11), 10, 8).is_err_and(|why| why.contains("11 values")));
+        assert!(pages_of(&page(&[80], 10)[..14], 10, 8).is_err_and(|why| why.contains("4 bytes")));
     }
 }

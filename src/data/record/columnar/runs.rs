@@ -13,7 +13,7 @@ use crate::data::record::decoded::{self, Place};
 use crate::data::record::held::Held;
 use crate::data::record::known::{Known, KnownFile};
 use crate::data::record::stretch::{Block, Run, Stretch, axis_of, values};
-use crate::data::record::{Origin, Record, Stored, Wanted};
+use crate::data::record::{Stored, Wanted};
 use crate::data::text::unreadable;
 use crate::disk;
 use crate::problem::Problem;
@@ -42,13 +42,12 @@ pub(crate) fn stream(
             });
             columns.iter_mut().for_each(|column| column.values.clear());
         });
-        done.map_err(|problem| vec![problem])?;
+        done?;
         if !faults.is_empty() {
             return Err(faults.into_vec());
         }
     }
-    let channels = opened.layout.headings().iter().map(|heading| heading.name.clone()).collect();
-    Ok(Run { channels, rows: opened.layout.rows(), columns, sha256, bytes: opened.store.size() })
+    Ok(opened.run(columns, sha256))
 }
 
 /// The rows whose axis lies in a range. Row groups whose statistics exclude the range are not
@@ -60,7 +59,7 @@ pub(crate) fn stretch(
     wanted: &[Wanted],
     (axis, range): (&str, &Range<f64>),
     known: &Known,
-) -> Result<Record, Vec<Problem>> {
+) -> Result<(Run, Stretch), Vec<Problem>> {
     let (mut opened, sha256) = open(at, shown, known)?;
     let mut columns = opened.find(wanted)?;
     let place = axis_of(&columns, axis, shown)?;
@@ -98,19 +97,12 @@ pub(crate) fn stretch(
                 stretch.add(&values(columns), first_row);
                 columns.iter_mut().for_each(|column| column.values.clear());
             });
-        done.map_err(|problem| vec![problem])?;
+        done?;
         if !faults.is_empty() {
             return Err(faults.into_vec());
         }
     }
-    let channels = opened.layout.headings().iter().map(|heading| heading.name.clone()).collect();
-    let run =
-        Run { channels, rows: opened.layout.rows(), columns, sha256, bytes: opened.store.size() };
-    let from = match at {
-        At::Disk(path) => Origin::File(path.to_path_buf()),
-        At::Object(stored) => Origin::Object(stored.clone()),
-    };
-    stretch.record(run, from, shown)
+    Ok((opened.run(columns, sha256), stretch))
 }
 
 /// A row group in parts of at most so many rows as a block has.
@@ -119,6 +111,18 @@ fn blocks(rows: Range<usize>) -> impl Iterator<Item = Range<usize>> {
 }
 
 impl Opened<'_> {
+    /// What is known of the file and the columns that were read.
+    pub(super) fn run(&self, columns: Vec<Column>, sha256: String) -> Run {
+        let headings = self.layout.headings().iter();
+        Run {
+            channels: headings.map(|heading| heading.name.clone()).collect(),
+            rows: self.layout.rows(),
+            columns,
+            sha256,
+            bytes: self.store.size(),
+        }
+    }
+
     /// The numbers of columns in a block; `None` if not all are sound.
     fn numbers(
         &mut self,
@@ -188,12 +192,11 @@ fn open<'a>(
     shown: &'a str,
     known: &Known,
 ) -> Result<(Opened<'a>, String), Vec<Problem>> {
-    let one = |problem: Problem| vec![problem];
     let path = match at {
         At::Disk(path) => path,
-        At::Object(stored) => return open_object(stored, shown, known).map_err(one),
+        At::Object(stored) => return open_object(stored, shown, known).map_err(Vec::from),
     };
-    let store = Store::held(path, shown, &known.held).map_err(one)?;
+    let store = Store::held(path, shown, &known.held)?;
     let compute = || {
         if Held::takes_whole(store.size()) {
             let whole = disk::read(path, store.size())?;
@@ -208,8 +211,8 @@ fn open<'a>(
     };
     let file = known
         .or(|_| true, compute)
-        .map_err(|error: std::io::Error| one(unreadable(shown, &error)))?;
-    let opened = Opened::again(store, shown, &known.held).map_err(one)?;
+        .map_err(|error: std::io::Error| vec![unreadable(shown, &error)])?;
+    let opened = Opened::again(store, shown, &known.held)?;
     Ok((opened, file.sha256.clone()))
 }
 
@@ -232,4 +235,162 @@ pub(super) fn open_object<'a>(
         },
     )?;
     Ok((Opened::again(store, shown, &known.held)?, file.sha256.clone()))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+    use std::sync::Arc;
+
+    use arrow_array::{ArrayRef, Float64Array, RecordBatch};
+    use parquet::arrow::ArrowWriter;
+    use parquet::file::properties::WriterProperties;
+
+    use super::*;
+    use crate::data::record::decoded::ROWS;
+    use crate::data::record::{Record, RecordSource};
+    use crate::units::Dimension;
+
+    const FORCE: Dimension = Dimension([1, 1, -2, 0, 0, 0]);
+
+    /// Rows of the file: some row groups, and some blocks in the largest of them.
+    const LENGTH: usize = 100_000;
+
+    fn force(row: usize) -> f64 {
+        (row as f64 * 0.01).sin()
+    }
+
+    /// A file with row groups of so many rows, and its stretches from one time to another [s]; a
+    /// row is 5 ms.
+    struct File {
+        path: PathBuf,
+        known: Known,
+        _folder: tempfile::TempDir,
+    }
+
+    impl File {
+        fn new(group: usize, time: impl Fn(usize) -> f64, force: impl Fn(usize) -> f64) -> Self {
+            let folder = tempfile::tempdir().expect("a folder");
+            let path = folder.path().join("r.parquet");
+            let array = |value: &dyn Fn(usize) -> f64| {
+                Arc::new(Float64Array::from_iter_values((0..LENGTH).map(value))) as ArrayRef
+            };
+            let columns = [
+                ("time [s]", array(&time)),
+                ("Y [kN]", array(&force)),
+                ("Q [kN]", array(&|row| -force(row))),
+            ];
+            let batch = RecordBatch::try_from_iter(columns).expect("columns of one length");
+            let properties =
+                WriterProperties::builder().set_max_row_group_row_count(Some(group)).build();
+            let mut bytes = Vec::new();
+            let mut writer = ArrowWriter::try_new(&mut bytes, batch.schema(), Some(properties))
+                .expect("a writer");
+            writer.write(&batch).expect("written");
+            writer.close().expect("closed");
+            std::fs::write(&path, bytes).expect("written");
+            Self { path, known: Known::default(), _folder: folder }
+        }
+
+        fn sound(group: usize) -> Self {
+            Self::new(group, |row| row as f64 * 0.005, force)
+        }
+
+        fn stretch(&self, from: f64, to: f64, names: &[&str]) -> Result<Record, Vec<Problem>> {
+            let of = |name: &&str| Wanted::new(*name, FORCE);
+            let wanted: Vec<Wanted> = [Wanted::new("time", Dimension::TIME)]
+                .into_iter()
+                .chain(names.iter().map(of))
+                .collect();
+            RecordSource::at(&self.path, "r.parquet").stretch(
+                &wanted,
+                "time",
+                from..to,
+                &self.known,
+            )
+        }
+
+        /// Columns of blocks that were decoded.
+        fn made(&self) -> usize {
+            self.known.held.decoded.made()
+        }
+    }
+
+    #[test]
+    fn a_row_group_is_decoded_once_for_all_sections() {
+        let file = File::sound(20_000);
+        // 100 s are a row group; a section each 2 s, with what is beside it.
+        for section in 0..240 {
+            let from = 2.0 * f64::from(section);
+            let record = file.stretch(from, from + 10.0, &["Y"]).expect("inside");
+            assert!((2000..=2001).contains(&record.rows), "{} rows", record.rows);
+        }
+        assert_eq!(file.made(), 5 * 2, "five row groups of two columns");
+        file.stretch(0.0, 10.0, &["Q", "Y"]).expect("inside");
+        assert_eq!(file.made(), 5 * 2 + 1, "a column that was not asked for before");
+    }
+
+    #[test]
+    fn a_stretch_is_the_same_in_row_groups_of_any_length() {
+        let files = [7_000, 20_000, 60_000, LENGTH].map(File::sound);
+        for (from, to) in [
+            (0.0, 3.0),
+            (95.0, 105.0),
+            (160.0, 170.0),
+            (320.0, 330.0),
+            (20.0, 470.0),
+            (490.0, 600.0),
+        ] {
+            let [one, others @ ..] =
+                files.each_ref().map(|file| file.stretch(from, to, &["Y", "Q"]).expect("inside"));
+            let rows: Vec<usize> =
+                (0..LENGTH).filter(|row| (from..=to).contains(&(*row as f64 * 0.005))).collect();
+            assert_eq!((one.first_row, one.rows), (rows[0], rows.len()));
+            for (at, row) in rows.iter().enumerate() {
+                assert_eq!(one.columns[1].values[at], force(*row) * 1000.0);
+                assert_eq!(one.columns[2].values[at], -force(*row) * 1000.0);
+            }
+            for other in others {
+                assert_eq!(
+                    (one.columns.as_slice(), one.first_row),
+                    (other.columns.as_slice(), other.first_row)
+                );
+            }
+        }
+        let whole = &files[3];
+        assert_eq!(whole.made(), 3 * LENGTH.div_ceil(ROWS), "a long row group is parted");
+    }
+
+    /// Only rows of the stretch concern it; the axis must be sound wherever it is looked at.
+    #[test]
+    fn a_fault_beside_a_stretch_does_not_concern_it() {
+        let time = |row: usize| row as f64 * 0.005;
+        let file = File::new(20_000, time, |row| if row == 10_000 { f64::NAN } else { force(row) });
+        for _ in 0..2 {
+            let good = file.stretch(60.0, 70.0, &["Y"]).expect("inside");
+            assert_eq!((good.rows, good.columns[1].values[0]), (2001, force(12_000) * 1000.0));
+            assert!(file.stretch(45.0, 55.0, &[]).is_ok());
+            let fault = file.stretch(45.0, 55.0, &["Y"]).expect_err("no number");
+            assert_eq!(
+                (fault[0].code, fault[0].at.as_ref().map(ToString::to_string)),
+                ("not-finite", Some("r.parquet:10001:10".into()))
+            );
+        }
+        let file = File::new(20_000, |row| if row == 10_000 { f64::NAN } else { time(row) }, force);
+        assert_eq!(file.stretch(60.0, 70.0, &["Y"]).expect_err("no number")[0].code, "not-finite");
+        assert!(file.stretch(160.0, 170.0, &["Y"]).is_ok());
+    }
+
+    #[test]
+    fn the_axis_is_searched_in_all_blocks_of_a_row_group() {
+        let back = |row: usize| {
+            if row < 70_000 { row as f64 * 0.005 } else { (row - 70_000) as f64 * 0.005 }
+        };
+        let file = File::new(LENGTH, back, force);
+        assert_eq!(
+            file.stretch(10.0, 20.0, &["Y"]).expect_err("twice")[0].code,
+            "axis-not-increasing"
+        );
+        assert!(file.stretch(200.0, 210.0, &["Y"]).is_ok());
+    }
 }

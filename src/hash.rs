@@ -2,10 +2,10 @@
 
 use std::io::{self, ErrorKind, Read};
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use sha2::{Digest, Sha256};
 
-/// Bytes that are hashed at a time.
-pub const BLOCK: usize = 64;
 /// Bytes read at a time; it does not change the result.
 const READ: usize = 1 << 16;
 
@@ -14,6 +14,7 @@ const READ: usize = 1 << 16;
 pub struct Hasher(Sha256);
 
 impl Hasher {
+    /// Adds the next part.
     pub fn add(&mut self, bytes: &[u8]) {
         self.0.update(bytes);
     }
@@ -39,24 +40,20 @@ impl Hasher {
 
     /// In lower-case hexadecimal digits.
     pub fn finish(self) -> String {
-        hexadecimal(&self.0.finalize())
+        self.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
     }
 }
 
 /// SHA-256 in lower-case hexadecimal digits.
 pub fn sha256(bytes: &[u8]) -> String {
-    hexadecimal(&Sha256::digest(bytes))
+    let mut hash = Hasher::default();
+    hash.add(bytes);
+    hash.finish()
 }
 
-/// Two lower-case digits for each byte.
-pub fn hexadecimal(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 16] = b"0123456789abcdef";
-    bytes
-        .iter()
-        .flat_map(|byte| {
-            [DIGITS[usize::from(byte >> 4)] as char, DIGITS[usize::from(byte & 15)] as char]
-        })
-        .collect()
+/// SHA-256 in base64 with padding, as web pages have it.
+pub fn sha256_base64(bytes: &[u8]) -> String {
+    STANDARD.encode(Sha256::digest(bytes))
 }
 
 #[cfg(test)]
