@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use super::found::{Found, Moved, OfMetric};
 use super::metric::{self, Base, Number};
 use super::{KINDS, Settings};
-use crate::metrics::disturb::{mixed, stream};
+use crate::metrics::disturb::stream;
+use crate::metrics::random::mixed;
 use crate::result::comparison::{OfCampaign, Sensitivity};
 use crate::run::Evaluated;
 

@@ -15,6 +15,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use super::{
     interval::Interval,
     percentile::{Method, percentile},
+    random::SplitMix64,
     statistics::{self, Divisor},
     student::student_quantile,
     sum::{sum, sum_of},
@@ -89,9 +90,9 @@ impl Draws {
         if replicates == 0 {
             return Err(ClusterError::NoDraw);
         }
-        let mut generator = SplitMix64(seed);
+        let mut random = SplitMix64::new(seed);
         let drawn =
-            (0..sites * replicates).map(|_| (generator.next() * sites as f64) as usize).collect();
+            (0..sites * replicates).map(|_| (random.share() * sites as f64) as usize).collect();
         Ok(Self { sites, drawn })
     }
 
@@ -118,22 +119,6 @@ impl Draws {
     /// The sites of each draw.
     pub fn iter(&self) -> impl Iterator<Item = &[usize]> {
         self.drawn.chunks(self.sites)
-    }
-}
-
-/// Generator of Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA
-/// 2014.
-struct SplitMix64(u64);
-
-impl SplitMix64 {
-    /// Uniform in [0, 1).
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^= z >> 31;
-        (z >> 11) as f64 / (1_u64 << 53) as f64
     }
 }
 

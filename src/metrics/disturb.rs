@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use super::random::{GOLDEN, mixed};
+
 /// Standard deviation of samples with the divisor n; `None` where it is zero or there are no
 /// samples.
 #[must_use]
@@ -48,17 +50,6 @@ fn one(start: u64, sample: u64) -> f64 {
         words.map(|word| (0..4).map(|part| (word >> (16 * part)) & 0xFFFF).sum::<u64>()).sum();
     // Each is a whole number below 2^16; its mean is half of the largest.
     (sum as f64 - TERMS as f64 * 32_767.5) / 65_536.0
-}
-
-/// Increment of SplitMix64 (Steele et al. 2014).
-const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
-
-/// The finaliser of SplitMix64.
-#[must_use]
-pub fn mixed(mut bits: u64) -> u64 {
-    bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    bits ^ (bits >> 31)
 }
 
 /// The number of a stream of random numbers, from the names it belongs to (FNV-1a).

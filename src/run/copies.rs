@@ -193,7 +193,8 @@ fn named(channels: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::print::{Print, mixed, shortened};
+    use crate::metrics::random::mixed;
+    use crate::run::print::{Print, shortened};
 
     fn signal(seed: u64, count: usize) -> Vec<f64> {
         let mut state = seed;

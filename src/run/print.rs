@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::data::WhichRecord;
+use crate::metrics::random::mixed;
 
 /// Number of consecutive samples of a mark. Two independent signals with a resolution of a
 /// thousandth of their range agree in eight consecutive samples by chance at one of 10^21 places.
@@ -81,11 +82,4 @@ fn hash_of(value: f64) -> u64 {
 /// pairs, and copies share several.
 pub(super) fn shortened(hash: u64) -> u32 {
     (hash >> 32) as u32
-}
-
-/// Mixes the bits (finaliser of SplitMix64, Steele et al. 2014).
-pub(super) fn mixed(mut bits: u64) -> u64 {
-    bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    bits ^ (bits >> 31)
 }

@@ -3,7 +3,7 @@
 
 use super::groups::Block;
 use super::halves::Form;
-use super::spread::{Order, ranks};
+use super::spread::ranks;
 use crate::result::study::Spread;
 
 /// From values in any order with their counts; `None` if there are none.
@@ -35,26 +35,17 @@ pub fn weighted(list: &[(f64, f64)]) -> Option<Listed> {
     Some(Listed { count, min: list[0].0, max: list[list.len() - 1].0, quartiles, outliers })
 }
 
-/// As [`Order`], with counts that may exceed the integers.
+/// Order statistics; counts may exceed the integers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Listed {
     pub count: f64,
     pub min: f64,
     pub max: f64,
+    /// 25, 50, 75 %, interpolated linearly between order statistics.
     pub quartiles: [f64; 3],
+    /// Number of values more than 1.5 interquartile ranges below the first or above the third
+    /// quartile.
     pub outliers: f64,
-}
-
-impl From<Order> for Listed {
-    fn from(order: Order) -> Self {
-        Self {
-            count: order.count as f64,
-            min: order.min,
-            max: order.max,
-            quartiles: order.quartiles,
-            outliers: order.outliers as f64,
-        }
-    }
 }
 
 impl From<Listed> for Spread {
