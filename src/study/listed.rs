@@ -3,7 +3,6 @@
 
 use super::groups::Block;
 use super::halves::Form;
-use super::spread::ranks;
 use crate::result::study::Spread;
 
 /// From values in any order with their counts; `None` if there are none.
@@ -64,6 +63,14 @@ impl From<Listed> for Spread {
             intervals: None,
         }
     }
+}
+
+/// Rank of each quartile among `count` values, and the fraction towards the next.
+pub fn ranks(count: u64) -> [(u64, f64); 3] {
+    [0.25, 0.5, 0.75].map(|share| {
+        let rank = (count - 1) as f64 * share;
+        (rank.floor() as u64, rank - rank.floor())
+    })
 }
 
 /// Number of values kept around a rank.

@@ -7,7 +7,7 @@
 use super::fails::Fails;
 use super::groups::{Block, Row, Sorted, groups};
 use super::halves::Form;
-use super::listed::Listed;
+use super::listed::{Listed, ranks};
 use super::pilot::{at, sample};
 use super::window::Window;
 
@@ -31,14 +31,6 @@ pub struct Limit<'a> {
     pub fails: &'a mut Fails,
     /// Number of values outside it.
     pub count: u64,
-}
-
-/// Rank of each quartile among `count` values, and the fraction towards the next.
-pub fn ranks(count: u64) -> [(u64, f64); 3] {
-    [0.25, 0.5, 0.75].map(|share| {
-        let rank = (count - 1) as f64 * share;
-        (rank.floor() as u64, rank - rank.floor())
-    })
 }
 
 /// Half the width of a window, as a share of the values, for sums of two and of more parts.

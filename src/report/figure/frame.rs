@@ -1,6 +1,6 @@
 //! The frame of a diagram: axes with ticks, grid and titles, and lines and backgrounds along them.
 
-use super::axis::{Range, Scale, number_room};
+use super::axis::{Range, Scale, Tick, number_room};
 use super::canvas::{Canvas, Font, Point};
 use super::style::{BEYOND, GRID, INK, LIMIT, MUTED, TEXT, TICK};
 
@@ -85,18 +85,23 @@ impl Frame {
         canvas.text(title, (left, self.center().1), &Font::middle(TEXT).upward());
     }
 
-    /// Vertical grid lines with at most so many numbers of a size.
-    pub fn x_numbers(&self, canvas: &mut Canvas, most: usize, size: f64) {
-        for tick in self.x.ticks(most) {
+    /// Vertical grid lines with numbers of a size.
+    pub fn x_numbers(&self, canvas: &mut Canvas, ticks: &[Tick], size: f64) {
+        for tick in ticks {
             let (from, to) = self.upright(tick.value);
             canvas.line(from, to, GRID, 0.5);
             canvas.text(&tick.label, (to.0, to.1 + 7.0), &Font::middle(size).color(MUTED));
         }
     }
 
-    /// The same with the title of the x axis.
+    /// Vertical grid lines with at most so many numbers, and the title of the x axis.
     pub fn x_axis(&self, canvas: &mut Canvas, most: usize, title: &str) {
-        self.x_numbers(canvas, most, TICK);
+        self.x_numbers(canvas, &self.x.ticks(most), TICK);
+        self.x_title(canvas, title);
+    }
+
+    /// The title of the x axis.
+    pub fn x_title(&self, canvas: &mut Canvas, title: &str) {
         canvas.text(title, (self.center().0, self.bottom() + 18.0), &Font::middle(TEXT));
     }
 

@@ -104,7 +104,7 @@ pub fn regression(
         } else {
             frame.y_grid(&mut canvas, TICKS);
         }
-        frame.x_numbers(&mut canvas, TICKS, SMALL);
+        frame.x_numbers(&mut canvas, &frame.x.ticks(TICKS), SMALL);
         for (up, line) in names[at].iter().rev().filter(|line| !line.is_empty()).enumerate() {
             let y = frame.top() - 6.0 - 8.0 * up as f64;
             canvas.text(line, (frame.center().0, y), &Font::middle(TICK));
