@@ -20,11 +20,11 @@ use std::path::Path;
 
 use common::{Section, deviation, median};
 use fishplate::model::{CHANNELS, Record};
-use fishplate::report::figure::axis::{Scale, title};
+use fishplate::report::figure::axis::{over, title};
 use fishplate::report::figure::canvas::Canvas;
 use fishplate::report::figure::frame::Frame;
 use fishplate::report::figure::legend::{Entry, Legend};
-use fishplate::report::figure::style::{BLUE, MEASURED, Mark, SOLID, WIDTH, color};
+use fishplate::report::figure::style::{BLUE, MEASURED, Pen, TICK, WIDTH, color, look};
 use rayon::prelude::*;
 
 /// Groups of channels: prefix of the names, label, unit, and the value above which a relative
@@ -147,10 +147,10 @@ fn insert(table: &str) {
 fn traces(section: &Section, record: &Record) -> String {
     const HEIGHT: f64 = 62.0;
     const REST: f64 = 26.0;
-    let entries = vec![
-        Entry::line(MEASURED, 1.8, SOLID, "independent program"),
-        Entry::line(BLUE, 0.7, SOLID, "this model"),
-        Entry::line(color(1), 0.7, SOLID, "difference"),
+    let entries = [
+        Entry::line(Pen::solid(MEASURED, 1.8), "independent program"),
+        Entry::line(Pen::solid(BLUE, 0.7), "this model"),
+        Entry::line(Pen::solid(color(1), 0.7), "difference"),
     ];
     let legend = Legend::new(entries, WIDTH - 50.0);
     let step = HEIGHT + REST + 20.0;
@@ -166,24 +166,23 @@ fn traces(section: &Section, record: &Record) -> String {
         let theirs = section.inside(&record.distance, &section.recorded[1 + at]);
         let rest: Vec<f64> = ours.iter().zip(&theirs).map(|(a, b)| a - b).collect();
         let top = legend.height() + 6.0 + step * n as f64;
-        let along = Scale { low: section.start, high: section.end, from: 44.0, to: WIDTH - 6.0 };
-        let upper = Frame { x: along, y: Scale::over(theirs.iter().copied(), top + HEIGHT, top) };
-        let lower = Frame {
-            x: along,
-            y: Scale::over(rest.iter().copied(), top + HEIGHT + 6.0 + REST, top + HEIGHT + 6.0),
-        };
-        upper.y_axis(&mut canvas, &upper.y.ticks(4), &title(channel, unit));
+        let along = (section.start, section.end);
+        let (across, bottom) = ((44.0, WIDTH - 6.0), top + HEIGHT);
+        let upper = Frame::new(along, over(theirs.iter().copied()), across, (top, bottom));
+        let below = (bottom + 6.0, bottom + 6.0 + REST);
+        let lower = Frame::new(along, over(rest.iter().copied()), across, below);
+        upper.y_axis(&mut canvas, 4, &title(channel, unit));
         let words = if n + 1 == channels.len() { title("distance", "m") } else { String::new() };
-        lower.x_axis(&mut canvas, &along.ticks(8), &words);
-        lower.y_axis(&mut canvas, &lower.y.ticks(2), "");
+        lower.x_axis(&mut canvas, 8, &words);
+        lower.y_axis(&mut canvas, 2, "");
         for (frame, signal, color, width) in [
             (&upper, &theirs, MEASURED, 1.8),
             (&upper, &ours, BLUE, 0.7),
             (&lower, &rest, color(1), 0.7),
         ] {
             let points: Vec<(f64, f64)> =
-                x.iter().zip(signal).map(|(x, y)| (frame.x.at(*x), frame.y.at(*y))).collect();
-            canvas.draw(|layer| layer.path(&points, color, width));
+                x.iter().zip(signal).map(|(x, y)| frame.at(*x, *y)).collect();
+            canvas.path(&points, color, width);
         }
         upper.spine(&mut canvas);
         lower.spine(&mut canvas);
@@ -194,11 +193,7 @@ fn traces(section: &Section, record: &Record) -> String {
 /// Difference of the standard deviations in per cent over the recorded one, for every channel and
 /// section of all campaigns.
 fn scatter(all: &[(String, Vec<Pair>)]) -> String {
-    let entries = GROUPS
-        .iter()
-        .enumerate()
-        .map(|(n, group)| Entry::mark(Mark::nth(n), color(n), group.1))
-        .collect();
+    let entries = GROUPS.iter().enumerate().map(|(n, group)| Entry::mark(look(n), group.1));
     let legend = Legend::new(entries, WIDTH - 50.0);
     let top = legend.height() + 6.0;
     let points: Vec<(usize, f64, f64)> = all
@@ -209,21 +204,21 @@ fn scatter(all: &[(String, Vec<Pair>)]) -> String {
             (pair.group, pair.theirs[1].log10(), (pair.ours[1] / pair.theirs[1] - 1.0) * 100.0)
         })
         .collect();
-    let x = Scale::over(points.iter().map(|point| point.1), 44.0, WIDTH - 6.0);
-    let frame = Frame { x, y: Scale::over(points.iter().map(|point| point.2), top + 120.0, top) };
+    let x = over(points.iter().map(|point| point.1));
+    let y = over(points.iter().map(|point| point.2));
+    let frame = Frame::new(x, y, (44.0, WIDTH - 6.0), (top, top + 120.0));
     let mut canvas = Canvas::new(WIDTH, top + 146.0);
     legend.draw(&mut canvas, (44.0, 0.0));
     let mut ticks = frame.x.ticks(8);
     for tick in &mut ticks {
         tick.label = format!("{:.2}", 10_f64.powf(tick.value));
     }
-    frame.x_axis(&mut canvas, &ticks, "recorded standard deviation [kN or m/s²], logarithmic");
-    frame.y_axis(&mut canvas, &frame.y.ticks(6), "difference [%]");
-    canvas.draw(|layer| {
-        for (group, x, y) in &points {
-            layer.mark(Mark::nth(*group), (frame.x.at(*x), frame.y.at(*y)), 1.4, color(*group));
-        }
-    });
+    frame.x_numbers(&mut canvas, &ticks, TICK);
+    frame.x_title(&mut canvas, "recorded standard deviation [kN or m/s²], logarithmic");
+    frame.y_axis(&mut canvas, 6, "difference [%]");
+    for (group, x, y) in &points {
+        canvas.mark(look(*group), frame.at(*x, *y), 1.4);
+    }
     frame.spine(&mut canvas);
     canvas.finish()
 }

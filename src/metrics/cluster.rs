@@ -90,10 +90,9 @@ impl Draws {
         if replicates == 0 {
             return Err(ClusterError::NoDraw);
         }
-        let mut generator = SplitMix64(seed);
-        let drawn = (0..sites * replicates)
-            .map(|_| (generator.uniform() * sites as f64) as usize)
-            .collect();
+        let mut random = SplitMix64::new(seed);
+        let drawn =
+            (0..sites * replicates).map(|_| (random.share() * sites as f64) as usize).collect();
         Ok(Self { sites, drawn })
     }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::random::{INCREMENT, mixed};
+use super::random::{GOLDEN, mixed};
 
 /// Standard deviation of samples with the divisor n; `None` where it is zero or there are no
 /// samples.
@@ -45,7 +45,7 @@ const TERMS: u64 = 12;
 
 fn one(start: u64, sample: u64) -> f64 {
     let words = (0..TERMS / 4)
-        .map(|word| mixed(start.wrapping_add((sample * TERMS / 4 + word).wrapping_mul(INCREMENT))));
+        .map(|word| mixed(start.wrapping_add((sample * TERMS / 4 + word).wrapping_mul(GOLDEN))));
     let sum: u64 =
         words.map(|word| (0..4).map(|part| (word >> (16 * part)) & 0xFFFF).sum::<u64>()).sum();
     // Each is a whole number below 2^16; its mean is half of the largest.

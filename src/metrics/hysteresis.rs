@@ -256,6 +256,14 @@ fn branches(x: &[f64], turn_back: f64) -> Vec<Branch> {
     let mut lowest = highest;
     let mut direction = None;
     let mut began = 0;
+    // The branch up to an extreme that ends it.
+    let branch = |direction: Direction, began: usize, end: Extreme| {
+        let (low, high) = match direction {
+            Direction::Rising => (x[began], end.value),
+            Direction::Falling => (end.value, x[began]),
+        };
+        Branch { direction, first: began, last: end.first, low, high }
+    };
     for (index, &value) in x.iter().enumerate() {
         let rising = direction != Some(Direction::Falling);
         let falling = direction != Some(Direction::Rising);
@@ -265,63 +273,22 @@ fn branches(x: &[f64], turn_back: f64) -> Vec<Branch> {
         if falling && value <= lowest.value {
             lowest.reach(index, value);
         }
-        let turns_down = rising && highest.value - value > turn_back;
-        let turns_up = falling && value - lowest.value > turn_back;
-        match direction {
-            None if turns_down => {
-                (direction, began, lowest) =
-                    (Some(Direction::Falling), highest.last, Extreme::at(index, value))
-            }
-            None if turns_up => {
-                (direction, began, highest) =
-                    (Some(Direction::Rising), lowest.last, Extreme::at(index, value))
-            }
-            Some(Direction::Rising) if turns_down => {
-                found.push(Branch {
-                    direction: Direction::Rising,
-                    first: began,
-                    last: highest.first,
-                    low: x[began],
-                    high: highest.value,
-                });
-                (direction, began, lowest) =
-                    (Some(Direction::Falling), highest.last, Extreme::at(index, value));
-            }
-            Some(Direction::Falling) if turns_up => {
-                found.push(Branch {
-                    direction: Direction::Falling,
-                    first: began,
-                    last: lowest.first,
-                    low: lowest.value,
-                    high: x[began],
-                });
-                (direction, began, highest) =
-                    (Some(Direction::Rising), lowest.last, Extreme::at(index, value));
-            }
-            _ => {}
+        let (end, next) = if rising && highest.value - value > turn_back {
+            (highest, Direction::Falling)
+        } else if falling && value - lowest.value > turn_back {
+            (lowest, Direction::Rising)
+        } else {
+            continue;
+        };
+        found.extend(direction.map(|direction| branch(direction, began, end)));
+        (direction, began) = (Some(next), end.last);
+        match next {
+            Direction::Falling => lowest = Extreme::at(index, value),
+            Direction::Rising => highest = Extreme::at(index, value),
         }
     }
-    match direction {
-        Some(direction @ Direction::Rising) => {
-            found.push(Branch {
-                direction,
-                first: began,
-                last: highest.first,
-                low: x[began],
-                high: highest.value,
-            });
-        }
-        Some(direction @ Direction::Falling) => {
-            found.push(Branch {
-                direction,
-                first: began,
-                last: lowest.first,
-                low: lowest.value,
-                high: x[began],
-            });
-        }
-        None => {}
-    }
+    let end = if direction == Some(Direction::Rising) { highest } else { lowest };
+    found.extend(direction.map(|direction| branch(direction, began, end)));
     found
 }
 

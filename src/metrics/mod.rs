@@ -19,12 +19,14 @@
 //! | [`sampling`] | values | signs of recording faults: held, saturated, quantised |
 //! | [`pair`] | simulated and measured signal | measures of agreement |
 //! | [`hull`] | points | the nearest point of their convex hull, its corners |
+//! | [`random`] | a seed | random numbers that are the same on every machine |
 //! | [`random_effects`] | estimates with variances | the variance between them |
 //! | [`synchronise`] | signals of two records | the shift between them |
 //! | [`drift`] | signals of two long records | the shift along them |
 //! | [`fourier`] | a length | the plan of a Fourier transform |
 //! | [`coherence`] | simulated and measured signal | the linear dependence as a function of frequency |
 //! | [`along`] | signal over an axis | derivative, integral, shifted signal |
+//! | [`moments`] | values of the members of a set | mean and scatter of any of them, from sums |
 //! | [`rank`] | pairs of values | rank correlation |
 //! | [`disturb`] | signal | the signal with an offset, a gain, a delay or noise of a stated size |
 //! | [`random`] | seed | numbers that are the same on every machine |
@@ -41,6 +43,7 @@ pub mod hull;
 pub mod hysteresis;
 mod incomplete_beta;
 pub mod interval;
+pub mod moments;
 pub mod pair;
 pub mod percentile;
 pub mod random;

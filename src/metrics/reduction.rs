@@ -9,6 +9,8 @@
 
 use rayon::prelude::*;
 
+use super::moments::{Moments, Summed};
+
 /// Weight of the scatter of single measures against the highest.
 const OTHERS: f64 = 0.1;
 /// Largest number of exchanges.
@@ -21,44 +23,20 @@ const IMPROVES: f64 = 1e-12;
 /// number are removed one by one.
 const PART: usize = 100;
 
-/// A measure of scatter: a standard deviation or root mean square, which follows from sums of each
-/// member.
-#[derive(Clone, Debug)]
-pub struct Measure {
-    /// The divisor is n - `ddof`; `None` for a root mean square.
-    pub ddof: Option<f64>,
-    /// By which the value is multiplied: one over its limit.
-    pub scale: f64,
-    /// Of each member the number of values, their sum and sum of squares.
-    pub sums: Vec<[f64; 3]>,
+/// The scatter of members with these moments in all; 0 where it is not defined.
+fn scatter(measure: &Summed, total: Moments) -> f64 {
+    measure.value(total).unwrap_or(0.0)
 }
 
-impl Measure {
-    /// Of some members; 0 where it is not defined.
-    pub fn over(&self, members: &[usize]) -> f64 {
-        self.of(self.total(members))
-    }
-
-    fn total(&self, members: &[usize]) -> [f64; 3] {
-        members.iter().fold([0.0; 3], |[n, x, xx], &at| {
-            let of = self.sums[at];
-            [n + of[0], x + of[1], xx + of[2]]
-        })
-    }
-
-    fn of(&self, [n, x, xx]: [f64; 3]) -> f64 {
-        let value = match self.ddof {
-            None => (xx / n).sqrt(),
-            Some(ddof) if n > ddof => ((xx - x * x / n).max(0.0) / (n - ddof)).sqrt(),
-            Some(_) => 0.0,
-        } * self.scale;
-        if value.is_finite() { value } else { 0.0 }
-    }
+/// The scatter of some members by each measure.
+pub fn over(measures: &[Summed], members: &[usize]) -> Vec<f64> {
+    let of = |measure: &Summed| scatter(measure, measure.total(members.iter().copied()));
+    measures.iter().map(of).collect()
 }
 
 /// How far the scatter of some members is from that of all.
 struct Cost<'a> {
-    measures: &'a [Measure],
+    measures: &'a [Summed],
     all: Vec<f64>,
 }
 
@@ -74,22 +52,19 @@ impl Cost<'_> {
     }
 
     fn over(&self, kept: &[Vec<usize>]) -> f64 {
-        let members = kept.concat();
-        self.of(self.measures.iter().map(|measure| measure.over(&members)))
+        self.of(over(self.measures, &kept.concat()).into_iter())
     }
 
     /// The cost after each of the changes, from sums over all members.
     fn after(&self, kept: &[Vec<usize>], changes: &[Change]) -> Vec<f64> {
         let members = kept.concat();
-        let totals: Vec<[f64; 3]> =
-            self.measures.iter().map(|measure| measure.total(&members)).collect();
+        let totals: Vec<Moments> =
+            self.measures.iter().map(|measure| measure.total(members.iter().copied())).collect();
         let cost = |change: &Change| {
             self.of(self.measures.iter().zip(&totals).map(|(measure, total)| {
-                let (out, put) = (
-                    measure.sums[kept[change.group][change.place]],
-                    change.put.map_or([0.0; 3], |put| measure.sums[put]),
-                );
-                measure.of([0, 1, 2].map(|at| total[at] - out[at] + put[at]))
+                let out = measure.moments[kept[change.group][change.place]];
+                let put = change.put.map_or_else(Moments::default, |put| measure.moments[put]);
+                scatter(measure, total.minus(out).plus(put))
             }))
         };
         changes.par_iter().map(cost).collect()
@@ -105,9 +80,9 @@ struct Change {
 }
 
 /// The members of each group that are kept, at most `keep` of each, in the order given.
-pub fn reduced(groups: &[Vec<usize>], keep: &[usize], measures: &[Measure]) -> Vec<Vec<usize>> {
+pub fn reduced(groups: &[Vec<usize>], keep: &[usize], measures: &[Summed]) -> Vec<Vec<usize>> {
     let all = groups.concat();
-    let cost = Cost { measures, all: measures.iter().map(|measure| measure.over(&all)).collect() };
+    let cost = Cost { measures, all: over(measures, &all) };
     let mut kept: Vec<Vec<usize>> = groups.to_vec();
     while let Some(without) = without_some(&cost, &kept, keep) {
         kept = without;
@@ -172,24 +147,22 @@ fn without_some(cost: &Cost<'_>, kept: &[Vec<usize>], keep: &[usize]) -> Option<
 
 #[cfg(test)]
 mod tests {
+    use super::super::moments::Moment;
     use super::*;
 
     #[test]
     fn the_members_that_scatter_are_kept() {
         let values: [f64; 8] = [0.0, 0.1, -0.1, 5.0, -5.0, 0.2, 1.0, -1.0];
-        let one = |at: &[f64]| Measure {
-            ddof: Some(1.0),
-            scale: 1.0,
-            sums: at.iter().map(|value| [1.0, *value, value * value]).collect(),
-        };
-        let measure = one(&values);
+        let members: Vec<Vec<f64>> = values.iter().map(|value| vec![*value]).collect();
+        let measure = Summed::new(Moment::Deviation { ddof: 1.0 }, 1.0, &members);
+        let highest = |members: &[usize]| over(std::slice::from_ref(&measure), members)[0];
         let kept =
             reduced(&[vec![0, 1, 2, 3, 4, 5], vec![6, 7]], &[3, 2], std::slice::from_ref(&measure));
         assert_eq!(kept[1], [6, 7]);
         assert_eq!(kept[0].len(), 3);
         let all: Vec<usize> = (0..8).collect();
-        assert!((measure.over(&kept.concat()) - measure.over(&all)).abs() < 0.4, "{kept:?}");
-        assert_eq!(reduced(&[vec![2, 0]], &[5], &[measure]), [[0, 2]]);
+        assert!((highest(&kept.concat()) - highest(&all)).abs() < 0.4, "{kept:?}");
+        assert_eq!(reduced(&[vec![2, 0]], &[5], std::slice::from_ref(&measure)), [[0, 2]]);
     }
 
     /// No other removal costs less, when each is summed anew.
@@ -220,18 +193,18 @@ mod tests {
         }
     }
 
-    fn measures(count: usize, random: &mut fastrand::Rng) -> [Measure; 2] {
+    fn measures(count: usize, random: &mut fastrand::Rng) -> [Summed; 2] {
         let values = (0..count).map(|at| if at % 5 == 0 { 1.0 } else { random.f64() - 0.5 });
-        let sums: Vec<[f64; 3]> = values.map(|value| [1.0, value, value * value]).collect();
+        let members: Vec<Vec<f64>> = values.map(|value| vec![value]).collect();
         [
-            Measure { ddof: Some(1.0), scale: 0.5, sums: sums.clone() },
-            Measure { ddof: None, scale: 2.0, sums },
+            Summed::new(Moment::Deviation { ddof: 1.0 }, 0.5, &members),
+            Summed::new(Moment::RootMeanSquare, 2.0, &members),
         ]
     }
 
-    fn cost(measures: &[Measure]) -> Cost<'_> {
-        let all: Vec<usize> = (0..measures[0].sums.len()).collect();
-        Cost { measures, all: measures.iter().map(|measure| measure.over(&all)).collect() }
+    fn cost(measures: &[Summed]) -> Cost<'_> {
+        let all: Vec<usize> = (0..measures[0].moments.len()).collect();
+        Cost { measures, all: over(measures, &all) }
     }
 
     /// Also where many are removed at a time, the scatter stays. 2000 members of four groups, nine
@@ -251,8 +224,8 @@ mod tests {
             (kept, rounds) = (without, rounds + 1);
         }
         assert!(rounds < 500 && kept.iter().all(|members| members.len() == 9), "{rounds}");
-        for (measure, all) in measures.iter().zip(&cost.all) {
-            assert!((measure.over(&kept.concat()) / all - 1.0).abs() < 0.05);
+        for (found, all) in over(&measures, &kept.concat()).iter().zip(&cost.all) {
+            assert!((found / all - 1.0).abs() < 0.05);
         }
         assert!(cost.over(&reduced(&groups, &[9; 4], &measures)) < 1e-3);
     }

@@ -8,7 +8,8 @@ use super::section_values::SectionValues;
 use super::unit::Unit;
 use crate::catalog::Statistic;
 use crate::check::plan::{Keep, Plan, Scalar};
-use crate::metrics::reduction::{Measure, reduced};
+use crate::metrics::moments::{Moment, Moments, Summed};
+use crate::metrics::reduction::{over, reduced};
 use crate::result::study::Reduction;
 
 /// Leaves out sections, where the protocol says so. With `before`, those that another evaluation of
@@ -51,43 +52,45 @@ fn of(keep: &Keep, pool: &Pool, units: &[Unit]) -> Reduction {
         .quantities
         .iter()
         .flat_map(|quantity| quantity.limits.iter().map(move |limit| (quantity, limit)));
-    let (symbols, measures): (Vec<&String>, Vec<Measure>) = limits
-        .filter_map(|(quantity, limit)| Some((&quantity.symbol, measure(quantity, limit)?)))
+    let (symbols, measures): (Vec<&str>, Vec<Summed>) = limits
+        .filter_map(|(quantity, limit)| Some((quantity.symbol.as_str(), measure(quantity, limit)?)))
         .unzip();
-    let scatter = |members: &[usize]| {
-        measures.iter().map(|measure| measure.over(members)).collect::<Vec<f64>>()
-    };
-    let members: Vec<Vec<usize>> = groups.iter().map(|(_, members)| members.clone()).collect();
-    let most: Vec<usize> = members.iter().map(|members| keep.most.min(members.len())).collect();
-    let kept = reduced(&members, &most, &measures);
-    let name = |at: &usize| units[*at].name.clone();
-    let (all, after) = (scatter(&members.concat()), scatter(&kept.concat()));
+    let most: Vec<usize> = groups.iter().map(|(_, members)| keep.most.min(members.len())).collect();
+    let name = |at: usize| units[at].name.clone();
+    reduction(groups, keep.most, &most, (&symbols, &measures), name).1
+}
+
+/// The members of each named group that are kept, `keep` of each, and what this says of the
+/// scatter: of each measure with the symbol of its quantity. `most` is the number that was asked
+/// for.
+pub fn reduction(
+    groups: Vec<(String, Vec<usize>)>,
+    most: usize,
+    keep: &[usize],
+    (symbols, measures): (&[&str], &[Summed]),
+    name: impl Fn(usize) -> String,
+) -> (Vec<Vec<usize>>, Reduction) {
+    let (titles, members): (Vec<String>, Vec<Vec<usize>>) = groups.into_iter().unzip();
+    let kept = reduced(&members, keep, measures);
+    let all = members.concat();
     let stay: HashSet<usize> = kept.iter().flatten().copied().collect();
-    Reduction {
-        most: keep.most,
-        left_out: members.concat().iter().filter(|at| !stay.contains(at)).map(name).collect(),
-        kept: groups
-            .into_iter()
-            .zip(&kept)
-            .map(|((group, _), kept)| (group, kept.iter().map(name).collect()))
-            .collect(),
-        scatter: symbols
-            .into_iter()
-            .zip(all.iter().zip(&after))
-            .map(|(symbol, (all, after))| (symbol.clone(), *all, *after))
-            .collect(),
-    }
+    let named = |members: &[usize]| members.iter().map(|&at| name(at)).collect::<Vec<String>>();
+    let left_out: Vec<usize> = all.iter().copied().filter(|at| !stay.contains(at)).collect();
+    let scatter = std::iter::zip(over(measures, &all), over(measures, &kept.concat()));
+    let scatter = symbols.iter().zip(scatter);
+    let reduction = Reduction {
+        most,
+        left_out: named(&left_out),
+        kept: titles.into_iter().zip(kept.iter().map(|kept| named(kept))).collect(),
+        scatter: scatter.map(|(symbol, (all, after))| ((*symbol).to_owned(), all, after)).collect(),
+    };
+    (kept, reduction)
 }
 
 /// The standard deviation or root mean square of any sections, as a share of its limit.
-fn measure(quantity: &PooledQuantity, limit: &PooledLimit) -> Option<Measure> {
-    let ddof = match limit.estimate {
-        Pooled::Statistic(Statistic::Named(entry), ddof) if entry.name == "std" => {
-            Some(ddof as f64)
-        }
-        Pooled::Statistic(Statistic::Named(entry), _) if entry.name == "rms" => None,
-        _ => return None,
-    };
+fn measure(quantity: &PooledQuantity, limit: &PooledLimit) -> Option<Summed> {
+    let Pooled::Statistic(Statistic::Named(entry), ddof) = limit.estimate else { return None };
+    let kind = Moment::named(entry.name, ddof).filter(|kind| *kind != Moment::Mean)?;
     let bound = limit.bounds.first().copied().filter(|bound| *bound > 0.0)?;
     let applies = |position: &usize| limit.positions.get(*position).copied().unwrap_or(true);
     let of_section = |(at, values): (usize, &Vec<(usize, f64)>)| {
@@ -95,11 +98,8 @@ fn measure(quantity: &PooledQuantity, limit: &PooledLimit) -> Option<Measure> {
             .iter()
             .filter(|(position, _)| limit.inside[at] && applies(position))
             .map(|(_, value)| value / bound);
-        inside.fold([0.0; 3], |[n, x, xx], value| [n + 1.0, x + value, xx + value * value])
+        Moments::about(0.0, &inside.collect::<Vec<f64>>())
     };
-    Some(Measure {
-        ddof,
-        scale: 1.0,
-        sums: quantity.values.iter().enumerate().map(of_section).collect(),
-    })
+    let moments = quantity.values.iter().enumerate().map(of_section).collect();
+    Some(Summed { kind, centre: 0.0, scale: 1.0, moments })
 }

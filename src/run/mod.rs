@@ -16,7 +16,7 @@ mod facts;
 pub mod find;
 mod groups;
 mod judge;
-mod keep;
+pub mod keep;
 mod limits;
 mod margins;
 mod minima;

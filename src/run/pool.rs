@@ -17,6 +17,7 @@ use crate::check::evaluate::number;
 use crate::check::plan::{
     Decision, EstimateKind, Kind, Limit, MinimumOfGroups, OfGroup, Plan, Quantity, Taking,
 };
+use crate::metrics::moments::{Moment, Moments};
 
 pub use crate::check::plan::Rule;
 
@@ -162,9 +163,7 @@ impl Estimator {
             return None;
         };
         let of_sums = |taking: &Taking| match taking {
-            Taking::Statistic(Statistic::Named(entry), ddof) => {
-                Some((Moment::named(entry.name)?, *ddof as f64))
-            }
+            Taking::Statistic(Statistic::Named(entry), ddof) => Moment::named(entry.name, *ddof),
             _ => None,
         };
         let taken = of.taken.iter().map(of_sums).collect::<Option<Vec<_>>>()?;
@@ -178,10 +177,10 @@ impl Estimator {
         // Sums about the common mean avoid cancellation.
         let centre = self.rows.iter().map(|(.., row)| row.value).sum::<f64>()
             / self.rows.len().max(1) as f64;
-        let mut sums = vec![Sums::default(); sections];
+        let mut sums = vec![Moments::default(); sections];
         for (section, _, row) in self.rows.iter() {
             let x = row.value - centre;
-            sums[*section] = sums[*section].plus(Sums { n: 1.0, x, xx: x * x });
+            sums[*section] = sums[*section].plus(Moments { n: 1.0, x, xx: x * x });
         }
         Some(FromSums { vehicle, of, taken, centre, sums, bound: self.bound })
     }
@@ -212,62 +211,30 @@ impl Estimator {
     }
 }
 
-/// Number of values, their sum and their sum of squares.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Sums {
-    n: f64,
-    x: f64,
-    xx: f64,
-}
-
-impl Sums {
-    #[must_use]
-    pub fn plus(self, other: Self) -> Self {
-        Self { n: self.n + other.n, x: self.x + other.x, xx: self.xx + other.xx }
-    }
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Moment {
-    Mean,
-    Deviation,
-    RootMeanSquare,
-}
-
-impl Moment {
-    fn named(name: &str) -> Option<Self> {
-        match name {
-            "mean" => Some(Self::Mean),
-            "std" => Some(Self::Deviation),
-            "rms" => Some(Self::RootMeanSquare),
-            _ => None,
-        }
-    }
-}
-
 /// An estimate of which a selection of sections needs no more than the sums of its values.
 #[derive(Debug)]
 pub struct FromSums<'a> {
     vehicle: &'a Vehicle,
     of: &'a OfGroup,
-    /// With the number that a divisor is less than the number of values.
-    taken: Vec<(Moment, f64)>,
+    taken: Vec<Moment>,
     centre: f64,
     /// Of each section, about the centre.
-    pub sums: Vec<Sums>,
+    pub sums: Vec<Moments>,
     bound: f64,
 }
 
 impl FromSums<'_> {
     /// As [`Estimator::over`], for sections with these sums in all.
-    pub fn over(&self, Sums { n, x, xx }: Sums) -> Option<f64> {
-        let squares = (xx - x * x / n).max(0.0);
-        let of = |(moment, ddof): &(Moment, f64)| match moment {
-            Moment::Deviation if n <= *ddof => Err(String::new()),
+    pub fn over(&self, total: Moments) -> Option<f64> {
+        let Moments { n, x, .. } = total;
+        let of = |moment: &Moment| match moment {
+            Moment::Deviation { ddof } if n <= *ddof => Err(String::new()),
             _ if n < 1.0 => Err(String::new()),
             Moment::Mean => Ok(self.centre + x / n),
-            Moment::Deviation => Ok((squares / (n - ddof)).sqrt()),
-            Moment::RootMeanSquare => Ok((squares / n + (self.centre + x / n).powi(2)).sqrt()),
+            Moment::Deviation { ddof } => Ok((total.squares() / (n - ddof)).sqrt()),
+            Moment::RootMeanSquare => {
+                Ok((total.squares() / n + (self.centre + x / n).powi(2)).sqrt())
+            }
         };
         let taken: Vec<Result<f64, String>> = self.taken.iter().map(of).collect();
         let value =

@@ -1,6 +1,8 @@
 //! Values and limits of a campaign for a study, by stratum, section and quantity.
 
 use crate::catalog::Statistic;
+use crate::metrics::moments::Moment;
+use crate::metrics::percentile::{Method, percentile};
 use crate::result::usable_sections;
 use crate::run::pool::{Estimator, Pool, Pooled, PooledLimit, PooledMinimum, PooledQuantity, Rule};
 
@@ -54,8 +56,7 @@ pub struct Measure {
     pub limit: f64,
     pub at_least: bool,
     pub kind: Kind,
-    /// Of [`Kind::Estimated`].
-    pub estimator: Option<Estimator>,
+    evaluated: Evaluated,
     /// Factor of a value before it is compared with `low` and `high`.
     pub scale: f64,
     /// The limit is met from `low` to `high`.
@@ -65,22 +66,23 @@ pub struct Measure {
     pub values: Vec<Vec<f64>>,
 }
 
-/// How a statistic of several sections follows from sums over single sections.
+/// What a statistic is evaluated by.
+#[derive(Clone, Debug)]
+enum Evaluated {
+    /// From the values, with divisor n - `ddof`.
+    Statistic(Statistic, usize),
+    Rows(Estimator),
+}
+
+/// How a statistic of several sections follows from single sections.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    Mean,
-    /// Divisor n - `ddof`.
-    Deviation {
-        ddof: usize,
-    },
-    RootMeanSquare,
+    Sum(Moment),
     Largest,
     Smallest,
     LargestMagnitude,
-    /// Only from all values together.
-    Pooled(Statistic),
-    /// Only from all rows together, with the data of their sections.
-    Estimated,
+    /// Only from all values, or from all rows with the data of their sections.
+    Values,
 }
 
 /// Reason why a study of a campaign is not possible.
@@ -142,42 +144,39 @@ impl Case {
                 not_used,
             });
         }
-        for stratum in &strata {
-            if stratum.members.len() < stratum.take {
-                let (has, needs) =
-                    (usable_sections(stratum.members.len(), stratum.members.len()), stratum.take);
-                let why: Vec<String> = stratum
-                    .not_used
-                    .iter()
-                    .take(3)
-                    .map(|(at, why)| format!("{} is not used: {why}", pool.sections[*at].name))
-                    .collect();
-                let why =
-                    if why.is_empty() { String::new() } else { format!(" ({})", why.join("; ")) };
-                return Err(format!(
-                    "zone {} has {has}, and a selection takes {needs}{why}",
-                    stratum.zone
-                ));
-            }
-        }
         let mut case = Self {
             strata,
             sections: pool.sections.iter().map(|section| section.name.clone()).collect(),
             quantities: pool.quantities.iter().map(quantity).collect(),
             rule,
         };
+        case.enough(|stratum| {
+            let (has, needs) = (stratum.members.len(), stratum.take);
+            let mut why: Vec<String> = Vec::new();
+            for (at, reason) in stratum.not_used.iter().take(3) {
+                why.push(format!("{} is not used: {reason}", case.sections[*at]));
+            }
+            let why = if why.is_empty() { String::new() } else { format!(" ({})", why.join("; ")) };
+            format!("{}, and a selection takes {needs}{why}", usable_sections(has, has))
+        })?;
         for (first, repeat) in repeats(pool) {
             case.take_together(first, repeat);
         }
-        for stratum in &case.strata {
-            if stratum.members.len() < stratum.take {
-                let (zone, has, needs) = (&stratum.zone, stratum.members.len(), stratum.take);
-                return Err(format!(
-                    "zone {zone} has {has} usable sites, and a selection takes {needs} (a repeat is no further section)"
-                ));
-            }
-        }
+        case.enough(|stratum| {
+            let (has, needs) = (stratum.members.len(), stratum.take);
+            format!(
+                "{has} usable sites, and a selection takes {needs} (a repeat is no further section)"
+            )
+        })?;
         Ok(case)
+    }
+
+    /// # Errors
+    /// A zone has fewer sections than a selection takes, in words.
+    fn enough(&self, says: impl Fn(&Stratum) -> String) -> Result<(), Refusal> {
+        let short = self.strata.iter().find(|stratum| stratum.members.len() < stratum.take);
+        let says = short.map(|stratum| format!("zone {} has {}", stratum.zone, says(stratum)));
+        says.map_or(Ok(()), Err)
     }
 
     /// A repeat is taken with the section that it repeats, as one member of its zone.
@@ -197,7 +196,7 @@ impl Case {
             for measure in &mut quantity.measures {
                 let values = std::mem::take(&mut measure.values[repeat]);
                 measure.values[first].extend(values);
-                if let Some(estimator) = &mut measure.estimator {
+                if let Evaluated::Rows(estimator) = &mut measure.evaluated {
                     estimator.take_together(first, repeat);
                 }
             }
@@ -216,19 +215,28 @@ impl Case {
         let theirs = other.usable();
         for stratum in &mut case.strata {
             stratum.members.retain(|section| theirs.contains(section));
-            if stratum.members.len() < stratum.take {
-                let (zone, has, needs) = (&stratum.zone, stratum.members.len(), stratum.take);
-                return Err(format!(
-                    "zone {zone} has {has} sections usable in both cases, and a selection takes {needs}"
-                ));
-            }
         }
+        case.enough(|stratum| {
+            let (has, needs) = (stratum.members.len(), stratum.take);
+            format!("{has} sections usable in both cases, and a selection takes {needs}")
+        })?;
         Ok(case)
     }
 
     /// Number of selections; rounded beyond 2^53.
     pub fn combinations(&self) -> f64 {
         self.strata.iter().map(|stratum| choose(stratum.members.len(), stratum.take)).product()
+    }
+
+    /// Every usable section with its stratum, both by index.
+    pub fn members(&self) -> impl Iterator<Item = (usize, usize)> {
+        let strata = self.strata.iter().enumerate();
+        strata.flat_map(|(number, stratum)| stratum.members.iter().map(move |&at| (number, at)))
+    }
+
+    /// Number of sections that each stratum has beyond those of a selection.
+    pub fn spare(&self) -> Vec<usize> {
+        self.strata.iter().map(|stratum| stratum.members.len() - stratum.take).collect()
     }
 
     /// Every limit with its quantity.
@@ -280,30 +288,31 @@ fn quantity(pooled: &PooledQuantity) -> Quantity {
 }
 
 fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
-    let (statistic, ddof) = match &limit.estimate {
-        Pooled::Statistic(statistic, ddof) => (Some(*statistic), *ddof),
-        Pooled::Estimate(_) => (None, 0),
+    let (name, each, evaluated) = match &limit.estimate {
+        Pooled::Estimate(estimator) => {
+            (limit.title.clone(), false, Evaluated::Rows(estimator.clone()))
+        }
+        Pooled::Statistic(statistic, ddof) => {
+            // Every value meets its limit if the one nearest to it does.
+            let nearest = if limit.at_least { "minimum" } else { "peak" };
+            let each = *statistic == Statistic::Each;
+            let over = Statistic::named(nearest).filter(|_| each).unwrap_or(*statistic);
+            (statistic.name(), each, Evaluated::Statistic(over, *ddof))
+        }
     };
-    let each = statistic == Some(Statistic::Each);
-    let kind = statistic.map_or(Kind::Estimated, |statistic| match statistic {
-        Statistic::Each if limit.at_least => Kind::Smallest,
-        Statistic::Each => Kind::LargestMagnitude,
-        Statistic::Percentile(_) => Kind::Pooled(statistic),
-        Statistic::Named(entry) => match entry.name {
-            "mean" => Kind::Mean,
-            "std" => Kind::Deviation { ddof },
-            "rms" => Kind::RootMeanSquare,
+    let kind = match &evaluated {
+        Evaluated::Statistic(Statistic::Named(entry), ddof) => match entry.name {
             "maximum" => Kind::Largest,
             "minimum" => Kind::Smallest,
             "peak" => Kind::LargestMagnitude,
-            _ => Kind::Pooled(statistic),
+            name => Moment::named(name, *ddof).map_or(Kind::Values, Kind::Sum),
         },
-    });
-    let (bound, scale) = if each || kind == Kind::Estimated {
-        (1.0, 1.0)
-    } else {
-        let bound = limit.bounds[0];
-        if bound > 0.0 { (1.0, 1.0 / bound) } else { (bound, 1.0) }
+        _ => Kind::Values,
+    };
+    let (bound, scale) = match &evaluated {
+        Evaluated::Statistic(..) if !each && limit.bounds[0] > 0.0 => (1.0, 1.0 / limit.bounds[0]),
+        Evaluated::Statistic(..) if !each => (limit.bounds[0], 1.0),
+        _ => (1.0, 1.0),
     };
     let room = EQUAL * bound.abs();
     let (low, high) =
@@ -320,16 +329,13 @@ fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
             .collect()
     };
     Measure {
-        name: statistic.map_or_else(|| limit.title.clone(), Statistic::name),
-        estimator: match &limit.estimate {
-            Pooled::Estimate(estimator) => Some(estimator.clone()),
-            Pooled::Statistic(..) => None,
-        },
+        name,
         title: limit.title.clone(),
         scope: limit.scope.clone(),
         limit: if each { 1.0 } else { limit.bounds[0] },
         at_least: limit.at_least,
         kind,
+        evaluated,
         scale,
         low,
         high,
@@ -340,34 +346,44 @@ fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
 impl Measure {
     /// The statistic over some sections divided by the limit; `None` where it is not defined.
     pub fn over(&self, sections: impl Iterator<Item = usize>) -> Option<f64> {
-        if let Some(estimator) = &self.estimator {
-            return estimator.over(&sections.collect::<Vec<usize>>());
-        }
-        let values: Vec<f64> = sections.flat_map(|at| self.values[at].iter().copied()).collect();
-        let named = |name: &str, ddof: usize| match Statistic::named(name) {
-            Some(Statistic::Named(entry)) => (entry.run)(&values, ddof),
-            _ => None,
+        let (statistic, ddof) = match &self.evaluated {
+            Evaluated::Rows(rows) => return rows.over(&sections.collect::<Vec<usize>>()),
+            Evaluated::Statistic(statistic, ddof) => (*statistic, *ddof),
         };
-        let value = match self.kind {
-            Kind::Mean => named("mean", 0),
-            Kind::Deviation { ddof } => named("std", ddof),
-            Kind::RootMeanSquare => named("rms", 0),
-            Kind::Largest => named("maximum", 0),
-            Kind::Smallest => named("minimum", 0),
-            Kind::LargestMagnitude => named("peak", 0),
-            Kind::Pooled(Statistic::Percentile(percent)) => crate::metrics::percentile::percentile(
-                &values,
-                percent,
-                crate::metrics::percentile::Method::Linear,
-            )
-            .ok(),
-            Kind::Pooled(Statistic::Named(entry)) => (entry.run)(&values, 0),
-            Kind::Pooled(Statistic::Each) | Kind::Estimated => None,
+        let values: Vec<f64> = sections.flat_map(|at| self.values[at].iter().copied()).collect();
+        let value = match statistic {
+            Statistic::Percentile(percent) => percentile(&values, percent, Method::Linear).ok(),
+            Statistic::Named(entry) => (entry.run)(&values, ddof),
+            Statistic::Each => None,
         };
         value.map(|value| value * self.scale).filter(|value| value.is_finite())
     }
 
+    /// Whether a value meets the limit.
     pub fn holds(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
+    }
+
+    /// The estimator of a statistic that needs the data of its sections.
+    pub fn estimator(&self) -> Option<&Estimator> {
+        match &self.evaluated {
+            Evaluated::Rows(estimator) => Some(estimator),
+            Evaluated::Statistic(..) => None,
+        }
+    }
+
+    /// For a largest value, a smallest value or a largest magnitude: the sign that makes it a
+    /// largest value, and that value of each section.
+    pub fn extremes(&self) -> Option<(f64, Vec<Option<f64>>)> {
+        let (sign, magnitude) = match self.kind {
+            Kind::Largest => (1.0, false),
+            Kind::Smallest => (-1.0, false),
+            Kind::LargestMagnitude => (1.0, true),
+            Kind::Sum(_) | Kind::Values => return None,
+        };
+        let of_value =
+            |value: &f64| sign * self.scale * if magnitude { value.abs() } else { *value };
+        let of_section = |values: &Vec<f64>| values.iter().map(of_value).reduce(f64::max);
+        Some((sign, self.values.iter().map(of_section).collect()))
     }
 }

@@ -1,7 +1,7 @@
 //! Largest and smallest values over all selections, counted by binomial coefficients without
 //! forming selections.
 
-use super::case::{Case, Kind, Measure, choose};
+use super::case::{Case, Measure, choose};
 use super::listed::{Listed, weighted};
 
 /// Order statistics of a largest value, a smallest value or a largest magnitude. `None` for other
@@ -11,18 +11,8 @@ use super::listed::{Listed, weighted};
 /// number of such selections is the product, over the zones, of the choices among the sections
 /// within the bound.
 pub fn over_all(case: &Case, measure: &Measure) -> Option<Listed> {
-    let (sign, magnitude) = match measure.kind {
-        Kind::Largest => (1.0, false),
-        Kind::Smallest => (-1.0, false),
-        Kind::LargestMagnitude => (1.0, true),
-        _ => return None,
-    };
-    let of_section = |at: usize| {
-        let values = measure.values[at]
-            .iter()
-            .map(|value| sign * measure.scale * if magnitude { value.abs() } else { *value });
-        values.reduce(f64::max).unwrap_or(f64::NEG_INFINITY)
-    };
+    let (sign, of_sections) = measure.extremes()?;
+    let of_section = |at: usize| of_sections[at].unwrap_or(f64::NEG_INFINITY);
     let strata: Vec<(usize, Vec<f64>)> = case
         .strata
         .iter()

@@ -21,10 +21,6 @@ impl Fails {
         Self { rows, columns, words, bits: vec![0; rows * words], from: Vec::new() }
     }
 
-    pub fn clear(&mut self) {
-        self.bits.fill(0);
-    }
-
     #[inline]
     pub fn one(&mut self, row: u32, column: u32) {
         self.bits[row as usize * self.words + column as usize / 64] |= 1 << (column % 64);
@@ -37,7 +33,7 @@ impl Fails {
             u64::from(fails) << (column % 64);
     }
 
-    /// Sets the order of columns for the following calls of `after` and `before`.
+    /// Sets the order of columns for the following calls of `between`.
     #[inline(always)]
     pub fn order(&mut self, columns: &[u32]) {
         let cuts = columns.len().div_ceil(STEP);
@@ -53,42 +49,25 @@ impl Fails {
         }
     }
 
-    /// Sets a row in all columns from a position in the order on.
+    /// Sets a row in all columns between two positions in the order.
     #[inline(always)]
-    pub fn after(&mut self, row: u32, columns: &[u32], place: usize) {
-        let cut = place.div_ceil(STEP);
-        let end = (cut * STEP).min(columns.len());
-        for column in &columns[place..end] {
-            self.one(row, *column);
+    pub fn between(&mut self, row: u32, columns: &[u32], from: usize, to: usize) {
+        let (first, last) = (from.div_ceil(STEP), to / STEP);
+        if first >= last {
+            columns[from..to].iter().for_each(|column| self.one(row, *column));
+            return;
         }
-        if end < columns.len() {
-            let start = row as usize * self.words;
-            let set = &self.from[cut * self.words..(cut + 1) * self.words];
-            for (word, set) in self.bits[start..start + self.words].iter_mut().zip(set) {
-                *word |= set;
-            }
+        let singles = columns[from..first * STEP].iter().chain(&columns[last * STEP..to]);
+        singles.for_each(|column| self.one(row, *column));
+        let start = row as usize * self.words;
+        let set = |cut: usize| &self.from[cut * self.words..(cut + 1) * self.words];
+        let words = self.bits[start..start + self.words].iter_mut();
+        for ((word, set), rest) in words.zip(set(first)).zip(set(last)) {
+            *word |= set & !rest;
         }
     }
 
-    /// Sets a row in all columns before a position in the order.
-    #[inline(always)]
-    pub fn before(&mut self, row: u32, columns: &[u32], place: usize) {
-        let cut = place / STEP;
-        for column in &columns[cut * STEP..place] {
-            self.one(row, *column);
-        }
-        if cut > 0 {
-            let start = row as usize * self.words;
-            let (all, rest) =
-                (&self.from[..self.words], &self.from[cut * self.words..(cut + 1) * self.words]);
-            for ((word, all), rest) in
-                self.bits[start..start + self.words].iter_mut().zip(all).zip(rest)
-            {
-                *word |= all & !rest;
-            }
-        }
-    }
-
+    /// Whether a selection is in the set.
     pub fn has(&self, row: usize, column: usize) -> bool {
         self.bits[row * self.words + column / 64] >> (column % 64) & 1 == 1
     }

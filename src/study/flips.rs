@@ -1,15 +1,12 @@
 //! Selections whose verdict changes with other values of the same sections.
 
-use rayon::prelude::*;
-
 use super::Settings;
 use super::case::Case;
 use super::enumerate::fails;
 use super::fails::Fails;
 use super::halves::Halves;
-use super::judged::{Sums, Tally};
-use super::random::{Random, draw};
-use super::sampling::{BATCH, MOST_DRAWN, ROUND};
+use super::judged::Judge;
+use super::random::{Count, draw_until};
 use crate::metrics::interval::wilson;
 use crate::result::Verdict;
 use crate::result::study::Flips;
@@ -59,58 +56,45 @@ pub fn flips(before: Marked<'_>, after: Marked<'_>, settings: &Settings) -> Resu
 }
 
 fn drawn(one: &Case, two: &Case, settings: &Settings) -> Flips {
-    let (of_one, of_two) = (sums_of(one), sums_of(two));
-    let (mut lost, mut gained, mut batches) = (0, 0, 0);
-    loop {
-        let found: Vec<(u64, u64)> = (batches..batches + ROUND)
-            .into_par_iter()
-            .map(|number| {
-                let mut random = Random::new(settings.seed, number as u64);
-                (0..BATCH).fold((0, 0), |(lost, gained), _| {
-                    let selection = draw(one, &mut random);
-                    let (before, after) =
-                        (validated(one, &of_one, &selection), validated(two, &of_two, &selection));
-                    (lost + u64::from(before && !after), gained + u64::from(!before && after))
-                })
-            })
-            .collect();
-        lost += found.iter().map(|(lost, _)| lost).sum::<u64>();
-        gained += found.iter().map(|(_, gained)| gained).sum::<u64>();
-        batches += ROUND;
-        let all = (batches * BATCH) as u64;
-        let (lost_interval, gained_interval) = (wilson(lost, all), wilson(gained, all));
-        let widest = (lost_interval.1 - lost_interval.0).max(gained_interval.1 - gained_interval.0);
-        if widest <= settings.width || batches * BATCH >= MOST_DRAWN {
-            return Flips {
-                compared: all as f64,
-                lost: lost as f64 / all as f64,
-                gained: gained as f64 / all as f64,
-                exact: false,
-                lost_interval: Some(lost_interval),
-                gained_interval: Some(gained_interval),
-            };
-        }
+    let (before, after) = (Judge::of(one), Judge::of(two));
+    let none = || Changes { before: &before, after: &after, lost: 0, gained: 0 };
+    let (found, all) = draw_until(one, settings, none);
+    Flips {
+        compared: all as f64,
+        lost: found.lost as f64 / all as f64,
+        gained: found.gained as f64 / all as f64,
+        exact: false,
+        lost_interval: Some(wilson(found.lost, all)),
+        gained_interval: Some(wilson(found.gained, all)),
     }
 }
 
-fn sums_of(case: &Case) -> Vec<Vec<Sums<'_>>> {
-    case.quantities
-        .iter()
-        .map(|quantity| quantity.measures.iter().map(Sums::of).collect())
-        .collect()
+/// Numbers of random selections that are no longer validated, and that newly are.
+struct Changes<'a> {
+    before: &'a Judge<'a>,
+    after: &'a Judge<'a>,
+    lost: u64,
+    gained: u64,
 }
 
-fn validated(case: &Case, sums: &[Vec<Sums<'_>>], selection: &[usize]) -> bool {
-    let mut tally = Tally::default();
-    for (quantity, sums) in case.quantities.iter().zip(sums) {
-        let before = tally;
-        for sums in sums {
-            tally.limit(
-                sums.over(selection.iter().copied()).map(|value| sums.measure().holds(value)),
-            );
-        }
-        tally.quantity(&before, sums.is_empty());
-        tally.missing |= !sums.is_empty() && !quantity.enough(selection.iter().copied());
+impl Count for Changes<'_> {
+    fn look(&mut self, selection: Vec<usize>) {
+        let [before, after] = [self.before, self.after]
+            .map(|judge| judge.over(&selection, |_, _, _| {}).verdict == Verdict::Validated);
+        self.lost += u64::from(before && !after);
+        self.gained += u64::from(!before && after);
     }
-    tally.verdict(case.rule) == Verdict::Validated
+
+    fn join(&mut self, other: Self) {
+        self.lost += other.lost;
+        self.gained += other.gained;
+    }
+
+    fn width(&self, all: u64) -> f64 {
+        let width = |count: u64| {
+            let (low, high) = wilson(count, all);
+            high - low
+        };
+        width(self.lost).max(width(self.gained))
+    }
 }

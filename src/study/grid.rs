@@ -11,6 +11,7 @@ use realfft::num_complex::Complex;
 use super::case::{Case, Kind, Measure};
 use super::halves::Form;
 use crate::metrics::fourier;
+use crate::metrics::moments::Moment;
 use crate::result::study::Spread;
 
 /// Largest and smallest number of grid cells.
@@ -33,8 +34,8 @@ impl Additive {
     /// `None` for other statistics, and where the number of values differs between selections.
     pub fn of(case: &Case, measure: &Measure) -> Option<Self> {
         let (form, weight) = match measure.kind {
-            Kind::Mean => (Form::Value, measure.scale),
-            Kind::RootMeanSquare => (Form::Square, measure.scale * measure.scale),
+            Kind::Sum(Moment::Mean) => (Form::Value, measure.scale),
+            Kind::Sum(Moment::RootMeanSquare) => (Form::Square, measure.scale * measure.scale),
             _ => return None,
         };
         let mut pairs = 0;

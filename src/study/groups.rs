@@ -118,8 +118,7 @@ impl Sorted<'_> {
     /// Adds all values outside the limit to the set, and returns their number.
     #[inline(always)]
     pub fn mark(&self, low: f64, high: f64, fails: &mut Fails) -> u64 {
-        let mut count = 0;
-        let mut told = false;
+        let (mut count, mut told) = (0, false);
         for row in self.rows {
             let slack = self.slack(row);
             let over = row.p + self.keys.greatest() + slack > high;
@@ -128,25 +127,19 @@ impl Sorted<'_> {
                 fails.order(self.at);
                 told = true;
             }
-            if over {
-                let (from, to) = self.keys.between(high - row.p - slack, high - row.p + slack);
+            for (bound, above, beyond) in [(high, true, over), (low, false, under)] {
+                if !beyond {
+                    continue;
+                }
+                let (from, to) = self.keys.between(bound - row.p - slack, bound - row.p + slack);
                 for (value, at) in self.values(row, from, to) {
-                    let fail = value > high;
+                    let fail = if above { value > bound } else { value < bound };
                     fails.set(row.at, at, fail);
                     count += u64::from(fail);
                 }
-                fails.after(row.at, self.at, to);
-                count += (self.at.len() - to) as u64;
-            }
-            if under {
-                let (from, to) = self.keys.between(low - row.p - slack, low - row.p + slack);
-                for (value, at) in self.values(row, from, to) {
-                    let fail = value < low;
-                    fails.set(row.at, at, fail);
-                    count += u64::from(fail);
-                }
-                fails.before(row.at, self.at, from);
-                count += from as u64;
+                let (from, to) = if above { (to, self.at.len()) } else { (0, from) };
+                fails.between(row.at, self.at, from, to);
+                count += (to - from) as u64;
             }
         }
         count

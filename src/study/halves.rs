@@ -6,6 +6,7 @@
 
 use super::case::{Case, Kind, Measure, choose};
 use super::groups::{Block, Column, Row};
+use crate::metrics::moments::{Moment, Moments, Summed};
 
 /// All choices of sections from some strata.
 #[derive(Clone, Debug)]
@@ -46,6 +47,14 @@ impl Halves {
             half
         };
         Self { rows: half(true), columns: half(false) }
+    }
+
+    /// The sections of a row and a column, in order.
+    pub fn selection(&self, row: u32, column: u32) -> Vec<usize> {
+        let halves = [self.rows.choice(row as usize), self.columns.choice(column as usize)];
+        let mut sections: Vec<usize> = halves.concat().iter().map(|&at| at as usize).collect();
+        sections.sort_unstable();
+        sections
     }
 }
 
@@ -107,38 +116,21 @@ impl Half {
         &self.sections[at * self.width..(at + 1) * self.width]
     }
 
-    /// Sums of every choice from those of sections: first within strata, then over all
+    /// Moments of every choice from those of sections: first within strata, then over all
     /// combinations.
-    fn sums(&self, of_section: &[Sums]) -> Vec<Sums> {
-        self.factors.iter().fold(vec![Sums::default()], |all, choices| {
-            let more: Vec<Sums> = choices
+    fn moments(&self, summed: &Summed) -> Vec<Moments> {
+        self.factors.iter().fold(vec![Moments::default()], |all, choices| {
+            let more: Vec<Moments> = choices
                 .iter()
-                .map(|choice| {
-                    choice
-                        .iter()
-                        .fold(Sums::default(), |sums, at| sums.plus(&of_section[*at as usize]))
-                })
+                .map(|choice| summed.total(choice.iter().map(|&at| at as usize)))
                 .collect();
-            all.iter().flat_map(|sums| more.iter().map(|more| sums.plus(more))).collect()
+            all.iter().flat_map(|sums| more.iter().map(|more| sums.plus(*more))).collect()
         })
     }
 
+    /// Every choice of the half.
     pub fn choices(&self) -> impl Iterator<Item = &[u32]> {
         (0..self.count).map(|at| self.choice(at))
-    }
-}
-
-/// Number of values, sum and sum of squares of a choice.
-#[derive(Clone, Copy, Debug, Default)]
-struct Sums {
-    n: usize,
-    x: f64,
-    xx: f64,
-}
-
-impl Sums {
-    fn plus(self, other: &Self) -> Self {
-        Self { n: self.n + other.n, x: self.x + other.x, xx: self.xx + other.xx }
     }
 }
 
@@ -179,89 +171,47 @@ impl Form {
 }
 
 impl Measure {
+    /// The statistic in terms of the two halves.
     pub fn parts(&self, halves: &Halves) -> Parts {
-        let extremes = |sign: f64, magnitude: bool| {
-            let of_section: Vec<Option<f64>> = self
-                .values
-                .iter()
-                .map(|values| {
-                    let scaled = values.iter().map(|value| {
-                        sign * self.scale * if magnitude { value.abs() } else { *value }
-                    });
-                    scaled.reduce(f64::max)
-                })
-                .collect();
-            let of = |half: &Half| {
-                half.choices()
-                    .map(|choice| {
-                        choice.iter().filter_map(|&at| of_section[at as usize]).reduce(f64::max)
-                    })
-                    .collect()
-            };
-            Parts::Extremes {
-                rows: of(&halves.rows),
-                columns: of(&halves.columns),
-                negative: sign < 0.0,
-            }
-        };
-        match self.kind {
-            Kind::Mean | Kind::Deviation { .. } | Kind::RootMeanSquare => self.sums(halves),
-            Kind::Largest => extremes(1.0, false),
-            Kind::Smallest => extremes(-1.0, false),
-            Kind::LargestMagnitude => extremes(1.0, true),
-            Kind::Pooled(_) | Kind::Estimated => Parts::Pooled,
+        if let Kind::Sum(moment) = self.kind {
+            return self.sums(&Summed::new(moment, self.scale, &self.values), halves);
         }
+        let Some((sign, of_section)) = self.extremes() else { return Parts::Pooled };
+        let of = |half: &Half| {
+            let largest = |choice: &[u32]| {
+                choice.iter().filter_map(|&at| of_section[at as usize]).reduce(f64::max)
+            };
+            half.choices().map(largest).collect()
+        };
+        let (rows, columns) = (of(&halves.rows), of(&halves.columns));
+        Parts::Extremes { rows, columns, negative: sign < 0.0 }
     }
 
-    fn sums(&self, halves: &Halves) -> Parts {
-        // Sums about the common mean avoid cancellation.
-        let all: Vec<f64> = self.values.iter().flatten().copied().collect();
-        let center = match self.kind {
-            Kind::RootMeanSquare => 0.0,
-            _ => all.iter().sum::<f64>() / all.len().max(1) as f64,
-        };
-        let of_section: Vec<Sums> = self
-            .values
-            .iter()
-            .map(|values| {
-                let centred = values.iter().map(|value| value - center);
-                Sums {
-                    n: values.len(),
-                    x: centred.clone().sum(),
-                    xx: centred.map(|value| value * value).sum(),
-                }
-            })
-            .collect();
-        let (rows, columns) = (halves.rows.sums(&of_section), halves.columns.sums(&of_section));
-        let form = if self.kind == Kind::Mean { Form::Value } else { Form::Square };
+    fn sums(&self, summed: &Summed, halves: &Halves) -> Parts {
+        let (rows, columns) = (halves.rows.moments(summed), halves.columns.moments(summed));
+        let form = if summed.kind == Moment::Mean { Form::Value } else { Form::Square };
+        let shift = if summed.kind == Moment::Mean { summed.centre * self.scale } else { 0.0 };
+        let square = self.scale * self.scale;
         let (mut blocks, mut undefined) = (Vec::new(), Vec::new());
         // Choices with the same number of values have the same divisor.
-        for row_count in counts(&rows) {
-            for column_count in counts(&columns) {
-                let n = (row_count + column_count) as f64;
-                let weights = match self.kind {
-                    Kind::Mean if n > 0.0 => Weights { x: self.scale / n, ..Weights::default() },
-                    Kind::RootMeanSquare if n > 0.0 => {
-                        Weights { xx: self.scale * self.scale / n, ..Weights::default() }
+        for of_rows in by_count(&rows) {
+            for of_columns in by_count(&columns) {
+                let n = of_rows.0 + of_columns.0;
+                let weights = match summed.kind {
+                    Moment::Mean if n > 0.0 => Weights { x: self.scale / n, ..Weights::default() },
+                    Moment::RootMeanSquare if n > 0.0 => {
+                        Weights { xx: square / n, ..Weights::default() }
                     }
-                    Kind::Deviation { ddof } if n > ddof as f64 && n >= 1.0 => {
-                        let xx = self.scale * self.scale / (n - ddof as f64);
+                    Moment::Deviation { ddof } if n > ddof && n >= 1.0 => {
+                        let xx = square / (n - ddof);
                         Weights { x: 0.0, xx, product: xx / n }
                     }
                     _ => {
-                        let of = |sums: &[Sums], count: usize| {
-                            sums.iter()
-                                .enumerate()
-                                .filter(|(_, sums)| sums.n == count)
-                                .map(|(at, _)| at as u32)
-                                .collect()
-                        };
-                        undefined.push((of(&rows, row_count), of(&columns, column_count)));
+                        undefined.push((of_rows.1.clone(), of_columns.1));
                         continue;
                     }
                 };
-                let shift = if self.kind == Kind::Mean { center * self.scale } else { 0.0 };
-                blocks.push(block((&rows, row_count), (&columns, column_count), weights, shift));
+                blocks.push(block((&rows, &of_rows.1), (&columns, &of_columns.1), weights, shift));
             }
         }
         Parts::Sums { blocks, form, undefined }
@@ -276,37 +226,38 @@ struct Weights {
     product: f64,
 }
 
-fn counts(sums: &[Sums]) -> Vec<usize> {
-    let mut counts: Vec<usize> = sums.iter().map(|sums| sums.n).collect();
-    counts.sort_unstable();
+/// The numbers of values of choices in increasing order, each with its choices.
+fn by_count(choices: &[Moments]) -> Vec<(f64, Vec<u32>)> {
+    let mut counts: Vec<f64> = choices.iter().map(|choice| choice.n).collect();
+    counts.sort_unstable_by(f64::total_cmp);
     counts.dedup();
-    counts
+    let of = |count: f64| {
+        let same = (0..choices.len()).filter(|&at| choices[at].n == count);
+        (count, same.map(|at| at as u32).collect())
+    };
+    counts.into_iter().map(of).collect()
 }
 
-fn block(rows: (&[Sums], usize), columns: (&[Sums], usize), weights: Weights, shift: f64) -> Block {
-    let part =
-        |sums: &Sums| weights.x * sums.x + weights.xx * sums.xx - weights.product * sums.x * sums.x;
-    let of = |(sums, count): (&[Sums], usize)| {
-        let all = sums.iter().enumerate().filter(move |(_, sums)| sums.n == count);
-        all.map(|(at, sums)| (at as u32, *sums)).collect::<Vec<_>>()
+fn block(
+    (rows, of_rows): (&[Moments], &[u32]),
+    (columns, of_columns): (&[Moments], &[u32]),
+    weights: Weights,
+    shift: f64,
+) -> Block {
+    let part = |sums: &Moments| {
+        weights.x * sums.x + weights.xx * sums.xx - weights.product * sums.x * sums.x
+    };
+    let row = |&at: &u32| {
+        let sums = &rows[at as usize];
+        Row { p: part(sums) + shift, c: 2.0 * weights.product * sums.x, at }
+    };
+    let column = |&at: &u32| {
+        let sums = &columns[at as usize];
+        Column { q: part(sums), y: if weights.product == 0.0 { 0.0 } else { sums.x }, at }
     };
     Block {
-        rows: of(rows)
-            .iter()
-            .map(|(at, sums)| Row {
-                p: part(sums) + shift,
-                c: 2.0 * weights.product * sums.x,
-                at: *at,
-            })
-            .collect(),
-        columns: of(columns)
-            .iter()
-            .map(|(at, sums)| Column {
-                q: part(sums),
-                y: if weights.product == 0.0 { 0.0 } else { sums.x },
-                at: *at,
-            })
-            .collect(),
+        rows: of_rows.iter().map(row).collect(),
+        columns: of_columns.iter().map(column).collect(),
     }
 }
 

@@ -8,6 +8,7 @@ use super::extremes;
 use super::grid::Additive;
 use super::halves::{Halves, Parts};
 use super::listed::sums;
+use crate::metrics::moments::Moment;
 use crate::result::study::Spread;
 
 /// Largest number of choices of a half that is listed for an exact statistic.
@@ -21,18 +22,16 @@ pub fn known(case: &Case) -> Vec<Option<Spread>> {
     let combinations = case.combinations();
     let measures: Vec<&Measure> = case.measures().map(|(_, measure)| measure).collect();
     let of = |measure: &&Measure| match (measure.kind, &halves) {
-        (Kind::Deviation { .. }, _) => None,
-        (Kind::Pooled(_) | Kind::Estimated, _) => measure.listed_alone(case).map(Spread::from),
+        (Kind::Sum(Moment::Deviation { .. }), _) => None,
+        (Kind::Values, _) => measure.listed_alone(case).map(Spread::from),
         (Kind::Largest | Kind::Smallest | Kind::LargestMagnitude, _) => {
             extremes::over_all(case, measure).map(Spread::from)
         }
-        (Kind::Mean | Kind::RootMeanSquare, Some(halves)) => match measure.parts(halves) {
+        (Kind::Sum(_), Some(halves)) => match measure.parts(halves) {
             Parts::Sums { blocks, form, .. } => sums(&blocks, form).map(Spread::from),
             Parts::Extremes { .. } | Parts::Pooled => None,
         },
-        (Kind::Mean | Kind::RootMeanSquare, None) => {
-            Additive::of(case, measure)?.spread(combinations)
-        }
+        (Kind::Sum(_), None) => Additive::of(case, measure)?.spread(combinations),
     };
     measures.par_iter().with_max_len(1).map(of).collect()
 }

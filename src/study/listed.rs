@@ -3,7 +3,6 @@
 
 use super::groups::Block;
 use super::halves::Form;
-use super::spread::{Order, ranks};
 use crate::result::study::Spread;
 
 /// From values in any order with their counts; `None` if there are none.
@@ -35,26 +34,17 @@ pub fn weighted(list: &[(f64, f64)]) -> Option<Listed> {
     Some(Listed { count, min: list[0].0, max: list[list.len() - 1].0, quartiles, outliers })
 }
 
-/// As [`Order`], with counts that may exceed the integers.
+/// Order statistics; counts may exceed the integers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Listed {
     pub count: f64,
     pub min: f64,
     pub max: f64,
+    /// 25, 50, 75 %, interpolated linearly between order statistics.
     pub quartiles: [f64; 3],
+    /// Number of values more than 1.5 interquartile ranges below the first or above the third
+    /// quartile.
     pub outliers: f64,
-}
-
-impl From<Order> for Listed {
-    fn from(order: Order) -> Self {
-        Self {
-            count: order.count as f64,
-            min: order.min,
-            max: order.max,
-            quartiles: order.quartiles,
-            outliers: order.outliers as f64,
-        }
-    }
 }
 
 impl From<Listed> for Spread {
@@ -73,6 +63,14 @@ impl From<Listed> for Spread {
             intervals: None,
         }
     }
+}
+
+/// Rank of each quartile among `count` values, and the fraction towards the next.
+pub fn ranks(count: u64) -> [(u64, f64); 3] {
+    [0.25, 0.5, 0.75].map(|share| {
+        let rank = (count - 1) as f64 * share;
+        (rank.floor() as u64, rank - rank.floor())
+    })
 }
 
 /// Number of values kept around a rank.

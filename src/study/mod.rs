@@ -13,6 +13,7 @@
 //! | `overall` | one statistic over all selections |
 //! | `fails`, `verdicts` | bit sets of selections that do not meet a limit; the quantities that fail |
 //! | `judged` | one selection from its sections |
+//! | `counted` | what many selections say, with names |
 //! | `enumerate` | all selections |
 //! | `sampling`, `random`, `quartiles` | random selections, with intervals |
 //! | `known` | statistics that are exact even where selections are random |
@@ -22,6 +23,7 @@
 
 mod buckets;
 pub mod case;
+pub mod counted;
 pub mod enumerate;
 pub mod extremes;
 pub mod fails;

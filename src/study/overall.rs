@@ -4,10 +4,10 @@
 use super::case::{Case, Measure, Quantity};
 use super::extremes;
 use super::fails::Fails;
-use super::halves::{Half, Halves, Parts};
+use super::halves::{Halves, Parts};
 use super::listed::Listed;
 use super::pooled::{Ends, Pooled};
-use super::spread::{Limit, Memory, order};
+use super::spread::{Limit, order};
 
 /// A statistic over all selections.
 #[derive(Clone, Debug)]
@@ -26,21 +26,17 @@ pub fn over_all(
     halves: &Halves,
     fails: &mut Fails,
     undefined: &mut Option<Fails>,
-    memory: &mut Memory,
 ) -> OverAll {
-    let parts = measure.parts(halves);
-    if matches!(parts, Parts::Pooled) {
-        let found = Pooled::over(measure, halves);
-        let failing = found.mark(measure, halves, fails, undefined);
-        return with_worst(measure, found.listed(1.0), found.ends(), failing);
-    }
     let mut without = |row: u32, column: u32| {
-        undefined
-            .get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count))
-            .one(row, column);
+        let none = || Fails::new(halves.rows.count, halves.columns.count);
+        undefined.get_or_insert_with(none).one(row, column);
     };
-    let mut failing = 0;
-    let (listed, ends) = match parts {
+    match measure.parts(halves) {
+        Parts::Pooled => {
+            let found = Pooled::over(measure, halves);
+            let failing = found.mark(measure, fails, without);
+            with_worst(measure, found.listed(1.0), found.ends(), failing)
+        }
         Parts::Sums { blocks, form, undefined: nowhere } => {
             for (rows, columns) in nowhere {
                 rows.iter()
@@ -48,22 +44,21 @@ pub fn over_all(
             }
             let (low, high) = form.bounds(measure.low, measure.high);
             let mut limit = Limit { low, high, fails, count: 0 };
-            let found = order(&blocks, form, Some(&mut limit), memory);
-            failing = limit.count;
+            let found = order(&blocks, form, Some(&mut limit));
+            let failing = limit.count;
             let ends = found.as_ref().map(|order| (order.at_min, order.at_max));
-            (found.map(Listed::from), ends)
+            with_worst(measure, found.map(|order| order.listed), ends, failing)
         }
         Parts::Extremes { rows, columns, negative } => {
             let sign = if negative { -1.0 } else { 1.0 };
-            let within =
-                |value: &Option<f64>| value.is_none_or(|value| measure.holds(sign * value));
+            let mut failing = 0;
             // The larger of two exceeds an upper bound if either does, and is below a lower bound
             // if both are.
             for (row, r) in rows.iter().enumerate() {
                 for (column, c) in columns.iter().enumerate() {
                     match (*r).into_iter().chain(*c).reduce(f64::max) {
                         None => without(row as u32, column as u32),
-                        Some(value) if !within(&Some(value)) => {
+                        Some(value) if !measure.holds(sign * value) => {
                             fails.one(row as u32, column as u32);
                             failing += 1;
                         }
@@ -71,11 +66,10 @@ pub fn over_all(
                     }
                 }
             }
-            (extremes::over_all(case, measure), extreme_ends(&rows, &columns, negative))
+            let listed = extremes::over_all(case, measure);
+            with_worst(measure, listed, extreme_ends(&rows, &columns, negative), failing)
         }
-        Parts::Pooled => (None, None),
-    };
-    with_worst(measure, listed, ends, failing)
+    }
 }
 
 fn with_worst(measure: &Measure, listed: Option<Listed>, ends: Ends, failing: u64) -> OverAll {
@@ -102,56 +96,41 @@ fn extreme_ends(rows: &[Option<f64>], columns: &[Option<f64>], negative: bool) -
 
 /// Marks selections with fewer signals or pairs than the protocol requires.
 pub fn too_few(quantity: &Quantity, halves: &Halves, undefined: &mut Option<Fails>) {
-    for group in &quantity.minimum_of_groups {
-        let of = |half: &Half| -> Vec<usize> {
-            half.choices()
-                .map(|choice| choice.iter().map(|&at| group.pairs[at as usize]).sum())
-                .collect()
-        };
-        let (rows, columns) = (of(&halves.rows), of(&halves.columns));
-        let least = |all: &[usize]| all.iter().min().copied().unwrap_or(0);
-        if least(&rows) + least(&columns) >= group.needed {
-            continue;
-        }
-        let fails =
-            undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count));
-        for (row, pairs) in rows.iter().enumerate() {
-            for (column, _) in
-                columns.iter().enumerate().filter(|(_, more)| pairs + **more < group.needed)
-            {
-                fails.one(row as u32, column as u32);
-            }
+    let in_all: Vec<usize> = quantity.values.iter().map(Vec::len).collect();
+    let groups = quantity.minimum_of_groups.iter().map(|group| (group.needed, &group.pairs));
+    for (needed, pairs) in groups.chain([(quantity.minimum_pairs, &in_all)]) {
+        let sum = |choice: &[u32]| choice.iter().map(|&at| pairs[at as usize]).sum::<usize>();
+        let all = [&halves.rows, &halves.columns].map(|half| half.choices().map(sum).collect());
+        let least = all.each_ref().map(|sums: &Vec<usize>| sums.iter().min().copied());
+        if least.into_iter().flatten().sum::<usize>() < needed {
+            mark(halves, &all, |row, column| row + column < needed, undefined);
         }
     }
-    let of = |half: &Half| -> Vec<(usize, u128)> {
-        half.choices()
-            .map(|choice| {
-                choice.iter().fold((0, 0), |(pairs, signals), &at| {
-                    (
-                        pairs + quantity.values[at as usize].len(),
-                        signals | quantity.signals[at as usize],
-                    )
-                })
-            })
-            .collect()
+    let signals = |choice: &[u32]| {
+        choice.iter().fold(0_u128, |signals, &at| signals | quantity.signals[at as usize])
     };
-    let (rows, columns) = (of(&halves.rows), of(&halves.columns));
-    let least = |all: &[(usize, u128)]| all.iter().map(|(pairs, _)| *pairs).min().unwrap_or(0);
-    let common =
-        |all: &[(usize, u128)]| all.iter().fold(u128::MAX, |common, (_, signals)| common & signals);
-    let enough = least(&rows) + least(&columns) >= quantity.minimum_pairs
-        && (common(&rows) | common(&columns)).count_ones() as usize >= quantity.minimum_signals;
-    if enough {
-        return;
+    let all = [&halves.rows, &halves.columns].map(|half| half.choices().map(signals).collect());
+    let common = all.each_ref().map(|signals: &Vec<u128>| signals.iter().fold(!0, |a, b| a & b));
+    let few =
+        |one: &u128, other: &u128| ((one | other).count_ones() as usize) < quantity.minimum_signals;
+    if few(&common[0], &common[1]) {
+        mark(halves, &all, few, undefined);
     }
-    let fails =
-        undefined.get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count));
-    for (row, (pairs, signals)) in rows.iter().enumerate() {
-        for (column, (more, others)) in columns.iter().enumerate() {
-            if pairs + more < quantity.minimum_pairs
-                || ((signals | others).count_ones() as usize) < quantity.minimum_signals
-            {
-                fails.one(row as u32, column as u32);
+}
+
+/// Marks the selections whose row and column together have too little of something.
+fn mark<T>(
+    halves: &Halves,
+    [rows, columns]: &[Vec<T>; 2],
+    lacks: impl Fn(&T, &T) -> bool,
+    undefined: &mut Option<Fails>,
+) {
+    let none = || Fails::new(halves.rows.count, halves.columns.count);
+    let undefined = undefined.get_or_insert_with(none);
+    for (row, of_row) in rows.iter().enumerate() {
+        for (column, of_column) in columns.iter().enumerate() {
+            if lacks(of_row, of_column) {
+                undefined.one(row as u32, column as u32);
             }
         }
     }

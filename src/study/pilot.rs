@@ -6,7 +6,7 @@ use super::groups::{Block, value};
 /// Size of the sample as a multiple of the square root of the number of values.
 const SAMPLE: f64 = 6.0;
 
-/// A sample of the values: rows and columns, each in approximate order of their own contributions,
+/// A sorted sample of the values: rows and columns, each in approximate order of their own contributions,
 /// at the points of a low-discrepancy sequence (Roberts' R2: powers of the plastic number).
 #[inline(always)]
 pub fn sample(blocks: &[Block], count: u64) -> Vec<f64> {
@@ -31,51 +31,20 @@ pub fn sample(blocks: &[Block], count: u64) -> Vec<f64> {
             sample.push(value(row, column.q, column.y));
         }
     }
+    sample.sort_unstable_by(f64::total_cmp);
     sample
+}
+
+/// The value at a share of a sorted sample; infinite beyond its ends.
+pub fn at(sample: &[f64], share: f64) -> f64 {
+    let place = (share * sample.len() as f64).floor();
+    if place < 0.0 {
+        return f64::NEG_INFINITY;
+    }
+    sample.get(place as usize).copied().unwrap_or(f64::INFINITY)
 }
 
 /// Subtracts 1 from a number of [1, 2).
 fn wrapped(x: f64) -> f64 {
     if x >= 1.0 { x - 1.0 } else { x }
-}
-
-/// Values at some positions in the order of a sample; infinite beyond its ends.
-pub fn places<const N: usize>(sample: &mut [f64], shares: [f64; N]) -> [f64; N] {
-    let places = shares.map(|share| (share * sample.len() as f64).floor());
-    let mut found = places.map(|place| if place < 0.0 { f64::NEG_INFINITY } else { f64::INFINITY });
-    let inside = places
-        .iter()
-        .enumerate()
-        .filter(|(_, place)| **place >= 0.0 && **place < sample.len() as f64);
-    let mut inside: Vec<(usize, usize)> = inside.map(|(at, place)| (at, *place as usize)).collect();
-    inside.sort_unstable_by_key(|(_, place)| *place);
-    select(sample, 0, &inside, &mut found);
-    found
-}
-
-/// Selects several order statistics: the middle one first, then those before it among the smaller
-/// numbers and those after it among the larger ones. `wanted` is sorted; the numbers begin at
-/// position `begin`.
-fn select(numbers: &mut [f64], begin: usize, wanted: &[(usize, usize)], found: &mut [f64]) {
-    let Some((_, place)) = wanted.get(wanted.len() / 2).copied() else { return };
-    let (less, value, more) = numbers.select_nth_unstable_by(place - begin, f64::total_cmp);
-    let before = wanted.partition_point(|(_, other)| *other < place);
-    let upto = wanted.partition_point(|(_, other)| *other <= place);
-    for (at, _) in &wanted[before..upto] {
-        found[*at] = *value;
-    }
-    select(less, begin, &wanted[..before], found);
-    select(more, place + 1, &wanted[upto..], found);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn places_are_those_of_the_sorted_sample() {
-        let mut sample: Vec<f64> = (0..100).map(|k| f64::from(k * 37 % 100)).collect();
-        let found = places(&mut sample, [-0.01, 0.3, 0.2, 0.2, 0.999, 1.0]);
-        assert_eq!(found, [f64::NEG_INFINITY, 30.0, 20.0, 20.0, 99.0, f64::INFINITY]);
-    }
 }

@@ -9,7 +9,7 @@ use super::case::{Case, Kind, Measure, Stratum, choose};
 use super::fails::Fails;
 use super::halves::{Half, Halves};
 use super::listed::{Listed, weighted};
-use crate::run::pool::Sums;
+use crate::metrics::moments::Moments;
 
 /// Largest number of selections that are evaluated from their values.
 const MOST: f64 = 2e6;
@@ -17,13 +17,8 @@ const MOST: f64 = 2e6;
 const MOST_OF_SUMS: f64 = 3e7;
 
 impl Measure {
-    /// Whether it is evaluated from all values together.
-    fn is_pooled(&self) -> bool {
-        matches!(self.kind, Kind::Pooled(_) | Kind::Estimated)
-    }
-
     fn needs(&self, section: usize) -> bool {
-        match &self.estimator {
+        match self.estimator() {
             Some(estimator) => estimator.concerns(section),
             None => !self.values[section].is_empty(),
         }
@@ -31,10 +26,10 @@ impl Measure {
 
     /// Whether every selection may be evaluated.
     pub fn is_countable(&self, case: &Case) -> bool {
-        if !self.is_pooled() {
+        if self.kind != Kind::Values {
             return true;
         }
-        let most = match &self.estimator {
+        let most = match self.estimator() {
             Some(estimator) if estimator.from_sums(case.sections.len()).is_some() => MOST_OF_SUMS,
             _ => MOST,
         };
@@ -121,14 +116,14 @@ impl Pooled {
             Choices::new(&halves.rows, measure, sections),
             Choices::new(&halves.columns, measure, sections),
         );
-        let from_sums =
-            measure.estimator.as_ref().and_then(|estimator| estimator.from_sums(sections));
+        let from_sums = measure.estimator().and_then(|estimator| estimator.from_sums(sections));
         let values = match &from_sums {
             Some(from_sums) => {
                 let add = |choice: &Vec<usize>| {
-                    choice.iter().fold(Sums::default(), |sums, &at| sums.plus(from_sums.sums[at]))
+                    let sums = choice.iter().map(|&at| from_sums.sums[at]);
+                    sums.fold(Moments::default(), Moments::plus)
                 };
-                let of_columns: Vec<Sums> = columns.different.iter().map(add).collect();
+                let of_columns: Vec<Moments> = columns.different.iter().map(add).collect();
                 let of_row = |row: &Vec<usize>| {
                     let row = add(row);
                     of_columns
@@ -150,14 +145,13 @@ impl Pooled {
         Self { rows, columns, values }
     }
 
-    /// Marks the selections that do not meet the limit, and those without a value; returns the
-    /// number of the former.
+    /// Marks the selections that do not meet the limit, and returns their number; `without` is told
+    /// those without a value.
     pub fn mark(
         &self,
         measure: &Measure,
-        halves: &Halves,
         fails: &mut Fails,
-        undefined: &mut Option<Fails>,
+        mut without: impl FnMut(u32, u32),
     ) -> u64 {
         let holds: Vec<Option<bool>> =
             self.values.iter().map(|value| value.map(|value| measure.holds(value))).collect();
@@ -175,9 +169,7 @@ impl Pooled {
                         fails.one(row as u32, column as u32);
                         failing += 1;
                     }
-                    None => undefined
-                        .get_or_insert_with(|| Fails::new(halves.rows.count, halves.columns.count))
-                        .one(row as u32, column as u32),
+                    None => without(row as u32, column as u32),
                 }
             }
         }

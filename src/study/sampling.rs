@@ -1,223 +1,133 @@
 //! Random selections, where there are too many to evaluate all: the share with an interval, drawn
 //! until it is narrow enough. Statistics that can be computed for all selections are exact.
 
-use rayon::prelude::*;
-
 use super::Settings;
 use super::case::{Case, Measure};
-use super::enumerate::Counted;
+use super::counted::{Counted, Numbers, OfLimit};
 use super::grid::Additive;
-use super::judged::{Sums, Tally};
+use super::judged::Judge;
 use super::known::{self, known};
 use super::quartiles::estimated;
-use super::random::{Random, draw};
+use super::random::{Count, draw_until};
 use crate::metrics::interval::wilson;
 use crate::result::Verdict;
-use crate::result::study::{
-    Importance, QuantitySpread, Share, Spread, StatisticSpread, WorstSelection,
-};
+use crate::result::study::{Share, Spread};
 
-/// Selections of a batch, and batches drawn between checks of the width.
-pub(super) const BATCH: usize = 4096;
-pub(super) const ROUND: usize = 8;
-/// Largest number of selections drawn.
-pub(super) const MOST_DRAWN: usize = 1 << 22;
 /// Number of selections whose values are kept for the quartiles.
 const KEPT: usize = 1 << 16;
+
 /// Results of some selections.
-struct Drawn {
+struct Drawn<'a> {
+    judge: &'a Judge<'a>,
     validated: u64,
-    /// Per section: selections with it, and validated ones.
-    with: Vec<(u64, u64)>,
-    /// Per quantity and per limit: selections that do not meet it; per quantity: those in which it
-    /// alone fails.
-    quantities: Vec<(u64, u64)>,
-    limits: Vec<u64>,
-    /// Values of each limit, and the worst with its selection.
-    values: Vec<Vec<f64>>,
-    worst: Vec<Option<(f64, Vec<usize>)>>,
+    numbers: Numbers,
+    limits: Vec<Limit>,
 }
 
-impl Drawn {
-    fn none(case: &Case) -> Self {
-        let limits = case.measures().count();
-        Self {
-            validated: 0,
-            with: vec![(0, 0); case.sections.len()],
+/// Results of one limit.
+#[derive(Clone, Default)]
+struct Limit {
+    /// Selections that do not meet it.
+    failing: u64,
+    values: Vec<f64>,
+    /// How bad the worst is, and its selection.
+    worst: Option<(f64, Vec<usize>)>,
+}
+
+impl<'a> Drawn<'a> {
+    fn none(judge: &'a Judge<'a>) -> Self {
+        let case = judge.case;
+        let numbers = Numbers {
             quantities: vec![(0, 0); case.quantities.len()],
-            limits: vec![0; limits],
-            values: vec![Vec::new(); limits],
-            worst: vec![None; limits],
-        }
+            sections: vec![(0, 0); case.sections.len()],
+        };
+        let limits = vec![Limit::default(); case.measures().count()];
+        Self { judge, validated: 0, numbers, limits }
     }
+}
 
-    fn batch(case: &Case, sums: &[Vec<Sums<'_>>], seed: u64, number: usize) -> Self {
-        let mut drawn = Self::none(case);
-        let mut random = Random::new(seed, number as u64);
-        for _ in 0..BATCH {
-            drawn.look(case, sums, draw(case, &mut random));
-        }
-        drawn
-    }
-
-    fn look(&mut self, case: &Case, sums: &[Vec<Sums<'_>>], selection: Vec<usize>) {
-        let mut tally = Tally::default();
-        let mut limit = 0;
-        let mut failing = Vec::new();
-        for (at, (quantity, sums)) in case.quantities.iter().zip(sums).enumerate() {
-            let before = tally;
-            let mut fails = !sums.is_empty() && !quantity.enough(selection.iter().copied());
-            tally.missing |= fails;
-            for sums in sums {
-                let value = sums.over(selection.iter().copied());
-                let holds = value.map(|value| sums.measure().holds(value));
-                tally.limit(holds);
-                fails |= holds != Some(true);
-                self.limits[limit] += u64::from(holds == Some(false));
-                if let Some(value) = value {
-                    self.values[limit].push(value);
-                    let badness = if sums.measure().at_least { -value } else { value.abs() };
-                    if self.worst[limit].as_ref().is_none_or(|(worst, _)| badness > *worst) {
-                        self.worst[limit] = Some((badness, selection.clone()));
-                    }
-                }
-                limit += 1;
+impl Count for Drawn<'_> {
+    fn look(&mut self, selection: Vec<usize>) {
+        let limits = &mut self.limits;
+        let judged = self.judge.over(&selection, |number, measure, value| {
+            let Some(value) = value else { return };
+            let limit = &mut limits[number];
+            limit.failing += u64::from(!measure.holds(value));
+            limit.values.push(value);
+            let badness = if measure.at_least { -value } else { value.abs() };
+            if limit.worst.as_ref().is_none_or(|(worst, _)| badness > *worst) {
+                limit.worst = Some((badness, selection.clone()));
             }
-            tally.quantity(&before, sums.is_empty());
-            if fails {
-                failing.push(at);
-            }
-        }
-        let good = u64::from(tally.verdict(case.rule) == Verdict::Validated);
+        });
+        let good = u64::from(judged.verdict == Verdict::Validated);
         self.validated += good;
         for &at in &selection {
-            self.with[at].0 += 1;
-            self.with[at].1 += good;
+            add(&mut self.numbers.sections[at], (1, good));
         }
-        failing.iter().for_each(|&at| self.quantities[at].0 += 1);
-        if let [only] = failing[..] {
-            self.quantities[only].1 += 1;
+        for &at in &judged.failing {
+            add(&mut self.numbers.quantities[at], (1, u64::from(judged.failing.len() == 1)));
         }
     }
 
-    /// Batches are joined in order, so that the result does not depend on the number of threads.
     fn join(&mut self, other: Self) {
         self.validated += other.validated;
         let pairs = |mine: &mut Vec<(u64, u64)>, others: Vec<(u64, u64)>| {
-            mine.iter_mut()
-                .zip(others)
-                .for_each(|(mine, other)| *mine = (mine.0 + other.0, mine.1 + other.1));
+            mine.iter_mut().zip(others).for_each(|(mine, other)| add(mine, other));
         };
-        pairs(&mut self.with, other.with);
-        pairs(&mut self.quantities, other.quantities);
-        self.limits.iter_mut().zip(other.limits).for_each(|(mine, other)| *mine += other);
-        for (mine, other) in self.values.iter_mut().zip(other.values) {
-            let room = KEPT.saturating_sub(mine.len());
-            mine.extend(other.into_iter().take(room));
-        }
-        for (mine, other) in self.worst.iter_mut().zip(other.worst) {
-            if other.as_ref().is_some_and(|(new, _)| mine.as_ref().is_none_or(|(old, _)| new > old))
-            {
-                *mine = other;
+        pairs(&mut self.numbers.sections, other.numbers.sections);
+        pairs(&mut self.numbers.quantities, other.numbers.quantities);
+        for (mine, other) in self.limits.iter_mut().zip(other.limits) {
+            mine.failing += other.failing;
+            let room = KEPT.saturating_sub(mine.values.len());
+            mine.values.extend(other.values.into_iter().take(room));
+            let worse =
+                |(new, _): &(f64, Vec<usize>)| mine.worst.as_ref().is_none_or(|(old, _)| new > old);
+            if other.worst.as_ref().is_some_and(worse) {
+                mine.worst = other.worst;
             }
         }
     }
+
+    fn width(&self, all: u64) -> f64 {
+        let (low, high) = wilson(self.validated, all);
+        high - low
+    }
+}
+
+fn add(mine: &mut (u64, u64), other: (u64, u64)) {
+    *mine = (mine.0 + other.0, mine.1 + other.1);
 }
 
 /// Draws selections until the interval has the required width.
 pub fn some(case: &Case, settings: &Settings) -> Counted {
-    let sums_of: Vec<Vec<Sums<'_>>> = case
-        .quantities
-        .iter()
-        .map(|quantity| quantity.measures.iter().map(Sums::of).collect())
-        .collect();
-    let mut drawn = Drawn::none(case);
-    let mut batches = 0;
-    let interval = loop {
-        let round: Vec<Drawn> = (batches..batches + ROUND)
-            .into_par_iter()
-            .map(|number| Drawn::batch(case, &sums_of, settings.seed, number))
-            .collect();
-        round.into_iter().for_each(|batch| drawn.join(batch));
-        batches += ROUND;
-        let interval = wilson(drawn.validated, (batches * BATCH) as u64);
-        if interval.1 - interval.0 <= settings.width || batches * BATCH >= MOST_DRAWN {
-            break interval;
-        }
+    let judge = Judge::of(case);
+    let (drawn, all) = draw_until(case, settings, || Drawn::none(&judge));
+    let interval = wilson(drawn.validated, all);
+    let share = Share {
+        validated: drawn.validated,
+        looked_at: all,
+        share: drawn.validated as f64 / all as f64,
+        exact: false,
+        interval: Some(interval),
+        seed: Some(settings.seed),
     };
-    let all = (batches * BATCH) as u64;
-    let share_of = |count: u64| count as f64 / all as f64;
     let known = known(case);
-    let usable = case.usable();
-    let mut limit = 0;
-    let mut worst = Vec::new();
-    let mut quantities = Vec::new();
-    for (at, quantity) in case.quantities.iter().enumerate() {
-        let mut statistics = Vec::new();
-        for measure in &quantity.measures {
-            let spread = known[limit].or_else(|| estimated(&drawn.values[limit]));
-            statistics.push(StatisticSpread {
-                name: measure.name.clone(),
-                title: measure.title.clone(),
-                scope: measure.scope.clone(),
-                limit: measure.limit,
-                at_least: measure.at_least,
-                spread,
-                failing: share_of(drawn.limits[limit]),
-                overall: measure.over(usable.iter().copied()),
-            });
-            let drawn_worst = drawn.worst[limit]
-                .as_ref()
-                .filter(|_| drawn.limits[limit] > 0)
-                .map(|(_, selection)| selection.clone());
-            if let Some(selection) = worst_known(case, measure).or(drawn_worst) {
-                worst.push(WorstSelection {
-                    quantity: quantity.id.clone(),
-                    symbol: quantity.symbol.clone(),
-                    title: measure.title.clone(),
-                    scope: measure.scope.clone(),
-                    normalised: measure.over(selection.iter().copied()).unwrap_or(f64::MAX),
-                    sections: selection.iter().map(|&at| case.sections[at].clone()).collect(),
-                });
+    let of_limit =
+        |(((_, measure), limit), known): (((usize, &Measure), Limit), &Option<Spread>)| {
+            let drawn = limit.worst.filter(|_| limit.failing > 0).map(|(_, selection)| selection);
+            let value = |selection: &[usize]| measure.over(selection.iter().copied());
+            OfLimit {
+                spread: known.or_else(|| estimated(&limit.values)),
+                failing: limit.failing,
+                worst: worst_known(case, measure).or(drawn).map(|selection| {
+                    let value = value(&selection).unwrap_or(f64::MAX);
+                    (selection, value)
+                }),
             }
-            limit += 1;
-        }
-        quantities.push(QuantitySpread {
-            id: quantity.id.clone(),
-            title: quantity.title.clone(),
-            symbol: quantity.symbol.clone(),
-            unit: quantity.unit.clone(),
-            failing: share_of(drawn.quantities[at].0),
-            alone: Some(share_of(drawn.quantities[at].1)),
-            statistics,
-        });
-    }
-    let share =
-        |(selections, good): (u64, u64)| (selections > 0).then(|| good as f64 / selections as f64);
-    let of = |zone: &str, at: usize| Importance {
-        section: case.sections[at].clone(),
-        zone: zone.to_owned(),
-        with: share(drawn.with[at]),
-        without: share((all - drawn.with[at].0, drawn.validated - drawn.with[at].1)),
-    };
-    Counted {
-        share: Share {
-            validated: drawn.validated,
-            looked_at: all,
-            share: share_of(drawn.validated),
-            exact: false,
-            interval: Some(interval),
-            seed: Some(settings.seed),
-        },
-        quantities,
-        sections: case
-            .strata
-            .iter()
-            .flat_map(|stratum| stratum.members.iter().map(|&at| of(&stratum.zone, at)))
-            .collect(),
-        worst,
-        methods: methods(all, interval, &known, settings),
-    }
+        };
+    let limits = case.measures().zip(drawn.limits).zip(&known).map(of_limit).collect();
+    let methods = methods(all, interval, &known, settings);
+    Counted::new(case, share, limits, &drawn.numbers, methods)
 }
 
 /// For a mean, the worst of all selections, if it does not meet the limit.

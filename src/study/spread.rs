@@ -7,19 +7,14 @@
 use super::fails::Fails;
 use super::groups::{Block, Row, Sorted, groups};
 use super::halves::Form;
-use super::pilot::{places, sample};
+use super::listed::{Listed, ranks};
+use super::pilot::{at, sample};
 use super::window::Window;
 
 /// Order statistics of all values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Order {
-    pub count: u64,
-    pub min: f64,
-    pub max: f64,
-    /// 25, 50, 75 %, interpolated linearly between order statistics.
-    pub quartiles: [f64; 3],
-    /// Values more than 1.5 interquartile ranges below the first or above the third quartile.
-    pub outliers: u64,
+    pub listed: Listed,
     /// Row and column of the minimum and of the maximum.
     pub at_min: (u32, u32),
     pub at_max: (u32, u32),
@@ -27,12 +22,6 @@ pub struct Order {
 
 /// Three for the quartiles, two for the ends of the whiskers.
 const WINDOWS: usize = 5;
-
-/// Buffers that are reused for one statistic after another.
-#[derive(Debug, Default)]
-pub struct Memory {
-    kept: [Vec<f64>; WINDOWS],
-}
 
 /// Range in which a limit is met.
 #[derive(Debug)]
@@ -42,14 +31,6 @@ pub struct Limit<'a> {
     pub fails: &'a mut Fails,
     /// Number of values outside it.
     pub count: u64,
-}
-
-/// Rank of each quartile among `count` values, and the fraction towards the next.
-pub fn ranks(count: u64) -> [(u64, f64); 3] {
-    [0.25, 0.5, 0.75].map(|share| {
-        let rank = (count - 1) as f64 * share;
-        (rank.floor() as u64, rank - rank.floor())
-    })
 }
 
 /// Half the width of a window, as a share of the values, for sums of two and of more parts.
@@ -64,33 +45,23 @@ const MARGIN_FOR: f64 = 18_600.0;
 ///
 /// The result is the same on every processor: vector instructions give the same sums, and no
 /// operations are fused.
-pub fn order(
-    blocks: &[Block],
-    form: Form,
-    limit: Option<&mut Limit<'_>>,
-    memory: &mut Memory,
-) -> Option<Order> {
-    pulp::Arch::new().dispatch(|| swept(blocks, form, limit, memory))
+pub fn order(blocks: &[Block], form: Form, limit: Option<&mut Limit<'_>>) -> Option<Order> {
+    pulp::Arch::new().dispatch(|| swept(blocks, form, limit))
 }
 
 #[inline(always)]
-fn swept(
-    blocks: &[Block],
-    form: Form,
-    mut limit: Option<&mut Limit<'_>>,
-    memory: &mut Memory,
-) -> Option<Order> {
+fn swept(blocks: &[Block], form: Form, mut limit: Option<&mut Limit<'_>>) -> Option<Order> {
     let count: u64 =
         blocks.iter().map(|block| block.rows.len() as u64 * block.columns.len() as u64).sum();
     if count == 0 {
         return None;
     }
-    let mut sample = sample(blocks, count);
+    let sample = sample(blocks, count);
     let flat = blocks.iter().all(|block| block.rows.iter().all(|row| row.c == 0.0));
     let mut margin =
         if flat { MARGIN.0 } else { MARGIN.1 } * (MARGIN_FOR / sample.len() as f64).powf(0.6);
     loop {
-        let mut sweep = Sweep::new(&mut sample, margin, form, memory);
+        let mut sweep = Sweep::new(&sample, margin, form);
         for block in blocks {
             groups(block, |sorted| {
                 sorted.rows.iter().for_each(|row| sweep.row(sorted, row));
@@ -101,7 +72,6 @@ fn swept(
         }
         limit = None;
         let found = sweep.finish(count, form);
-        memory.kept = sweep.windows.map(Window::memory);
         if found.is_some() {
             return found;
         }
@@ -117,21 +87,10 @@ struct Sweep {
 }
 
 impl Sweep {
-    fn new(sample: &mut [f64], margin: f64, form: Form, memory: &mut Memory) -> Self {
-        let mut windows = std::mem::take(&mut memory.kept).map(Window::with);
-        let at = places(
-            sample,
-            [
-                0.25 - margin,
-                0.25 + margin,
-                0.5 - margin,
-                0.5 + margin,
-                0.75 - margin,
-                0.75 + margin,
-            ],
-        );
-        for (window, bounds) in windows.iter_mut().zip(at.chunks_exact(2)) {
-            (window.low, window.high) = (bounds[0], bounds[1]);
+    fn new(sample: &[f64], margin: f64, form: Form) -> Self {
+        let mut windows: [Window; WINDOWS] = Default::default();
+        for (window, share) in windows.iter_mut().zip([0.25, 0.5, 0.75]) {
+            (window.low, window.high) = (at(sample, share - margin), at(sample, share + margin));
         }
         // Possible ends of the whiskers, from the bounds of the quartiles.
         let (q1, q3) = (
@@ -207,14 +166,13 @@ impl Sweep {
         let [.., under, over] = &self.windows;
         let below_low = under.counted(|value| form.map(value) < low);
         let up_to_high = over.counted(|value| form.map(value) <= high);
-        Some(Order {
-            count,
+        let listed = Listed {
+            count: count as f64,
             min: form.map(self.min.0),
             max: form.map(self.max.0),
             quartiles,
-            outliers: below_low + (count - up_to_high),
-            at_min: self.min.1,
-            at_max: self.max.1,
-        })
+            outliers: (below_low + (count - up_to_high)) as f64,
+        };
+        Some(Order { listed, at_min: self.min.1, at_max: self.max.1 })
     }
 }

@@ -18,15 +18,6 @@ pub struct Window {
 }
 
 impl Window {
-    /// With a buffer returned by another window.
-    pub fn with(kept: Vec<f64>) -> Self {
-        Self { kept, ..Self::default() }
-    }
-
-    pub fn memory(self) -> Vec<f64> {
-        self.kept
-    }
-
     /// Counts and stores the values of a row.
     #[inline(always)]
     pub fn look(&mut self, row: &Row, q: &[f64], y: &[f64]) {
@@ -51,8 +42,7 @@ impl Window {
         self.at_high += at_high;
     }
 
-    /// The values of a rank and of the next, if they are in the window. The window is empty
-    /// afterwards.
+    /// The values of a rank and of the next, if they are in the window.
     #[inline(always)]
     pub fn ranked(&mut self, rank: u64, next: u64) -> Option<(f64, f64)> {
         // With equal bounds, ties would be counted twice.
@@ -62,20 +52,18 @@ impl Window {
         if rank < self.below || next >= upto_kept + at_high {
             return None;
         }
-        let kept =
-            |rank: u64| (upto_low..upto_kept).contains(&rank).then(|| (rank - upto_low) as usize);
-        let numbers = &mut self.kept[..self.length];
-        let found = match (kept(rank), kept(next)) {
-            (None, None) => [None, None],
-            (Some(rank), Some(next)) => two(numbers, rank, next, self.low, self.high).map(Some),
-            (Some(rank), None) => [Some(two(numbers, rank, rank, self.low, self.high)[0]), None],
-            (None, Some(next)) => [None, Some(two(numbers, next, next, self.low, self.high)[0])],
+        let mut value = |rank: u64| {
+            if rank < upto_low {
+                self.low
+            } else if rank >= upto_kept {
+                self.high
+            } else {
+                let kept = &mut self.kept[..self.length];
+                *kept.select_nth_unstable_by((rank - upto_low) as usize, f64::total_cmp).1
+            }
         };
-        self.length = 0;
-        let of = |rank: u64, found: Option<f64>| {
-            found.unwrap_or(if rank < upto_low { self.low } else { self.high })
-        };
-        Some((of(rank, found[0]), of(next, found[1])))
+        let found = value(rank);
+        Some((found, if next == rank { found } else { value(next) }))
     }
 
     /// Number of values that meet a condition that holds below the window and fails above it.
@@ -98,53 +86,4 @@ fn keep(numbers: &mut [f64], wanted: impl Fn(f64) -> bool) -> usize {
         length += usize::from(wanted(number));
     }
     length
-}
-
-/// The numbers of two ranks, the second not before the first, among numbers between two bounds.
-#[inline(always)]
-fn two(numbers: &mut [f64], rank: usize, next: usize, low: f64, high: f64) -> [f64; 2] {
-    const BUCKETS: usize = 1024;
-    let per_unit = BUCKETS as f64 / (high - low);
-    let bucket = |x: f64| (((x - low) * per_unit) as u32 as usize).min(BUCKETS - 1);
-    let (mut inside, mut before) = (0..BUCKETS, 0);
-    // Numbers of a narrow window are nearly uniform: all but one or two buckets can be excluded.
-    if numbers.len() > 4 * BUCKETS && per_unit.is_finite() {
-        let mut counts = [0_u32; BUCKETS];
-        numbers.iter().for_each(|x| counts[bucket(*x)] += 1);
-        while before + counts[inside.start] as usize <= rank {
-            before += counts[inside.start] as usize;
-            inside.start += 1;
-        }
-        inside.end = inside.start;
-        let mut upto = before;
-        while upto <= next {
-            upto += counts[inside.end] as usize;
-            inside.end += 1;
-        }
-    }
-    let length = keep(numbers, |x| inside.contains(&bucket(x)));
-    let numbers = &mut numbers[..length];
-    numbers.sort_unstable_by(f64::total_cmp);
-    [numbers[rank - before], numbers[next - before]]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ranks_are_those_of_sorted_numbers() {
-        for (count, bounds) in
-            [(9, (-1.0, 1.0)), (30_000, (-1.0, 1.0)), (30_000, (f64::NEG_INFINITY, f64::INFINITY))]
-        {
-            let numbers: Vec<f64> =
-                (0..count).map(|k| ((k * 7919) % 30_011) as f64 / 30_011.0 - 0.5).collect();
-            let mut sorted = numbers.clone();
-            sorted.sort_unstable_by(f64::total_cmp);
-            for rank in [0, count / 3, count - 2] {
-                let found = two(&mut numbers.clone(), rank, rank + 1, bounds.0, bounds.1);
-                assert_eq!(found, [sorted[rank], sorted[rank + 1]]);
-            }
-        }
-    }
 }

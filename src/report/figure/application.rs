@@ -1,11 +1,11 @@
 //! Sections as points with the outline of their hull, and wanted operation inside and outside; two
 //! coordinates in each diagram.
 
-use super::axis::{self, Scale};
+use super::axis;
 use super::canvas::{Canvas, Font, Group, Point};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::style::{BLUE, INK, MUTED, Mark, SMALL, SOLID, TEXT, VERMILION, WIDTH, cut};
+use super::style::{BLUE, Color, INK, MUTED, Mark, Pen, SMALL, TEXT, VERMILION, WIDTH, cut};
 use crate::report::number;
 use crate::result::{CoordinateRange, DomainResult};
 
@@ -19,17 +19,18 @@ const GUTTER: f64 = 20.0;
 /// of points.
 const NUMBERED: usize = 30;
 
+/// A diagram for each of the first pairs of coordinates.
 pub fn application(result: &DomainResult) -> String {
     let count = result.coordinates.len();
     let pairs: Vec<(usize, usize)> =
         (0..count).flat_map(|x| (x + 1..count).map(move |y| (x, y))).take(MOST).collect();
-    let mut entries = vec![Entry::mark(Mark::Circle, MUTED, "section")];
+    let mut entries = vec![Entry::mark(SECTION, "section")];
     if result.reason.is_none() {
-        entries.push(Entry::line(INK, 0.8, SOLID, "outline of the sections"));
+        entries.push(Entry::line(Pen::solid(INK, 0.8), "outline of the sections"));
     }
-    for (inside, mark, color, text) in KINDS {
+    for (inside, look, text) in KINDS {
         if result.points.iter().any(|point| point.inside == inside) {
-            entries.push(Entry::mark(mark, color, text));
+            entries.push(Entry::mark(look, text));
         }
     }
     let legend = Legend::new(entries, WIDTH);
@@ -47,11 +48,12 @@ pub fn application(result: &DomainResult) -> String {
     canvas.finish()
 }
 
-type Kind = (Option<bool>, Mark, plotters::style::RGBColor, &'static str);
+const SECTION: (Mark, Color) = (Mark::Circle, MUTED);
+type Kind = (Option<bool>, (Mark, Color), &'static str);
 const KINDS: [Kind; 3] = [
-    (Some(true), Mark::Square, BLUE, "wanted operation inside the hull"),
-    (Some(false), Mark::Diamond, VERMILION, "wanted operation outside"),
-    (None, Mark::Triangle, INK, "wanted operation, not assessed"),
+    (Some(true), (Mark::Square, BLUE), "wanted operation inside the hull"),
+    (Some(false), (Mark::Diamond, VERMILION), "wanted operation outside"),
+    (None, (Mark::Triangle, INK), "wanted operation, not assessed"),
 ];
 
 fn diagram(
@@ -64,60 +66,43 @@ fn diagram(
         let sections = result.sections.iter().map(move |section| section.values[at]);
         sections.chain(result.points.iter().map(move |point| point.values[at]))
     };
-    let y = Scale::over(values(up), top + TALL, top);
-    let ticks = y.ticks(6);
-    let frame =
-        Frame { x: Scale::over(values(across), left + Frame::axis_room(&ticks), right - 6.0), y };
+    let (x, y, ticks) = (axis::over(values(across)), axis::over(values(up)), 6);
+    let left = left + axis::room(y, ticks);
+    let frame = Frame::new(x, y, (left, right - 6.0), (top, top + TALL));
     let title = |at: usize, room: f64| {
         let CoordinateRange { name, unit, .. } = &result.coordinates[at];
         cut(&axis::title(name, unit), TEXT, room)
     };
-    frame.x_axis(canvas, &frame.x.ticks(5), &title(across, frame.right() - frame.left()));
-    frame.y_axis(canvas, &ticks, &title(up, TALL));
+    frame.x_axis(canvas, 5, &title(across, frame.right() - left));
+    frame.y_axis(canvas, ticks, &title(up, TALL));
     frame.spine(canvas);
-    let at = |values: &[f64]| (frame.x.at(values[across]), frame.y.at(values[up]));
+    let at = |values: &[f64]| frame.at(values[across], values[up]);
     if result.reason.is_none() {
         let mut line = outline(result.sections.iter().map(|section| at(&section.values)).collect());
         line.extend(line.first().copied());
-        canvas.draw(|layer| layer.path(&line, INK, 0.8));
+        canvas.path(&line, INK, 0.8);
     }
     let says = |name: &str, values: &[f64]| {
         let one = |(of, value): (&CoordinateRange, &f64)| {
             format!("{} {}", of.name, number::significant(*value, 5))
         };
-        format!(
-            "{name}: {}",
-            result.coordinates.iter().zip(values).map(one).collect::<Vec<_>>().join(", ")
-        )
+        let values = result.coordinates.iter().zip(values).map(one);
+        format!("{name}: {}", values.collect::<Vec<_>>().join(", "))
     };
     for section in &result.sections {
         let says = says(&section.section, &section.values);
-        let group = Group {
-            class: "mark",
-            edge: 0.35,
-            title: Some(&says),
-            section: Some(&section.section),
-            ..Group::default()
-        };
-        canvas.group(&group, |layer| layer.mark(Mark::Circle, at(&section.values), 2.0, MUTED));
+        let group = Group::mark(&says).edge(0.35).at(&section.section, None);
+        canvas.group(&group, |canvas| canvas.mark(SECTION, at(&section.values), 2.0));
     }
     for (nth, point) in result.points.iter().enumerate() {
-        let Some((_, mark, color, _)) = KINDS.iter().find(|(inside, ..)| *inside == point.inside)
-        else {
+        let Some((_, look, _)) = KINDS.iter().find(|(inside, ..)| *inside == point.inside) else {
             continue;
         };
         let says = says(&point.point, &point.values);
         let (x, y) = at(&point.values);
-        canvas.group(
-            &Group { class: "mark", edge: 0.35, title: Some(&says), ..Group::default() },
-            |layer| {
-                layer.mark(*mark, (x, y), 2.8, *color);
-            },
-        );
+        canvas.group(&Group::mark(&says).edge(0.35), |canvas| canvas.mark(*look, (x, y), 2.8));
         if result.points.len() <= NUMBERED {
-            canvas.draw(|layer| {
-                layer.text(&(nth + 1).to_string(), (x + 4.0, y - 4.0), &Font::left(SMALL))
-            });
+            canvas.text(&(nth + 1).to_string(), (x + 4.0, y - 4.0), &Font::left(SMALL));
         }
     }
 }

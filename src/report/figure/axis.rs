@@ -1,6 +1,10 @@
 //! Scales with round tick values.
 
+use super::style::{TICK, text_width};
 use crate::report::number;
+
+/// Two values, or two edges in points: from one to the other.
+pub type Range = (f64, f64);
 
 /// A linear scale from values to points on the canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,11 +18,9 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// A scale over all values with a margin at both ends; -1 to 1 without values.
-    pub fn over(values: impl IntoIterator<Item = f64>, from: f64, to: f64) -> Self {
-        let (low, high) = extent(values).unwrap_or((-1.0, 1.0));
-        let room = 0.06 * (high - low);
-        Self { low: low - room, high: high + room, from, to }
+    /// The values of a range between two positions, in points.
+    pub fn new((low, high): Range, (from, to): Range) -> Self {
+        Self { low, high, from, to }
     }
 
     /// Position of a value, in points.
@@ -29,8 +31,14 @@ impl Scale {
                 * (self.to - self.from)
     }
 
+    /// Whether a value is within the scale.
     pub fn contains(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
+    }
+
+    /// Position of a value, or of the end of the scale that it is beyond.
+    pub fn within(&self, value: f64) -> f64 {
+        self.at(value.clamp(self.low, self.high))
     }
 
     /// At most `most` round values within the scale.
@@ -56,8 +64,25 @@ pub struct Tick {
     pub label: String,
 }
 
+/// Space of a y axis with at most so many numbers and a title to its left, in points.
+pub fn room(range: Range, most: usize) -> f64 {
+    number_room(&Scale::new(range, (0.0, 1.0)).ticks(most)) + 11.5
+}
+
+/// Space of the numbers alone.
+pub fn number_room(ticks: &[Tick]) -> f64 {
+    ticks.iter().map(|tick| text_width(&tick.label, TICK)).fold(0.0, f64::max) + 5.0
+}
+
+/// A range over all values with a margin at both ends; -1 to 1 without values.
+pub fn over(values: impl IntoIterator<Item = f64>) -> Range {
+    let (low, high) = extent(values).unwrap_or((-1.0, 1.0));
+    let room = 0.06 * (high - low);
+    (low - room, high + room)
+}
+
 /// Minimum and maximum of the finite values, widened if they are equal.
-pub fn extent(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
+pub fn extent(values: impl IntoIterator<Item = f64>) -> Option<Range> {
     let (low, high) = values
         .into_iter()
         .filter(|value| value.is_finite())
@@ -119,7 +144,7 @@ mod tests {
         assert_eq!(extent([f64::NAN, 2.0, 5.0]), Some((2.0, 5.0)));
         assert_eq!(extent([0.0]), Some((-1.0, 1.0)));
         assert_eq!(extent([-50.0, -50.0]), Some((-55.0, -45.0)));
-        let scale = Scale::over([1.0, 3.0], 100.0, 0.0);
+        let scale = Scale::new(over([1.0, 3.0]), (100.0, 0.0));
         assert!(
             scale.at(1.0) < 100.0 && scale.at(3.0) > 0.0 && (scale.at(2.0) - 50.0).abs() < 1e-12
         );

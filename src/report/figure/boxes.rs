@@ -1,14 +1,11 @@
 //! Box plots of normalised statistics over all selections of sections, as in Götz and Polach,
 //! Figures 5, 6 and 8.
 
-use super::axis::{Scale, Tick};
 use super::canvas::{Canvas, Font, Group};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::style::{
-    self, BEYOND, BLUE, DASHED, INK, MUTED, Mark, SHADE, SMALL, TEXT, VERMILION, WIDTH, text_width,
-};
-use super::symbol::symbol;
+use super::ratios::Ratios;
+use super::style::{BLUE, Color, INK, LIMIT, MUTED, Mark, Pen, SHADE, VERMILION, WIDTH};
 use crate::report::number;
 use crate::result::study::{QuantitySpread, Spread, StatisticSpread};
 
@@ -19,6 +16,8 @@ const LABELS: f64 = 22.0;
 const CLEAR: f64 = 3.8;
 /// Maximum half width of a box, in points.
 const HALF: f64 = 9.0;
+/// The mark of the farthest outlier.
+const OUTLIER: (Mark, Color) = (Mark::Diamond, VERMILION);
 /// Maximum of the scale; values beyond are cut at the frame and marked.
 const FARTHEST: f64 = 3.0;
 
@@ -85,11 +84,11 @@ pub fn drawn(quantities: &[QuantitySpread]) -> Vec<(Of, usize)> {
 pub fn boxes(quantities: &[QuantitySpread], of: Of) -> String {
     let panel = panel(quantities, of);
     let legend = Legend::new(
-        vec![
+        [
             Entry::ground(SHADE, "middle half of all selections"),
-            Entry::line(VERMILION, 1.4, style::SOLID, "median"),
-            Entry::mark(Mark::Diamond, VERMILION, "farthest outlier, with the number of outliers"),
-            Entry::line(INK, 0.9, DASHED, "limit"),
+            Entry::line(Pen::solid(VERMILION, 1.4), "median"),
+            Entry::mark(OUTLIER, "farthest outlier, with the number of outliers"),
+            Entry::line(LIMIT, "limit"),
         ],
         WIDTH - 40.0,
     );
@@ -133,30 +132,11 @@ fn draw(canvas: &mut Canvas, panel: &Panel<'_>, top: f64) {
     let low = ends.clone().fold(if panel.signed { -1.15 } else { 0.0 }, f64::min).max(-FARTHEST);
     let high = ends.fold(1.15, f64::max).min(FARTHEST);
     let room = 0.04 * (high - low);
-    let low = if panel.signed { low - room } else { 0.0 };
-    let y = Scale { low, high: high + room, from: top + PANEL, to: top };
-    let ticks: Vec<Tick> = y.ticks(7);
-    let left = Frame::axis_room(&ticks).max(36.0);
-    let frame = Frame {
-        x: Scale { low: 0.0, high: panel.boxes.len() as f64, from: left, to: WIDTH - 4.0 },
-        y,
-    };
-    beyond(canvas, &frame, panel.signed);
-    frame.y_axis(canvas, &ticks, panel.of.axis());
-    canvas.group(&Group { class: "limit", dash: DASHED, ..Group::default() }, |layer| {
-        for limit in if panel.signed { &[-1.0, 1.0][..] } else { &[1.0][..] } {
-            layer.line(
-                (frame.left(), frame.y.at(*limit)),
-                (frame.right(), frame.y.at(*limit)),
-                INK,
-                0.9,
-            );
-        }
-    });
-    let width = (frame.right() - frame.left()) / panel.boxes.len() as f64;
-    let size = if width < 24.0 { SMALL } else { TEXT };
+    let range = (if panel.signed { low - room } else { 0.0 }, high + room);
+    let (slots, edges) = (panel.boxes.len(), (top, top + PANEL));
+    let ratios = Ratios::new(canvas, (range, panel.signed), slots, edges, panel.of.axis());
+    ratios.limits(canvas);
     for (at, (label, statistic, quantity, spread)) in panel.boxes.iter().enumerate() {
-        let x = frame.x.at(at as f64 + 0.5);
         let title = format!(
             "{}, {}: least {}, quartiles {}, {}, {}, greatest {}, {} outliers",
             quantity.title,
@@ -168,62 +148,44 @@ fn draw(canvas: &mut Canvas, panel: &Panel<'_>, top: f64) {
             number::fixed(spread.max, 3),
             number::large(spread.outliers as f64)
         );
-        canvas.group(&Group { class: "mark", title: Some(&title), ..Group::default() }, |layer| {
-            one(layer, &frame, x, HALF.min(0.32 * width), spread);
+        let x = ratios.frame.x.at(at as f64 + 0.5);
+        canvas.group(&Group::mark(&title), |canvas| {
+            one(canvas, &ratios.frame, x, HALF.min(0.32 * ratios.slot), spread);
         });
-        canvas.draw(|layer| {
-            let down = if at % 2 == 1 && text_width(label, size) > width { 17.0 } else { 8.0 };
-            symbol(layer, label, (x, frame.bottom() + down), size, 1.9 * width);
-        });
+        ratios.label(canvas, at, label);
     }
-    frame.spine(canvas);
+    ratios.frame.spine(canvas);
 }
 
 /// A box, its whiskers and the farthest outlier on each side.
-fn one(layer: &mut super::canvas::Layer<'_>, frame: &Frame, x: f64, half: f64, spread: &Spread) {
+fn one(canvas: &mut Canvas, frame: &Frame, x: f64, half: f64, spread: &Spread) {
     let place = |value: f64| frame.y.at(value).clamp(frame.top(), frame.bottom());
+    let at = |dx: f64, value: f64| (x + dx, place(value));
     let (low, high) = spread.whiskers();
-    layer.line((x, place(low)), (x, place(spread.q1)), INK, 0.6);
-    layer.line((x, place(spread.q3)), (x, place(high)), INK, 0.6);
-    for end in [low, high] {
-        if frame.y.contains(end) {
-            layer.line((x - 0.5 * half, place(end)), (x + 0.5 * half, place(end)), INK, 0.6);
-        }
+    canvas.line(at(0.0, low), at(0.0, spread.q1), INK, 0.6);
+    canvas.line(at(0.0, spread.q3), at(0.0, high), INK, 0.6);
+    for end in [low, high].into_iter().filter(|end| frame.y.contains(*end)) {
+        canvas.line(at(-0.5 * half, end), at(0.5 * half, end), INK, 0.6);
     }
-    layer.rect((x - half, place(spread.q1)), (x + half, place(spread.q3)), SHADE);
-    let corners = [
-        (-half, spread.q1),
-        (half, spread.q1),
-        (half, spread.q3),
-        (-half, spread.q3),
-        (-half, spread.q1),
-    ];
-    layer.path(&corners.map(|(dx, value)| (x + dx, place(value))), BLUE, 0.9);
-    layer.line((x - half, place(spread.median)), (x + half, place(spread.median)), VERMILION, 1.4);
+    canvas.rect(at(-half, spread.q1), at(half, spread.q3), SHADE);
+    let corners = [(-half, spread.q1), (half, spread.q1), (half, spread.q3), (-half, spread.q3)];
+    let outline = [corners[0], corners[1], corners[2], corners[3], corners[0]];
+    canvas.path(&outline.map(|(dx, value)| at(dx, value)), BLUE, 0.9);
+    canvas.line(at(-half, spread.median), at(half, spread.median), VERMILION, 1.4);
     if spread.outliers > 0 {
         for (outlier, whisker) in [(spread.min, low), (spread.max, high)] {
             if outlier != whisker {
-                layer.mark(Mark::Diamond, (x, place(outlier)), 1.7, VERMILION);
+                canvas.mark(OUTLIER, at(0.0, outlier), 1.7);
             }
         }
         // Above the largest value, and above the line of a limit.
         let above = (place(spread.max.max(high)) - 5.0).max(frame.top() - 3.0);
         let lines = [1.0, -1.0].map(|limit| frame.y.at(limit));
         let across = lines.into_iter().find(|line| (above - line).abs() < CLEAR);
-        layer.text(
+        canvas.text(
             &number::large(spread.outliers as f64).replace('\u{202f}', " "),
             (x, across.map_or(above, |line| line - CLEAR)),
             &Font::middle(4.6).color(MUTED),
         );
     }
-}
-
-/// Background of the range beyond the limits.
-fn beyond(canvas: &mut Canvas, frame: &Frame, signed: bool) {
-    canvas.draw(|layer| {
-        layer.rect((frame.left(), frame.top()), (frame.right(), frame.y.at(1.0)), BEYOND);
-        if signed {
-            layer.rect((frame.left(), frame.y.at(-1.0)), (frame.right(), frame.bottom()), BEYOND);
-        }
-    });
 }

@@ -1,22 +1,15 @@
-//! A drawing in points, stored as SVG. plotters draws; this adds a grid finer than whole pixels,
-//! dashes and groups.
+//! A drawing in points, stored as SVG.
+//!
+//! Coordinates are whole steps of a grid that is finer than print resolution, so that the same
+//! figure has the same bytes on every machine.
 
-use std::fmt::Write as _;
+use std::fmt::{Arguments, Write as _};
 
-use plotters::backend::SVGBackend;
-use plotters::prelude::DrawingBackend;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{
-    Color, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle, TextStyle,
-};
-
-use super::style::{Dash, FAMILY, INK, Mark};
+use super::style::{Color, Dash, FAMILY, INK, Mark, Pen};
 use crate::report::visible::visible;
 
-/// Grid steps per point: plotters rounds to whole steps; 1/20 pt is finer than print resolution.
+/// Grid steps per point.
 const STEPS: f64 = 20.0;
-/// plotters divides font sizes by this.
-const FONT_SIZE_FACTOR: f64 = 1.24;
 /// Coordinates are limited to this number of steps, far outside any figure.
 const FARTHEST: f64 = 1e6;
 
@@ -45,14 +38,25 @@ pub struct Group<'a> {
     pub zone: Option<&'a str>,
 }
 
-/// A group of shapes in progress.
-pub struct Layer<'a> {
-    backend: SVGBackend<'a>,
-}
+impl<'a> Group<'a> {
+    /// Shapes of a class.
+    pub fn class(class: &'a str) -> Self {
+        Self { class, ..Self::default() }
+    }
 
-impl std::fmt::Debug for Layer<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Layer")
+    /// A mark with its tooltip.
+    pub fn mark(title: &'a str) -> Self {
+        Self { title: Some(title), ..Self::class("mark") }
+    }
+
+    /// With a white outline of a width in points.
+    pub fn edge(self, edge: f64) -> Self {
+        Self { edge, ..self }
+    }
+
+    /// Identified for scripts by a section and its zone.
+    pub fn at(self, section: &'a str, zone: Option<&'a str>) -> Self {
+        Self { section: Some(section), zone, ..self }
     }
 }
 
@@ -69,7 +73,7 @@ pub enum Held {
 pub struct Font {
     pub size: f64,
     pub bold: bool,
-    pub color: RGBColor,
+    pub color: Color,
     /// Alignment at the point.
     pub held: Held,
     /// Rotated to read upward.
@@ -82,22 +86,27 @@ impl Font {
         Self { size, bold: false, color: INK, held: Held::Start, upward: false }
     }
 
+    /// Right-aligned at the point.
     pub fn right(size: f64) -> Self {
         Self { held: Held::End, ..Self::left(size) }
     }
 
+    /// Centred at the point.
     pub fn middle(size: f64) -> Self {
         Self { held: Held::Middle, ..Self::left(size) }
     }
 
-    pub fn color(self, color: RGBColor) -> Self {
+    /// In another colour.
+    pub fn color(self, color: Color) -> Self {
         Self { color, ..self }
     }
 
+    /// In bold type, or not.
     pub fn bold(self, bold: bool) -> Self {
         Self { bold, ..self }
     }
 
+    /// Rotated to read upward.
     pub fn upward(self) -> Self {
         Self { upward: true, ..self }
     }
@@ -109,123 +118,131 @@ impl Canvas {
         Self { width, height, body: String::new() }
     }
 
-    pub fn width(&self) -> f64 {
-        self.width
-    }
-
-    /// Draws shapes without a group.
-    pub fn draw(&mut self, draw: impl FnOnce(&mut Layer<'_>)) {
-        let shapes = self.shapes(draw);
-        self.body.push_str(&shapes);
-    }
-
     /// Draws shapes as a group.
-    pub fn group(&mut self, group: &Group<'_>, draw: impl FnOnce(&mut Layer<'_>)) {
-        let shapes = self.shapes(draw);
-        let body = &mut self.body;
-        body.push_str("<g");
-        attribute(body, "class", (!group.class.is_empty()).then_some(group.class));
-        attribute(body, "data-section", group.section);
-        attribute(body, "data-zone", group.zone);
+    pub fn group(&mut self, group: &Group<'_>, draw: impl FnOnce(&mut Self)) {
+        self.body.push_str("<g");
+        self.attribute("class", (!group.class.is_empty()).then_some(group.class));
+        self.attribute("data-section", group.section);
+        self.attribute("data-zone", group.zone);
         if let Some(dash) = group.dash {
             let steps: Vec<String> = dash.iter().map(|length| step(*length).to_string()).collect();
-            attribute(body, "stroke-dasharray", Some(&steps.join(" ")));
+            self.attribute("stroke-dasharray", Some(&steps.join(" ")));
         }
         if group.edge > 0.0 {
-            attribute(body, "stroke", Some("#FFFFFF"));
-            attribute(body, "stroke-width", Some(&step(group.edge).to_string()));
+            self.attribute("stroke", Some("#FFFFFF"));
+            self.attribute("stroke-width", Some(&step(group.edge).to_string()));
         }
-        body.push('>');
+        self.body.push('>');
         if let Some(title) = group.title {
-            let _ = write!(body, "<title>{}</title>", escaped(title));
+            self.shape(format_args!("<title>{}</title>", escaped(title)));
         }
-        body.push('\n');
-        body.push_str(&shapes);
-        body.push_str("</g>\n");
+        draw(self);
+        self.shape(format_args!("</g>"));
     }
 
-    fn shapes(&self, draw: impl FnOnce(&mut Layer<'_>)) -> String {
-        let mut text = String::new();
-        let size = (step(self.width) as u32, step(self.height) as u32);
-        let mut layer = Layer { backend: SVGBackend::with_string(&mut text, size) };
-        draw(&mut layer);
+    fn attribute(&mut self, name: &str, value: Option<&str>) {
+        if let Some(value) = value {
+            let _ = write!(self.body, " {name}=\"{}\"", escaped(value));
+        }
+    }
+
+    fn shape(&mut self, text: Arguments<'_>) {
         // Writing to a string cannot fail.
-        let _ = layer.backend.present();
-        drop(layer);
-        let start = text.find('\n').map_or(0, |at| at + 1);
-        let end = text.rfind("</svg>").unwrap_or(text.len());
-        // All quotes in texts are escaped, so these patterns are attributes. Full opacity is the
-        // default; a filled shape takes the outline of its group; texts are centred on half the
-        // x-height.
-        whole_sizes(text.get(start..end).unwrap_or_default())
-            .replace(" opacity=\"1\"", "")
-            .replace(" stroke=\"none\" stroke-width=\"1\"", "")
-            .replace("dy=\"0.5ex\"", "dy=\"0.35em\"")
-            .replace("\n</text>", "</text>")
-            .replace(" \"/>", "\"/>")
+        let _ = writeln!(self.body, "{text}");
     }
 
     /// The finished SVG text, with its size in points.
     pub fn finish(self) -> String {
         let (width, height) = (step(self.width), step(self.height));
-        let mut text = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}pt\" height=\"{}pt\" viewBox=\"0 0 {width} {height}\">\n",
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}pt\" height=\"{}pt\" viewBox=\"0 0 {width} {height}\">\n{}</svg>\n",
             f64::from(width) / STEPS,
-            f64::from(height) / STEPS
-        );
-        text.push_str(&self.body.replace("\">\n", "\">"));
-        text.push_str("</svg>\n");
-        text
-    }
-}
-
-impl Layer<'_> {
-    pub fn line(&mut self, from: Point, to: Point, color: RGBColor, width: f64) {
-        let _ = self.backend.draw_line(at(from), at(to), &stroke(color, width));
+            f64::from(height) / STEPS,
+            self.body
+        )
     }
 
-    pub fn path(&mut self, points: &[Point], color: RGBColor, width: f64) {
-        let _ =
-            self.backend.draw_path(points.iter().map(|point| at(*point)), &stroke(color, width));
+    /// A straight line; the width in points.
+    pub fn line(&mut self, from: Point, to: Point, color: Color, width: f64) {
+        let ((x1, y1), (x2, y2), width) = (at(from), at(to), thick(width));
+        self.shape(format_args!(
+            "<line stroke=\"{color}\" stroke-width=\"{width}\" x1=\"{x1}\" y1=\"{y1}\" x2=\"{x2}\" y2=\"{y2}\"/>"
+        ));
     }
 
-    pub fn fill(&mut self, points: &[Point], color: RGBColor) {
-        let _ = self.backend.fill_polygon(points.iter().map(|point| at(*point)), &color.filled());
+    /// Straight lines of a pen, as a group of a class.
+    pub fn lines(
+        &mut self,
+        class: &str,
+        pen: Pen,
+        lines: impl IntoIterator<Item = (Point, Point)>,
+    ) {
+        self.group(&Group { dash: pen.dash, ..Group::class(class) }, |canvas| {
+            lines.into_iter().for_each(|(from, to)| canvas.line(from, to, pen.color, pen.width));
+        });
+    }
+
+    /// A line through points.
+    pub fn path(&mut self, points: &[Point], color: Color, width: f64) {
+        self.shape(format_args!(
+            "<polyline fill=\"none\" stroke=\"{color}\" stroke-width=\"{}\" points=\"{}\"/>",
+            thick(width),
+            listed(points)
+        ));
+    }
+
+    /// A line of a pen through points, as a group of a class.
+    pub fn curve(&mut self, class: &str, pen: Pen, points: &[Point]) {
+        self.group(&Group { dash: pen.dash, ..Group::class(class) }, |canvas| {
+            canvas.path(points, pen.color, pen.width);
+        });
+    }
+
+    /// A filled polygon.
+    pub fn fill(&mut self, points: &[Point], color: Color) {
+        self.shape(format_args!("<polygon fill=\"{color}\" points=\"{}\"/>", listed(points)));
     }
 
     /// A filled rectangle between two corners.
-    pub fn rect(&mut self, from: Point, to: Point, color: RGBColor) {
+    pub fn rect(&mut self, from: Point, to: Point, color: Color) {
         let (a, b) = (at(from), at(to));
-        let corners = ((a.0.min(b.0), a.1.min(b.1)), (a.0.max(b.0), a.1.max(b.1)));
-        let _ = self.backend.draw_rect(corners.0, corners.1, &color.filled(), true);
+        let (x, y, width, height) =
+            (a.0.min(b.0), a.1.min(b.1), (a.0 - b.0).abs(), (a.1 - b.1).abs());
+        self.shape(format_args!(
+            "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{color}\" stroke=\"none\"/>"
+        ));
     }
 
     /// A filled mark around a point; all shapes have approximately the same area.
-    pub fn mark(&mut self, mark: Mark, center: Point, radius: f64, color: RGBColor) {
+    pub fn mark(&mut self, (mark, color): (Mark, Color), center: Point, radius: f64) {
         if mark == Mark::Circle {
-            let _ = self.backend.draw_circle(
-                at(center),
-                step(radius).max(1) as u32,
-                &color.filled(),
-                true,
-            );
+            let ((x, y), radius) = (at(center), thick(radius));
+            self.shape(format_args!(
+                "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"{color}\"/>"
+            ));
         } else {
             self.fill(&outline(mark, center, radius), color);
         }
     }
 
+    /// A text at a point.
     pub fn text(&mut self, text: &str, point: Point, font: &Font) {
-        let weight = if font.bold { FontStyle::Bold } else { FontStyle::Normal };
-        let turned = if font.upward { FontTransform::Rotate270 } else { FontTransform::None };
-        let size = (font.size * STEPS).round() * FONT_SIZE_FACTOR;
-        let described = FontDesc::new(FontFamily::Name(FAMILY), size, weight).transform(turned);
+        let ((x, y), size, color) = (at(point), step(font.size), font.color);
         let held = match font.held {
-            Held::Start => HPos::Left,
-            Held::Middle => HPos::Center,
-            Held::End => HPos::Right,
+            Held::Start => "start",
+            Held::Middle => "middle",
+            Held::End => "end",
         };
-        let style = TextStyle::from(described).color(&font.color).pos(Pos::new(held, VPos::Center));
-        let _ = self.backend.draw_text(&visible(text), &style, at(point));
+        let weight = if font.bold { " font-weight=\"bold\"" } else { "" };
+        let turned = match font.upward {
+            true => format!(" transform=\"rotate(270, {x}, {y})\""),
+            false => String::new(),
+        };
+        // Centred on half the height of capitals.
+        self.shape(format_args!(
+            "<text x=\"{x}\" y=\"{y}\" dy=\"0.35em\" text-anchor=\"{held}\" font-family=\"{FAMILY}\" font-size=\"{size}\" fill=\"{color}\"{weight}{turned}>{}</text>",
+            escaped(text)
+        ));
     }
 }
 
@@ -257,26 +274,9 @@ fn outline(mark: Mark, (x, y): Point, radius: f64) -> Vec<Point> {
         .collect()
 }
 
-/// Removes rounding errors of font sizes that result from the factor of plotters.
-fn whole_sizes(shapes: &str) -> String {
-    const SIZE: &str = "font-size=\"";
-    let mut pieces = shapes.split(SIZE);
-    let mut text = pieces.next().unwrap_or_default().to_owned();
-    for piece in pieces {
-        text.push_str(SIZE);
-        match piece.split_once('"').and_then(|(size, rest)| Some((size.parse::<f64>().ok()?, rest)))
-        {
-            Some((size, rest)) => {
-                let _ = write!(text, "{}\"{rest}", size.round());
-            }
-            None => text.push_str(piece),
-        }
-    }
-    text
-}
-
-fn stroke(color: RGBColor, width: f64) -> ShapeStyle {
-    color.stroke_width(step(width).max(1) as u32)
+/// A width or a radius in steps; what is drawn is at least one step wide.
+fn thick(length: f64) -> i32 {
+    step(length).max(1)
 }
 
 fn step(length: f64) -> i32 {
@@ -289,10 +289,15 @@ fn at((x, y): Point) -> (i32, i32) {
     (step(x), step(y))
 }
 
-fn attribute(body: &mut String, name: &str, value: Option<&str>) {
-    if let Some(value) = value {
-        let _ = write!(body, " {name}=\"{}\"", escaped(value));
-    }
+fn listed(points: &[Point]) -> String {
+    let points: Vec<String> = points
+        .iter()
+        .map(|point| {
+            let (x, y) = at(*point);
+            format!("{x},{y}")
+        })
+        .collect();
+    points.join(" ")
 }
 
 /// Text escaped for XML content and attribute values.
@@ -326,7 +331,7 @@ mod tests {
             zone: Some(hostile),
             ..Group::default()
         };
-        canvas.group(&group, |layer| layer.text(hostile, (1.0, 2.0), &Font::left(8.0)));
+        canvas.group(&group, |canvas| canvas.text(hostile, (1.0, 2.0), &Font::left(8.0)));
         let svg = canvas.finish();
         assert_eq!(svg.matches('<').count(), svg.matches('>').count());
         assert!(
@@ -343,9 +348,8 @@ mod tests {
     #[test]
     fn points_are_twenty_steps_and_nothing_overflows() {
         let mut canvas = Canvas::new(100.0, 50.0);
-        canvas.group(&Group { dash: DASHED, ..Group::default() }, |layer| {
-            layer.line((0.0, 1.0), (1e300, f64::NAN), BLUE, 0.5)
-        });
+        let pen = Pen { color: BLUE, width: 0.5, dash: DASHED };
+        canvas.lines("", pen, [((0.0, 1.0), (1e300, f64::NAN))]);
         let svg = canvas.finish();
         assert!(svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"100pt\" height=\"50pt\" viewBox=\"0 0 2000 1000\">"));
         assert!(

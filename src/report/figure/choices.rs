@@ -1,12 +1,11 @@
 //! Influence of parameters on the verdict: the largest normalised statistic for every value of
 //! every parameter.
 
-use super::axis::Scale;
 use super::canvas::{Canvas, Font, Group};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
 use super::style::{
-    BEYOND, BLUE, DASHED, GRID, INK, MUTED, Mark, SMALL, TEXT, VERMILION, WHITE, WIDTH, cut,
+    BEYOND, BLUE, Color, GRID, INK, LIMIT, MUTED, Mark, SMALL, TEXT, VERMILION, WHITE, WIDTH, cut,
     text_width,
 };
 use crate::report::number;
@@ -19,7 +18,7 @@ const GAP: f64 = 16.0;
 const NAMES: f64 = 118.0;
 const SHARES: f64 = 62.0;
 
-fn sign(verdict: Verdict) -> (Mark, plotters::style::RGBColor) {
+fn sign(verdict: Verdict) -> (Mark, Color) {
     match verdict {
         Verdict::Validated => (Mark::Circle, BLUE),
         Verdict::NotValidated => (Mark::Triangle, VERMILION),
@@ -32,8 +31,7 @@ fn sign(verdict: Verdict) -> (Mark, plotters::style::RGBColor) {
 pub fn choices(study: &ParameterStudy, words: &VerdictWords) -> String {
     let legend = Legend::new(
         [Verdict::Validated, Verdict::NotValidated, Verdict::NotAssessable]
-            .map(|verdict| Entry::mark(sign(verdict).0, sign(verdict).1, words.word(verdict)))
-            .to_vec(),
+            .map(|verdict| Entry::mark(sign(verdict), words.word(verdict))),
         WIDTH - NAMES,
     );
     let rows: usize = study.parameters.iter().map(|parameter| parameter.values.len()).sum();
@@ -45,48 +43,36 @@ pub fn choices(study: &ParameterStudy, words: &VerdictWords) -> String {
     let high = all.clone().fold(1.1, f64::max).min(4.0);
     let low = all.fold(0.9, f64::min).max(0.0);
     let room = 0.05 * (high - low);
-    let x =
-        Scale { low: (low - room).max(0.0), high: high + room, from: NAMES, to: WIDTH - SHARES };
-    let frame = Frame { x, y: Scale { low: 0.0, high: 1.0, from: top + height, to: top } };
+    let range = ((low - room).max(0.0), high + room);
+    let frame = Frame::rows(range, (NAMES, WIDTH - SHARES), (top, top + height));
+    let limit = frame.x.at(1.0);
     let mut canvas = Canvas::new(WIDTH, top + height + 28.0);
     legend.draw(&mut canvas, (NAMES, 0.0));
-    canvas.draw(|layer| {
-        layer.rect((x.at(1.0), top), (frame.right(), frame.bottom()), BEYOND);
-        layer.text(&words.good, (WIDTH - 2.0, top - 6.0), &Font::right(SMALL).color(MUTED));
-    });
-    frame.x_axis(&mut canvas, &x.ticks(8), "largest statistic / limit, all sections");
-    let (mut y, mut limit) = (top, vec![top]);
+    frame.beyond_right(&mut canvas);
+    canvas.text(&words.good, (WIDTH - 2.0, top - 6.0), &Font::right(SMALL).color(MUTED));
+    frame.x_axis(&mut canvas, 8, "largest statistic / limit, all sections");
+    let (mut y, mut limit_ends) = (top, vec![top]);
     for parameter in &study.parameters {
         let title = cut(&parameter.title, TEXT, WIDTH - SHARES - 8.0);
-        canvas.draw(|layer| {
-            // No grid behind the title, and no limit; the ground beyond the limit stays whole.
-            let end = 6.0 + text_width(&title, TEXT);
-            layer.rect((0.0, y + 3.0), (end.min(x.at(1.0)).max(0.0), y + 13.0), WHITE);
-            if end > x.at(1.0) - 1.0 {
-                layer.rect(
-                    (x.at(1.0), y + 3.0),
-                    (end.clamp(x.at(1.0), frame.right()), y + 13.0),
-                    BEYOND,
-                );
-                limit.extend([y + 2.0, y + 14.0]);
-            }
-            layer.text(&title, (2.0, y + 8.0), &Font::left(TEXT).bold(parameter.decides));
-        });
+        // No grid behind the title, and no limit; the ground beyond the limit stays whole.
+        let end = 6.0 + text_width(&title, TEXT);
+        canvas.rect((0.0, y + 3.0), (end.min(limit).max(0.0), y + 13.0), WHITE);
+        if end > limit - 1.0 {
+            let corner = (end.clamp(limit, frame.right()), y + 13.0);
+            canvas.rect((limit, y + 3.0), corner, BEYOND);
+            limit_ends.extend([y + 2.0, y + 14.0]);
+        }
+        canvas.text(&title, (2.0, y + 8.0), &Font::left(TEXT).bold(parameter.decides));
         y += GAP;
         for at in &parameter.values {
             row(&mut canvas, &frame, (at, words.word(at.verdict)), y + 0.5 * ROW - 2.0);
             y += ROW;
         }
     }
-    limit.push(frame.bottom());
-    canvas.group(&Group { class: "limit", dash: DASHED, ..Group::default() }, |layer| {
-        for piece in limit.chunks_exact(2) {
-            layer.line((x.at(1.0), piece[0]), (x.at(1.0), piece[1]), INK, 0.9);
-        }
-    });
-    canvas.draw(|layer| {
-        layer.line((frame.left(), frame.bottom()), (frame.right(), frame.bottom()), INK, 0.7)
-    });
+    limit_ends.push(frame.bottom());
+    let pieces = limit_ends.chunks_exact(2).map(|ends| ((limit, ends[0]), (limit, ends[1])));
+    canvas.lines("limit", LIMIT, pieces);
+    canvas.line((frame.left(), frame.bottom()), (frame.right(), frame.bottom()), INK, 0.7);
     canvas.finish()
 }
 
@@ -95,21 +81,15 @@ fn row(canvas: &mut Canvas, frame: &Frame, (at, verdict): (&AtValue, &str), y: f
         || number::NONE.to_owned(),
         |share| format!("{} %", number::fixed(100.0 * share.share, 2)),
     );
-    canvas.draw(|layer| {
-        layer.line((frame.left(), y), (frame.right(), y), GRID, 0.4);
-        layer.text(
-            &cut(&at.value, SMALL, NAMES - 16.0),
-            (NAMES - 5.0, y),
-            &Font::right(SMALL).bold(at.is_base),
-        );
-        layer.text(&share, (WIDTH - 2.0, y), &Font::right(SMALL));
-    });
+    canvas.line((frame.left(), y), (frame.right(), y), GRID, 0.4);
+    let value = cut(&at.value, SMALL, NAMES - 16.0);
+    canvas.text(&value, (NAMES - 5.0, y), &Font::right(SMALL).bold(at.is_base));
+    canvas.text(&share, (WIDTH - 2.0, y), &Font::right(SMALL));
     if let Some((which, value)) = &at.largest {
-        let (mark, color) = sign(at.verdict);
         let title =
             format!("{}: {which} {} of its limit, {}", at.value, number::fixed(*value, 3), verdict);
-        canvas.group(&Group { class: "mark", title: Some(&title), ..Group::default() }, |layer| {
-            layer.mark(mark, (frame.x.at(value.clamp(frame.x.low, frame.x.high)), y), 2.2, color);
+        canvas.group(&Group::mark(&title), |canvas| {
+            canvas.mark(sign(at.verdict), (frame.x.within(*value), y), 2.2);
         });
     }
 }

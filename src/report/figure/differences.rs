@@ -2,11 +2,11 @@
 
 use indexmap::IndexMap;
 
-use super::axis::{self, Scale};
+use super::axis::{self, Range};
 use super::canvas::{Canvas, Font, Group};
 use super::frame::Frame;
 use super::levels::{Levels, speaks_of};
-use super::pair_mark::{pair_group, tooltip};
+use super::pair_mark::Pairs;
 use super::style::{GRID, MUTED, SHADE, SMALL, TEXT, TICK, WIDTH, cut, text_width};
 use super::zones::Marks;
 use crate::report::number;
@@ -54,29 +54,24 @@ impl<'a> Slots<'a> {
         slot + 0.5 + ((nth + 0.5) / self.signals.len().max(1) as f64 - 0.5) * 0.75
     }
 
-    /// Slots from - to (exclusive) of consecutive sections with the same result.
-    fn runs(&self, of: impl Fn(Option<&str>) -> bool) -> Vec<(usize, usize)> {
-        let mut runs: Vec<(usize, usize)> = Vec::new();
-        for (slot, _) in self.sections.values().enumerate().filter(|(_, zone)| of(**zone)) {
+    /// Consecutive sections with the same property of their zone, with the first and the end of
+    /// their slots.
+    fn runs<T: PartialEq>(&self, of: impl Fn(Option<&'a str>) -> T) -> Vec<(T, f64, f64)> {
+        let mut runs: Vec<(T, f64, f64)> = Vec::new();
+        for (slot, zone) in self.sections.values().enumerate() {
+            let (of, end) = (of(*zone), (slot + 1) as f64);
             match runs.last_mut() {
-                Some(run) if run.1 == slot => run.1 += 1,
-                _ => runs.push((slot, slot + 1)),
+                Some(run) if run.0 == of => run.2 = end,
+                _ => runs.push((of, slot as f64, end)),
             }
         }
         runs
     }
 
-    /// Consecutive sections of one zone.
-    fn zone_runs(&self) -> Vec<(&'a str, usize, usize)> {
-        let mut runs: Vec<(&str, usize, usize)> = Vec::new();
-        for (slot, zone) in self.sections.values().enumerate() {
-            let zone = zone.unwrap_or_default();
-            match runs.last_mut() {
-                Some(run) if run.0 == zone => run.2 = slot + 1,
-                _ => runs.push((zone, slot, slot + 1)),
-            }
-        }
-        runs
+    /// The slots of consecutive sections of a scope.
+    fn within(&self, scope: &str) -> impl Iterator<Item = (f64, f64)> {
+        let runs = self.runs(|zone| speaks_of(scope, zone)).into_iter();
+        runs.filter(|(inside, ..)| *inside).map(|(_, from, to)| (from, to))
     }
 }
 
@@ -88,10 +83,10 @@ pub struct Against<'a> {
     pub slots: &'a Slots<'a>,
 }
 
-/// The scale over all differences, levels and zero.
-pub fn scale(quantity: &QuantityResult, levels: &Levels, bottom: f64, top: f64) -> Scale {
+/// The range of all differences, levels and zero.
+pub fn range(quantity: &QuantityResult, levels: &Levels) -> Range {
     let differences = quantity.values.iter().map(|pair| pair.difference);
-    Scale::over(differences.chain(levels.values()).chain([0.0]), bottom, top)
+    axis::over(differences.chain(levels.values()).chain([0.0]))
 }
 
 /// Draws the diagram from `left` to the right edge of the figure, between `top` and `bottom`, in
@@ -103,73 +98,38 @@ pub fn draw(
     (left, top, bottom): (f64, f64, f64),
 ) {
     let Against { marks, levels, slots } = *against;
-    let x =
-        Scale { low: 0.0, high: slots.sections.len().max(1) as f64, from: left, to: WIDTH - 2.0 };
-    let y = scale(quantity, levels, bottom, top);
-    let frame = Frame { x, y };
-    grounds(canvas, &frame, levels, slots);
-    let formula = number::formula(&quantity.comparison);
+    let x = (0.0, slots.sections.len().max(1) as f64);
+    let frame = Frame::new(x, range(quantity, levels), (left, WIDTH - 2.0), (top, bottom));
+    for band in &levels.bands {
+        canvas.group(&Group::class("band"), |canvas| {
+            for (from, to) in slots.within(&band.scope) {
+                canvas.rect(frame.at(from, band.low), frame.at(to, band.high), SHADE);
+            }
+        });
+    }
     let what = match (quantity.has_sides, &quantity.from) {
-        (true, _) => formula.clone(),
+        (true, _) => number::formula(&quantity.comparison),
         (false, Some(side)) => format!("{side} value"),
         (false, None) => "value of the metric".to_owned(),
     };
-    frame.y_axis(canvas, &y.ticks(TICKS), &axis::title(&what, &quantity.unit));
+    frame.y_axis(canvas, TICKS, &axis::title(&what, &quantity.unit));
     names(canvas, &frame, slots);
     zone_heads(canvas, &frame, slots);
-    lines(canvas, &frame, levels, slots);
+    let (from, to) = frame.across(0.0);
+    canvas.line(from, to, MUTED, 0.6);
+    for line in &levels.lines {
+        let runs = slots.within(&line.scope);
+        let lines = runs.map(|(from, to)| (frame.at(from, line.value), frame.at(to, line.value)));
+        canvas.lines("level", line.pen, lines);
+    }
     frame.spine(canvas);
-    let decimals =
-        number::decimals(&quantity.unit, quantity.values.iter().map(|pair| pair.difference));
+    let pairs = Pairs::of(quantity);
     for pair in &quantity.values {
-        let (mark, color) = marks.mark(pair);
-        let title = tooltip(pair, quantity, decimals);
-        canvas.group(&pair_group(pair, &title), |layer| {
-            layer.mark(
-                mark,
-                (x.at(slots.place(&pair.section, &pair.signal)), y.at(pair.difference)),
-                1.8,
-                color,
-            );
-        });
+        let at = frame.at(slots.place(&pair.section, &pair.signal), pair.difference);
+        pairs.draw(canvas, pair, marks.mark(pair), at, 1.8);
     }
     if quantity.values.is_empty() {
-        let middle = (f64::midpoint(left, x.to), f64::midpoint(top, bottom));
-        canvas.draw(|layer| layer.text("no values", middle, &Font::middle(TEXT).color(MUTED)));
-    }
-}
-
-fn grounds(canvas: &mut Canvas, frame: &Frame, levels: &Levels, slots: &Slots<'_>) {
-    for band in &levels.bands {
-        let runs = slots.runs(|zone| speaks_of(&band.scope, zone));
-        canvas.group(&Group { class: "band", ..Group::default() }, |layer| {
-            for (from, to) in runs {
-                layer.rect(
-                    (frame.x.at(from as f64), frame.y.at(band.low)),
-                    (frame.x.at(to as f64), frame.y.at(band.high)),
-                    SHADE,
-                );
-            }
-        });
-    }
-}
-
-fn lines(canvas: &mut Canvas, frame: &Frame, levels: &Levels, slots: &Slots<'_>) {
-    let zero = frame.y.at(0.0);
-    canvas.draw(|layer| layer.line((frame.left(), zero), (frame.right(), zero), MUTED, 0.6));
-    for line in &levels.lines {
-        let y = frame.y.at(line.value);
-        let runs = slots.runs(|zone| speaks_of(&line.scope, zone));
-        canvas.group(&Group { class: "level", dash: line.dash, ..Group::default() }, |layer| {
-            for (from, to) in runs {
-                layer.line(
-                    (frame.x.at(from as f64), y),
-                    (frame.x.at(to as f64), y),
-                    line.color,
-                    line.width,
-                );
-            }
-        });
+        frame.empty(canvas, "no values", &Font::middle(TEXT).color(MUTED));
     }
 }
 
@@ -179,53 +139,38 @@ fn names(canvas: &mut Canvas, frame: &Frame, slots: &Slots<'_>) {
     let wide = frame.x.at(1.0) - frame.x.at(0.0);
     let upright = slots.sections.keys().all(|name| text_width(name, TICK) < wide - 2.0);
     let every = if upright { 1 } else { (SMALL * 0.98 / wide).ceil().max(1.0) as usize };
-    let room = slots.names();
-    canvas.draw(|layer| {
-        for (slot, name) in slots.sections.keys().enumerate().step_by(every) {
-            let x = frame.x.at(slot as f64 + 0.5);
-            layer.line((x, frame.bottom()), (x, frame.bottom() + 2.0), MUTED, 0.5);
-            if upright {
-                layer.text(name, (x, frame.bottom() + 7.0), &Font::middle(TICK).color(MUTED));
-            } else {
-                layer.text(
-                    &cut(name, SMALL, room),
-                    (x, frame.bottom() + 4.0),
-                    &Font::right(SMALL).color(MUTED).upward(),
-                );
-            }
+    let (room, bottom) = (slots.names(), frame.bottom());
+    for (slot, name) in slots.sections.keys().enumerate().step_by(every) {
+        let x = frame.x.at(slot as f64 + 0.5);
+        canvas.line((x, bottom), (x, bottom + 2.0), MUTED, 0.5);
+        if upright {
+            canvas.text(name, (x, bottom + 7.0), &Font::middle(TICK).color(MUTED));
+        } else {
+            let font = Font::right(SMALL).color(MUTED).upward();
+            canvas.text(&cut(name, SMALL, room), (x, bottom + 4.0), &font);
         }
-        let below = frame.bottom() + if upright { 18.0 } else { room + 11.0 };
-        layer.text(
-            "section",
-            (f64::midpoint(frame.left(), frame.right()), below),
-            &Font::middle(TEXT),
-        );
-    });
+    }
+    let below = bottom + if upright { 18.0 } else { room + 11.0 };
+    canvas.text("section", (frame.center().0, below), &Font::middle(TEXT));
 }
 
 /// Zones above the diagram, separated by thin lines.
 fn zone_heads(canvas: &mut Canvas, frame: &Frame, slots: &Slots<'_>) {
-    let runs = slots.zone_runs();
+    let runs = slots.runs(Option::unwrap_or_default);
     if runs.len() > RUNS || runs.iter().all(|(zone, ..)| zone.is_empty()) {
         return;
     }
-    canvas.draw(|layer| {
-        for (zone, from, to) in runs {
-            let (left, right) = (frame.x.at(from as f64), frame.x.at(to as f64));
-            if from > 0 {
-                layer.line((left, frame.top() - 9.0), (left, frame.bottom()), GRID, 0.8);
-            }
-            let long = format!("zone {zone}");
-            let text = if text_width(&long, TICK) < right - left {
-                long
-            } else {
-                cut(zone, TICK, right - left)
-            };
-            layer.text(
-                &text,
-                (f64::midpoint(left, right), frame.top() - 5.0),
-                &Font::middle(TICK).color(MUTED),
-            );
+    let top = frame.top();
+    for (zone, from, to) in runs {
+        let (left, right) = (frame.x.at(from), frame.x.at(to));
+        if from > 0.0 {
+            canvas.line((left, top - 9.0), (left, frame.bottom()), GRID, 0.8);
         }
-    });
+        let mut text = format!("zone {zone}");
+        if text_width(&text, TICK) >= right - left {
+            text = cut(zone, TICK, right - left);
+        }
+        let font = Font::middle(TICK).color(MUTED);
+        canvas.text(&text, (f64::midpoint(left, right), top - 5.0), &font);
+    }
 }

@@ -2,13 +2,11 @@
 
 use indexmap::IndexSet;
 
-use plotters::style::RGBColor;
-
-use super::axis::{self, Scale};
-use super::canvas::{Canvas, Font, Group};
+use super::axis::{self, Range};
+use super::canvas::{Canvas, Font, Group, Point};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::style::{INK, MEASURED, MUTED, Mark, TEXT, TICK, WIDTH, cut, text_width};
+use super::style::{Color, INK, MEASURED, MUTED, Mark, TEXT, TICK, WIDTH, cut, text_width};
 use super::zones::Zones;
 use crate::report::number;
 use crate::result::{DomainRange, SectionResult};
@@ -18,7 +16,7 @@ const BAR: f64 = 9.0;
 /// Height of the scatter diagram, in points.
 const SCATTER: f64 = 150.0;
 /// Colour of sections not used.
-const UNUSED: RGBColor = MEASURED;
+const UNUSED: Color = MEASURED;
 /// Distance between the two columns of panels, in points.
 const GUTTER: f64 = 18.0;
 
@@ -34,7 +32,7 @@ pub fn domain(ranges: &[DomainRange], sections: &[SectionResult], zones: &Zones)
         sections.iter().filter(|section| section.used).map(|section| section.zone.as_deref()),
     );
     if sections.iter().any(|section| !section.used) {
-        entries.push(Entry::mark(Mark::Circle, UNUSED, "section not used"));
+        entries.push(Entry::mark((Mark::Circle, UNUSED), "section not used"));
     }
     let legend = Legend::new(entries, WIDTH);
     let top = legend.height() + 6.0;
@@ -63,9 +61,8 @@ pub fn domain(ranges: &[DomainRange], sections: &[SectionResult], zones: &Zones)
         scatter(&mut canvas, (across, up), zones, y + 8.0);
     }
     if panels.is_empty() {
-        canvas.draw(|layer| {
-            layer.text("no condition with numbers", (0.0, 12.0), &Font::left(TEXT).color(MUTED))
-        });
+        let font = Font::left(TEXT).color(MUTED);
+        canvas.text("no condition with numbers", (0.0, 12.0), &font);
     }
     canvas.finish()
 }
@@ -120,9 +117,9 @@ impl<'a> Panel<'a> {
         self.scopes.len() as f64 * BAR + 38.0
     }
 
-    fn scale(&self, from: f64, to: f64) -> Scale {
+    fn range(&self) -> Range {
         let ends = self.scopes.iter().flat_map(|range| [range.low, range.high]);
-        Scale::over(ends.chain(self.points.iter().map(|(_, value)| *value)), from, to)
+        axis::over(ends.chain(self.points.iter().map(|(_, value)| *value)))
     }
 
     fn draw(
@@ -134,17 +131,14 @@ impl<'a> Panel<'a> {
     ) {
         let from = left + labels + 6.0;
         let bottom = top + 6.0 + self.scopes.len() as f64 * BAR;
-        let frame = Frame {
-            x: self.scale(from, right),
-            y: Scale { low: 0.0, high: 1.0, from: bottom, to: top },
-        };
+        let frame = Frame::rows(self.range(), (from, right), (top, bottom));
         let title = cut(&axis::title(self.name, self.unit), TEXT, right - from);
-        frame.x_axis(canvas, &frame.x.ticks(5), &title);
+        frame.x_axis(canvas, 5, &title);
         for (at, range) in self.scopes.iter().enumerate() {
             let y = top + 3.0 + (at as f64 + 0.5) * BAR;
             let zone = zones_of(range);
             let (mark, color) = zones.mark(zone);
-            let color = if zone.is_none() { INK } else { color };
+            let (color, width) = if zone.is_none() { (INK, 1.6) } else { (color, 1.2) };
             let says = format!(
                 "{}, {}: {} to {}, {} sections",
                 self.name,
@@ -153,52 +147,41 @@ impl<'a> Panel<'a> {
                 number::significant(range.high, 6),
                 range.count
             );
-            canvas.draw(|layer| {
-                layer.text(
-                    &cut(&scope(range), TICK, labels),
-                    (from - 4.0, y),
-                    &Font::right(TICK).color(MUTED),
-                )
+            let font = Font::right(TICK).color(MUTED);
+            canvas.text(&cut(&scope(range), TICK, labels), (from - 4.0, y), &font);
+            let group = Group { title: Some(&says), zone, ..Group::class("range") };
+            canvas.group(&group, |canvas| {
+                let ends = [range.low, range.high].map(|end| frame.x.at(end));
+                canvas.line((ends[0], y), (ends[1], y), color, width);
+                for end in ends {
+                    canvas.line((end, y - 3.0), (end, y + 3.0), color, 1.0);
+                }
             });
-            canvas.group(
-                &Group { class: "range", title: Some(&says), zone, ..Group::default() },
-                |layer| {
-                    let (low, high) = (frame.x.at(range.low), frame.x.at(range.high));
-                    layer.line((low, y), (high, y), color, if zone.is_none() { 1.6 } else { 1.2 });
-                    for end in [low, high] {
-                        layer.line((end, y - 3.0), (end, y + 3.0), color, 1.0);
-                    }
-                },
-            );
             for (section, value) in self
                 .points
                 .iter()
                 .filter(|(section, _)| zone.is_some() && section.zone.as_deref() == zone)
             {
-                let says = format!(
-                    "{}: {} {}",
-                    section.section,
-                    self.name,
-                    number::significant(*value, 6)
-                );
-                let group = section_group(section, &says);
-                let color = if section.used { color } else { UNUSED };
-                canvas.group(&group, |layer| layer.mark(mark, (frame.x.at(*value), y), 1.7, color));
+                let shown = number::significant(*value, 6);
+                let says = format!("{}: {} {shown}", section.section, self.name);
+                draw_section(canvas, section, &says, (mark, color), (frame.x.at(*value), y), 1.7);
             }
         }
         frame.spine(canvas);
     }
 }
 
-fn section_group<'a>(section: &'a SectionResult, says: &'a str) -> Group<'a> {
-    Group {
-        class: "mark",
-        edge: 0.35,
-        title: Some(says),
-        section: Some(&section.section),
-        zone: section.zone.as_deref(),
-        ..Group::default()
-    }
+fn draw_section(
+    canvas: &mut Canvas,
+    section: &SectionResult,
+    says: &str,
+    (mark, color): (Mark, Color),
+    at: Point,
+    radius: f64,
+) {
+    let group = Group::mark(says).edge(0.35).at(&section.section, section.zone.as_deref());
+    let color = if section.used { color } else { UNUSED };
+    canvas.group(&group, |canvas| canvas.mark((mark, color), at, radius));
 }
 
 fn zones_of(range: &DomainRange) -> Option<&str> {
@@ -234,15 +217,13 @@ fn together<'a>(first: &Panel<'a>, second: &Panel<'a>) -> Vec<(&'a SectionResult
 }
 
 fn scatter(canvas: &mut Canvas, (across, up): (&Panel<'_>, &Panel<'_>), zones: &Zones, top: f64) {
-    let bottom = top + SCATTER;
-    let y = up.scale(bottom, top);
-    let ticks = y.ticks(6);
-    let frame = Frame { x: across.scale(Frame::axis_room(&ticks), WIDTH - 6.0), y };
-    frame.x_axis(canvas, &frame.x.ticks(8), &axis::title(across.name, across.unit));
-    frame.y_axis(canvas, &ticks, &axis::title(up.name, up.unit));
+    let (y, ticks) = (up.range(), 6);
+    let edges = (axis::room(y, ticks), WIDTH - 6.0);
+    let frame = Frame::new(across.range(), y, edges, (top, top + SCATTER));
+    frame.x_axis(canvas, 8, &axis::title(across.name, across.unit));
+    frame.y_axis(canvas, ticks, &axis::title(up.name, up.unit));
     frame.spine(canvas);
     for (section, x, y) in together(across, up) {
-        let (mark, color) = zones.mark(section.zone.as_deref());
         let says = format!(
             "{}: {} {}, {} {}",
             section.section,
@@ -251,9 +232,7 @@ fn scatter(canvas: &mut Canvas, (across, up): (&Panel<'_>, &Panel<'_>), zones: &
             up.name,
             number::significant(y, 6)
         );
-        canvas.group(&section_group(section, &says), |layer| {
-            let color = if section.used { color } else { UNUSED };
-            layer.mark(mark, (frame.x.at(x), frame.y.at(y)), 2.2, color);
-        });
+        let look = zones.mark(section.zone.as_deref());
+        draw_section(canvas, section, &says, look, frame.at(x, y), 2.2);
     }
 }

@@ -2,14 +2,13 @@
 //! where there is one record.
 
 use indexmap::IndexMap;
-use plotters::style::RGBColor;
 
-use super::axis::{self, Scale};
-use super::canvas::{Canvas, Font, Group};
+use super::axis;
+use super::canvas::{Canvas, Font};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::pair_mark::{pair_group, tooltip};
-use super::style::{self, DASHED, INK, MUTED, Mark, TICK, WIDTH};
+use super::pair_mark::Pairs;
+use super::style::{self, Color, LIMIT, MUTED, Mark, Pen, TICK, WIDTH};
 use super::zones::Zones;
 use crate::report::number;
 use crate::result::{PairValue, QuantityResult, StatisticResult};
@@ -40,60 +39,42 @@ pub fn frequency(quantity: &QuantityResult, zones: &Zones) -> String {
         let of = if several { &value.record } else { &value.zone };
         curves.entry(of.as_deref().unwrap_or_default()).or_default().push(value);
     }
-    let look = |at: usize, name: &str| {
-        if several { (Mark::nth(at), style::color(at)) } else { zones.mark(Some(name)) }
-    };
+    let look =
+        |at: usize, name: &str| if several { style::look(at) } else { zones.mark(Some(name)) };
     let mut entries = Vec::new();
     for (at, (name, values)) in curves.iter_mut().enumerate() {
         values.sort_by(|a, b| a.difference.total_cmp(&b.difference));
-        let (mark, color) = look(at, name);
         let of = match (several, name.is_empty()) {
             (_, true) => "values".to_owned(),
             (true, _) => (*name).to_owned(),
             (false, _) => format!("zone {name}"),
         };
-        entries.push(Entry::mark(
-            mark,
-            color,
-            format!("{of} ({})", number::count(values.len() as u64)),
-        ));
+        let count = number::count(values.len() as u64);
+        entries.push(Entry::mark(look(at, name), format!("{of} ({count})")));
     }
     let limits = limits(quantity);
     if let [first, .., last] = limits.as_slice() {
-        entries.push(Entry::line(INK, 0.9, DASHED, format!("limits {} to {}", first.1, last.1)));
+        entries.push(Entry::line(LIMIT, format!("limits {} to {}", first.1, last.1)));
     } else if let [(_, one)] = limits.as_slice() {
-        entries.push(Entry::line(INK, 0.9, DASHED, format!("limit {one}")));
+        entries.push(Entry::line(LIMIT, format!("limit {one}")));
     }
     let legend = Legend::new(entries, WIDTH - 40.0);
-    let top = legend.height() + 10.0;
-    let bottom = top + HEIGHT;
-    let y = Scale { low: 0.0, high: 100.0, from: bottom, to: top };
-    let ticks = y.ticks(5);
-    let left = Frame::axis_room(&ticks);
-    let along = quantity
-        .values
-        .iter()
-        .map(|value| value.difference)
-        .chain(limits.iter().map(|(limit, _)| *limit));
-    let frame = Frame { x: Scale::over(along, left, WIDTH - 6.0), y };
-    let mut canvas = Canvas::new(WIDTH, bottom + 25.0);
-    legend.draw(&mut canvas, (left, 0.0));
-    frame.x_axis(&mut canvas, &frame.x.ticks(8), &axis::title("value", &quantity.unit));
-    frame.y_axis(&mut canvas, &ticks, "values not above [%]");
-    canvas.group(&Group { class: "limit", dash: DASHED, ..Group::default() }, |layer| {
-        for (limit, _) in &limits {
-            layer.line((frame.x.at(*limit), top), (frame.x.at(*limit), bottom), INK, 0.9);
-        }
-    });
-    canvas.draw(|layer| {
-        if let Some((limit, _)) = limits.last() {
-            layer.text("limit", (frame.x.at(*limit), top - 5.0), &Font::middle(TICK).color(MUTED));
-        }
-    });
-    let decimals =
-        number::decimals(&quantity.unit, quantity.values.iter().map(|value| value.difference));
+    let (y, ticks, top) = ((0.0, 100.0), 5, legend.height() + 10.0);
+    let at_limits = || limits.iter().map(|(limit, _)| *limit);
+    let along = axis::over(quantity.values.iter().map(|value| value.difference).chain(at_limits()));
+    let frame = Frame::new(along, y, (axis::room(y, ticks), WIDTH - 6.0), (top, top + HEIGHT));
+    let mut canvas = Canvas::new(WIDTH, frame.bottom() + 25.0);
+    legend.draw(&mut canvas, (frame.left(), 0.0));
+    frame.x_axis(&mut canvas, 8, &axis::title("value", &quantity.unit));
+    frame.y_axis(&mut canvas, ticks, "values not above [%]");
+    frame.upright_limits(&mut canvas, at_limits());
+    if let Some((limit, _)) = limits.last() {
+        let font = Font::middle(TICK).color(MUTED);
+        canvas.text("limit", (frame.x.at(*limit), top - 5.0), &font);
+    }
+    let pairs = Pairs::of(quantity);
     for (at, (name, values)) in curves.iter().enumerate() {
-        curve(&mut canvas, &frame, values, look(at, name), (quantity, decimals));
+        curve(&mut canvas, &frame, values, look(at, name), &pairs);
     }
     frame.spine(&mut canvas);
     canvas.finish()
@@ -104,30 +85,18 @@ fn curve(
     canvas: &mut Canvas,
     frame: &Frame,
     values: &[&PairValue],
-    (mark, color): (Mark, RGBColor),
-    (quantity, decimals): (&QuantityResult, usize),
+    look: (Mark, Color),
+    pairs: &Pairs<'_>,
 ) {
-    let share = |rank: usize| 100.0 * rank as f64 / values.len() as f64;
+    let at = |value: &PairValue, rank: usize| {
+        frame.at(value.difference, 100.0 * rank as f64 / values.len() as f64)
+    };
     let finite = values.iter().enumerate().filter(|(_, value)| value.difference.is_finite());
-    let steps: Vec<(f64, f64)> = finite
-        .flat_map(|(rank, value)| {
-            let x = frame.x.at(value.difference);
-            [(x, frame.y.at(share(rank))), (x, frame.y.at(share(rank + 1)))]
-        })
-        .collect();
-    canvas.group(&Group { class: "curve", ..Group::default() }, |layer| {
-        layer.path(&steps, color, 0.8)
-    });
+    let steps: Vec<(f64, f64)> =
+        finite.flat_map(|(rank, value)| [at(value, rank), at(value, rank + 1)]).collect();
+    canvas.curve("curve", Pen::solid(look.1, 0.8), &steps);
     for (rank, value) in values.iter().enumerate() {
-        let title = tooltip(value, quantity, decimals);
-        canvas.group(&pair_group(value, &title), |layer| {
-            layer.mark(
-                mark,
-                (frame.x.at(value.difference), frame.y.at(share(rank + 1))),
-                1.7,
-                color,
-            );
-        });
+        pairs.draw(canvas, value, look, at(value, rank + 1), 1.7);
     }
 }
 

@@ -1,9 +1,7 @@
 //! A legend of marks, lines and backgrounds, wrapped to the width of the figure.
 
-use plotters::style::RGBColor;
-
 use super::canvas::{Canvas, Font, Group, Point};
-use super::style::{Dash, Mark, TEXT, cut, text_width};
+use super::style::{Color, Mark, Pen, TEXT, cut, text_width};
 
 /// Height of a row, in points.
 const ROW: f64 = 11.5;
@@ -17,23 +15,27 @@ pub struct Entry {
     pub text: String,
 }
 
+/// What stands before the text of an entry.
 #[derive(Clone, Copy, Debug)]
 pub enum Sign {
-    Mark(Mark, RGBColor),
-    Line { color: RGBColor, width: f64, dash: Dash },
-    Ground(RGBColor),
+    Mark(Mark, Color),
+    Line(Pen),
+    Ground(Color),
 }
 
 impl Entry {
-    pub fn mark(mark: Mark, color: RGBColor, text: impl Into<String>) -> Self {
+    /// Of a mark.
+    pub fn mark((mark, color): (Mark, Color), text: impl Into<String>) -> Self {
         Self { sign: Sign::Mark(mark, color), text: text.into() }
     }
 
-    pub fn line(color: RGBColor, width: f64, dash: Dash, text: impl Into<String>) -> Self {
-        Self { sign: Sign::Line { color, width, dash }, text: text.into() }
+    /// Of a line.
+    pub fn line(pen: Pen, text: impl Into<String>) -> Self {
+        Self { sign: Sign::Line(pen), text: text.into() }
     }
 
-    pub fn ground(color: RGBColor, text: impl Into<String>) -> Self {
+    /// Of a background.
+    pub fn ground(color: Color, text: impl Into<String>) -> Self {
         Self { sign: Sign::Ground(color), text: text.into() }
     }
 
@@ -51,8 +53,8 @@ pub struct Legend {
 
 impl Legend {
     /// Arranges the entries in rows of a width, in points.
-    pub fn new(entries: Vec<Entry>, width: f64) -> Self {
-        let mut placed = Vec::with_capacity(entries.len());
+    pub fn new(entries: impl IntoIterator<Item = Entry>, width: f64) -> Self {
+        let mut placed = Vec::new();
         let (mut x, mut row) = (0.0, 0);
         for entry in entries {
             let text = cut(&entry.text, TEXT, width - entry.key());
@@ -75,17 +77,16 @@ impl Legend {
     pub fn draw(&self, canvas: &mut Canvas, (left, top): Point) {
         for ((x, y), entry) in &self.placed {
             let (x, y) = (left + x, top + y);
-            let dash = if let Sign::Line { dash, .. } = entry.sign { dash } else { None };
-            canvas.group(&Group { class: "key", dash, ..Group::default() }, |layer| {
-                match entry.sign {
-                    Sign::Mark(mark, color) => layer.mark(mark, (x + 3.5, y), 2.6, color),
-                    Sign::Line { color, width, .. } => {
-                        layer.line((x, y), (x + KEY, y), color, width)
-                    }
-                    Sign::Ground(color) => layer.rect((x, y - 3.5), (x + KEY, y + 3.5), color),
-                }
-            });
-            canvas.draw(|layer| layer.text(&entry.text, (x + entry.key(), y), &Font::left(TEXT)));
+            match entry.sign {
+                Sign::Line(pen) => canvas.lines("key", pen, [((x, y), (x + KEY, y))]),
+                Sign::Mark(mark, color) => canvas.group(&Group::class("key"), |canvas| {
+                    canvas.mark((mark, color), (x + 3.5, y), 2.6);
+                }),
+                Sign::Ground(color) => canvas.group(&Group::class("key"), |canvas| {
+                    canvas.rect((x, y - 3.5), (x + KEY, y + 3.5), color);
+                }),
+            }
+            canvas.text(&entry.text, (x + entry.key(), y), &Font::left(TEXT));
         }
     }
 }

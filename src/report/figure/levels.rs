@@ -1,11 +1,7 @@
 //! Reference levels of a diagram of differences: mean, standard deviation and their limits.
 
-use plotters::style::RGBColor;
-
 use super::legend::Entry;
-use super::style::{
-    self, BLUE, DASH_DOT, DASHED, DOTTED, Dash, INK, LIMITS, SHADE, SOLID, VERMILION,
-};
+use super::style::{BLUE, DASH_DOT, DASHED, DOTTED, LIMIT, LIMITS, Pen, SHADE, VERMILION, color};
 use crate::report::{estimates, number};
 use crate::result::{QuantityResult, StatisticResult};
 
@@ -13,12 +9,10 @@ use crate::result::{QuantityResult, StatisticResult};
 const NAMED: usize = LIMITS.len();
 
 /// A horizontal line over some of the sections.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Level {
     pub value: f64,
-    pub color: RGBColor,
-    pub width: f64,
-    pub dash: Dash,
+    pub pen: Pen,
     /// `all`, or a zone.
     pub scope: String,
 }
@@ -83,13 +77,7 @@ impl Levels {
             let zones = estimates::zones(statistic);
             for scope in if zones.is_empty() { vec!["all"] } else { zones } {
                 for value in statistic.limit.iter().flat_map(|limit| both(0.0, *limit, two_sided)) {
-                    levels.draw(Level {
-                        value,
-                        color: INK,
-                        width: 0.9,
-                        dash: DASHED,
-                        scope: scope.to_owned(),
-                    });
+                    levels.draw(Level { value, pen: LIMIT, scope: scope.to_owned() });
                 }
             }
         }
@@ -102,26 +90,19 @@ impl Levels {
                 all.iter().map(|limit| number::fixed(*limit, decimals)).collect();
             match texts.as_slice() {
                 [first, .., last] if texts.len() > NAMED => {
-                    levels.explain(Entry::line(
-                        INK,
-                        0.9,
-                        DASHED,
-                        format!("limits {}{first} to {last}", sign(two_sided)),
-                    ));
+                    let text = format!("limits {}{first} to {last}", sign(two_sided));
+                    levels.explain(Entry::line(LIMIT, text));
                 }
                 // Each limit has a dash of its own, or the lines could not be told apart.
                 several => {
                     for (text, dash) in several.iter().zip(LIMITS) {
-                        levels.explain(Entry::line(
-                            INK,
-                            0.9,
-                            dash,
-                            format!("limit {}{text}", sign(two_sided)),
-                        ));
+                        let text = format!("limit {}{text}", sign(two_sided));
+                        levels.explain(Entry::line(Pen { dash, ..LIMIT }, text));
                     }
                     for line in &mut levels.lines {
                         let nth = all.iter().position(|limit| *limit == line.value.abs());
-                        line.dash = nth.and_then(|nth| LIMITS.get(nth).copied()).unwrap_or(DASHED);
+                        line.pen.dash =
+                            nth.and_then(|nth| LIMITS.get(nth).copied()).unwrap_or(DASHED);
                     }
                 }
             }
@@ -137,29 +118,19 @@ impl Levels {
             .chain(self.bands.iter().flat_map(|band| [band.low, band.high]))
     }
 
-    fn line(
-        &mut self,
-        statistic: &StatisticResult,
-        values: &[f64],
-        (color, width, dash): (RGBColor, f64, Dash),
-        text: String,
-    ) {
+    fn line(&mut self, statistic: &StatisticResult, values: &[f64], pen: Pen, text: String) {
         for scope in scopes(statistic) {
             for value in values {
-                self.draw(Level { value: *value, color, width, dash, scope: scope.to_owned() });
+                self.draw(Level { value: *value, pen, scope: scope.to_owned() });
             }
         }
-        self.explain(Entry::line(color, width, dash, text));
+        self.explain(Entry::line(pen, text));
     }
 
     /// Adds a line once: groups of other things than zones often have the same limit over all
     /// sections.
     fn draw(&mut self, level: Level) {
-        let same = |line: &Level| {
-            (line.value, line.color, line.dash, &line.scope)
-                == (level.value, level.color, level.dash, &level.scope)
-        };
-        if !self.lines.iter().any(same) {
+        if !self.lines.contains(&level) {
             self.lines.push(level);
         }
     }
@@ -173,16 +144,13 @@ impl Levels {
 
     fn mean(&mut self, statistic: &StatisticResult, with: Shown) {
         if let Some(value) = statistic.value.filter(|_| over_sections(statistic)) {
-            self.line(
-                statistic,
-                &[value],
-                (BLUE, 1.3, SOLID),
-                says(statistic, &shown(statistic, value)),
-            );
+            let text = says(statistic, &shown(statistic, value));
+            self.line(statistic, &[value], Pen::solid(BLUE, 1.3), text);
         }
         if let Some(limit) = statistic.limit {
             let text = says_of_limit(statistic, with);
-            self.line(statistic, &both(0.0, limit, with.two_sided), (BLUE, 0.9, DASHED), text);
+            let pen = Pen { color: BLUE, ..LIMIT };
+            self.line(statistic, &both(0.0, limit, with.two_sided), pen, text);
         }
     }
 
@@ -202,34 +170,26 @@ impl Levels {
         if let Some(limit) = statistic.limit {
             let text =
                 format!("mean ± {}", says_of_limit(statistic, Shown { two_sided: false, ..with }));
-            self.line(statistic, &both(center, limit, true), (VERMILION, 0.9, DOTTED), text);
+            let pen = Pen { color: VERMILION, dash: DOTTED, ..LIMIT };
+            self.line(statistic, &both(center, limit, true), pen, text);
         }
     }
 
     fn other(&mut self, statistic: &StatisticResult, with: Shown) {
-        let color = style::color(2);
         if let Some(value) =
             statistic.value.filter(|_| statistic.name != "each" && over_sections(statistic))
         {
-            self.line(
-                statistic,
-                &[value],
-                (color, 1.1, DASH_DOT),
-                says(statistic, &shown(statistic, value)),
-            );
+            let pen = Pen { color: color(2), width: 1.1, dash: DASH_DOT };
+            self.line(statistic, &[value], pen, says(statistic, &shown(statistic, value)));
         }
         if let Some(limit) = statistic.limit {
             let text = says_of_limit(statistic, with);
             // Limits of several estimates have a dash each.
             let known: Vec<&Entry> =
-                self.legend.iter().filter(|entry| entry.text.starts_with(LIMIT)).collect();
+                self.legend.iter().filter(|entry| entry.text.starts_with(LIMIT_OF)).collect();
             let nth = known.iter().position(|entry| entry.text == text).unwrap_or(known.len());
-            self.line(
-                statistic,
-                &both(0.0, limit, with.two_sided),
-                (INK, 0.9, LIMITS[nth % NAMED]),
-                text,
-            );
+            let pen = Pen { dash: LIMITS[nth % NAMED], ..LIMIT };
+            self.line(statistic, &both(0.0, limit, with.two_sided), pen, text);
         }
     }
 }
@@ -243,7 +203,7 @@ struct Shown {
 }
 
 /// First words of a limit in the legend.
-const LIMIT: &str = "limit of ";
+const LIMIT_OF: &str = "limit of ";
 
 /// The sections that a result is drawn over: its zones, or all.
 fn scopes(statistic: &StatisticResult) -> Vec<&str> {
@@ -316,7 +276,7 @@ fn says_of_limit(statistic: &StatisticResult, Shown { two_sided, same }: Shown) 
         .filter(|_| one)
         .map(|limit| format!("{}{}", sign(two_sided), shown(statistic, limit)));
     format!(
-        "{LIMIT}{} {}",
+        "{LIMIT_OF}{} {}",
         statistic.title,
         limit.unwrap_or_else(|| format!("by {}", by(statistic)))
     )

@@ -1,9 +1,7 @@
 //! Map of the gap: quantity and position by zone and band; the shade is the share of the gap.
 
-use plotters::style::RGBColor;
-
 use super::canvas::{Canvas, Font, Group};
-use super::style::{GRID, INK, MUTED, SMALL, TEXT, WHITE, WIDTH, cut};
+use super::style::{Color, GRID, INK, MUTED, Mark, SMALL, TEXT, WHITE, WIDTH, cut};
 use crate::report::number;
 use crate::result::diagnosis::Where;
 
@@ -40,31 +38,20 @@ pub fn map(places: &[Where]) -> String {
     let most = places.iter().map(|place| place.share_of_gap).fold(1e-12, f64::max);
     let bottom = HEAD + ROW * rows.len() as f64;
     let mut canvas = Canvas::new(WIDTH, bottom + SCALE);
-    canvas.draw(|layer| {
-        for (at, (zone, band)) in columns.iter().enumerate() {
-            let x = NAMES + wide * (at as f64 + 0.5);
-            layer.text(
-                &cut(band, SMALL, HEAD - 14.0),
-                (x, HEAD - 18.0),
-                &Font::middle(SMALL).upward().color(MUTED),
-            );
-            if at == 0 || columns[at - 1].0 != *zone {
-                let count = columns.iter().filter(|(of, _)| of == zone).count() as f64;
-                layer.text(
-                    &format!("zone {zone}"),
-                    (NAMES + wide * (at as f64 + 0.5 * count), 5.0),
-                    &Font::middle(TEXT).bold(true),
-                );
-            }
+    for (at, (zone, band)) in columns.iter().enumerate() {
+        let x = NAMES + wide * (at as f64 + 0.5);
+        let font = Font::middle(SMALL).upward().color(MUTED);
+        canvas.text(&cut(band, SMALL, HEAD - 14.0), (x, HEAD - 18.0), &font);
+        if at == 0 || columns[at - 1].0 != *zone {
+            let count = columns.iter().filter(|(of, _)| of == zone).count() as f64;
+            let middle = NAMES + wide * (at as f64 + 0.5 * count);
+            canvas.text(&format!("zone {zone}"), (middle, 5.0), &Font::middle(TEXT).bold(true));
         }
-        for (at, (row, _)) in rows.iter().enumerate() {
-            layer.text(
-                &cut(row, SMALL, NAMES - 6.0),
-                (NAMES - 4.0, HEAD + ROW * (at as f64 + 0.5)),
-                &Font::right(SMALL),
-            );
-        }
-    });
+    }
+    for (at, (row, _)) in rows.iter().enumerate() {
+        let y = HEAD + ROW * (at as f64 + 0.5);
+        canvas.text(&cut(row, SMALL, NAMES - 6.0), (NAMES - 4.0, y), &Font::right(SMALL));
+    }
     for place in places {
         let row = rows.iter().position(|(known, _)| *known == name(place));
         let column = columns.iter().position(|(zone, band)| {
@@ -78,28 +65,19 @@ pub fn map(places: &[Where]) -> String {
             place.says,
             number::fixed(100.0 * place.share_of_gap, 1)
         );
-        canvas.group(&Group { class: "mark", title: Some(&says), ..Group::default() }, |layer| {
-            layer.rect((x + 0.4, y + 0.4), (x + wide - 0.4, y + ROW - 0.4), shade(share));
+        canvas.group(&Group::mark(&says), |canvas| {
+            canvas.rect((x + 0.4, y + 0.4), (x + wide - 0.4, y + ROW - 0.4), shade(share));
             if place.significant {
                 let middle = (x + 0.5 * wide, y + 0.5 * ROW);
-                layer.mark(
-                    super::style::Mark::Circle,
-                    middle,
-                    0.9,
-                    if share > 0.55 { WHITE } else { INK },
-                );
+                canvas.mark((Mark::Circle, on_shade(share)), middle, 0.9);
             }
         });
     }
-    canvas.draw(|layer| {
-        for at in 1..columns.len() {
-            if columns[at - 1].0 != columns[at].0 {
-                let x = NAMES + wide * at as f64;
-                layer.line((x, HEAD - 4.0), (x, HEAD + ROW * rows.len() as f64), INK, 0.6);
-            }
-        }
-        layer.line((NAMES, HEAD), (WIDTH, HEAD), GRID, 0.5);
-    });
+    for at in (1..columns.len()).filter(|at| columns[at - 1].0 != columns[*at].0) {
+        let x = NAMES + wide * at as f64;
+        canvas.line((x, HEAD - 4.0), (x, bottom), INK, 0.6);
+    }
+    canvas.line((NAMES, HEAD), (WIDTH, HEAD), GRID, 0.5);
     scale(&mut canvas, bottom + 0.5 * (SCALE - ROW), most);
     canvas.finish()
 }
@@ -107,23 +85,19 @@ pub fn map(places: &[Where]) -> String {
 /// The scale of shades, from zero to the largest share.
 fn scale(canvas: &mut Canvas, top: f64, most: f64) {
     let wide = (WIDTH - NAMES) / STEPS as f64;
-    canvas.draw(|layer| {
-        layer.text(
-            "share of the gap",
-            (NAMES - 4.0, top + 0.5 * ROW),
-            &Font::right(SMALL).color(MUTED),
-        );
-        for step in 0..STEPS {
-            let of = step as f64 / (STEPS - 1) as f64;
-            let x = NAMES + wide * step as f64;
-            layer.rect((x, top), (x + wide - 1.0, top + ROW), shade(of));
-            let says = format!("{} %", number::significant(100.0 * most * of * of, 2));
-            let color = if of > 0.55 { WHITE } else { INK };
-            layer.text(&says, (x + 0.5 * wide, top + 0.5 * ROW), &Font::middle(SMALL).color(color));
-        }
-        layer.line((NAMES, top), (WIDTH - 1.0, top), GRID, 0.5);
-        layer.line((NAMES, top + ROW), (WIDTH - 1.0, top + ROW), GRID, 0.5);
-    });
+    let middle = top + 0.5 * ROW;
+    canvas.text("share of the gap", (NAMES - 4.0, middle), &Font::right(SMALL).color(MUTED));
+    for step in 0..STEPS {
+        let of = step as f64 / (STEPS - 1) as f64;
+        let x = NAMES + wide * step as f64;
+        canvas.rect((x, top), (x + wide - 1.0, top + ROW), shade(of));
+        let says = format!("{} %", number::significant(100.0 * most * of * of, 2));
+        let font = Font::middle(SMALL).color(on_shade(of));
+        canvas.text(&says, (x + 0.5 * wide, middle), &font);
+    }
+    for y in [top, top + ROW] {
+        canvas.line((NAMES, y), (WIDTH - 1.0, y), GRID, 0.5);
+    }
 }
 
 fn name(place: &Where) -> String {
@@ -133,11 +107,16 @@ fn name(place: &Where) -> String {
     format!("{}, {position}", place.quantity)
 }
 
+/// What is drawn on a shade.
+fn on_shade(share: f64) -> Color {
+    if share > 0.55 { WHITE } else { INK }
+}
+
 /// From white to dark blue; readable in grey.
-fn shade(share: f64) -> RGBColor {
+fn shade(share: f64) -> Color {
     let mix = |to: u8| {
         (f64::from(u8::MAX) + share.clamp(0.0, 1.0) * (f64::from(to) - f64::from(u8::MAX))).round()
             as u8
     };
-    RGBColor(mix(0x0b), mix(0x3c), mix(0x6f))
+    Color(mix(0x0b), mix(0x3c), mix(0x6f))
 }

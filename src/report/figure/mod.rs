@@ -1,6 +1,6 @@
 //! Figures of a report as SVG texts: 17 cm wide, in one style, reproducible byte by byte.
 //!
-//! plotters draws. Names of sections, signals and quantities are user text and are escaped. Marks
+//! Names of sections, signals and quantities are user text and are escaped. Marks
 //! have a `<title>` as tooltip, and `data-section` and `data-zone` for the scripts of the HTML
 //! report.
 
@@ -21,6 +21,7 @@ mod offsets;
 mod overview;
 mod pair_mark;
 mod pairs;
+mod ratios;
 mod regression;
 mod sensitivity;
 mod states;

@@ -1,12 +1,14 @@
 //! Small diagrams of many quantities: the values of each in the order of the sections, with the
 //! limits.
 
-use super::axis::Scale;
-use super::canvas::{Canvas, Font, Group};
+use indexmap::IndexSet;
+
+use super::axis;
+use super::canvas::{Canvas, Font};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::pair_mark::{pair_group, tooltip};
-use super::style::{DASHED, GRID, INK, MUTED, SMALL, TEXT, WIDTH, cut, text_width};
+use super::pair_mark::Pairs;
+use super::style::{GRID, LIMIT, MUTED, Pen, SMALL, TEXT, WIDTH, cut, text_width};
 use super::zones::{Marks, Zones};
 use crate::report::brief::{Line, Matrix, Numbered};
 use crate::report::number;
@@ -29,7 +31,7 @@ pub fn multiples(matrix: &Matrix<'_>, lines: &[Line<'_>], zones: &Zones) -> Stri
     let marks = Marks::of(values(), zones);
     let mut entries = marks.legend(values());
     if quantities().any(|(_, quantity)| !limits(quantity).is_empty()) {
-        entries.push(Entry::line(INK, 0.9, DASHED, "limit"));
+        entries.push(Entry::line(LIMIT, "limit"));
     }
     let legend = Legend::new(entries, WIDTH);
     let heads = if matrix.columns == [""] { 0.0 } else { 21.0 };
@@ -37,28 +39,20 @@ pub fn multiples(matrix: &Matrix<'_>, lines: &[Line<'_>], zones: &Zones) -> Stri
     let mut canvas = Canvas::new(WIDTH, first + lines.len() as f64 * (HEAD + HEIGHT + GAP));
     legend.draw(&mut canvas, (0.0, 0.0));
     let width = WIDTH / matrix.columns.len() as f64;
-    canvas.draw(|layer| {
-        for (at, column) in matrix.columns.iter().enumerate() {
-            let center = (at as f64 + 0.5) * width + 0.5 * AXIS;
-            // The signal, and below it its places.
-            let (signal, places) = column.split_once(' ').unwrap_or((column, ""));
-            layer.text(
-                &cut(signal, TEXT, width - 6.0),
-                (center, legend.height() + 7.0),
-                &Font::middle(TEXT).bold(true),
-            );
-            layer.text(
-                &cut(places, SMALL, width - 6.0),
-                (center, legend.height() + 15.0),
-                &Font::middle(SMALL),
-            );
+    for (at, column) in matrix.columns.iter().enumerate() {
+        let center = (at as f64 + 0.5) * width + 0.5 * AXIS;
+        // The signal, and below it its places.
+        let (signal, places) = column.split_once(' ').unwrap_or((column, ""));
+        for (text, down, font) in
+            [(signal, 7.0, Font::middle(TEXT).bold(true)), (places, 15.0, Font::middle(SMALL))]
+        {
+            let shown = cut(text, font.size, width - 6.0);
+            canvas.text(&shown, (center, legend.height() + down), &font);
         }
-    });
+    }
     for (at, line) in lines.iter().enumerate() {
         let top = first + at as f64 * (HEAD + HEIGHT + GAP);
-        canvas.draw(|layer| {
-            layer.text(&cut(&words(line), TEXT, WIDTH), (0.0, top + 5.0), &Font::left(TEXT))
-        });
+        canvas.text(&cut(&words(line), TEXT, WIDTH), (0.0, top + 5.0), &Font::left(TEXT));
         for (column, cell) in line.cells.iter().enumerate() {
             if let Some(cell) = cell {
                 let left = column as f64 * width;
@@ -108,61 +102,31 @@ fn one(
 ) {
     let limits = limits(quantity);
     let along = quantity.values.iter().map(|pair| pair.difference).chain(limits.iter().copied());
-    let mut sections: Vec<&str> = Vec::new();
-    for pair in &quantity.values {
-        if sections.last() != Some(&pair.section.as_str())
-            && !sections.contains(&pair.section.as_str())
-        {
-            sections.push(&pair.section);
-        }
+    let sections: IndexSet<&str> =
+        quantity.values.iter().map(|pair| pair.section.as_str()).collect();
+    let x = (-0.5, sections.len().max(1) as f64 - 0.5);
+    let frame = Frame::new(x, axis::over(along), (left, right), (top, top + HEIGHT));
+    for tick in frame.y.ticks(TICKS) {
+        let (from, to) = frame.across(tick.value);
+        canvas.line(from, to, GRID, 0.4);
+        let size = if text_width(&tick.label, SMALL) > AXIS - 4.0 { 4.6 } else { SMALL };
+        canvas.text(&tick.label, (left - 2.5, from.1), &Font::right(size).color(MUTED));
     }
-    let frame = Frame {
-        x: Scale { low: -0.5, high: sections.len().max(1) as f64 - 0.5, from: left, to: right },
-        y: Scale::over(along, top + HEIGHT, top),
-    };
-    let ticks = frame.y.ticks(TICKS);
-    let room = AXIS - 4.0;
-    canvas.draw(|layer| {
-        for tick in &ticks {
-            let y = frame.y.at(tick.value);
-            layer.line((left, y), (right, y), GRID, 0.4);
-            let size = if text_width(&tick.label, SMALL) > room { 4.6 } else { SMALL };
-            layer.text(&tick.label, (left - 2.5, y), &Font::right(size).color(MUTED));
-        }
-    });
-    canvas.group(&Group { class: "limit", dash: DASHED, ..Group::default() }, |layer| {
-        for limit in &limits {
-            layer.line((left, frame.y.at(*limit)), (right, frame.y.at(*limit)), INK, 0.7);
-        }
-    });
-    let decimals =
-        number::decimals(&quantity.unit, quantity.values.iter().map(|pair| pair.difference));
+    let lines = limits.iter().map(|limit| frame.across(*limit));
+    canvas.lines("limit", Pen { width: 0.7, ..LIMIT }, lines);
+    let pairs = Pairs::of(quantity);
     for pair in quantity.values.iter().filter(|pair| pair.difference.is_finite()) {
-        let at = sections.iter().position(|section| *section == pair.section).unwrap_or_default();
-        let (mark, color) = marks.mark(pair);
-        let title = tooltip(pair, quantity, decimals);
-        canvas.group(&pair_group(pair, &title), |layer| {
-            layer.mark(mark, (frame.x.at(at as f64), frame.y.at(pair.difference)), 1.2, color)
-        });
+        let section = sections.get_index_of(pair.section.as_str()).unwrap_or_default();
+        let at = frame.at(section as f64, pair.difference);
+        pairs.draw(canvas, pair, marks.mark(pair), at, 1.2);
     }
     if quantity.values.is_empty() {
-        canvas.draw(|layer| {
-            layer.text(
-                "no values",
-                (f64::midpoint(left, right), top + 0.5 * HEIGHT),
-                &Font::middle(SMALL).color(MUTED),
-            )
-        });
+        frame.empty(canvas, "no values", &Font::middle(SMALL).color(MUTED));
     }
     frame.spine(canvas);
     // The unit of the values, as a panel has no title of its axis.
     if quantity.unit != "-" {
-        canvas.draw(|layer| {
-            layer.text(
-                &format!("[{}]", number::unit(&quantity.unit)),
-                (right, top - 3.0),
-                &Font::right(SMALL).color(MUTED),
-            )
-        });
+        let unit = format!("[{}]", number::unit(&quantity.unit));
+        canvas.text(&unit, (right, top - 3.0), &Font::right(SMALL).color(MUTED));
     }
 }

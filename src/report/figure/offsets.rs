@@ -1,12 +1,12 @@
 //! Study of offsets: normalised statistics of one selection (as Götz and Polach, Figure 7) and the
 //! share validated.
 
-use super::axis::{Scale, Tick};
+use super::axis;
 use super::canvas::{Canvas, Group};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::style::{BEYOND, BLUE, DASHED, INK, Mark, SMALL, TEXT, WIDTH, color, text_width};
-use super::symbol::symbol;
+use super::ratios::Ratios;
+use super::style::{BLUE, Mark, WIDTH, look};
 use crate::report::number;
 use crate::result::VerdictWords;
 use crate::result::study::{AtOffset, SyncStudy};
@@ -17,12 +17,9 @@ const LABELS: f64 = 26.0;
 /// Statistics of one selection: one mark per offset; one panel for means, one for all other
 /// statistics.
 pub fn selection(study: &SyncStudy) -> String {
-    let entries = study
-        .offsets
-        .iter()
-        .enumerate()
-        .map(|(n, at)| Entry::mark(Mark::nth(n), color(n), name(study, at)));
-    let legend = Legend::new(entries.collect(), WIDTH - 40.0);
+    let entries =
+        study.offsets.iter().enumerate().map(|(n, at)| Entry::mark(look(n), name(study, at)));
+    let legend = Legend::new(entries, WIDTH - 40.0);
     let top = legend.height() + 8.0;
     let of = |mean: bool| -> Vec<(usize, String)> {
         let Some(first) = study.offsets.iter().find(|at| !at.selected.is_empty()) else {
@@ -81,85 +78,41 @@ fn panel(
         .flat_map(|at| statistics.iter().filter_map(move |(statistic, _)| value(at, *statistic)));
     let high = values.clone().fold(1.1, f64::max).min(3.0);
     let low = if signed { values.fold(-1.1, f64::min).max(-3.0) } else { 0.0 };
-    let y = Scale { low, high: high + 0.03 * (high - low), from: top + PANEL, to: top };
-    let ticks = y.ticks(7);
-    let frame = Frame {
-        x: Scale {
-            low: 0.0,
-            high: statistics.len() as f64,
-            from: Frame::axis_room(&ticks).max(36.0),
-            to: WIDTH - 4.0,
-        },
-        y,
-    };
-    canvas.draw(|layer| {
-        layer.rect((frame.left(), frame.top()), (frame.right(), y.at(1.0)), BEYOND);
-        if signed {
-            layer.rect((frame.left(), y.at(-1.0)), (frame.right(), frame.bottom()), BEYOND);
-        }
-    });
-    frame.y_axis(canvas, &ticks, title);
-    let width = (frame.right() - frame.left()) / statistics.len() as f64;
-    let size = if width < 24.0 { SMALL } else { TEXT };
+    let range = (low, high + 0.03 * (high - low));
+    let edges = (top, top + PANEL);
+    let ratios = Ratios::new(canvas, (range, signed), statistics.len(), edges, title);
+    let frame = &ratios.frame;
     let count = study.offsets.len().max(1) as f64;
     for (place, (statistic, label)) in statistics.iter().enumerate() {
         for (n, at) in study.offsets.iter().enumerate() {
             let Some(value) = value(at, *statistic) else { continue };
             let x = frame.x.at(place as f64 + 0.12 + 0.76 * (n as f64 + 0.5) / count);
             let shown = format!("{label}, {}: {}", name(study, at), number::fixed(value, 3));
-            canvas.group(
-                &Group { class: "mark", title: Some(&shown), ..Group::default() },
-                |layer| {
-                    layer.mark(Mark::nth(n), (x, y.at(value.clamp(y.low, y.high))), 1.6, color(n));
-                },
-            );
+            canvas.group(&Group::mark(&shown), |canvas| {
+                canvas.mark(look(n), (x, frame.y.within(value)), 1.6);
+            });
         }
-        let down = if place % 2 == 1 && text_width(label, size) > width { 17.0 } else { 8.0 };
-        canvas.draw(|layer| {
-            symbol(
-                layer,
-                label,
-                (frame.x.at(place as f64 + 0.5), frame.bottom() + down),
-                size,
-                1.9 * width,
-            );
-        });
+        ratios.label(canvas, place, label);
     }
-    canvas.group(&Group { class: "limit", dash: DASHED, ..Group::default() }, |layer| {
-        for limit in if signed { &[-1.0, 1.0][..] } else { &[1.0][..] } {
-            layer.line((frame.left(), y.at(*limit)), (frame.right(), y.at(*limit)), INK, 0.9);
-        }
-    });
+    ratios.limits(canvas);
     frame.spine(canvas);
 }
 
 /// The share of selections for which the verdict holds as a function of the offset.
 pub fn shares(study: &SyncStudy, words: &VerdictWords) -> String {
-    let points: Vec<(f64, f64)> = study
-        .offsets
-        .iter()
-        .filter_map(|at| at.study.as_ref().ok().map(|found| (at.offset, 100.0 * found.share.share)))
-        .collect();
-    let y = Scale { low: 0.0, high: 103.0, from: 128.0, to: 8.0 };
-    let ticks: Vec<Tick> = y.ticks(6);
-    let frame = Frame {
-        x: Scale::over(
-            study.offsets.iter().map(|at| at.offset),
-            Frame::axis_room(&ticks),
-            WIDTH - 10.0,
-        ),
-        y,
-    };
+    let found = study.offsets.iter().filter_map(|at| Some((at.offset, at.study.as_ref().ok()?)));
+    let points: Vec<(f64, f64)> =
+        found.map(|(offset, found)| (offset, 100.0 * found.share.share)).collect();
+    let (y, ticks) = ((0.0, 103.0), 6);
+    let x = axis::over(study.offsets.iter().map(|at| at.offset));
+    let frame = Frame::new(x, y, (axis::room(y, ticks), WIDTH - 10.0), (8.0, 128.0));
     let mut canvas = Canvas::new(WIDTH, 158.0);
-    frame.y_axis(&mut canvas, &ticks, &format!("selections {} [%]", words.good));
-    frame.x_axis(
-        &mut canvas,
-        &frame.x.ticks(10),
-        &format!("offset of the measurement [{}]", number::unit(&study.axis_unit)),
-    );
+    frame.y_axis(&mut canvas, ticks, &format!("selections {} [%]", words.good));
+    let unit = number::unit(&study.axis_unit);
+    frame.x_axis(&mut canvas, 10, &format!("offset of the measurement [{unit}]"));
     let placed: Vec<(f64, f64)> =
-        points.iter().map(|(offset, share)| (frame.x.at(*offset), y.at(*share))).collect();
-    canvas.draw(|layer| layer.path(&placed, BLUE, 0.9));
+        points.iter().map(|(offset, share)| frame.at(*offset, *share)).collect();
+    canvas.path(&placed, BLUE, 0.9);
     for ((offset, share), point) in points.iter().zip(placed) {
         let title = format!(
             "{} {}: {} %",
@@ -167,8 +120,8 @@ pub fn shares(study: &SyncStudy, words: &VerdictWords) -> String {
             study.axis_unit,
             number::fixed(*share, 2)
         );
-        canvas.group(&Group { class: "mark", title: Some(&title), ..Group::default() }, |layer| {
-            layer.mark(Mark::Circle, point, 2.4, BLUE);
+        canvas.group(&Group::mark(&title), |canvas| {
+            canvas.mark((Mark::Circle, BLUE), point, 2.4);
         });
     }
     frame.spine(&mut canvas);

@@ -2,12 +2,14 @@
 
 use indexmap::IndexSet;
 
-use super::axis::Scale;
-use super::canvas::{Canvas, Font, Group, Layer};
+use super::axis::Range;
+use super::canvas::{Canvas, Font, Group, Point};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::style::{self, BEYOND, GRID, INK, MUTED, Mark, SHADE, TEXT, WIDTH, text_width};
-use super::symbol::symbol_left_of;
+use super::style::{
+    BEYOND, Color, GRID, INK, MUTED, Mark, SHADE, SMALL, TEXT, WIDTH, look, text_width,
+};
+use super::symbol::symbol;
 use crate::report::{estimates, number};
 use crate::result::{QuantityResult, StatisticResult};
 
@@ -50,10 +52,7 @@ pub fn overview(quantities: &[QuantityResult]) -> String {
     let top = legend.height() + 14.0;
     let height = total as f64 * line + quantities.len() as f64 * gap + gap;
     let mut canvas = Canvas::new(WIDTH, top + height + 26.0);
-    let frame = Frame {
-        x: scale(&quantities, left, right),
-        y: Scale { low: 0.0, high: 1.0, from: top + height, to: top },
-    };
+    let frame = Frame::rows(range(&quantities), (left, right), (top, top + height));
     legend.draw(&mut canvas, (left, 0.0));
     ground(&mut canvas, &frame);
     let mut y = top + gap;
@@ -117,15 +116,11 @@ impl Series {
                 format!("{title}, {scope}")
             })
         };
-        self.0
-            .iter()
-            .enumerate()
-            .map(|(n, key)| Entry::mark(Mark::nth(n), style::color(n), text(key)))
-            .collect()
+        self.0.iter().enumerate().map(|(n, key)| Entry::mark(look(n), text(key))).collect()
     }
 }
 
-fn scale(quantities: &[&QuantityResult], from: f64, to: f64) -> Scale {
+fn range(quantities: &[&QuantityResult]) -> Range {
     let values: Vec<f64> =
         quantities.iter().flat_map(|quantity| shown(quantity)).filter_map(signed).collect();
     let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
@@ -137,29 +132,22 @@ fn scale(quantities: &[&QuantityResult], from: f64, to: f64) -> Scale {
             .filter(|quantity| quantity.from.is_none())
             .flat_map(|quantity| shown(quantity))
             .any(|one| one.name == "mean");
-    Scale { low: if has_sign { -high } else { 0.0 }, high, from, to }
+    (if has_sign { -high } else { 0.0 }, high)
 }
 
 fn ground(canvas: &mut Canvas, frame: &Frame) {
-    let (top, bottom) = (frame.top(), frame.bottom());
-    let limits: Vec<f64> =
-        [-1.0, 1.0].into_iter().filter(|limit| frame.x.contains(*limit)).collect();
-    canvas.draw(|layer| {
-        layer.rect((frame.x.at(1.0), top), (frame.right(), bottom), BEYOND);
-        if limits.len() == 2 {
-            layer.rect((frame.left(), top), (frame.x.at(-1.0), bottom), BEYOND);
-        }
-    });
-    frame.x_axis(canvas, &frame.x.ticks(9), "statistic divided by its limit");
-    canvas.draw(|layer| {
-        for limit in &limits {
-            let x = frame.x.at(*limit);
-            layer.line((x, top), (x, bottom), INK, 1.0);
-            layer.text("limit", (x, top - 6.0), &Font::middle(TEXT));
-        }
-        let zero = frame.x.at(0.0);
-        layer.line((zero, top), (zero, bottom), MUTED, 0.6);
-    });
+    frame.beyond_right(canvas);
+    if frame.x.contains(-1.0) {
+        canvas.rect((frame.left(), frame.top()), frame.upright(-1.0).1, BEYOND);
+    }
+    frame.x_axis(canvas, 9, "statistic divided by its limit");
+    for limit in [-1.0, 1.0].into_iter().filter(|limit| frame.x.contains(*limit)) {
+        let (top, bottom) = frame.upright(limit);
+        canvas.line(top, bottom, INK, 1.0);
+        canvas.text("limit", (top.0, top.1 - 6.0), &Font::middle(TEXT));
+    }
+    let (top, bottom) = frame.upright(0.0);
+    canvas.line(top, bottom, MUTED, 0.6);
 }
 
 fn row(
@@ -172,60 +160,39 @@ fn row(
 ) {
     let middle = top + lines as f64 * line / 2.0;
     let fails = quantity.holds == Some(false);
-    canvas.group(
-        &Group { class: "row", title: Some(&quantity.title), ..Group::default() },
-        |layer| {
-            symbol_left_of(
-                layer,
-                &quantity.symbol,
-                (frame.left() - 6.0, middle),
-                &Font::right(TEXT).bold(fails),
-                labels,
-            );
-        },
-    );
+    let group = Group { title: Some(&quantity.title), ..Group::class("row") };
+    canvas.group(&group, |canvas| {
+        let font = Font::right(TEXT).bold(fails);
+        symbol(canvas, &quantity.symbol, (frame.left() - 6.0, middle), &font, labels);
+    });
     if !quantity.decides_nothing() {
         finding(canvas, quantity.holds, (frame.right() + 8.0, middle));
     }
     let statistics: Vec<&StatisticResult> = shown(quantity).collect();
-    if statistics.is_empty() {
-        let says = if quantity.values.is_empty() { "no values" } else { "no limit" };
-        nothing(
-            canvas,
-            frame,
-            middle,
-            if quantity.holds.is_none() { "not assessable" } else { says },
-        );
-        return;
-    }
+    let farthest = statistics.iter().filter_map(|one| signed(one)).map(f64::abs).reduce(f64::max);
+    let Some(farthest) = farthest else {
+        let says = match (quantity.holds, statistics.is_empty()) {
+            (None, _) => "not assessable",
+            (_, true) if quantity.values.is_empty() => "no values",
+            (_, true) => "no limit",
+            // A value that is not above zero has no ratio to a limit that it should reach.
+            (_, false) => "no ratio to the limit",
+        };
+        return nothing(canvas, frame, middle, says);
+    };
     let shared = statistics.len() > LINES;
-    let farthest = statistics
-        .iter()
-        .filter_map(|one| signed(one))
-        .fold(0.0_f64, |most, value| most.max(value.abs()));
-    if statistics.iter().all(|one| signed(one).is_none()) {
-        // A value that is not above zero has no ratio to a limit that it should reach.
-        nothing(
-            canvas,
-            frame,
-            middle,
-            if quantity.holds.is_none() { "not assessable" } else { "no ratio to the limit" },
-        );
-        return;
-    }
     for (at, statistic) in statistics.iter().enumerate() {
         let y = top + line * (0.5 + if lines == 1 { 0.0 } else { at as f64 });
         match signed(statistic) {
             Some(value) => {
-                // On a shared line the numbers would overlap: only the largest is labelled.
-                let named = !shared || value.abs() == farthest;
-                let look = Look {
-                    n: series.nth(quantity, statistic),
+                let shape = Shape {
+                    look: look(series.nth(quantity, statistic)),
                     stem: !shared,
-                    named,
+                    // On a shared line the numbers would overlap: only the largest is labelled.
+                    named: !shared || value.abs() == farthest,
                     size: TEXT.min(line + 0.5),
                 };
-                value_mark(canvas, frame, (&quantity.symbol, statistic), (value, y), &look);
+                value_mark(canvas, frame, (&quantity.symbol, statistic), (value, y), &shape);
             }
             None if !shared => {
                 nothing(canvas, frame, y, &format!("{}: not assessable", statistic.title))
@@ -236,37 +203,34 @@ fn row(
 }
 
 /// The word of a result with its sign, drawn without a font.
-fn finding(canvas: &mut Canvas, holds: Option<bool>, (x, y): (f64, f64)) {
-    canvas.draw(|layer| {
-        let word = match holds {
-            Some(true) => {
-                layer.path(&[(x, y + 0.3), (x + 2.2, y + 2.6), (x + 6.2, y - 2.8)], INK, 1.1);
-                "met"
-            }
-            Some(false) => {
-                layer.line((x + 0.5, y - 2.6), (x + 5.7, y + 2.6), INK, 1.4);
-                layer.line((x + 0.5, y + 2.6), (x + 5.7, y - 2.6), INK, 1.4);
-                "not met"
-            }
-            None => {
-                layer.line((x, y), (x + 6.0, y), MUTED, 1.1);
-                "not assessed"
-            }
-        };
-        layer.text(word, (x + 9.5, y), &Font::left(TEXT).bold(holds == Some(false)));
-    });
+fn finding(canvas: &mut Canvas, holds: Option<bool>, (x, y): Point) {
+    let word = match holds {
+        Some(true) => {
+            canvas.path(&[(x, y + 0.3), (x + 2.2, y + 2.6), (x + 6.2, y - 2.8)], INK, 1.1);
+            "met"
+        }
+        Some(false) => {
+            canvas.line((x + 0.5, y - 2.6), (x + 5.7, y + 2.6), INK, 1.4);
+            canvas.line((x + 0.5, y + 2.6), (x + 5.7, y - 2.6), INK, 1.4);
+            "not met"
+        }
+        None => {
+            canvas.line((x, y), (x + 6.0, y), MUTED, 1.1);
+            "not assessed"
+        }
+    };
+    canvas.text(word, (x + 9.5, y), &Font::left(TEXT).bold(holds == Some(false)));
 }
 
 fn nothing(canvas: &mut Canvas, frame: &Frame, y: f64, says: &str) {
-    canvas.group(&Group { class: "none", ..Group::default() }, |layer| {
-        layer.text(says, (frame.x.at(0.0) + 4.0, y), &Font::left(style::SMALL + 0.5).color(MUTED));
+    canvas.group(&Group::class("none"), |canvas| {
+        canvas.text(says, (frame.x.at(0.0) + 4.0, y), &Font::left(SMALL + 0.5).color(MUTED));
     });
 }
 
-/// Drawing style of a statistic.
-struct Look {
-    /// Index of the series.
-    n: usize,
+/// How a statistic is drawn.
+struct Shape {
+    look: (Mark, Color),
     /// With a line from zero.
     stem: bool,
     /// With its number if the criterion is not met.
@@ -280,7 +244,7 @@ fn value_mark(
     frame: &Frame,
     (symbol, statistic): (&str, &StatisticResult),
     (value, y): (f64, f64),
-    look: &Look,
+    &Shape { look, stem, named, size }: &Shape,
 ) {
     let says = match value.abs() {
         size if size < 10.0 => number::beside(value, 1.0, 2),
@@ -288,52 +252,34 @@ fn value_mark(
         _ => number::significant(value, 3),
     };
     let title = format!("{symbol}, {} ({}): {says} of the limit", statistic.title, statistic.scope);
-    let color = style::color(look.n);
     let clipped = !frame.x.contains(value);
-    let x = frame.x.at(value.clamp(frame.x.low, frame.x.high));
-    canvas.group(
-        &Group { class: "mark", title: Some(&title), edge: 0.5, ..Group::default() },
-        |layer| {
-            if look.stem {
-                layer.line((frame.x.at(0.0), y), (x, y), color, 2.2);
-            }
-            if clipped {
-                arrow(layer, (x, y), value.signum(), color);
-            } else {
-                layer.mark(Mark::nth(look.n), (x, y), 2.7, color);
-            }
-        },
-    );
-    let fails = statistic.holds == Some(false);
-    if !look.named || !(fails || clipped) {
+    let (x, outward) = (frame.x.within(value), value.signum());
+    canvas.group(&Group::mark(&title).edge(0.5), |canvas| {
+        if stem {
+            canvas.line((frame.x.at(0.0), y), (x, y), look.1, 2.2);
+        }
+        if clipped {
+            // An arrow.
+            let back = x - outward * 5.5;
+            canvas.fill(&[(x, y), (back, y - 3.4), (back, y + 3.4)], look.1);
+        } else {
+            canvas.mark(look, (x, y), 2.7);
+        }
+    });
+    if !named || !(statistic.holds == Some(false) || clipped) {
         return;
     }
     // Outside the mark if there is space, else on the stem's side with a background.
-    let outward = value.signum();
-    let wide = text_width(&says, look.size) + 6.0;
+    let wide = text_width(&says, size) + 6.0;
     let room = if outward > 0.0 { frame.right() - x } else { x - frame.left() };
-    let (direction, start) = if !clipped && room > wide { (outward, 4.5) } else { (-outward, 7.5) };
+    let outside = !clipped && room > wide;
+    let (direction, start) = if outside { (outward, 4.5) } else { (-outward, 7.5) };
     let at = x + direction * start;
-    let font =
-        if direction > 0.0 { Font::left(look.size) } else { Font::right(look.size) }.bold(true);
-    canvas.draw(|layer| {
-        if clipped || room <= wide {
-            let half = look.size / 2.0 - 0.4;
-            layer.rect(
-                (at - direction * 1.5, y - half),
-                (at + direction * (wide - 4.0), y + half),
-                GRID,
-            );
-        }
-        layer.text(&says, (at, y), &font);
-    });
-}
-
-fn arrow(
-    layer: &mut Layer<'_>,
-    (x, y): (f64, f64),
-    direction: f64,
-    color: plotters::style::RGBColor,
-) {
-    layer.fill(&[(x, y), (x - direction * 5.5, y - 3.4), (x - direction * 5.5, y + 3.4)], color);
+    if !outside {
+        let half = size / 2.0 - 0.4;
+        let end = at + direction * (wide - 4.0);
+        canvas.rect((at - direction * 1.5, y - half), (end, y + half), GRID);
+    }
+    let font = if direction > 0.0 { Font::left(size) } else { Font::right(size) };
+    canvas.text(&says, (at, y), &font.bold(true));
 }

@@ -1,43 +1,72 @@
 //! The mark of one pair, with its tooltip.
 
-use super::canvas::Group;
+use super::canvas::{Canvas, Group, Point};
+use super::style::{Color, Mark};
 use crate::report::number;
 use crate::report::sides::Sides;
 use crate::result::{PairValue, QuantityResult};
 
-/// The group of one pair's mark, identified for scripts.
-pub(super) fn pair_group<'a>(pair: &'a PairValue, title: &'a str) -> Group<'a> {
-    Group {
-        class: "mark pair",
-        edge: 0.35,
-        title: Some(title),
-        section: Some(&pair.section),
-        zone: pair.zone.as_deref(),
-        ..Group::default()
-    }
+/// The pairs of a quantity, and the decimals of their values.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pairs<'a> {
+    quantity: &'a QuantityResult,
+    decimals: usize,
 }
 
-/// Tooltip of a pair.
-pub(super) fn tooltip(pair: &PairValue, quantity: &QuantityResult, decimals: usize) -> String {
-    let shown = |value: f64| number::with_unit(&number::fixed(value, decimals), &quantity.unit);
-    let mut text = format!("{}, {}", pair.section, pair.signal);
-    if let Some(record) = &pair.record {
-        text.push_str(&format!(", {record}"));
+impl<'a> Pairs<'a> {
+    /// With the decimals that tell the differences apart.
+    pub fn of(quantity: &'a QuantityResult) -> Self {
+        let differences = quantity.values.iter().map(|pair| pair.difference);
+        Self::with_decimals_of(quantity, differences)
     }
-    if let Some(zone) = &pair.zone {
-        text.push_str(&format!(", zone {zone}"));
+
+    /// With the decimals that tell some values apart.
+    pub fn with_decimals_of(
+        quantity: &'a QuantityResult,
+        values: impl Iterator<Item = f64>,
+    ) -> Self {
+        Self { quantity, decimals: number::decimals(&quantity.unit, values) }
     }
-    match (pair.simulated, pair.measured) {
-        (Some(simulated), Some(measured)) => {
-            let Sides { one, other, .. } = Sides::of(quantity);
-            text.push_str(&format!(
-                ": {one} {}, {other} {}, difference {}",
-                shown(simulated),
-                shown(measured),
-                shown(pair.difference)
-            ))
+
+    /// Draws the mark of a pair, identified for scripts.
+    pub fn draw(
+        &self,
+        canvas: &mut Canvas,
+        pair: &PairValue,
+        look: (Mark, Color),
+        at: Point,
+        radius: f64,
+    ) {
+        let title = self.tooltip(pair);
+        let group = Group { class: "mark pair", ..Group::mark(&title) }.edge(0.35);
+        canvas.group(&group.at(&pair.section, pair.zone.as_deref()), |canvas| {
+            canvas.mark(look, at, radius);
+        });
+    }
+
+    fn tooltip(&self, pair: &PairValue) -> String {
+        let shown = |value: f64| {
+            number::with_unit(&number::fixed(value, self.decimals), &self.quantity.unit)
+        };
+        let mut text = format!("{}, {}", pair.section, pair.signal);
+        if let Some(record) = &pair.record {
+            text.push_str(&format!(", {record}"));
         }
-        _ => text.push_str(&format!(": {}", shown(pair.difference))),
+        if let Some(zone) = &pair.zone {
+            text.push_str(&format!(", zone {zone}"));
+        }
+        match (pair.simulated, pair.measured) {
+            (Some(simulated), Some(measured)) => {
+                let Sides { one, other, .. } = Sides::of(self.quantity);
+                text.push_str(&format!(
+                    ": {one} {}, {other} {}, difference {}",
+                    shown(simulated),
+                    shown(measured),
+                    shown(pair.difference)
+                ))
+            }
+            _ => text.push_str(&format!(": {}", shown(pair.difference))),
+        }
+        text
     }
-    text
 }

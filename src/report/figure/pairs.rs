@@ -1,15 +1,14 @@
 //! The values of one quantity: simulated over measured, and the differences by section.
 
-use super::axis::{self, Scale};
+use super::axis;
 use super::canvas::{Canvas, Font};
 use super::differences;
 use super::frame::Frame;
 use super::legend::Legend;
 use super::levels::Levels;
-use super::pair_mark::{pair_group, tooltip};
+use super::pair_mark::Pairs;
 use super::style::{MUTED, TICK, WIDTH};
 use super::zones::{Marks, Zones};
-use crate::report::number;
 use crate::report::sides::Sides;
 use crate::result::{PairValue, QuantityResult};
 
@@ -38,11 +37,8 @@ pub fn pairs(quantity: &QuantityResult, zones: &Zones) -> String {
         .filter_map(|pair| Some((pair, pair.simulated?, pair.measured?)))
         .collect();
     let both = quantity.has_sides && !with_sides.is_empty();
-    let own = Frame::axis_room(
-        &differences::scale(quantity, &levels, bottom, top).ticks(differences::TICKS),
-    )
-    .max(AXIS);
-    let side = Frame::axis_room(&Scale::over(ends(&with_sides), 0.0, 1.0).ticks(TICKS)).max(AXIS);
+    let own = axis::room(differences::range(quantity, &levels), differences::TICKS).max(AXIS);
+    let side = axis::room(axis::over(ends(&with_sides)), TICKS).max(AXIS);
     let left = if both { side + HEIGHT + GUTTER + own } else { own };
     let slots = differences::Slots::of(quantity);
     let mut canvas = Canvas::new(WIDTH, bottom + slots.room().max(24.0));
@@ -51,12 +47,8 @@ pub fn pairs(quantity: &QuantityResult, zones: &Zones) -> String {
     if both {
         scatter(&mut canvas, quantity, &looks, &with_sides, (side, bottom));
     }
-    differences::draw(
-        &mut canvas,
-        quantity,
-        &differences::Against { marks: &looks, levels: &levels, slots: &slots },
-        (left, top, bottom),
-    );
+    let against = differences::Against { marks: &looks, levels: &levels, slots: &slots };
+    differences::draw(&mut canvas, quantity, &against, (left, top, bottom));
     canvas.finish()
 }
 
@@ -72,31 +64,20 @@ fn scatter(
     values: &[(&PairValue, f64, f64)],
     (left, bottom): (f64, f64),
 ) {
-    let of = |side: &str| axis::title(side, &quantity.unit);
     let Sides { one, other, .. } = Sides::of(quantity);
-    let frame = Frame {
-        x: Scale::over(ends(values), left, left + HEIGHT),
-        y: Scale::over(ends(values), bottom, bottom - HEIGHT),
-    };
-    let ticks = frame.x.ticks(TICKS);
-    frame.x_axis(canvas, &ticks, &of(&other));
-    frame.y_axis(canvas, &ticks, &of(one));
-    canvas
-        .draw(|layer| layer.line((frame.left(), bottom), (frame.right(), frame.top()), MUTED, 0.8));
-    canvas.draw(|layer| {
-        layer.text(
-            &format!("{one} = {other}"),
-            (frame.right(), frame.top() - 5.0),
-            &Font::right(TICK).color(MUTED),
-        )
-    });
+    let range = axis::over(ends(values));
+    let frame = Frame::new(range, range, (left, left + HEIGHT), (bottom - HEIGHT, bottom));
+    frame.x_axis(canvas, TICKS, &axis::title(&other, &quantity.unit));
+    frame.y_axis(canvas, TICKS, &axis::title(one, &quantity.unit));
+    canvas.line((frame.left(), bottom), (frame.right(), frame.top()), MUTED, 0.8);
+    canvas.text(
+        &format!("{one} = {other}"),
+        (frame.right(), frame.top() - 5.0),
+        &Font::right(TICK).color(MUTED),
+    );
     frame.spine(canvas);
-    let decimals = number::decimals(&quantity.unit, ends(values));
+    let pairs = Pairs::with_decimals_of(quantity, ends(values));
     for (pair, simulated, measured) in values {
-        let (mark, color) = marks.mark(pair);
-        let title = tooltip(pair, quantity, decimals);
-        canvas.group(&pair_group(pair, &title), |layer| {
-            layer.mark(mark, (frame.x.at(*measured), frame.y.at(*simulated)), 2.1, color);
-        });
+        pairs.draw(canvas, pair, marks.mark(pair), frame.at(*measured, *simulated), 2.1);
     }
 }

@@ -1,12 +1,12 @@
 //! Regressions of the values of groups: one small diagram for each group, in a row on the same
 //! scale.
 
-use super::axis::{self, Scale};
+use super::axis::{self, Range};
 use super::canvas::{Canvas, Font, Group};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
 use super::style::{
-    self, BLUE, DASH_DOT, DASHED, DOTTED, INK, MUTED, Mark, SMALL, SOLID, TEXT, TICK, VERMILION,
+    BLUE, Color, DASH_DOT, DOTTED, INK, LIMIT, MUTED, Mark, Pen, SMALL, TEXT, TICK, VERMILION,
     WIDTH, cut_apart, text_width,
 };
 use super::zones::Zones;
@@ -28,7 +28,12 @@ const FOOT: f64 = 13.0;
 const GUTTER: f64 = 9.0;
 /// Share of an axis in the width of a diagram, about, in points.
 const AXIS: f64 = 10.0;
-const TICKS: (usize, usize) = (5, 5);
+const TICKS: usize = 5;
+
+const FIT: Pen = Pen::solid(BLUE, 1.2);
+const BOUND: Pen = Pen { color: VERMILION, width: 1.1, dash: DASH_DOT };
+const TARGET: Pen = Pen { color: MUTED, width: 0.8, dash: DOTTED };
+const ESTIMATE: (Mark, Color) = (Mark::Diamond, INK);
 
 /// The groups of a limit that have a regression to draw, in order; of many those with the largest
 /// ratio.
@@ -56,15 +61,15 @@ pub fn regression(
     let curves = || groups.iter().flat_map(|(_, one)| &one.curve);
     let bound = groups.iter().find_map(|(_, one)| one.bound.as_deref());
     let mut entries = zones.legend(points().map(|point| point.zone.as_deref()));
-    entries.push(Entry::line(BLUE, 1.2, SOLID, "regression"));
-    entries.extend(bound.map(|bound| Entry::line(VERMILION, 1.1, DASH_DOT, bound)));
-    entries.push(Entry::line(MUTED, 0.8, DOTTED, "target"));
-    entries.push(Entry::mark(Mark::Diamond, INK, "estimate"));
+    entries.push(Entry::line(FIT, "regression"));
+    entries.extend(bound.map(|bound| Entry::line(BOUND, bound)));
+    entries.push(Entry::line(TARGET, "target"));
+    entries.push(Entry::mark(ESTIMATE, "estimate"));
     if groups.iter().any(|(one, _)| one.limit.is_some()) {
-        entries.push(Entry::line(INK, 0.9, DASHED, "limit"));
+        entries.push(Entry::line(LIMIT, "limit"));
     }
     let legend = Legend::new(entries, WIDTH - 40.0);
-    let xs: Vec<f64> = curves().map(|at| at.x).collect();
+    let x = axis::over(curves().map(|at| at.x));
     let tall = if groups.len() == 1 { TALL } else { LOW };
     let abreast = groups.len().clamp(1, ABREAST);
     let rows = groups.len().div_ceil(abreast);
@@ -77,52 +82,40 @@ pub fn regression(
         HEADS
     };
     let row = head + tall + FOOT;
-    let of_row = |at: usize| {
-        let ys = groups
-            .iter()
-            .skip(at * abreast)
-            .take(abreast)
-            .flat_map(|(one, figure)| heights(one, figure));
-        Scale::over(ys, top + at as f64 * row + head + tall, top + at as f64 * row + head)
-    };
-    let left = (0..rows).map(|at| Frame::axis_room(&of_row(at).ticks(TICKS.1))).fold(0.0, f64::max);
+    let heights: Vec<Range> = groups
+        .chunks(abreast)
+        .map(|row| axis::over(row.iter().flat_map(|(one, figure)| heights(one, figure))))
+        .collect();
+    let left = heights.iter().map(|y| axis::room(*y, TICKS)).fold(0.0, f64::max);
     let wide = (WIDTH - 4.0 - left - GUTTER * (abreast as f64 - 1.0)) / abreast as f64;
-    let mut canvas = Canvas::new(WIDTH, top + rows as f64 * row + 13.0);
+    let bottom = top + rows as f64 * row;
+    let mut canvas = Canvas::new(WIDTH, bottom + 13.0);
     legend.draw(&mut canvas, (left, 0.0));
     let names = names(&scopes, wide);
-    for (at, (statistic, figure)) in groups.iter().enumerate() {
-        let from = left + (at % abreast) as f64 * (wide + GUTTER);
-        let frame = Frame {
-            x: Scale::over(xs.iter().copied(), from, from + wide),
-            y: of_row(at / abreast),
-        };
-        axes(
-            &mut canvas,
-            &frame,
-            (at % abreast == 0).then(|| axis::title(&quantity.symbol, &quantity.unit)).as_deref(),
-        );
-        canvas.draw(|layer| {
-            for (up, line) in names[at].iter().rev().filter(|line| !line.is_empty()).enumerate() {
-                let y = frame.top() - 6.0 - 8.0 * up as f64;
-                layer.text(
-                    line,
-                    (f64::midpoint(frame.left(), frame.right()), y),
-                    &Font::middle(TICK),
-                );
-            }
-        });
-        panel(&mut canvas, &frame, quantity, (statistic, figure), zones);
+    for (at, group) in groups.iter().enumerate() {
+        let (column, line) = (at % abreast, at / abreast);
+        let from = left + column as f64 * (wide + GUTTER);
+        let upper = top + line as f64 * row + head;
+        let frame = Frame::new(x, heights[line], (from, from + wide), (upper, upper + tall));
+        // The x axis has no title, since all diagrams have the same; y has numbers at the first
+        // of a row.
+        if column == 0 {
+            frame.y_axis(&mut canvas, TICKS, &axis::title(&quantity.symbol, &quantity.unit));
+        } else {
+            frame.y_grid(&mut canvas, TICKS);
+        }
+        frame.x_numbers(&mut canvas, &frame.x.ticks(TICKS), SMALL);
+        for (up, line) in names[at].iter().rev().filter(|line| !line.is_empty()).enumerate() {
+            let y = frame.top() - 6.0 - 8.0 * up as f64;
+            canvas.text(line, (frame.center().0, y), &Font::middle(TICK));
+        }
+        panel(&mut canvas, &frame, quantity, *group, zones);
     }
     let title = groups
         .first()
         .map_or_else(String::new, |(_, one)| axis::title(&one.regressor, &one.regressor_unit));
-    canvas.draw(|layer| {
-        layer.text(
-            &title,
-            (f64::midpoint(left, WIDTH - 4.0), top + rows as f64 * row + 6.0),
-            &Font::middle(TEXT),
-        )
-    });
+    let middle = (f64::midpoint(left, WIDTH - 4.0), bottom + 6.0);
+    canvas.text(&title, middle, &Font::middle(TEXT));
     canvas.finish()
 }
 
@@ -157,32 +150,6 @@ fn heights(statistic: &StatisticResult, figure: &RegressionFigure) -> Vec<f64> {
     points.chain(curves).chain(statistic.limit).chain([figure.value]).collect()
 }
 
-/// Axes whose x numbers stand without a title, since all diagrams have the same; y numbers only at
-/// the first of a row.
-fn axes(canvas: &mut Canvas, frame: &Frame, title: Option<&str>) {
-    let ticks = frame.y.ticks(TICKS.1);
-    match title {
-        Some(title) => frame.y_axis(canvas, &ticks, title),
-        None => canvas.draw(|layer| {
-            for tick in &ticks {
-                layer.line(
-                    (frame.left(), frame.y.at(tick.value)),
-                    (frame.right(), frame.y.at(tick.value)),
-                    style::GRID,
-                    0.5,
-                );
-            }
-        }),
-    }
-    canvas.draw(|layer| {
-        for tick in frame.x.ticks(TICKS.0) {
-            let x = frame.x.at(tick.value);
-            layer.line((x, frame.top()), (x, frame.bottom()), style::GRID, 0.5);
-            layer.text(&tick.label, (x, frame.bottom() + 7.0), &Font::middle(SMALL).color(MUTED));
-        }
-    });
-}
-
 fn panel(
     canvas: &mut Canvas,
     frame: &Frame,
@@ -190,35 +157,21 @@ fn panel(
     (statistic, figure): (&StatisticResult, &RegressionFigure),
     zones: &Zones,
 ) {
-    let target = frame.x.at(figure.target);
-    canvas.group(&Group { class: "target", dash: DOTTED, ..Group::default() }, |layer| {
-        layer.line((target, frame.top()), (target, frame.bottom()), MUTED, 0.8);
-    });
+    canvas.lines("target", TARGET, [frame.upright(figure.target)]);
     if let Some(limit) = statistic.limit {
-        canvas.group(&Group { class: "limit", dash: DASHED, ..Group::default() }, |layer| {
-            layer.line(
-                (frame.left(), frame.y.at(limit)),
-                (frame.right(), frame.y.at(limit)),
-                INK,
-                0.9,
-            );
-        });
+        frame.limits(canvas, &[limit]);
     }
-    let curve = |of: &dyn Fn(&crate::result::RegressionAt) -> Option<f64>| -> Vec<(f64, f64)> {
-        figure.curve.iter().filter_map(|at| Some((frame.x.at(at.x), frame.y.at(of(at)?)))).collect()
-    };
-    let (fitted, bound) = (curve(&|at| Some(at.fitted)), curve(&|at| at.bound));
-    canvas
-        .group(&Group { class: "fit", ..Group::default() }, |layer| layer.path(&fitted, BLUE, 1.2));
+    let curve = &figure.curve;
+    let fitted: Vec<_> = curve.iter().map(|at| frame.at(at.x, at.fitted)).collect();
+    let bound: Vec<_> = curve.iter().filter_map(|at| Some(frame.at(at.x, at.bound?))).collect();
+    canvas.curve("fit", FIT, &fitted);
     if bound.len() > 1 {
-        canvas.group(&Group { class: "bound", dash: DASH_DOT, ..Group::default() }, |layer| {
-            layer.path(&bound, VERMILION, 1.1)
-        });
+        canvas.curve("bound", BOUND, &bound);
     }
     frame.spine(canvas);
     let decimals = number::decimals(&quantity.unit, figure.points.iter().map(|point| point.y));
     for point in &figure.points {
-        let (mark, color) = zones.mark(point.zone.as_deref());
+        let zone = point.zone.as_deref();
         let title = format!(
             "{}, {}: {} at {}",
             point.section,
@@ -226,16 +179,9 @@ fn panel(
             number::with_unit(&number::fixed(point.y, decimals), &quantity.unit),
             number::with_unit(&number::significant(point.x, 4), &figure.regressor_unit)
         );
-        let group = Group {
-            class: "mark point",
-            edge: 0.3,
-            title: Some(&title),
-            section: Some(&point.section),
-            zone: point.zone.as_deref(),
-            ..Group::default()
-        };
-        canvas.group(&group, |layer| {
-            layer.mark(mark, (frame.x.at(point.x), frame.y.at(point.y)), 1.6, color)
+        let group = Group { class: "mark point", ..Group::mark(&title) }.edge(0.3);
+        canvas.group(&group.at(&point.section, zone), |canvas| {
+            canvas.mark(zones.mark(zone), frame.at(point.x, point.y), 1.6);
         });
     }
     let says = format!(
@@ -244,10 +190,7 @@ fn panel(
         statistic.scope,
         number::with_unit(&number::fixed(figure.value, decimals), &quantity.unit)
     );
-    canvas.group(
-        &Group { class: "mark", title: Some(&says), edge: 0.3, ..Group::default() },
-        |layer| {
-            layer.mark(Mark::Diamond, (target, frame.y.at(figure.value)), 2.2, INK);
-        },
-    );
+    canvas.group(&Group::mark(&says).edge(0.3), |canvas| {
+        canvas.mark(ESTIMATE, frame.at(figure.target, figure.value), 2.2);
+    });
 }

@@ -1,10 +1,10 @@
 //! Sensitivity of metrics: rms change of value / limit over the size of a disturbance.
 
-use super::axis::Scale;
+use super::axis;
 use super::canvas::{Canvas, Group};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
-use super::style::{Mark, TEXT, WIDTH, color, cut_apart};
+use super::style::{TEXT, WIDTH, color, cut_apart, look};
 use crate::report::number;
 
 /// Height of the drawing area, in points.
@@ -38,52 +38,29 @@ pub fn sensitivity(disturbance: &str, curves: &[Curve]) -> String {
     let names: Vec<&str> = curves.iter().map(|(name, _)| name.as_str()).collect();
     let names = cut_apart(&names, TEXT, 0.44 * WIDTH);
     let entry = |(n, (_, points)): (usize, &Curve)| {
-        let name = names[n].clone();
         let beyond = points.iter().any(|(_, value)| *value > high);
-        Entry::mark(
-            Mark::nth(n),
-            color(n),
-            if beyond { format!("{name} (beyond the axis)") } else { name },
-        )
+        let says = if beyond { " (beyond the axis)" } else { "" };
+        Entry::mark(look(n), format!("{}{says}", names[n]))
     };
-    let entries = curves.iter().enumerate().map(entry);
-    let legend = Legend::new(entries.collect(), WIDTH - 40.0);
-    let top = legend.height() + 8.0;
+    let legend = Legend::new(curves.iter().enumerate().map(entry), WIDTH - 40.0);
     let sizes = curves.iter().flat_map(|(_, points)| points.iter().map(|(size, _)| *size));
-    let y = Scale { low: 0.0, high: 1.05 * high, from: top + PANEL, to: top };
-    let ticks = y.ticks(6);
-    let frame = Frame {
-        x: Scale {
-            low: 0.0,
-            high: 1.05 * sizes.fold(0.0, f64::max),
-            from: Frame::axis_room(&ticks),
-            to: WIDTH - 10.0,
-        },
-        y,
-    };
-    let mut canvas = Canvas::new(WIDTH, top + PANEL + 30.0);
+    let x = (0.0, 1.05 * sizes.fold(0.0, f64::max));
+    let (y, ticks, top) = ((0.0, 1.05 * high), 6, legend.height() + 8.0);
+    let frame = Frame::new(x, y, (axis::room(y, ticks), WIDTH - 10.0), (top, top + PANEL));
+    let mut canvas = Canvas::new(WIDTH, frame.bottom() + 30.0);
     legend.draw(&mut canvas, (40.0, 0.0));
-    frame.y_axis(&mut canvas, &ticks, "rms change of value / limit");
-    frame.x_axis(
-        &mut canvas,
-        &frame.x.ticks(8),
-        &format!("size of the disturbance ({disturbance})"),
-    );
+    frame.y_axis(&mut canvas, ticks, "rms change of value / limit");
+    frame.x_axis(&mut canvas, 8, &format!("size of the disturbance ({disturbance})"));
     for (n, (name, points)) in curves.iter().enumerate() {
         let placed: Vec<(f64, f64)> = [(0.0, 0.0)]
             .iter()
             .chain(points)
-            .map(|(size, value)| (frame.x.at(*size), frame.y.at(value.min(1.05 * high))))
+            .map(|(size, value)| frame.at(*size, value.min(1.05 * high)))
             .collect();
-        canvas.draw(|layer| layer.path(&placed, color(n), 0.9));
+        canvas.path(&placed, color(n), 0.9);
         for ((size, value), point) in points.iter().zip(&placed[1..]) {
             let title = format!("{name}, size {size}: {}", number::significant(*value, 3));
-            canvas.group(
-                &Group { class: "mark", title: Some(&title), ..Group::default() },
-                |layer| {
-                    layer.mark(Mark::nth(n), *point, 2.0, color(n));
-                },
-            );
+            canvas.group(&Group::mark(&title), |canvas| canvas.mark(look(n), *point, 2.0));
         }
     }
     frame.spine(&mut canvas);

@@ -1,28 +1,29 @@
 //! Figures of a diagnosis: normalised statistics before and after, and signals of the sections with
 //! the largest gap.
 
-use super::axis::{self, Scale};
+use super::axis;
 use super::canvas::{Canvas, Font, Group};
 use super::frame::Frame;
 use super::legend::{Entry, Legend};
 use super::style::{
-    BEYOND, BLUE, DASHED, GRID, INK, MEASURED, Mark, SHADE, SMALL, SOLID, TEXT, VERMILION, WIDTH,
-    cut_apart,
+    BLUE, Color, GRID, INK, MEASURED, Mark, Pen, SHADE, SMALL, TEXT, VERMILION, WIDTH, cut_apart,
 };
 use crate::report::number;
-use crate::result::Curve;
 use crate::result::diagnosis::{Panel, Picture, Shrink};
 
 const ROW: f64 = 19.0;
 const NAMES: f64 = 108.0;
 
+const BEFORE: (Mark, Color) = (Mark::Circle, VERMILION);
+const AFTER: (Mark, Color) = (Mark::Triangle, BLUE);
+
 /// For each quantity the normalised mean and standard deviation, before and with the effects,
 /// joined by a line; the limit is at 1.
 pub fn before_after(shrink: &Shrink) -> String {
     let legend = Legend::new(
-        vec![
-            Entry::mark(Mark::Circle, VERMILION, "as simulated"),
-            Entry::mark(Mark::Triangle, BLUE, "with the effects, sections excluded from the fit"),
+        [
+            Entry::mark(BEFORE, "as simulated"),
+            Entry::mark(AFTER, "with the effects, sections excluded from the fit"),
         ],
         WIDTH - NAMES,
     );
@@ -37,47 +38,39 @@ pub fn before_after(shrink: &Shrink) -> String {
         ]
     });
     let high = values.flatten().fold(1.1, f64::max) * 1.05;
-    let x = Scale { low: 0.0, high, from: NAMES, to: WIDTH - 8.0 };
-    let frame = Frame { x, y: Scale { low: 0.0, high: 1.0, from: bottom, to: top } };
+    let frame = Frame::rows((0.0, high), (NAMES, WIDTH - 8.0), (top, bottom));
     let mut canvas = Canvas::new(WIDTH, bottom + 28.0);
     legend.draw(&mut canvas, (NAMES, 0.0));
-    canvas.draw(|layer| layer.rect((x.at(1.0), top), (frame.right(), bottom), BEYOND));
-    frame.x_axis(&mut canvas, &x.ticks(8), "statistic / limit");
+    frame.beyond_right(&mut canvas);
+    frame.x_axis(&mut canvas, 8, "statistic / limit");
     let ids: Vec<&str> = shrink.quantities.iter().map(|quantity| quantity.id.as_str()).collect();
     let ids = cut_apart(&ids, TEXT, NAMES - 34.0);
     for (at, quantity) in shrink.quantities.iter().enumerate() {
         let y = top + ROW * at as f64;
-        canvas.draw(|layer| {
-            layer.line((0.0, y), (frame.right(), y), GRID, 0.4);
-            layer.text(&ids[at], (2.0, y + 0.5 * ROW), &Font::left(TEXT));
-        });
+        canvas.line((0.0, y), (frame.right(), y), GRID, 0.4);
+        canvas.text(&ids[at], (2.0, y + 0.5 * ROW), &Font::left(TEXT));
         let pairs = [
             ("std", quantity.normalised_std_before, quantity.normalised_std_after, 0.3),
             ("mean", quantity.normalised_mean_before, quantity.normalised_mean_after, 0.7),
         ];
         for (name, before, after, share) in pairs {
             let (Some(before), Some(after)) = (before, after) else { continue };
-            let y = y + ROW * share;
             let title = format!(
                 "{}: {name} {} of its limit before, {} after",
                 quantity.id,
                 number::fixed(before, 3),
                 number::fixed(after, 3)
             );
-            canvas.group(
-                &Group { class: "mark", title: Some(&title), ..Group::default() },
-                |layer| {
-                    layer.text(name, (NAMES - 4.0, y), &Font::right(SMALL));
-                    layer.line((x.at(before), y), (x.at(after), y), INK, 0.6);
-                    layer.mark(Mark::Circle, (x.at(before), y), 2.2, VERMILION);
-                    layer.mark(Mark::Triangle, (x.at(after), y), 2.4, BLUE);
-                },
-            );
+            let at = |value: f64| (frame.x.at(value), y + ROW * share);
+            canvas.group(&Group::mark(&title), |canvas| {
+                canvas.text(name, (NAMES - 4.0, y + ROW * share), &Font::right(SMALL));
+                canvas.line(at(before), at(after), INK, 0.6);
+                canvas.mark(BEFORE, at(before), 2.2);
+                canvas.mark(AFTER, at(after), 2.4);
+            });
         }
     }
-    canvas.group(&Group { class: "limit", dash: DASHED, ..Group::default() }, |layer| {
-        layer.line((x.at(1.0), top), (x.at(1.0), bottom), INK, 0.9);
-    });
+    frame.upright_limits(&mut canvas, [1.0]);
     frame.spine(&mut canvas);
     canvas.finish()
 }
@@ -86,15 +79,17 @@ pub fn before_after(shrink: &Shrink) -> String {
 const PANEL: f64 = 92.0;
 const BETWEEN: f64 = 40.0;
 
+const MEASURED_PEN: Pen = Pen::solid(MEASURED, 2.0);
+const SIMULATED_PEN: Pen = Pen::solid(VERMILION, 0.8);
+const IMPROVED_PEN: Pen = Pen::solid(BLUE, 0.8);
+
 /// Channels of a section, two per row: measured wide and light, simulated thin, with the effects
 /// thin and dark.
 pub fn signals(picture: &Picture) -> String {
-    let mut entries = vec![
-        Entry::line(MEASURED, 2.0, SOLID, "measured"),
-        Entry::line(VERMILION, 0.8, SOLID, "simulated"),
-    ];
+    let mut entries =
+        vec![Entry::line(MEASURED_PEN, "measured"), Entry::line(SIMULATED_PEN, "simulated")];
     if picture.panels.iter().any(|panel| !panel.improved.x.is_empty()) {
-        entries.push(Entry::line(BLUE, 0.8, SOLID, "simulated with the effects"));
+        entries.push(Entry::line(IMPROVED_PEN, "simulated with the effects"));
     }
     entries.push(Entry::ground(SHADE, "evaluated section"));
     let legend = Legend::new(entries, WIDTH - 50.0);
@@ -111,32 +106,26 @@ pub fn signals(picture: &Picture) -> String {
 }
 
 fn one(canvas: &mut Canvas, picture: &Picture, panel: &Panel, left: f64, top: f64) {
-    let curves = [&panel.measured, &panel.simulated, &panel.improved];
-    let bottom = top + PANEL;
-    let y = Scale::over(curves.iter().flat_map(|curve| curve.y.iter().copied()), bottom, top);
-    let ticks = y.ticks(5);
-    let from = left + Frame::axis_room(&ticks);
-    let (low, high) =
-        axis::extent(curves.iter().flat_map(|curve| curve.x.iter().copied())).unwrap_or((0.0, 1.0));
-    let frame = Frame { x: Scale { low, high, from, to: left + 0.5 * WIDTH - 8.0 }, y };
-    let inside = |x: f64| frame.x.at(x.clamp(low, high));
-    canvas.draw(|layer| {
-        layer.rect((inside(picture.start), top), (inside(picture.end), bottom), SHADE)
-    });
-    frame.x_axis(canvas, &frame.x.ticks(5), &picture.axis);
-    frame.y_axis(canvas, &ticks, &axis::title(&panel.channel, &panel.unit));
-    let drawn: [(&str, &Curve, _, f64); 3] = [
-        ("curve measured", &panel.measured, MEASURED, 2.0),
-        ("curve simulated", &panel.simulated, VERMILION, 0.8),
-        ("curve improved", &panel.improved, BLUE, 0.8),
+    let drawn = [
+        ("curve measured", &panel.measured, MEASURED_PEN),
+        ("curve simulated", &panel.simulated, SIMULATED_PEN),
+        ("curve improved", &panel.improved, IMPROVED_PEN),
     ];
-    for (class, curve, color, width) in drawn {
+    let ticks = 5;
+    let y = axis::over(drawn.iter().flat_map(|(_, curve, _)| curve.y.iter().copied()));
+    let along = drawn.iter().flat_map(|(_, curve, _)| curve.x.iter().copied());
+    let x = axis::extent(along).unwrap_or((0.0, 1.0));
+    let across = (left + axis::room(y, ticks), left + 0.5 * WIDTH - 8.0);
+    let frame = Frame::new(x, y, across, (top, top + PANEL));
+    let (from, to) = (frame.x.within(picture.start), frame.x.within(picture.end));
+    canvas.rect((from, top), (to, frame.bottom()), SHADE);
+    frame.x_axis(canvas, ticks, &picture.axis);
+    frame.y_axis(canvas, ticks, &axis::title(&panel.channel, &panel.unit));
+    for (class, curve, pen) in drawn {
         let points: Vec<(f64, f64)> =
-            curve.x.iter().zip(&curve.y).map(|(x, y)| (frame.x.at(*x), frame.y.at(*y))).collect();
+            curve.x.iter().zip(&curve.y).map(|(x, y)| frame.at(*x, *y)).collect();
         if points.len() > 1 {
-            canvas.group(&Group { class, ..Group::default() }, |layer| {
-                layer.path(&points, color, width)
-            });
+            canvas.curve(class, pen, &points);
         }
     }
     frame.spine(canvas);

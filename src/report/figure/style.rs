@@ -1,7 +1,7 @@
 //! Common style of all figures: colours, type, marks. Every distinction by colour is also made by
 //! shape or line, so that a figure is readable in grey and for colour-blind readers.
 
-use plotters::style::RGBColor;
+use std::fmt;
 
 use crate::report::visible::visible;
 
@@ -18,36 +18,52 @@ pub const TICK: f64 = 7.0;
 /// Names of sections side by side, in points: the smallest type in any figure.
 pub const SMALL: f64 = 6.0;
 
-pub const INK: RGBColor = RGBColor(0x1f, 0x24, 0x2b);
-pub const WHITE: RGBColor = RGBColor(0xff, 0xff, 0xff);
-pub const MUTED: RGBColor = RGBColor(0x55, 0x5e, 0x6a);
-pub const GRID: RGBColor = RGBColor(0xdd, 0xe1, 0xe6);
+/// A colour: red, green and blue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Color(pub u8, pub u8, pub u8);
+
+impl fmt::Display for Color {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(red, green, blue) = self;
+        write!(f, "#{red:02X}{green:02X}{blue:02X}")
+    }
+}
+
+pub const INK: Color = Color(0x1f, 0x24, 0x2b);
+pub const WHITE: Color = Color(0xff, 0xff, 0xff);
+pub const MUTED: Color = Color(0x55, 0x5e, 0x6a);
+pub const GRID: Color = Color(0xdd, 0xe1, 0xe6);
 /// Background beyond a limit.
-pub const BEYOND: RGBColor = RGBColor(0xf1, 0xee, 0xea);
+pub const BEYOND: Color = Color(0xf1, 0xee, 0xea);
 /// Background of highlighted ranges: the evaluated section, the band of a standard deviation.
-pub const SHADE: RGBColor = RGBColor(0xe4, 0xec, 0xf3);
+pub const SHADE: Color = Color(0xe4, 0xec, 0xf3);
 /// Wide, light line of a measured signal under the thin, dark line of the simulated one.
-pub const MEASURED: RGBColor = RGBColor(0xa3, 0xa9, 0xb1);
+pub const MEASURED: Color = Color(0xa3, 0xa9, 0xb1);
 
 /// Okabe and Ito, "Color Universal Design" (2008): blue, vermilion, bluish green, reddish purple,
 /// orange, sky blue, black. The yellow of the set is omitted, since it is hardly visible on white
 /// paper.
-pub const PALETTE: [RGBColor; 7] = [
-    RGBColor(0x00, 0x72, 0xb2),
-    RGBColor(0xd5, 0x5e, 0x00),
-    RGBColor(0x00, 0x9e, 0x73),
-    RGBColor(0xcc, 0x79, 0xa7),
-    RGBColor(0xe6, 0x9f, 0x00),
-    RGBColor(0x56, 0xb4, 0xe9),
-    RGBColor(0x00, 0x00, 0x00),
+pub const PALETTE: [Color; 7] = [
+    Color(0x00, 0x72, 0xb2),
+    Color(0xd5, 0x5e, 0x00),
+    Color(0x00, 0x9e, 0x73),
+    Color(0xcc, 0x79, 0xa7),
+    Color(0xe6, 0x9f, 0x00),
+    Color(0x56, 0xb4, 0xe9),
+    Color(0x00, 0x00, 0x00),
 ];
 
-pub const BLUE: RGBColor = PALETTE[0];
-pub const VERMILION: RGBColor = PALETTE[1];
+pub const BLUE: Color = PALETTE[0];
+pub const VERMILION: Color = PALETTE[1];
 
 /// The colour of the n-th of several series.
-pub fn color(n: usize) -> RGBColor {
+pub fn color(n: usize) -> Color {
     PALETTE[n % PALETTE.len()]
+}
+
+/// Shape and colour of the marks of the n-th of several series.
+pub fn look(n: usize) -> (Mark, Color) {
+    (Mark::ALL[n % Mark::ALL.len()], color(n))
 }
 
 /// Shape of a mark; the n-th series has the n-th shape.
@@ -74,10 +90,6 @@ impl Mark {
         Self::Hexagon,
         Self::Bar,
     ];
-
-    pub fn nth(n: usize) -> Self {
-        Self::ALL[n % Self::ALL.len()]
-    }
 }
 
 /// Dashes of a line, in points; `None` is a solid line.
@@ -88,6 +100,24 @@ pub const DASHED: Dash = Some(&[5.0, 2.5]);
 pub const DOTTED: Dash = Some(&[1.2, 2.0]);
 pub const DASH_DOT: Dash = Some(&[6.0, 2.0, 1.2, 2.0]);
 const LONG_DASH: Dash = Some(&[10.0, 2.5]);
+
+/// How a line is drawn; the width in points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pen {
+    pub color: Color,
+    pub width: f64,
+    pub dash: Dash,
+}
+
+impl Pen {
+    /// A line without dashes.
+    pub const fn solid(color: Color, width: f64) -> Self {
+        Self { color, width, dash: SOLID }
+    }
+}
+
+/// The line of a limit.
+pub const LIMIT: Pen = Pen { color: INK, width: 0.9, dash: DASHED };
 
 /// Dashes of several limits in one diagram.
 pub const LIMITS: [Dash; 4] = [DASHED, DOTTED, DASH_DOT, LONG_DASH];

@@ -3,7 +3,7 @@
 //!
 //! A font would print a letter and its dots as two glyphs, which a PDF cannot map to one character.
 
-use super::canvas::{Font, Held, Layer, Point};
+use super::canvas::{Canvas, Font, Held, Point};
 use super::style::{Mark, cut, text_width};
 
 /// Combining diaeresis: two dots over the preceding letter.
@@ -22,38 +22,25 @@ fn parts(label: &str) -> (&str, &str) {
         .unwrap_or((label, ""))
 }
 
-/// A symbol centred at a point, cut to a width, with its subscript.
-pub fn symbol(layer: &mut Layer<'_>, label: &str, at: Point, size: f64, width: f64) {
-    let (base, sub) = parts(label);
-    let own = NARROWER * SMALLER * text_width(sub, size);
-    if sub.is_empty() || NARROWER * text_width(base, size) + own > width {
-        return plain(layer, label, at, &Font::middle(size), width);
-    }
-    pieces(layer, (base, sub), at, &Font::middle(size));
-}
-
-/// The same, right-aligned at a point.
-pub fn symbol_left_of(layer: &mut Layer<'_>, label: &str, (x, y): Point, font: &Font, width: f64) {
+/// A symbol at a point, centred or right-aligned, cut to a width, with its subscript.
+pub fn symbol(canvas: &mut Canvas, label: &str, (x, y): Point, font: &Font, width: f64) {
+    let size = font.size;
     let (base, sub) = parts(label);
     let wide = |base: &str, sub: &str| {
-        NARROWER * (text_width(base, font.size) + SMALLER * text_width(sub, font.size))
+        NARROWER * (text_width(base, size) + SMALLER * text_width(sub, size))
     };
+    let without_sub = sub.is_empty() || wide(base, sub) > width;
+    let wide_in_all =
+        if without_sub { wide(&bare(&cut(label, size, width)), "") } else { wide(base, sub) };
+    let x = if font.held == Held::End { x - 0.5 * wide_in_all } else { x };
     let middle = Font { held: Held::Middle, ..*font };
-    if sub.is_empty() || wide(base, sub) > width {
-        let shown = cut(label, font.size, width);
-        return plain(layer, label, (x - 0.5 * wide(&bare(&shown), ""), y), &middle, width);
+    if without_sub {
+        return plain(canvas, label, (x, y), &middle, width);
     }
-    pieces(layer, (base, sub), (x - 0.5 * wide(base, sub), y), &middle);
-}
-
-fn pieces(layer: &mut Layer<'_>, (base, sub): (&str, &str), (x, y): Point, font: &Font) {
-    let (wide, own) = (
-        NARROWER * text_width(&bare(base), font.size),
-        NARROWER * SMALLER * text_width(sub, font.size),
-    );
-    plain(layer, base, (x - 0.5 * own, y), font, f64::INFINITY);
-    let below = Font { size: SMALLER * font.size, held: Held::Start, ..*font };
-    layer.text(sub, (x + 0.5 * (wide - own) + 0.04 * font.size, y + LOWER * font.size), &below);
+    let (own, right) = (wide("", sub), 0.5 * wide(&bare(base), "") - 0.5 * wide("", sub));
+    plain(canvas, base, (x - 0.5 * own, y), &middle, f64::INFINITY);
+    let below = Font { size: SMALLER * size, held: Held::Start, ..*font };
+    canvas.text(sub, (x + right + 0.04 * size, y + LOWER * size), &below);
 }
 
 /// Without accents.
@@ -63,11 +50,11 @@ fn bare(label: &str) -> String {
 
 /// A label centred at a point, cut to a width; diaereses are drawn over their letters, other
 /// accents are omitted.
-fn plain(layer: &mut Layer<'_>, label: &str, (x, y): Point, font: &Font, width: f64) {
+fn plain(canvas: &mut Canvas, label: &str, (x, y): Point, font: &Font, width: f64) {
     let size = font.size;
     let shown = cut(&bare(label), size, width);
     let Some(letter) = dotted(label).filter(|letter| *letter < shown.chars().count()) else {
-        layer.text(&shown, (x, y), font);
+        canvas.text(&shown, (x, y), font);
         return;
     };
     // The letter is placed separately, so that the dots are above it for any font metrics.
@@ -83,16 +70,12 @@ fn plain(layer: &mut Layer<'_>, label: &str, (x, y): Point, font: &Font, width: 
         (&after, center + half, Held::Start),
     ] {
         if !text.is_empty() {
-            layer.text(text, (at, y), &Font { held, ..*font });
+            canvas.text(text, (at, y), &Font { held, ..*font });
         }
     }
     for side in [-1.0, 1.0] {
-        layer.mark(
-            Mark::Circle,
-            (center + side * 0.13 * size, y - 0.42 * size),
-            0.06 * size,
-            font.color,
-        );
+        let dot = (center + side * 0.13 * size, y - 0.42 * size);
+        canvas.mark((Mark::Circle, font.color), dot, 0.06 * size);
     }
 }
 
@@ -112,7 +95,6 @@ fn dotted(label: &str) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::figure::canvas::Canvas;
 
     #[test]
     fn the_letter_with_dots_is_found_and_gets_two() {
@@ -122,7 +104,7 @@ mod tests {
         );
         let dots = |label: &str| {
             let mut canvas = Canvas::new(60.0, 20.0);
-            canvas.draw(|layer| symbol(layer, label, (30.0, 10.0), 8.0, 50.0));
+            symbol(&mut canvas, label, (30.0, 10.0), &Font::middle(8.0), 50.0);
             canvas.finish().matches("<circle").count()
         };
         assert_eq!((dots("z\u{308}*_rms"), dots("ÿ*_rms")), (2, 0));

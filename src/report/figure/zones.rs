@@ -1,10 +1,9 @@
 //! Marks of zones and records: a zone has the same mark in all figures of a report.
 
 use indexmap::IndexSet;
-use plotters::style::RGBColor;
 
 use super::legend::Entry;
-use super::style::{self, Mark};
+use super::style::{Color, Mark, look};
 use crate::result::{Certification, PairValue};
 
 /// The zones of a campaign in the order of the protocol.
@@ -22,9 +21,8 @@ impl Zones {
     }
 
     /// Shape and colour; without a zone, the first ones.
-    pub fn mark(&self, zone: Option<&str>) -> (Mark, RGBColor) {
-        let n = zone.and_then(|zone| self.names.get_index_of(zone)).unwrap_or(0);
-        (Mark::nth(n), style::color(n))
+    pub fn mark(&self, zone: Option<&str>) -> (Mark, Color) {
+        look(zone.and_then(|zone| self.names.get_index_of(zone)).unwrap_or(0))
     }
 
     /// Legend of the given zones, in order.
@@ -33,10 +31,7 @@ impl Zones {
         self.names
             .iter()
             .filter(|name| there.contains(name.as_str()))
-            .map(|name| {
-                let (mark, color) = self.mark(Some(name));
-                Entry::mark(mark, color, format!("zone {name}"))
-            })
+            .map(|name| Entry::mark(self.mark(Some(name)), format!("zone {name}")))
             .collect()
     }
 }
@@ -51,24 +46,25 @@ pub struct Marks<'a> {
 }
 
 impl<'a> Marks<'a> {
+    /// Of the values of one quantity or of several.
     pub fn of(values: impl Iterator<Item = &'a PairValue>, zones: &'a Zones) -> Self {
         Self { zones, records: values.filter_map(|value| value.record.as_deref()).collect() }
     }
 
-    pub fn mark(&self, value: &PairValue) -> (Mark, RGBColor) {
+    /// Shape and colour of a value.
+    pub fn mark(&self, value: &PairValue) -> (Mark, Color) {
         match value.record.as_deref().and_then(|record| self.records.get_index_of(record)) {
-            Some(n) => (Mark::nth(n), style::color(n)),
+            Some(n) => look(n),
             None => self.zones.mark(value.zone.as_deref()),
         }
     }
 
+    /// Legend of the given values.
     pub fn legend(&self, values: impl Iterator<Item = &'a PairValue>) -> Vec<Entry> {
         if self.records.is_empty() {
             return self.zones.legend(values.map(|value| value.zone.as_deref()));
         }
-        let entry =
-            |(n, record): (usize, &&str)| Entry::mark(Mark::nth(n), style::color(n), *record);
-        self.records.iter().enumerate().map(entry).collect()
+        self.records.iter().enumerate().map(|(n, record)| Entry::mark(look(n), *record)).collect()
     }
 }
 

@@ -1,0 +1,106 @@
+//! Number of values, their sum and their sum of squares, from which means and standard deviations
+//! of joined sets follow.
+
+/// Sums of a set of values, about a centre that the user knows.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moments {
+    pub n: f64,
+    pub x: f64,
+    pub xx: f64,
+}
+
+impl Moments {
+    /// Of values about a centre; one near their mean avoids cancellation.
+    pub fn about(centre: f64, values: &[f64]) -> Self {
+        let centred = values.iter().map(|value| value - centre);
+        Self {
+            n: values.len() as f64,
+            x: centred.clone().sum(),
+            xx: centred.map(|value| value * value).sum(),
+        }
+    }
+
+    /// Of both sets.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self { n: self.n + other.n, x: self.x + other.x, xx: self.xx + other.xx }
+    }
+
+    /// Of this set without a part of it.
+    #[must_use]
+    pub fn minus(self, other: Self) -> Self {
+        Self { n: self.n - other.n, x: self.x - other.x, xx: self.xx - other.xx }
+    }
+
+    /// Sum of squares about the mean.
+    #[must_use]
+    pub fn squares(&self) -> f64 {
+        (self.xx - self.x * self.x / self.n).max(0.0)
+    }
+}
+
+/// A statistic that follows from [`Moments`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Moment {
+    Mean,
+    /// Standard deviation with divisor n - `ddof`.
+    Deviation {
+        ddof: f64,
+    },
+    RootMeanSquare,
+}
+
+impl Moment {
+    /// The statistic of this name in protocols; `None` if it needs more than sums.
+    pub fn named(name: &str, ddof: usize) -> Option<Self> {
+        match name {
+            "mean" => Some(Self::Mean),
+            "std" => Some(Self::Deviation { ddof: ddof as f64 }),
+            "rms" => Some(Self::RootMeanSquare),
+            _ => None,
+        }
+    }
+}
+
+/// A statistic over any members of a set.
+#[derive(Clone, Debug)]
+pub struct Summed {
+    pub kind: Moment,
+    /// What the moments are about; 0 for a root mean square.
+    pub centre: f64,
+    /// By which the value is multiplied: one over its limit.
+    pub scale: f64,
+    /// Of each member.
+    pub moments: Vec<Moments>,
+}
+
+impl Summed {
+    /// From the values of each member, about their common mean.
+    pub fn new(kind: Moment, scale: f64, members: &[Vec<f64>]) -> Self {
+        let all: Vec<f64> = members.iter().flatten().copied().collect();
+        let centre = match kind {
+            Moment::RootMeanSquare => 0.0,
+            _ => all.iter().sum::<f64>() / all.len().max(1) as f64,
+        };
+        let moments = members.iter().map(|values| Moments::about(centre, values)).collect();
+        Self { kind, centre, scale, moments }
+    }
+
+    /// The moments of some members together.
+    pub fn total(&self, members: impl IntoIterator<Item = usize>) -> Moments {
+        members.into_iter().fold(Moments::default(), |sum, at| sum.plus(self.moments[at]))
+    }
+
+    /// The statistic of members with these moments in all; `None` where it is not defined.
+    pub fn value(&self, total: Moments) -> Option<f64> {
+        let value = match self.kind {
+            Moment::Mean => self.centre + total.x / total.n,
+            Moment::RootMeanSquare => (total.xx / total.n).sqrt(),
+            Moment::Deviation { ddof } if total.n > ddof => {
+                (total.squares() / (total.n - ddof)).sqrt()
+            }
+            Moment::Deviation { .. } => f64::NAN,
+        };
+        Some(value * self.scale).filter(|value| value.is_finite())
+    }
+}
