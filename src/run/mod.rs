@@ -1,56 +1,37 @@
 //! Executes a graph over a campaign: records in parallel, one at a time per worker, to plain
-//! results.
+//! results. The steps in their order:
+//!
+//! | folder | step |
+//! |---|---|
+//! | `sections` | the sections of the campaigns, and what is known before any record is read |
+//! | `record` | one record through the signal nodes of the graph |
+//! | `values` | the records of a section to rows of the table of values |
+//! | `data_rules` | what is asked of the data: checks, plausibility, copies |
+//! | `reduce` | all sections to their values; by several protocols; one value by itself |
+//! | `estimate` | groups of rows, and what is estimated from them |
+//! | `limit` | estimates against their limits; the same for selections of sections |
+//! | `describe` | what a report tells beside the verdict |
+//! | `verdict` | results of quantities and verdicts; the same from the values of a result |
+//! | `find` | before all others where a campaign has runs: sections are looked for in them |
+//! | `needs` | what the steps read, known from the protocol alone |
 
-mod basis;
-mod causes;
-mod checks;
-mod columns;
-mod common;
-mod consequence;
-mod copies;
-mod domain;
-mod estimates;
-mod exchanged;
-mod extrapolation;
-mod facts;
+mod data_rules;
+mod describe;
+mod estimate;
 pub mod find;
-mod groups;
-mod judge;
-mod keep;
-mod limits;
-mod margins;
-mod minima;
+mod limit;
 pub mod needs;
-mod not_asked;
-mod one_record;
-mod plausibility;
-pub mod pool;
-mod print;
 mod record;
 mod reduce;
-pub mod replay;
-mod reports;
-mod requirements;
-mod section;
-mod section_values;
 mod sections;
-pub mod several;
-mod shared;
-mod sides;
-mod signal;
-pub mod single;
-mod spreads;
-mod stretches;
-mod synchronisation;
-mod table;
-mod together;
-mod told;
-mod traces;
-pub mod trial;
-mod unit;
-mod verdicts;
-mod wanted;
+mod values;
+mod verdict;
 mod words;
+
+pub use limit::pool;
+pub use record::trial;
+pub use reduce::{several, single};
+pub use verdict::replay;
 
 use indexmap::IndexMap;
 
@@ -64,20 +45,26 @@ use crate::result::{
     SectionResult, Trace, Verdict, VerdictResult, ZoneResult,
 };
 
-pub use basis::Basis;
-pub use consequence::consequence;
-pub use facts::{Facts, scalar};
-pub use judge::Judged;
+pub use data_rules::consequence::consequence;
+use data_rules::copies;
+pub use describe::traces::{Kept, Signals};
+use describe::{domain, not_asked, told, traces};
+use estimate::extrapolation;
+pub use estimate::table::Row;
+use limit::keep;
 use pool::Pool;
-pub use print::Print;
 use record::Found;
-pub use reduce::{Numbered, Reduced, Shard, reduce};
-pub use section_values::SectionValues;
-pub use shared::Counts;
-pub use synchronisation::{Offset, Shifts};
-pub use table::Row;
-pub use traces::{Kept, Signals};
-pub use unit::Unit;
+pub use record::shared::Counts;
+pub use reduce::shards::{Numbered, Reduced, Shard, reduce};
+pub use sections::facts::{Facts, scalar};
+pub use sections::unit::Unit;
+use sections::{columns, requirements, stretches, units, wanted};
+pub use values::print::Print;
+pub use values::section_values::SectionValues;
+pub use values::synchronisation::{Offset, Shifts};
+pub use verdict::basis::Basis;
+use verdict::judge as judging;
+pub use verdict::judge::Judged;
 
 /// The results of a run. The report adds the descriptions of protocol and campaign.
 #[derive(Debug)]
@@ -194,7 +181,7 @@ pub fn judge(
         notes,
         files: files.clone(),
         reduction: evaluated.reduction.clone(),
-        sections: sections::results(plan, &evaluated.facts, evaluated.units),
+        sections: units::results(plan, &evaluated.facts, evaluated.units),
     })
 }
 
@@ -249,13 +236,13 @@ impl Evaluated {
     pub fn judge(&self, plan: &Plan, graph: &Graph) -> Judged {
         let barred =
             self.missing.iter().cloned().chain(domain::barred(&self.application)).collect();
-        judge::judge(
+        judging::judge(
             plan,
             graph,
             &self.facts,
             &self.units,
             &self.values,
-            &judge::Told { findings: &self.findings, barred },
+            &judging::Told { findings: &self.findings, barred },
         )
     }
 
@@ -298,7 +285,7 @@ pub fn check_data(plan: &Plan, campaign: &Campaign, problems: &mut Problems) {
         wanted::points(plan, campaigns, &facts, problems);
         return;
     }
-    let mut units = sections::units(plan, campaigns, problems);
+    let mut units = units::units(plan, campaigns, problems);
     wanted::points(plan, campaigns, &facts, problems);
     if problems.any_error() {
         return;
@@ -344,7 +331,7 @@ impl<'a> Prepared<'a> {
         }
         members(plan, campaigns, &mut problems);
         let facts = Facts::read(plan, campaigns, &mut problems);
-        let mut units = sections::units(plan, campaigns, &mut problems);
+        let mut units = units::units(plan, campaigns, &mut problems);
         let wanted = wanted::points(plan, campaigns, &facts, &mut problems);
         if problems.any_error() {
             return Err(problems);

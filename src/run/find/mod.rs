@@ -10,8 +10,6 @@ mod signals;
 mod table;
 mod window;
 
-use super::Progress;
-use super::facts::Facts;
 use crate::check::plan::{Plan, Side};
 use crate::data::campaign::Run;
 use crate::data::record::Wanted;
@@ -19,6 +17,8 @@ use crate::data::{Campaign, Campaigns, RecordKind};
 use crate::graph::{Graph, Operation};
 use crate::problem::{Problem, Problems};
 use crate::result::found::{FoundInRun, FoundSections, Rejected, Stretch};
+use crate::run::Progress;
+use crate::run::sections::Facts;
 use chosen::Chosen;
 use place::{Rules, Tried};
 use signals::{Signals, Source};

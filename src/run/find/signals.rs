@@ -8,9 +8,8 @@ use crate::check::plan::{InputSide, Plan, Side, StepSpec};
 use crate::graph::{Graph, InputNode, NodeId, Operation};
 use crate::metrics::percentile::Method;
 use crate::problem::{Problem, Problems};
-use crate::run::facts::{Known, Vehicle};
-use crate::run::record::{Found, Opened, needed};
-use crate::run::signal::{Extent, Samples};
+use crate::run::record::{Extent, Found, Opened, Samples, needed};
+use crate::run::sections::{Known, Vehicle};
 
 /// A record of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::super::signal::{Along, Cutter, Extent, Samples, Signal};
+use super::signal::{Along, Cutter, Extent, Samples, Signal};
 use super::{Found, State};
 use crate::graph::NodeId;
 

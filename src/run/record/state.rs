@@ -3,15 +3,15 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use super::shared::{Kept, Keys, Memo};
+use super::signal::{Cutter, Extent, Samples, Signal, apply, arithmetic, each};
 use super::{Found, Opened, chosen};
 use crate::catalog::Reducer;
 use crate::check::evaluate::number;
 use crate::check::plan::StepSpec;
 use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::percentile::{Method, percentiles};
-use crate::run::facts::Known;
-use crate::run::shared::{Kept, Keys, Memo};
-use crate::run::signal::{Cutter, Extent, Samples, Signal, apply, arithmetic, each};
+use crate::run::sections::Known;
 
 /// The nodes of a graph on one record, level by level.
 #[derive(Clone, Debug)]

@@ -4,6 +4,8 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::shared::{Kept, Memo};
+use super::signal::{Cutter, Signal};
 use super::{
     Fault, FileHash, Found, Opened, Sampled, State, Work, chosen, clock, columns, file_of, part,
 };
@@ -14,9 +16,7 @@ use crate::data::checks::check_axis;
 use crate::data::record::Wanted;
 use crate::data::{Record, RecordKind, WhichRecord};
 use crate::graph::{Graph, NodeId, Operation};
-use crate::run::shared::{Kept, Memo};
-use crate::run::signal::{Cutter, Signal};
-use crate::run::unit::Unit;
+use crate::run::sections::Unit;
 
 /// A record of the stretch with this number.
 type RecordOfStretch = (usize, WhichRecord);
