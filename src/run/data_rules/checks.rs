@@ -11,7 +11,7 @@ use crate::graph::{InputNode, NodeId};
 use crate::result::CheckResult;
 use crate::run::record::{Fault, Work};
 use crate::run::sections::{Known, Unit};
-use crate::run::values::{Evaluated, SectionValues, Sides, Two, number_of, one_record, section};
+use crate::run::values::{NodeValues, SectionValues, Sides, Two, one_record};
 use crate::units::Dimension;
 
 /// Checks that use the track record; without one their result is "not checked". Returns the values
@@ -22,7 +22,7 @@ pub fn track_checks(
     questions: &Questions<'_>,
     known: &Known<'_>,
     values: &mut SectionValues,
-) -> Result<Evaluated, Fault> {
+) -> Result<NodeValues, Fault> {
     let mut wanted: BTreeSet<NodeId> = work
         .graph
         .checks
@@ -41,9 +41,9 @@ pub fn track_checks(
         Err(_) => Ok(false),
     };
     let found = if !wanted.is_empty() && campaign.has(RecordKind::Track) && there()? {
-        Evaluated::from(one_record(work, unit, RecordKind::Track.into(), &wanted, known, values)?.0)
+        one_record(work, unit, RecordKind::Track.into(), &wanted, known, values)?.found
     } else {
-        Evaluated::default()
+        NodeValues::default()
     };
     for (check, inputs) in work.plan.checks.iter().zip(&work.graph.checks) {
         if !inputs.is_empty() && !inputs.iter().all(|input| work.graph.nodes[input.node].track) {
@@ -58,7 +58,9 @@ pub fn track_checks(
             continue;
         }
         let value = |input: &InputNode| {
-            number_of(&found, input.node)
+            found
+                .number(input.node)
+                .map(|(value, _)| value)
                 .map_err(|_| "not checked: there is no track record".to_string())
         };
         let inputs: Vec<Result<f64, String>> = inputs.iter().map(value).collect();
@@ -68,7 +70,8 @@ pub fn track_checks(
 }
 
 /// With several records, the first that does not meet a check decides.
-pub fn record_checks(work: &Work<'_>, sides: &Sides<'_>, values: &mut SectionValues) {
+pub fn record_checks(sides: &Sides<'_>, values: &mut SectionValues) {
+    let work = sides.work;
     let side = if work.reads(Side::Measured) { InputSide::Measured } else { InputSide::Simulated };
     for (index, (check, inputs)) in work.plan.checks.iter().zip(&work.graph.checks).enumerate() {
         if inputs.is_empty() || inputs.iter().all(|input| work.graph.nodes[input.node].track) {
@@ -110,7 +113,7 @@ fn checked(
         Err(reason) => return result(None, reason),
         Ok(false) => {}
     }
-    match flag(&check.require, &Known { inputs, ..section(known) }) {
+    match flag(&check.require, &Known { inputs, ..*known }) {
         Ok(true) => {
             result(Some(true), format!("{}{}", check.words, found_values(work, check, inputs)))
         }

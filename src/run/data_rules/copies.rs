@@ -19,14 +19,14 @@ const LEAST: usize = 6;
 const NAMED: usize = 4;
 
 /// Where a print was taken: section, and index among its prints.
-type Place = (usize, usize);
+type PrintIndex = (usize, usize);
 
 /// Two records that share signals: the later and the earlier one, with the channels of both.
-type Shared<'a> = BTreeMap<(usize, WhichRecord, usize, WhichRecord), Found<'a>>;
+type Shared<'a> = BTreeMap<(usize, WhichRecord, usize, WhichRecord), SharedChannels<'a>>;
 
 /// Channels of the later and of the earlier record, and both records in words.
 #[derive(Debug, Default, PartialEq)]
-struct Found<'a> {
+struct SharedChannels<'a> {
     channels: Vec<(&'a str, &'a str)>,
     later: &'a str,
     earlier: &'a str,
@@ -95,7 +95,7 @@ impl Several {
 }
 
 fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Shared<'a> {
-    let print = |(section, at): Place| &values[section].prints[at];
+    let print = |(section, at): PrintIndex| &values[section].prints[at];
     let prints = || {
         let of_section = |(section, values): (usize, &'a SectionValues)| {
             values
@@ -109,14 +109,14 @@ fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Sh
     };
     let count = prints().map(|(_, print)| print.marks.len()).sum();
     let several = Several::of(count, prints().flat_map(|(_, print)| print.marks.iter().copied()));
-    let mut all: Vec<(u32, Place)> = Vec::new();
+    let mut all: Vec<(u32, PrintIndex)> = Vec::new();
     for (place, print) in prints() {
         all.extend(
             print.marks.iter().filter(|mark| several.may_have(**mark)).map(|mark| (*mark, place)),
         );
     }
     all.par_sort_unstable();
-    let mut counts: BTreeMap<(Place, Place), usize> = BTreeMap::new();
+    let mut counts: BTreeMap<(PrintIndex, PrintIndex), usize> = BTreeMap::new();
     for alike in all.chunk_by(|a, b| a.0 == b.0).filter(|alike| alike.len() > 1) {
         // A copy is counted against one earlier signal; not all pairs of many copies are counted.
         for (number, (_, later)) in alike.iter().enumerate().skip(1) {

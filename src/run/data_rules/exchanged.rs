@@ -12,7 +12,7 @@ use crate::metrics::statistics::correlation;
 use crate::result::Finding;
 use crate::run::record::{Along, Samples, Work};
 use crate::run::sections::Unit;
-use crate::run::values::{RecordOfSide, Sides, samples_of};
+use crate::run::values::{RecordOfSide, Sides};
 
 /// Channels of one rule in a section: name, and the signal.
 pub type Channels<'a> = Vec<(&'a str, NodeId)>;
@@ -46,9 +46,9 @@ fn in_record(
     let mut findings = Vec::new();
     let mut covered = Covered::default();
     for (at, (name, node)) in channels.iter().enumerate() {
-        let Ok(own) = samples_of(&measured.found, *node) else { continue };
+        let Ok(own) = measured.found.samples(*node) else { continue };
         let mut with = |node: NodeId| {
-            samples_of(&simulated.found, node).ok().and_then(|other| covered.agreement(own, other))
+            simulated.found.samples(node).ok().and_then(|other| covered.agreement(own, other))
         };
         let Some(with_own) = with(*node) else { continue };
         // No correlation is above 1: most channels need no comparison with the others.

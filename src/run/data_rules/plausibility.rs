@@ -11,11 +11,9 @@ use crate::check::plan::{
 };
 use crate::graph::{InputNode, NodeId, PositionNodes};
 use crate::result::Finding;
-use crate::run::record::{Work, needed};
-use crate::run::sections::{Known, Unit, trimmed};
-use crate::run::values::{
-    Evaluated, Print, RecordOfSide, SectionValues, Sides, number_of, samples_of, section,
-};
+use crate::run::record::Work;
+use crate::run::sections::{Known, Unit, needed, trimmed};
+use crate::run::values::{NodeValues, Print, RecordOfSide, SectionValues, Sides};
 use crate::units::Dimension;
 
 /// Significant digits of a number in the sentence of a finding; the result file has all digits.
@@ -83,7 +81,7 @@ pub fn look(
     (work, unit): (&Work<'_>, &Unit),
     questions: &Questions<'_>,
     sides: &Sides<'_>,
-    track: &Evaluated,
+    track: &NodeValues,
     values: &mut SectionValues,
 ) {
     let mut channels: Vec<(&Plausibility, Exchanged, exchanged::Channels<'_>)> = Vec::new();
@@ -102,8 +100,7 @@ pub fn look(
             }
             Test::Distinct(_) => {
                 for record in sides.simulated.iter().chain(sides.measured) {
-                    if let Some(samples) =
-                        nodes.own.and_then(|own| samples_of(&record.found, own).ok())
+                    if let Some(samples) = nodes.own.and_then(|own| record.found.samples(own).ok())
                     {
                         let words = work.campaign(unit).record_in_words(record.which);
                         values.prints.push(Print::of(
@@ -136,7 +133,7 @@ impl Position<'_> {
         &self,
         sides: &Sides<'_>,
         nodes: &PositionNodes,
-        track: &Evaluated,
+        track: &NodeValues,
         findings: &mut Vec<Finding>,
     ) {
         match self.requirement.of {
@@ -145,7 +142,7 @@ impl Position<'_> {
                 let inputs: Vec<_> = nodes
                     .inputs
                     .iter()
-                    .map(|input: &InputNode| number_of(track, input.node))
+                    .map(|input: &InputNode| track.number(input.node).map(|(value, _)| value))
                     .collect();
                 findings.extend(self.finding(sides.known, &inputs, Some("track".into())));
             }
@@ -191,7 +188,7 @@ impl Position<'_> {
         inputs: &[Result<f64, String>],
         record: Option<String>,
     ) -> Option<Finding> {
-        let known = Known { inputs, ..section(known) };
+        let known = Known { inputs, ..*known };
         if flag(&self.requirement.holds, &known) != Ok(false) {
             return None;
         }

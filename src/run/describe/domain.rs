@@ -9,7 +9,8 @@ use crate::result::{
     Consequence, CoordinateRange, DomainRange, DomainResult, DomainSection, Finding, WantedPoint,
 };
 use crate::run::limit::rule_place;
-use crate::run::sections::{Facts, Point, Unit, value, word};
+use crate::run::sections::wanted::{Point, value, word};
+use crate::run::sections::{Facts, Unit};
 use crate::run::words::count;
 
 /// Code of the finding about wanted operation outside what the sections cover.

@@ -3,21 +3,14 @@
 use crate::check::plan::{EstimateKind, Plan, Report};
 use crate::graph::{Graph, NodeId, Operation};
 use crate::result::Reported;
-use crate::run::estimate::{Group, Grouped, Member, Part, Row, count_independent, parts};
+use crate::run::estimate::{Group, Grouped, Member, Part, count_independent, parts};
 use crate::run::limit::{Estimated, Judging, rule_place};
 use crate::run::sections::{Facts, Unit};
+use crate::run::values::Row;
 use crate::units;
 
 /// Stands for a section that is counted by itself.
-const SECTION: Row = Row {
-    position: 0,
-    which: 0,
-    record: None,
-    simulated: None,
-    measured: None,
-    value: 0.0,
-    samples: 0,
-};
+const SECTION: Row = Row::single(0, 0, None, (0.0, 0));
 
 /// What is reported of a quantity, group by group.
 pub fn of_quantity(graph: &Graph, nodes: &[NodeId], judging: &Judging<'_>) -> Vec<Reported> {

@@ -1,10 +1,9 @@
 //! Findings about the vehicle data: assumed units, and limits with factors that depend on these
 //! data.
 
-use crate::check::evaluate::{flag, number};
-use crate::check::plan::{Expr, Kind, Limit, Operator, Plan};
+use crate::check::plan::Plan;
 use crate::result::{Finding, LimitFactor, QuantityResult};
-use crate::run::sections::{Facts, Known, Vehicle, is_dimensioned, vehicle_item};
+use crate::run::sections::{Facts, Vehicle, is_dimensioned, vehicle_item};
 
 /// Code of the finding about units that the vehicle file does not state.
 const UNIT_ASSUMED: &str = "unit-assumed";
@@ -74,91 +73,4 @@ fn multiplied(quantities: &[QuantityResult]) -> Vec<Finding> {
 
 fn times(by: f64) -> String {
     if by == 2.0 { "doubled".into() } else { format!("multiplied by {by}") }
-}
-
-/// The factors of a limit that apply because of vehicle data alone, each with its reason.
-pub fn factors(plan: &Plan, vehicles: &[&Vehicle], limit: &Limit) -> Vec<LimitFactor> {
-    let mut found: Vec<LimitFactor> = Vec::new();
-    for vehicle in vehicles {
-        for factor in of_vehicle(plan, vehicle, limit) {
-            if !found.contains(&factor) {
-                found.push(factor);
-            }
-        }
-    }
-    found
-}
-
-fn of_vehicle(plan: &Plan, vehicle: &Vehicle, limit: &Limit) -> Vec<LimitFactor> {
-    let known = Known::vehicle(vehicle);
-    let of = |(factor, condition): &(Expr, Expr)| {
-        let on = flag(condition, &known).ok()?;
-        let by = number(factor, &known).ok()?;
-        let mut because = Vec::new();
-        reasons(plan, vehicle, condition, true, &mut because);
-        (on && !because.is_empty()).then(|| LimitFactor { by, because: because.join(" and ") })
-    };
-    limit.factors.iter().filter_map(of).collect()
-}
-
-/// The parts of a condition that decide its result, in words: `vehicle category is freight`.
-fn reasons(
-    plan: &Plan,
-    vehicle: &Vehicle,
-    condition: &Expr,
-    wanted: bool,
-    found: &mut Vec<String>,
-) {
-    match &condition.kind {
-        Kind::Not(inner) => reasons(plan, vehicle, inner, !wanted, found),
-        Kind::Binary(Operator::And | Operator::Or, a, b) => {
-            for side in [a, b] {
-                if flag(side, &Known::vehicle(vehicle)) == Ok(wanted) {
-                    reasons(plan, vehicle, side, wanted, found);
-                }
-            }
-        }
-        _ => {
-            let mut read = Vec::new();
-            vehicle_data(condition, &mut read);
-            for index in read {
-                let item = vehicle_item(&plan.vehicle[index], &vehicle.data[index]);
-                let unit = item
-                    .unit
-                    .filter(|unit| unit != "-")
-                    .map_or(String::new(), |unit| format!(" {unit}"));
-                let says = format!("{} is {}{unit}", item.name.to_lowercase(), item.value);
-                if !found.contains(&says) {
-                    found.push(says);
-                }
-            }
-        }
-    }
-}
-
-/// Vehicle data that an expression uses, in the order of their occurrence.
-fn vehicle_data(expr: &Expr, found: &mut Vec<usize>) {
-    match &expr.kind {
-        Kind::Vehicle(index) => found.push(*index),
-        Kind::Negative(inner) | Kind::Not(inner) | Kind::Power(inner, _) => {
-            vehicle_data(inner, found)
-        }
-        Kind::Binary(_, a, b) => [a, b].into_iter().for_each(|side| vehicle_data(side, found)),
-        Kind::Call(_, arguments) => {
-            arguments.iter().for_each(|argument| vehicle_data(argument, found))
-        }
-        Kind::Cases(cases, otherwise) => {
-            let parts =
-                cases.iter().flat_map(|(when, then)| [when, then]).chain(otherwise.as_deref());
-            parts.for_each(|part| vehicle_data(part, found));
-        }
-        Kind::Constant(_)
-        | Kind::Column(_)
-        | Kind::Start
-        | Kind::End
-        | Kind::Input(_)
-        | Kind::Simulated
-        | Kind::Measured
-        | Kind::LimitOf(_) => {}
-    }
 }

@@ -10,10 +10,10 @@ use crate::check::plan::{Evaluation, Plan, Records, Side};
 use crate::data::WhichRecord;
 use crate::graph::{Graph, NodeId};
 use crate::result::{Curve, QuantityResult, Trace, took_part};
-use crate::run::estimate::Row;
-use crate::run::record::{Extent, Found, Opened, Samples, Work, with_record};
-use crate::run::sections::{Unit as Section, requirements};
-use crate::run::values::SectionValues;
+use crate::run::data_rules::take_over;
+use crate::run::record::{NodeValue, Opened, Samples, Work, with_record};
+use crate::run::sections::{Extent, Unit as Section};
+use crate::run::values::{Row, SectionValues};
 use crate::units::Unit;
 
 /// Number of stretches of a plotted curve. Each keeps its smallest and largest sample, so that no
@@ -130,8 +130,7 @@ pub fn kept(work: &Work<'_>, sections: &[(usize, SectionValues)]) -> Vec<Kept> {
         sections.iter().filter_map(|(number, _)| work.units.get(*number).cloned()).collect();
     let values: Vec<SectionValues> = sections.iter().map(|(_, values)| values.clone()).collect();
     // What stops a run stops it when the sections are judged.
-    let _ =
-        requirements::take_over(work.plan, work.facts, &mut units, &values, &[], &mut Vec::new());
+    let _ = take_over(work.plan, work.facts, &mut units, &values, &[], &mut Vec::new());
     let mut picks: BTreeMap<usize, Vec<Pick<'_>>> = BTreeMap::new();
     for (index, quantity) in work.plan.quantities.iter().enumerate() {
         let mut worst: Vec<(f64, Pick<'_>)> = Vec::new();
@@ -192,7 +191,7 @@ impl<'a> Pick<'a> {
 }
 
 /// Values of nodes of a record, and the range that is shown.
-type Nodes = (Vec<(NodeId, Found)>, Extent);
+type Nodes = (Vec<(NodeId, NodeValue)>, Extent);
 type Signal = Result<Nodes, String>;
 /// Evaluates nodes of a record.
 type Evaluate<'a> = &'a dyn Fn(&Section, WhichRecord, &BTreeSet<NodeId>) -> Signal;
@@ -205,12 +204,12 @@ fn evaluated(
 ) -> Signal {
     let known = unit.known(work.facts);
     let evaluate = |opened: &Opened, needed: &BTreeSet<NodeId>| {
-        opened.evaluate(work.graph, needed, wanted, &known, work.plan.sections.percentiles, None)
+        opened.evaluate((work.plan, work.graph), needed, wanted, &known, None)
     };
     let (found, opened) =
         with_record(work, unit, which, wanted, &known, evaluate).map_err(|fault| fault.says)?;
-    let around = |found: Found| match found {
-        Found::Samples(samples) => Found::Samples(opened.around_section(samples)),
+    let around = |found: NodeValue| match found {
+        NodeValue::Samples(samples) => NodeValue::Samples(opened.around_section(samples)),
         other => other,
     };
     Ok((
@@ -287,7 +286,7 @@ fn trace(work: &Work<'_>, pick: Pick<'_>, evaluate: Evaluate<'_>) -> Result<Trac
         let (found, extent) = evaluate(unit, which, &wanted)?;
         let of = |node: NodeId| {
             found.iter().find_map(|(id, found)| {
-                if let (true, Found::Samples(samples)) = (*id == node, found) {
+                if let (true, NodeValue::Samples(samples)) = (*id == node, found) {
                     Some(samples)
                 } else {
                     None

@@ -10,9 +10,8 @@ use crate::catalog::Statistic;
 use crate::check::evaluate::{flag, number, words};
 use crate::check::plan::{
     DataReducer, DatumKind, Estimate, EstimateKind, Expr, Fit, Key, Kind, OfGroup, Operator, Plan,
-    Position, Scalar, Taking, Type,
+    Position, Taking, Type,
 };
-use crate::check::values::Values;
 use crate::metrics::cluster::{self, Bounds, Draws, Mean, StandardDeviation};
 use crate::metrics::percentile::{Method, percentile};
 use crate::metrics::regression::{self, Regression, Tails};
@@ -481,32 +480,4 @@ fn share(
         return weighted::mean(&holds, &weights?).ok_or_else(|| "no weight is above zero".into());
     }
     Ok(found.iter().filter(|holds| **holds).count() as f64 / found.len() as f64)
-}
-
-/// Values of the names in an expression over a group, in addition to the numbers taken from it.
-#[derive(Debug)]
-pub struct Taken<'a, V: Values> {
-    pub values: &'a V,
-    pub taken: &'a [Result<f64, String>],
-}
-
-impl<V: Values> Values for Taken<'_, V> {
-    fn vehicle(&self, index: usize) -> Result<Scalar, String> {
-        self.values.vehicle(index)
-    }
-    fn column(&self, index: usize) -> Result<Scalar, String> {
-        self.values.column(index)
-    }
-    fn extent(&self) -> Result<(f64, f64), String> {
-        self.values.extent()
-    }
-    fn input(&self, index: usize) -> Result<f64, String> {
-        self.taken.get(index).cloned().unwrap_or_else(|| self.values.input(index))
-    }
-    fn sides(&self) -> Result<(f64, f64), String> {
-        self.values.sides()
-    }
-    fn limit_of(&self, statistic: &str) -> Result<f64, String> {
-        self.values.limit_of(statistic)
-    }
 }

@@ -3,9 +3,10 @@
 use std::collections::BTreeSet;
 
 use super::groups::{Grouped, parts};
-use super::table::{Member, Row, independent};
+use super::table::{Member, independent};
 use crate::check::plan::{Plan, Quantity};
 use crate::run::sections::Facts;
+use crate::run::values::Row;
 use crate::run::words::count;
 
 /// A group with too few pairs.

@@ -1,12 +1,23 @@
 //! Groups of rows, and what is estimated from them.
+//!
+//! | file | content |
+//! |---|---|
+//! | `table` | rows with their sections |
+//! | `groups` | the groups that a limit applies to |
+//! | `minima` | groups with fewer pairs than required |
+//! | `rows` | the rows of a quantity, and why they are not sufficient |
+//! | `estimates` | estimates from the rows of a group |
+//! | `extrapolation` | regressions that are read outside their data |
 
-pub mod estimates;
+mod estimates;
 pub mod extrapolation;
-pub mod groups;
-pub mod minima;
-pub mod table;
+mod groups;
+mod minima;
+mod rows;
+mod table;
 
-pub use estimates::{Group, Taken};
+pub use estimates::Group;
 pub use groups::{Closeness, Grouped, Part, parts};
 pub use minima::TooFew;
-pub use table::{Member, Row, Table, count_independent};
+pub use rows::{Rows, Used, members};
+pub use table::{Member, Table, count_independent};

@@ -1,28 +1,11 @@
-//! The table of values: one row for each section, position and record or pair of records.
+//! The table of values, one row for each section, position and record or pair of records: rows with
+//! their sections, and what their vehicles agree on.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 use crate::check::plan::{Independent, Plan, Scalar};
-use crate::run::sections::Unit;
-
-/// One value of a section.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Row {
-    /// Index into the quantity's positions.
-    pub position: usize,
-    /// Index into the quantity's values, of which several may apply.
-    pub which: usize,
-    /// The record, where the campaign has several of a side.
-    pub record: Option<Arc<str>>,
-    /// The values compared, where rows compare numbers, SI.
-    pub simulated: Option<f64>,
-    pub measured: Option<f64>,
-    /// The value that estimates use, SI: a difference, a metric, or the value of one record.
-    pub value: f64,
-    /// Number of samples or windows.
-    pub samples: usize,
-}
+use crate::run::sections::{Facts, Unit, Vehicle};
+use crate::run::values::Row;
 
 /// A row with its section.
 #[derive(Clone, Copy, Debug)]
@@ -69,4 +52,44 @@ pub fn independent(plan: &Plan, members: &[Member<'_>]) -> Vec<usize> {
 /// Number of independent units of the members.
 pub fn count_independent(plan: &Plan, members: &[Member<'_>]) -> usize {
     independent(plan, members).into_iter().collect::<BTreeSet<_>>().len()
+}
+
+impl Facts {
+    /// The vehicles of some rows, each once; all where there are no rows.
+    pub fn among(&self, members: &[Member<'_>]) -> Vec<&Vehicle> {
+        if self.vehicles.len() == 1 || members.is_empty() {
+            return self.vehicles.iter().collect();
+        }
+        let used: BTreeSet<usize> = members.iter().map(|member| member.unit.vehicle).collect();
+        used.into_iter().map(|number| &self.vehicles[number]).collect()
+    }
+
+    /// What holds of the vehicles of some rows, if it is the same for all of them.
+    ///
+    /// # Errors
+    /// It has no value, or differs; `shown` tells the values.
+    pub fn agreed<T: PartialEq>(
+        &self,
+        members: &[Member<'_>],
+        mut of: impl FnMut(&Vehicle) -> Result<T, String>,
+        shown: impl Fn(&T) -> String,
+    ) -> Result<T, String> {
+        let mut found: Vec<(&Vehicle, T)> = Vec::new();
+        for vehicle in self.among(members) {
+            let value = of(vehicle).map_err(|reason| vehicle.told(reason))?;
+            if found.iter().all(|(_, known)| *known != value) {
+                found.push((vehicle, value));
+            }
+        }
+        if found.len() > 1 {
+            let each: Vec<String> = found
+                .iter()
+                .map(|(vehicle, value)| {
+                    format!("{} for {}", shown(value), vehicle.of.as_deref().unwrap_or_default())
+                })
+                .collect();
+            return Err(format!("it depends on the vehicle: {}", each.join(", ")));
+        }
+        found.pop().map(|(_, value)| value).ok_or_else(|| "there is no vehicle".to_string())
+    }
 }

@@ -1,5 +1,6 @@
 //! Compares the estimates of a quantity with its limits.
 
+use super::factors::factors;
 use crate::catalog::Statistic;
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Estimate, EstimateKind, Limit, Plan, Quantity, Report, Scalar};
@@ -7,9 +8,8 @@ use crate::check::values::Values;
 use crate::graph::{Graph, LimitNodes, Operation, QuantityNodes};
 use crate::metrics::statistics::{Divisor, mean, standard_deviation};
 use crate::result::{Outside, RegressionFigure, RulePlace, Sample, StatisticResult};
-use crate::run::describe::factors;
 use crate::run::estimate::{
-    Closeness, Group, Grouped, Member, Part, Table, Taken, TooFew, count_independent, parts,
+    Closeness, Group, Grouped, Member, Part, Table, TooFew, count_independent, parts,
 };
 use crate::run::sections::{Facts, Known, Vehicle};
 use crate::source::Span;
@@ -486,9 +486,9 @@ impl Bounds<'_> {
         if depth > self.quantity.limits.len() {
             return Err("it depends on itself".into());
         }
-        let names = Named { bounds: self, depth };
         let taken = self.group.taken(&limit.bound);
-        let mut value = number(&limit.bound.expr, &Taken { values: &names, taken: &taken })?;
+        let names = Named { bounds: self, depth, taken: &taken };
+        let mut value = number(&limit.bound.expr, &names)?;
         for (factor, condition) in &limit.factors {
             if flag(condition, &names)? {
                 value *= number(factor, &names)?;
@@ -520,6 +520,8 @@ impl Bounds<'_> {
 struct Named<'a> {
     bounds: &'a Bounds<'a>,
     depth: usize,
+    /// The numbers that the limit takes from the group.
+    taken: &'a [Result<f64, String>],
 }
 
 impl Values for Named<'_> {
@@ -536,7 +538,7 @@ impl Values for Named<'_> {
     }
 
     fn input(&self, index: usize) -> Result<f64, String> {
-        self.bounds.known.input(index)
+        self.taken.get(index).cloned().unwrap_or_else(|| self.bounds.known.input(index))
     }
 
     fn sides(&self) -> Result<(f64, f64), String> {

@@ -10,10 +10,9 @@ use crate::check::evaluate::number;
 use crate::check::plan::{
     Decision, EstimateKind, Kind, Limit, MinimumOfGroups, OfGroup, Plan, Quantity, Taking,
 };
-use crate::run::estimate::{Group, Grouped, Member, Part, Row, Table, parts};
+use crate::run::estimate::{Group, Grouped, Member, Part, Rows, Table, Used, members, parts};
 use crate::run::sections::{Facts, Known, Unit, Vehicle};
-use crate::run::values::SectionValues;
-use crate::run::verdict::{Rows, members, rows};
+use crate::run::values::{Row, SectionValues};
 
 pub use crate::check::plan::Rule;
 
@@ -342,12 +341,7 @@ pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]
     let rules = Arc::new((plan.clone(), facts.clone()));
     let used: Vec<(&Unit, &SectionValues)> =
         units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
-    let rows: Vec<Rows<'_>> = plan
-        .quantities
-        .iter()
-        .enumerate()
-        .map(|(index, quantity)| rows(plan, quantity, index, &used, facts))
-        .collect();
+    let rows = Rows::of_all(plan, facts, &used);
     let table: Vec<_> = rows.iter().map(Rows::usable).collect();
     let all = Units::of(units);
     Pool {
@@ -373,7 +367,7 @@ pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]
         minimum: plan.sections.minimum,
         quantities: about
             .iter()
-            .map(|&index| pooled(&rules, index, &all, values, &table))
+            .map(|&index| pooled(&rules, index, (&all, values, used.as_slice()), &table))
             .collect(),
         rule,
     }
@@ -382,15 +376,12 @@ pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]
 fn pooled(
     rules: &Arc<(Plan, Facts)>,
     index: usize,
-    units: &Units<'_>,
-    values: &[SectionValues],
+    (units, values, used): (&Units<'_>, &[SectionValues], &Used<'_>),
     table: &Table<'_>,
 ) -> PooledQuantity {
     let (plan, facts) = rules.as_ref();
     let quantity = &plan.quantities[index];
-    let used: Vec<(&Unit, &SectionValues)> =
-        units.all.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
-    let members = members(quantity, index, &used);
+    let members = members(quantity, index, used);
     let of_section = |(unit, values): (&Unit, &SectionValues)| {
         let rows = values.rows.get(index).filter(|_| unit.fault.is_none()).into_iter().flatten();
         rows.map(|row| (row.position, quantity.unit.from_si(row.value))).collect::<Vec<_>>()

@@ -14,7 +14,9 @@ use crate::data::campaign::POINT_KEY;
 use crate::data::sites;
 use crate::graph::{Graph, InputNode, NodeId, QuantityNodes};
 use crate::run::reduce::wanted_of;
-use crate::run::sections::{STATE, columns as wanted_columns, trimmed};
+use crate::run::sections::units::STATE;
+use crate::run::sections::wanted::columns as wanted_columns;
+use crate::run::sections::{NOT_STATED, trimmed};
 use crate::units::Unit;
 
 #[derive(Clone, Debug, Default)]
@@ -86,6 +88,15 @@ pub struct Users {
     pub quantities: Vec<String>,
     /// Other rules: `zone 1`, `check full_curve`.
     pub rules: Vec<String>,
+}
+
+impl Users {
+    fn add(&mut self, user: &str, is_quantity: bool) {
+        let list = if is_quantity { &mut self.quantities } else { &mut self.rules };
+        if !list.iter().any(|known| known == user) {
+            list.push(user.to_string());
+        }
+    }
 }
 
 /// A column of the records.
@@ -329,8 +340,7 @@ fn channels(plan: &Plan, graph: &Graph) -> Vec<ChannelNeed> {
             for &record in of {
                 let (is_required, users) = read.entry((record, at)).or_default();
                 *is_required |= if of_track { of_track_too } else { required };
-                let list = if is_quantity { &mut users.quantities } else { &mut users.rules };
-                push(list, user);
+                users.add(user, is_quantity);
             }
         }
     };
@@ -401,12 +411,6 @@ fn channels(plan: &Plan, graph: &Graph) -> Vec<ChannelNeed> {
         .collect()
 }
 
-fn push(list: &mut Vec<String>, name: &str) {
-    if !list.iter().any(|known| known == name) {
-        list.push(name.to_string());
-    }
-}
-
 /// Channel and unit of each column, with whether it is of the track record.
 fn declared(plan: &Plan) -> BTreeMap<(String, bool), (String, Unit)> {
     struct Declared(BTreeMap<(String, bool), (String, Unit)>);
@@ -419,8 +423,7 @@ fn declared(plan: &Plan) -> BTreeMap<(String, bool), (String, Unit)> {
         }
     }
     let mut found = Declared(BTreeMap::new());
-    plan.quantities.iter().for_each(|rule| quantity(rule, &mut found));
-    other_rules(plan).iter().for_each(|(_, see)| see(&mut found));
+    rules(plan).iter().for_each(|(.., see)| see(&mut found));
     found.0
 }
 
@@ -442,18 +445,11 @@ fn data_users(plan: &Plan) -> [Vec<Users>; 2] {
     }
     let mut users =
         [vec![Users::default(); plan.columns.len()], vec![Users::default(); plan.vehicle.len()]];
-    for rule in &plan.quantities {
-        let mut data = Data::default();
-        quantity(rule, &mut data);
-        for (users, found) in users.iter_mut().zip(&data.0) {
-            found.iter().for_each(|&index| push(&mut users[index].quantities, &rule.id));
-        }
-    }
-    for (name, see) in other_rules(plan) {
+    for (name, is_quantity, see) in rules(plan) {
         let mut data = Data::default();
         see(&mut data);
         for (users, found) in users.iter_mut().zip(&data.0) {
-            found.iter().for_each(|&index| push(&mut users[index].rules, &name));
+            found.iter().for_each(|&index| users[index].add(&name, is_quantity));
         }
     }
     users
@@ -462,10 +458,14 @@ fn data_users(plan: &Plan) -> [Vec<Users>; 2] {
 /// Shows the parts of a rule.
 type Parts<'a> = Box<dyn Fn(&mut dyn See) + 'a>;
 
-/// The rules that are no quantity, each with its parts.
-fn other_rules(plan: &Plan) -> Vec<(String, Parts<'_>)> {
-    let mut rules: Vec<(String, Parts<'_>)> = Vec::new();
-    rules.push((
+/// The rules, each with its name, whether it is a quantity, and its parts.
+fn rules(plan: &Plan) -> Vec<(String, bool, Parts<'_>)> {
+    let mut rules: Vec<(String, bool, Parts<'_>)> = Vec::new();
+    for rule in &plan.quantities {
+        rules.push((rule.id.clone(), true, Box::new(move |see| quantity(rule, see))));
+    }
+    let mut others: Vec<(String, Parts<'_>)> = Vec::new();
+    others.push((
         "sections".into(),
         Box::new(|see| {
             plan.sections.zone.into_iter().for_each(|index| see.column(index));
@@ -475,13 +475,13 @@ fn other_rules(plan: &Plan) -> Vec<(String, Parts<'_>)> {
     ));
     if let Some(find) = &plan.sections.find {
         for datum in &find.data {
-            rules.push((
+            others.push((
                 format!("found {}", plan.columns[datum.column].key),
                 Box::new(|see| of_signals(&datum.of, see)),
             ));
         }
         for condition in &find.conditions {
-            rules.push((
+            others.push((
                 format!("find {}", condition.name),
                 Box::new(|see| of_signals(&condition.require, see)),
             ));
@@ -490,10 +490,10 @@ fn other_rules(plan: &Plan) -> Vec<(String, Parts<'_>)> {
             find.length.iter().for_each(|length| see.expr(length));
             find.prefer.iter().for_each(|prefer| of_signals(prefer, see));
         };
-        rules.push(("find".into(), Box::new(rest)));
+        others.push(("find".into(), Box::new(rest)));
     }
     if let Some(keep) = &plan.sections.keep {
-        rules.push((
+        others.push((
             "keep".into(),
             Box::new(|see| keep.each.iter().for_each(|&index| see.column(index))),
         ));
@@ -502,14 +502,14 @@ fn other_rules(plan: &Plan) -> Vec<(String, Parts<'_>)> {
         let parts = move |see: &mut dyn See| {
             zone.condition.iter().chain(&zone.minimum_length).for_each(|part| see.expr(part))
         };
-        rules.push((format!("zone {}", zone.name), Box::new(parts)));
+        others.push((format!("zone {}", zone.name), Box::new(parts)));
     }
     for check in &plan.checks {
         let parts = move |see: &mut dyn See| {
             std::iter::once(&check.require).chain(&check.unless).for_each(|part| see.expr(part));
             check.inputs.iter().for_each(|part| input(part, see));
         };
-        rules.push((format!("check {}", check.name), Box::new(parts)));
+        others.push((format!("check {}", check.name), Box::new(parts)));
     }
     for rule in &plan.plausibility {
         let parts = move |see: &mut dyn See| {
@@ -520,17 +520,18 @@ fn other_rules(plan: &Plan) -> Vec<(String, Parts<'_>)> {
                 requirement.inputs.iter().for_each(|part| input(part, see));
             }
         };
-        rules.push((format!("plausibility {}", rule.name), Box::new(parts)));
+        others.push((format!("plausibility {}", rule.name), Box::new(parts)));
     }
     for domain in &plan.domains {
         let parts = move |see: &mut dyn See| {
             domain.over.iter().for_each(|coordinate| see.expr(&coordinate.expr));
             domain.each.iter().for_each(|&index| see.column(index));
         };
-        rules.push((format!("domain {}", domain.name), Box::new(parts)));
+        others.push((format!("domain {}", domain.name), Box::new(parts)));
     }
     if let Independent::Column(index) = plan.independent {
-        rules.push(("verdict".into(), Box::new(move |see| see.column(index))));
+        others.push(("verdict".into(), Box::new(move |see| see.column(index))));
     }
+    rules.extend(others.into_iter().map(|(name, parts)| (name, false, parts)));
     rules
 }

@@ -9,6 +9,7 @@ use crate::check::values::Values;
 use crate::metrics::filter::Filter;
 use crate::metrics::window::{Kind, Sliding};
 use crate::metrics::{along, resample, rounded};
+use crate::run::sections::Extent;
 
 /// The axis of the samples, and their time, in SI; both increase strictly.
 #[derive(Debug)]
@@ -39,9 +40,6 @@ pub enum Signal {
     Samples(Samples),
     Constant(f64),
 }
-
-/// Start and end of the section on the axis, SI.
-pub type Extent = (f64, f64);
 
 impl Along {
     /// The samples with start <= axis <= end.

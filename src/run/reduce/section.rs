@@ -2,31 +2,20 @@
 //! plausibility.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 use crate::check::evaluate::flag;
 use crate::check::plan::{Evaluation, Expr, Position, Quantity, Side};
-use crate::data::{RecordKind, WhichRecord};
+use crate::data::RecordKind;
 use crate::graph::{InputNode, NodeId, SignalNodes};
 use crate::run::data_rules::{Questions, plausibility, record_checks, track_checks};
-use crate::run::estimate::Row;
-use crate::run::record::{Fault, Found, Opened, Work, with_record};
+use crate::run::record::{Fault, Opened, Work};
 use crate::run::sections::{Known, Unit};
 use crate::run::values::{
-    Evaluated, Meetings, Original, RecordOfSide, SectionValues, Shifts, Sides, note_margins,
-    one_record, slow, synchronisation,
+    Meetings, Original, RecordOfSide, SectionValues, Shifts, Sides, one_record, read_record,
+    synchronisation,
 };
 
-impl Side {
-    pub fn kind(self) -> RecordKind {
-        match self {
-            Self::Simulated => RecordKind::Simulation,
-            Self::Measured => RecordKind::Measurement,
-        }
-    }
-}
-
-/// The section, once for each shift.
+/// The values of a section, once for each shift.
 pub fn of_section(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>) -> Vec<SectionValues> {
     let mut common = SectionValues::default();
     match fill(work, unit, shifts, &mut common) {
@@ -100,21 +89,26 @@ fn fill(
         (Err(first), Err(second)) => return Err(first.and(second)),
         (Err(fault), _) | (_, Err(fault)) => return Err(fault),
     };
-    let original = original(work, unit, &active);
+    let mut repeated = BTreeSet::new();
+    of_quantities(work, &active, |evaluation| evaluation.of_repeats(), &mut repeated);
+    // A section whose original cannot be evaluated has no rows of repeats; the original itself
+    // states the reason.
+    let original = original(work, unit, &repeated).and_then(Result::ok);
     let one = |measured: Result<Vec<RecordOfSide>, String>| {
         let mut values = common.clone();
         match measured {
             Ok(measured) => {
                 let meetings = Meetings::default();
-                let sides = Sides::of_section(
+                let sides = Sides {
                     work,
-                    unit,
-                    (&simulated, &measured),
-                    original.as_ref(),
-                    (&known, &meetings),
-                );
+                    simulated: &simulated,
+                    measured: &measured,
+                    original: original.as_ref(),
+                    known: &known,
+                    meetings: &meetings,
+                };
                 quantities(work, &sides, &active, &mut values);
-                record_checks(work, &sides, &mut values);
+                record_checks(&sides, &mut values);
                 plausibility::look((work, unit), &questions, &sides, &track, &mut values);
             }
             Err(says) => values.fault = Some(says),
@@ -125,7 +119,10 @@ fn fill(
 }
 
 /// The evaluated records of one side; empty where the protocol does not read that side.
-fn records(
+///
+/// # Errors
+/// The faults of all its records.
+pub fn records(
     work: &Work<'_>,
     unit: &Unit,
     side: Side,
@@ -138,14 +135,14 @@ fn records(
     }
     let mut records: Result<Vec<RecordOfSide>, Fault> = Ok(Vec::new());
     for which in work.campaign(unit).records(side.kind()) {
-        let one = one_record(work, unit, which, wanted, known, common).map(|(found, opened)| {
+        let one = one_record(work, unit, which, wanted, known, common);
+        if let Ok(one) = &one
             // The first measurement defines the range of a whole record; without measurements, the
             // simulation.
-            if side == Side::Measured && which.number == 0 || common.extent.is_none() {
-                common.extent = Some(opened.extent);
-            }
-            of_side(work, unit, which, found)
-        });
+            && (side == Side::Measured && which.number == 0 || common.extent.is_none())
+        {
+            common.extent = Some(one.extent);
+        }
         records = match (records, one) {
             (Ok(mut all), Ok(one)) => {
                 all.push(one);
@@ -158,43 +155,22 @@ fn records(
     records
 }
 
-fn of_side(
-    work: &Work<'_>,
+/// The section that this one repeats, with the values that quantities of repeats need; `None` if
+/// there is none that is used.
+pub fn original<'a>(
+    work: &Work<'a>,
     unit: &Unit,
-    which: WhichRecord,
-    found: Vec<(NodeId, Found)>,
-) -> RecordOfSide {
-    let (campaign, found) = (work.campaign(unit), Evaluated::from(found));
-    RecordOfSide {
-        name: campaign.record_name(which).cloned(),
-        called: campaign.record_called(which).cloned(),
-        which,
-        found,
-    }
-}
-
-/// The section that this one repeats, with the values that quantities of repeats need. If it cannot
-/// be evaluated, it is itself not used and states the reason.
-fn original<'a>(work: &Work<'a>, unit: &Unit, active: &Active) -> Option<Original<'a>> {
+    wanted: &BTreeSet<NodeId>,
+) -> Option<Result<Original<'a>, Fault>> {
     let original = work.units.get(unit.original?)?;
-    let mut wanted = BTreeSet::new();
-    for (index, quantity) in work.graph.quantities.iter().enumerate() {
-        let rule = &work.plan.quantities[index];
-        if rule.evaluation.of_repeats() {
-            let signals =
-                quantity.signals.iter().zip(&active[index]).filter(|(_, active)| **active);
-            signals.for_each(|(signal, _)| wanted_of(rule, signal, &mut wanted));
-        }
-    }
     if wanted.is_empty() || original.fault.is_some() {
         return None;
     }
     let known = original.known(work.facts);
     // Its files and margins are reported with the original itself.
-    let records =
-        records(work, original, Side::Measured, &wanted, &known, &mut SectionValues::default())
-            .ok()?;
-    Some(Original { unit: original, known, records })
+    let mut own = SectionValues::default();
+    let records = records(work, original, Side::Measured, wanted, &known, &mut own);
+    Some(records.map(|records| Original { unit: original, known, records }))
 }
 
 /// The measured record cut at every shift; its filters run once.
@@ -208,28 +184,26 @@ fn shifted(
     common: &mut SectionValues,
 ) -> Result<Vec<Result<Vec<RecordOfSide>, String>>, Fault> {
     let which = RecordKind::Measurement.into();
+    let mut extent = None;
     let evaluate = |opened: &Opened, needed: &BTreeSet<NodeId>| {
-        let held =
-            opened.hold(work.graph, needed, wanted, known, work.plan.sections.percentiles)?;
+        extent = Some(opened.extent);
+        let held = opened.hold((work.plan, work.graph), needed, wanted, known)?;
         let first = shifts.farthest.zip(simulated.first());
         let offset = first.and_then(|(farthest, simulated)| {
             synchronisation::estimate(work.graph, unit, farthest, &simulated.found, &held)
         });
         let own = offset.as_ref().filter(|_| shifts.correct).map_or(0.0, |offset| offset.shift);
-        let placed = |says: String| format!("{}: {says}", opened.file.path);
         let at = |offset: &f64| {
             held.at(own + offset)
-                .map(|found| vec![of_side(work, unit, which, found)])
-                .map_err(placed)
+                .map(|found| vec![RecordOfSide::new(work, unit, which, opened, found)])
+                .map_err(|says| format!("{}: {says}", opened.file.path))
         };
-        Ok((shifts.offsets.iter().map(at).collect(), offset, slow(work, needed)))
+        Ok((shifts.offsets.iter().map(at).collect(), offset))
     };
-    let (found, opened) = with_record(work, unit, which, wanted, known, evaluate)?;
-    common.files.push(opened.file.clone());
-    common.extent = Some(opened.extent);
-    let (all, offset, slow) = found?;
+    let read = read_record(work, unit, which, wanted, known, common, evaluate);
+    common.extent = extent.or(common.extent);
+    let (all, offset) = read?;
     common.offset = offset;
-    note_margins(unit, slow, &opened, common);
     Ok(all)
 }
 
@@ -243,7 +217,7 @@ fn quantities(work: &Work<'_>, sides: &Sides<'_>, active: &Active, values: &mut 
             .enumerate()
             .filter(|(number, _)| active[index][*number])
         {
-            match sides.rows(work, number, nodes) {
+            match sides.rows(number, nodes) {
                 Ok(found) => rows.extend(found),
                 Err(says) => values
                     .impossible
@@ -263,14 +237,7 @@ fn wanted(
     side: Side,
 ) -> BTreeSet<NodeId> {
     let mut wanted = BTreeSet::new();
-    for (index, quantity) in work.graph.quantities.iter().enumerate() {
-        let rule = &work.plan.quantities[index];
-        if rule.evaluation.reads(side) {
-            let signals =
-                quantity.signals.iter().zip(&active[index]).filter(|(_, active)| **active);
-            signals.for_each(|(signal, _)| wanted_of(rule, signal, &mut wanted));
-        }
-    }
+    of_quantities(work, active, |evaluation| evaluation.reads(side), &mut wanted);
     for check in &work.graph.checks {
         wanted.extend(
             check.iter().flat_map(InputNode::nodes).filter(|&node| !work.graph.nodes[node].track),
@@ -281,6 +248,22 @@ fn wanted(
         wanted.extend(synchronisation::signals(work, active));
     }
     wanted
+}
+
+/// Adds the nodes that some quantities need at the positions that are evaluated.
+fn of_quantities(
+    work: &Work<'_>,
+    active: &Active,
+    which: impl Fn(&Evaluation) -> bool,
+    wanted: &mut BTreeSet<NodeId>,
+) {
+    for (index, nodes) in work.graph.quantities.iter().enumerate() {
+        let quantity = &work.plan.quantities[index];
+        if which(&quantity.evaluation) {
+            let signals = nodes.signals.iter().zip(&active[index]).filter(|(_, active)| **active);
+            signals.for_each(|(signal, _)| wanted_of(quantity, signal, wanted));
+        }
+    }
 }
 
 /// Nodes that one position of a quantity needs.
@@ -298,74 +281,4 @@ pub fn wanted_of(quantity: &Quantity, signal: &SignalNodes, wanted: &mut BTreeSe
             wanted.extend(signal.over);
         }
     }
-}
-
-/// The rows of one position and the values of each record.
-pub struct Computed {
-    pub rows: Vec<Row>,
-    pub records: Vec<OneRecord>,
-}
-
-/// The values of one record at one position.
-pub struct OneRecord {
-    /// The column of its value in a row; a repeat takes the place of the simulation.
-    pub place: Side,
-    pub name: Option<Arc<str>>,
-    pub found: Vec<(NodeId, Found)>,
-    pub opened: Opened,
-}
-
-/// One position of one quantity in one section.
-pub fn single(
-    work: &Work<'_>,
-    unit: &Unit,
-    index: usize,
-    signal: usize,
-) -> Result<Computed, Fault> {
-    let known = unit.known(work.facts);
-    let nodes = &work.graph.quantities[index].signals[signal];
-    let quantity = &work.plan.quantities[index];
-    let mut wanted = BTreeSet::new();
-    wanted_of(quantity, nodes, &mut wanted);
-    let mut all: Vec<OneRecord> = Vec::new();
-    let mut read = |unit: &Unit, known: &Known<'_>, side: Side, place: Side| {
-        let mut records = Vec::new();
-        for which in work.campaign(unit).records(side.kind()) {
-            let (found, opened) =
-                one_record(work, unit, which, &wanted, known, &mut SectionValues::default())?;
-            let record = of_side(work, unit, which, found.clone());
-            all.push(OneRecord { place, name: record.name.clone(), found, opened });
-            records.push(record);
-        }
-        Ok::<_, Fault>(records)
-    };
-    let repeats = quantity.evaluation.of_repeats();
-    let mut of = |side: Side| {
-        let place = if repeats { Side::Simulated } else { side };
-        if quantity.evaluation.reads(side) {
-            read(unit, &known, side, place)
-        } else {
-            Ok(Vec::new())
-        }
-    };
-    let (simulated, measured) = (of(Side::Simulated)?, of(Side::Measured)?);
-    let first = unit.original.and_then(|original| work.units.get(original)).filter(|_| repeats);
-    let original = match first {
-        Some(first) => {
-            let known = first.known(work.facts);
-            let records = read(first, &known, Side::Measured, Side::Measured)?;
-            Some(Original { unit: first, known, records })
-        }
-        None => None,
-    };
-    let meetings = Meetings::default();
-    let sides = Sides::of_section(
-        work,
-        unit,
-        (&simulated, &measured),
-        original.as_ref(),
-        (&known, &meetings),
-    );
-    let rows = sides.rows(work, signal, nodes).map_err(Fault::new)?;
-    Ok(Computed { rows, records: all })
 }

@@ -5,17 +5,11 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::prepared::{Prepared, Progress};
 use super::section;
-use crate::check::plan::Plan;
-use crate::data::Campaigns;
-use crate::graph::Graph;
-use crate::problem::Problems;
-use crate::run::describe::{Kept, traces};
 use crate::run::record::{Stretches, Work};
 use crate::run::sections::Unit;
 use crate::run::values::{SectionValues, Shifts};
-use crate::run::verdict::Basis;
-use crate::run::{Prepared, Progress};
 
 /// A part of the sections: number `number` of `of`, counted from 0. Sections that follow each other
 /// are in one part, so that a part reads one stretch of a run.
@@ -54,35 +48,9 @@ impl Shard {
 /// The values of a section and its number.
 pub type Numbered = (usize, SectionValues);
 
-/// The values of some sections, and what they are judged with.
-#[derive(Clone, Debug)]
-pub struct Reduced {
-    pub basis: Basis,
-    pub sections: Vec<Numbered>,
-    /// Signals for the plots of a report.
-    pub traces: Vec<Kept>,
-}
-
-/// Evaluates the sections of a shard. `plots`: whether signals are kept for the plots of a report.
-///
-/// # Errors
-/// The campaign cannot be used as a whole; a record that cannot be used is a fault of its section.
-pub fn reduce<'a>(
-    plan: &Plan,
-    graph: &Graph,
-    campaigns: impl Into<Campaigns<'a>>,
-    (shard, plots): (Shard, bool),
-    progress: Progress<'_>,
-) -> Result<Reduced, Problems> {
-    let prepared = Prepared::new(plan, graph, campaigns.into())?;
-    let sections = prepared.sections(shard, progress);
-    let traces = if plots { traces::kept(&prepared.work(), &sections) } else { Vec::new() };
-    Ok(Reduced { basis: prepared.basis, sections, traces })
-}
-
 impl Prepared<'_> {
     /// The values of the sections of a shard, in the order of the sections.
-    pub(in crate::run) fn sections(&self, shard: Shard, progress: Progress<'_>) -> Vec<Numbered> {
+    pub fn sections(&self, shard: Shard, progress: Progress<'_>) -> Vec<Numbered> {
         let of_section = |(number, mut values): (usize, Vec<SectionValues>)| {
             (number, values.pop().unwrap_or_default())
         };
@@ -90,7 +58,7 @@ impl Prepared<'_> {
     }
 
     /// The same with one value for each shift.
-    pub(in crate::run) fn shifted(
+    pub fn shifted(
         &self,
         shard: Shard,
         shifts: &Shifts<'_>,

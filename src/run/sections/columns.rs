@@ -5,12 +5,22 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 
 use super::facts::Facts;
+use super::needed::needed;
 use super::unit::Unit;
 use crate::check::plan::{Plan, Side};
 use crate::data::record::RecordSource;
 use crate::data::{Campaign, RecordKind, WhichRecord};
 use crate::graph::{Graph, NodeId, Operation};
-use crate::run::record::needed;
+
+impl Side {
+    /// The kind of its records.
+    pub fn kind(self) -> RecordKind {
+        match self {
+            Self::Simulated => RecordKind::Simulation,
+            Self::Measured => RecordKind::Measurement,
+        }
+    }
+}
 
 /// The columns that occur in some section, for each kind of record.
 pub type Seen = Vec<(WhichRecord, BTreeSet<String>)>;

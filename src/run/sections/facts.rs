@@ -1,7 +1,5 @@
 //! Vehicle data under the names of the protocol, and values of names in expressions during a run.
 
-use std::collections::BTreeSet;
-
 use serde::{Deserialize, Serialize};
 
 use super::unit::Unit;
@@ -11,7 +9,6 @@ use crate::data::Campaigns;
 use crate::data::campaign::VehicleState;
 use crate::problem::{Problem, Problems};
 use crate::result::DataItem;
-use crate::run::estimate::Member;
 use crate::units::{self, Dimension, number::Refused};
 use crate::yaml::Value;
 
@@ -64,44 +61,6 @@ impl Facts {
     pub fn items(&self, plan: &Plan) -> Vec<DataItem> {
         self.vehicles.iter().flat_map(|vehicle| vehicle.items(plan)).collect()
     }
-
-    /// The vehicles of some rows, each once; all where there are no rows.
-    pub fn among(&self, members: &[Member<'_>]) -> Vec<&Vehicle> {
-        if self.vehicles.len() == 1 || members.is_empty() {
-            return self.vehicles.iter().collect();
-        }
-        let used: BTreeSet<usize> = members.iter().map(|member| member.unit.vehicle).collect();
-        used.into_iter().map(|number| &self.vehicles[number]).collect()
-    }
-
-    /// What holds of the vehicles of some rows, if it is the same for all of them.
-    ///
-    /// # Errors
-    /// It has no value, or differs; `shown` tells the values.
-    pub fn agreed<T: PartialEq>(
-        &self,
-        members: &[Member<'_>],
-        mut of: impl FnMut(&Vehicle) -> Result<T, String>,
-        shown: impl Fn(&T) -> String,
-    ) -> Result<T, String> {
-        let mut found: Vec<(&Vehicle, T)> = Vec::new();
-        for vehicle in self.among(members) {
-            let value = of(vehicle).map_err(|reason| vehicle.told(reason))?;
-            if found.iter().all(|(_, known)| *known != value) {
-                found.push((vehicle, value));
-            }
-        }
-        if found.len() > 1 {
-            let each: Vec<String> = found
-                .iter()
-                .map(|(vehicle, value)| {
-                    format!("{} for {}", shown(value), vehicle.of.as_deref().unwrap_or_default())
-                })
-                .collect();
-            return Err(format!("it depends on the vehicle: {}", each.join(", ")));
-        }
-        found.pop().map(|(_, value)| value).ok_or_else(|| "there is no vehicle".to_string())
-    }
 }
 
 impl Unit {
@@ -126,7 +85,7 @@ impl Vehicle {
     }
 
     /// A reason with the vehicle that it is of, where there are several.
-    fn told(&self, reason: String) -> String {
+    pub fn told(&self, reason: String) -> String {
         self.of.as_ref().map_or(reason.clone(), |of| format!("{reason} ({of})"))
     }
 }
@@ -323,7 +282,7 @@ pub fn scalar(kind: &DatumKind, text: &str) -> Result<Scalar, String> {
 }
 
 /// Values of the names in one section. Where a value is not known, the reason is given.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Known<'a> {
     pub vehicle: &'a Vehicle,
     pub columns: Option<&'a [Result<Scalar, String>]>,

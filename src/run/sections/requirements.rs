@@ -1,17 +1,12 @@
-//! Requirements on the data and records of sections, and the consequences of those that are not
-//! met.
-
-use std::collections::HashMap;
+//! Requirements on the data of sections, which need no record.
 
 use super::facts::{Facts, Vehicle, item, trimmed};
 use super::unit::Unit;
 use crate::check::evaluate::{flag, number};
-use crate::check::plan::{Expr, Kind, OnFault, Plan, Zone};
+use crate::check::plan::{Expr, Kind, Plan, Zone};
 use crate::check::possible::{Possible, possible};
 use crate::check::values::Watched;
-use crate::problem::{Problem, Problems};
-use crate::result::{CheckResult, Consequence, Finding};
-use crate::run::values::SectionValues;
+use crate::result::{CheckResult, Finding};
 
 /// Relative tolerance for a minimum length, for the rounding of section ends written with two
 /// decimals.
@@ -143,7 +138,7 @@ fn length(plan: &Plan, facts: &Facts, unit: &Unit, zone: &Zone) -> Option<CheckR
 }
 
 /// Vehicle data that an expression depends on and that the vehicle file does not state.
-fn not_stated(expr: &Expr, vehicle: &Vehicle) -> Vec<usize> {
+pub fn not_stated(expr: &Expr, vehicle: &Vehicle) -> Vec<usize> {
     let mut found = Vec::new();
     expr.visit(&mut |part| match part.kind {
         Kind::Vehicle(index) if vehicle.data[index].is_err() && !found.contains(&index) => {
@@ -186,7 +181,7 @@ pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
 }
 
 /// The rule behind a requirement that may remain unchecked.
-fn asked<'a>(plan: &'a Plan, unit: &Unit, check: &CheckResult) -> Option<&'a Expr> {
+pub fn asked<'a>(plan: &'a Plan, unit: &Unit, check: &CheckResult) -> Option<&'a Expr> {
     if check.name == "length" {
         let zone = plan.zones.iter().find(|zone| Some(&zone.name) == unit.zone.as_ref())?;
         return zone.minimum_length.as_ref();
@@ -200,91 +195,4 @@ pub fn sections_in_words(names: &[&str], of: usize) -> String {
         [one] => format!("section {one}"),
         _ => format!("sections {}", names.join(", ")),
     }
-}
-
-/// Transfers results of the records to the sections: faults and section checks.
-///
-/// # Errors
-/// `section-check` for each check that is not met and has `otherwise stop`.
-pub fn take_over(
-    plan: &Plan,
-    facts: &Facts,
-    units: &mut [Unit],
-    values: &[SectionValues],
-    copies: &[Finding],
-    notes: &mut Vec<String>,
-) -> Result<(), Problems> {
-    let mut stop = Problems::default();
-    let mut of_section: HashMap<&str, Vec<&Finding>> = HashMap::new();
-    for copy in copies {
-        of_section.entry(copy.section.as_deref().unwrap_or_default()).or_default().push(copy);
-    }
-    for (unit, values) in units.iter_mut().zip(values) {
-        for (check, rule) in
-            values.checks.iter().zip(&plan.checks).filter(|(check, _)| check.holds == Some(false))
-        {
-            let says = format!("{}: {}", check.title.to_lowercase(), check.says);
-            match rule.otherwise {
-                OnFault::NotUsed | OnFault::NotAssessable => unit.refuse(says, false),
-                OnFault::Note => notes.push(format!("Section {}: {says}.", unit.name)),
-                OnFault::Stop => stop.push(
-                    Problem::error("section-check", format!("section {}: {says}", unit.name))
-                        .at(&rule.span),
-                ),
-            }
-        }
-        let name = unit.name.clone();
-        for finding in values
-            .findings
-            .iter()
-            .chain(of_section.get(name.as_str()).into_iter().flatten().copied())
-        {
-            if finding.consequence == Consequence::NotUsed {
-                unit.refuse(finding.says.clone(), false);
-            }
-            let rule = plan.plausibility.iter().find(|rule| rule.name == finding.code);
-            if let Some(rule) = rule.filter(|rule| rule.otherwise == OnFault::Stop) {
-                stop.push(
-                    Problem::error("not-plausible", format!("section {name}: {}", finding.says))
-                        .at(&rule.span),
-                );
-            }
-        }
-        unit.covered = unit.extent.or(values.extent);
-        unit.checks.extend(values.checks.iter().cloned());
-        if let Some(fault) = &values.fault {
-            unit.refuse(fault.clone(), true);
-        }
-    }
-    notes.extend(unchecked(plan, facts, units));
-    let used =
-        units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).map(|(_, values)| values);
-    notes.extend(crate::run::values::margins::margin_note(used));
-    if stop.any_error() { Err(stop) } else { Ok(()) }
-}
-
-/// One note for each requirement that could not be checked in sections that are used nevertheless.
-fn unchecked(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<String> {
-    let mut found: Vec<(&str, &str, Vec<&str>)> = Vec::new();
-    for unit in units.iter().filter(|unit| unit.fault.is_none()) {
-        for check in unit.checks.iter().filter(|check| check.holds.is_none()) {
-            // A datum missing from the vehicle file is reported by a finding.
-            if asked(plan, unit, check)
-                .is_some_and(|rule| !not_stated(rule, facts.of(unit)).is_empty())
-            {
-                continue;
-            }
-            match found
-                .iter_mut()
-                .find(|(title, says, _)| *title == check.title && *says == check.says)
-            {
-                Some((_, _, names)) => names.push(&unit.name),
-                None => found.push((&check.title, &check.says, vec![&unit.name])),
-            }
-        }
-    }
-    let sentence = |(title, says, names): (&str, &str, Vec<&str>)| {
-        format!("{title}: {says} ({}).", sections_in_words(&names, units.len()))
-    };
-    found.into_iter().map(sentence).collect()
 }

@@ -2,10 +2,9 @@
 //! neighbours read much in common: they share one stretch. It follows from the table of sections
 //! alone, so that a section has the same values in every part of a campaign.
 
-use super::unit::{Stretch, Unit};
+use super::unit::{Extent, Stretch, Unit};
 use crate::check::plan::Plan;
 use crate::data::Campaigns;
-use crate::run::record::{Extent, part};
 
 /// The longest stretch that sections share, in lengths of what the shortest of them reads by
 /// itself. Of sections that touch, each with two lengths beside it on both sides, 16 share a
@@ -22,7 +21,7 @@ pub fn share(plan: &Plan, campaigns: Campaigns<'_>, units: &mut [Unit]) {
     let mut of_unit: Vec<(usize, usize)> = Vec::new();
     for (at, unit) in units.iter().enumerate() {
         let campaign = campaigns.get(unit.campaign);
-        let (Some(own), Some(run)) = (part(plan, unit), campaign.run_of(&unit.cell)) else {
+        let (Some(own), Some(run)) = (unit.part(plan), campaign.run_of(&unit.cell)) else {
             continue;
         };
         let Ok(offset) = campaign.offset(&unit.cell) else { continue };

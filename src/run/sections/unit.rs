@@ -6,8 +6,10 @@ use crate::check::plan::{Plan, Scalar};
 use crate::data::campaign::Part;
 use crate::data::table::Cell;
 use crate::result::CheckResult;
-use crate::run::record::Extent;
 use crate::source::Span;
+
+/// Start and end of a section on the axis, SI.
+pub type Extent = (f64, f64);
 
 /// A section, or a whole record where there are no sections.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -61,6 +63,34 @@ impl Stretch {
 }
 
 impl Unit {
+    /// A whole record, of which nothing else is known.
+    pub fn new(name: &Cell, site: usize, columns: Vec<Result<Scalar, String>>) -> Self {
+        Self {
+            name: name.value.clone(),
+            campaign: 0,
+            campaign_name: None,
+            vehicle: 0,
+            cell: name.clone(),
+            zone: None,
+            site,
+            site_name: name.value.clone(),
+            original: None,
+            extent: None,
+            stretch: None,
+            covered: None,
+            columns,
+            checks: Vec::new(),
+            fault: None,
+            faulty: false,
+            span: None,
+        }
+    }
+
+    /// The part of a run that the section reads by itself; `None` of a whole record.
+    pub fn part(&self, plan: &Plan) -> Option<Part> {
+        self.extent.map(|extent| Part::around(&plan.axis.column, extent, plan.sections.margin))
+    }
+
     /// Records the first reason not to use it.
     pub fn refuse(&mut self, reason: String, faulty: bool) {
         if self.fault.is_none() {

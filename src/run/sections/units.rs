@@ -184,27 +184,16 @@ fn of_campaign(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec
         let columns: Vec<Result<Scalar, String>> =
             columns.into_iter().map(|cell| cell.map_err(|fault| fault.says)).collect();
         let name = &campaign.names[row.row];
+        let site = sites[row.row];
         let mut unit = Unit {
-            name: name.value.clone(),
-            campaign: 0,
-            campaign_name: None,
-            vehicle: 0,
-            cell: name.clone(),
             zone: plan.sections.zone.and_then(|zone| match &columns[zone] {
                 Ok(Scalar::Word(word)) => Some(word.clone()),
                 _ => None,
             }),
-            site: sites[row.row],
-            site_name: campaign.names[sites[row.row]].value.clone(),
+            site_name: campaign.names[site].value.clone(),
             original: originals[row.row],
-            extent: None,
-            stretch: None,
-            covered: None,
-            columns,
-            checks: Vec::new(),
-            fault: None,
-            faulty: false,
             span: Some(name.span.clone()),
+            ..Unit::new(name, site, columns)
         };
         match (row.cell(&start), row.cell(&end)) {
             (Ok(Scalar::Number(start)), Ok(Scalar::Number(end))) if start < end => {
@@ -234,25 +223,7 @@ fn whole_record(plan: &Plan, campaign: &Campaign, name: &Cell, site: usize) -> U
                 .ok_or_else(|| format!("`{}` is not known of a whole record", datum.name))
         })
         .collect();
-    Unit {
-        name: name.value.clone(),
-        campaign: 0,
-        campaign_name: None,
-        vehicle: 0,
-        cell: name.clone(),
-        zone: None,
-        site,
-        site_name: name.value.clone(),
-        original: None,
-        extent: None,
-        stretch: None,
-        covered: None,
-        columns,
-        checks: Vec::new(),
-        fault: None,
-        faulty: false,
-        span: None,
-    }
+    Unit::new(name, site, columns)
 }
 
 /// What the campaign says of a run, as a datum of every section in it.
@@ -372,33 +343,31 @@ impl Row<'_> {
     }
 }
 
-pub fn results(plan: &Plan, facts: &Facts, units: Vec<Unit>) -> Vec<SectionResult> {
+/// The sections as results have them.
+pub fn results(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<SectionResult> {
     let axis = &plan.axis.unit;
-    let names: Vec<String> = units.iter().map(|unit| unit.name.clone()).collect();
-    units
-        .into_iter()
-        .map(|unit| {
-            let (start, end) = unit.covered.or(unit.extent).unwrap_or((0.0, 0.0));
-            SectionResult {
-                site: names.get(unit.site).unwrap_or(&unit.name).clone(),
-                section: unit.name,
-                campaign: unit.campaign_name,
-                vehicle: facts.vehicles[unit.vehicle].of.clone(),
-                zone: unit.zone,
-                used: unit.fault.is_none(),
-                reason: unit.fault,
-                length: axis.from_si(end - start),
-                start: axis.from_si(start),
-                end: axis.from_si(end),
-                axis_unit: axis.text.clone(),
-                columns: plan
-                    .columns
-                    .iter()
-                    .zip(&unit.columns)
-                    .map(|(datum, value)| item(datum, value.as_ref().ok()))
-                    .collect(),
-                checks: unit.checks,
-            }
-        })
-        .collect()
+    let of = |unit: &Unit| {
+        let (start, end) = unit.covered.or(unit.extent).unwrap_or((0.0, 0.0));
+        SectionResult {
+            site: units.get(unit.site).unwrap_or(unit).name.clone(),
+            section: unit.name.clone(),
+            campaign: unit.campaign_name.clone(),
+            vehicle: facts.of(unit).of.clone(),
+            zone: unit.zone.clone(),
+            used: unit.fault.is_none(),
+            reason: unit.fault.clone(),
+            length: axis.from_si(end - start),
+            start: axis.from_si(start),
+            end: axis.from_si(end),
+            axis_unit: axis.text.clone(),
+            columns: plan
+                .columns
+                .iter()
+                .zip(&unit.columns)
+                .map(|(datum, value)| item(datum, value.as_ref().ok()))
+                .collect(),
+            checks: unit.checks.clone(),
+        }
+    };
+    units.iter().map(of).collect()
 }

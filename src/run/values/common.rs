@@ -11,8 +11,8 @@ use crate::check::evaluate::number;
 use crate::check::plan::{self, AxisOperation, Side, SignalKind};
 use crate::metrics::percentile::Method;
 use crate::metrics::resample::{self, Located};
-use crate::run::record::{Along, Extent, Samples, Signal, apply, arithmetic, each};
-use crate::run::sections::Known;
+use crate::run::record::{Along, Samples, Signal, apply, arithmetic, each};
+use crate::run::sections::{Extent, Known};
 
 /// Where the samples of two records meet. It is the same for all signals of the two.
 #[derive(Debug)]

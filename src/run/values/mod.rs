@@ -1,17 +1,31 @@
 //! The values of one section: from the nodes of its records to rows.
+//!
+//! | file | content |
+//! |---|---|
+//! | `row` | a row of the table of values |
+//! | `print` | marks of a signal, by which copies are found |
+//! | `section_values` | all that the evaluation of a section gives |
+//! | `common` | both sides at common points |
+//! | `sides` | the records of a section; values, differences and metrics of them |
+//! | `margins` | whether a record is long enough for slow filters |
+//! | `one_record` | one record of a section |
+//! | `shifts` | shifts of a measurement against its simulation |
+//! | `synchronisation` | the shift of a section, estimated from its signals |
 
-pub mod common;
+mod common;
 pub mod margins;
-pub mod one_record;
+mod one_record;
 pub mod print;
+pub mod row;
 pub mod section_values;
-pub mod sides;
+pub mod shifts;
+mod sides;
 pub mod synchronisation;
 
 pub use common::Meetings;
-pub use margins::{note_margins, slow};
-pub use one_record::one_record;
+pub use one_record::{one_record, read_record};
 pub use print::Print;
+pub use row::Row;
 pub use section_values::SectionValues;
-pub use sides::{Evaluated, Original, RecordOfSide, Sides, Two, number_of, samples_of, section};
-pub use synchronisation::Shifts;
+pub use shifts::{Offset, Shifts};
+pub use sides::{NodeValues, Original, RecordOfSide, Sides, Two};

@@ -3,11 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::print::Print;
-use super::synchronisation::Offset;
+use super::row::Row;
+use super::shifts::Offset;
 use crate::problem::Problem;
 use crate::result::{CheckResult, FileHash, Finding};
-use crate::run::estimate::Row;
-use crate::run::record::Extent;
+use crate::run::sections::Extent;
 
 /// Results of one section.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]

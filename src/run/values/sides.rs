@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::common::{Both, Meetings};
+use super::row::Row;
 use crate::catalog::{Metric, Pair};
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{
@@ -12,24 +13,23 @@ use crate::check::plan::{
 };
 use crate::data::WhichRecord;
 use crate::graph::{InputNode, Joint, NodeId, Operation, SignalNodes, ValueNodes};
-use crate::metrics::percentile::Method;
 use crate::metrics::{pair, statistics};
-use crate::run::estimate::Row;
-use crate::run::record::{Extent, Found, Rate, Samples, Work};
-use crate::run::sections::{Known, Unit};
+use crate::result::FileHash;
+use crate::run::record::{NodeValue, Opened, Rate, Samples, Work};
+use crate::run::sections::{Extent, Known, Unit};
 
 /// Values of the requested nodes of one record, in the order in which they were computed.
 #[derive(Clone, Debug, Default)]
-pub struct Evaluated {
-    all: Vec<(NodeId, Found)>,
-    /// For each node, its place among all and one more; 0 where it has none.
+pub struct NodeValues {
+    all: Vec<(NodeId, NodeValue)>,
+    /// For each node, one more than the index of its value; 0 if it has no value.
     places: Vec<usize>,
 }
 
-impl From<Vec<(NodeId, Found)>> for Evaluated {
-    fn from(all: Vec<(NodeId, Found)>) -> Self {
+impl From<Vec<(NodeId, NodeValue)>> for NodeValues {
+    fn from(all: Vec<(NodeId, NodeValue)>) -> Self {
         let mut places = vec![0; all.iter().map(|(node, _)| node + 1).max().unwrap_or(0)];
-        // Of a node that was found twice, the first counts.
+        // If a node has two values, the first counts.
         for (at, (node, _)) in all.iter().enumerate().rev() {
             places[*node] = at + 1;
         }
@@ -37,14 +37,36 @@ impl From<Vec<(NodeId, Found)>> for Evaluated {
     }
 }
 
-impl Evaluated {
-    pub fn get(&self, node: NodeId) -> Option<&Found> {
+impl NodeValues {
+    pub fn get(&self, node: NodeId) -> Option<&NodeValue> {
         let place = self.places.get(node)?.checked_sub(1)?;
         self.all.get(place).map(|(_, found)| found)
     }
 
-    pub fn iter(&self) -> impl Iterator<Item = &(NodeId, Found)> {
+    pub fn iter(&self) -> impl Iterator<Item = &(NodeId, NodeValue)> {
         self.all.iter()
+    }
+
+    /// A number of a signal, and of how many samples it is.
+    ///
+    /// # Errors
+    /// It could not be computed, and why.
+    pub fn number(&self, node: NodeId) -> Result<(f64, usize), String> {
+        match self.get(node) {
+            Some(NodeValue::Number(value, samples)) => Ok((*value, *samples)),
+            Some(NodeValue::Failed(reason)) => Err(reason.clone()),
+            _ => Err("a value is missing".into()),
+        }
+    }
+
+    /// # Errors
+    /// As [`NodeValues::number`].
+    pub fn samples(&self, node: NodeId) -> Result<&Samples, String> {
+        match self.get(node) {
+            Some(NodeValue::Samples(samples)) => Ok(samples),
+            Some(NodeValue::Failed(reason)) => Err(reason.clone()),
+            _ => Err("a signal is missing".into()),
+        }
     }
 }
 
@@ -56,20 +78,44 @@ pub struct RecordOfSide {
     /// What the campaign calls it, also if it is the only one.
     pub called: Option<Arc<str>>,
     pub which: WhichRecord,
-    pub found: Evaluated,
+    pub found: NodeValues,
+    pub file: FileHash,
+    /// The section on the axis; of a whole record all of it.
+    pub extent: Extent,
+    /// As [`Opened::rows`].
+    pub rows: [(usize, usize); 2],
+}
+
+impl RecordOfSide {
+    pub fn new(
+        work: &Work<'_>,
+        unit: &Unit,
+        which: WhichRecord,
+        opened: &Opened,
+        found: Vec<(NodeId, NodeValue)>,
+    ) -> Self {
+        let campaign = work.campaign(unit);
+        Self {
+            name: campaign.record_name(which).cloned(),
+            called: campaign.record_called(which).cloned(),
+            which,
+            found: found.into(),
+            file: opened.file.clone(),
+            extent: opened.extent,
+            rows: opened.rows(),
+        }
+    }
 }
 
 /// All records of a section.
 #[derive(Debug)]
 pub struct Sides<'a> {
+    pub work: &'a Work<'a>,
     pub simulated: &'a [RecordOfSide],
     pub measured: &'a [RecordOfSide],
     /// The section that this one repeats.
     pub original: Option<&'a Original<'a>>,
     pub known: &'a Known<'a>,
-    pub extent: Option<Extent>,
-    /// Interpolation rule of percentiles.
-    pub method: Method,
     pub meetings: &'a Meetings,
 }
 
@@ -84,41 +130,20 @@ pub struct Original<'a> {
 /// One record of each side; a side that is not read has none.
 #[derive(Clone, Copy, Debug)]
 pub struct Two<'a> {
-    pub simulated: &'a Evaluated,
-    pub measured: &'a Evaluated,
+    pub sides: &'a Sides<'a>,
+    pub simulated: &'a NodeValues,
+    pub measured: &'a NodeValues,
     pub known: &'a Known<'a>,
     pub extent: Option<Extent>,
-    /// Interpolation rule of percentiles.
-    pub method: Method,
     /// Added to the axis of the simulated record, SI: a repeat is at another distance than its
     /// original.
     pub shift: f64,
-    pub meetings: &'a Meetings,
 }
 
 /// The values of a side that is not read.
-pub static NOT_READ: Evaluated = Evaluated { all: Vec::new(), places: Vec::new() };
+static NOT_READ: NodeValues = NodeValues { all: Vec::new(), places: Vec::new() };
 
 impl<'a> Sides<'a> {
-    /// The simulated and the measured records of a section.
-    pub fn of_section(
-        work: &Work<'_>,
-        unit: &Unit,
-        (simulated, measured): (&'a [RecordOfSide], &'a [RecordOfSide]),
-        original: Option<&'a Original<'a>>,
-        (known, meetings): (&'a Known<'a>, &'a Meetings),
-    ) -> Self {
-        Self {
-            simulated,
-            measured,
-            original,
-            known,
-            extent: unit.extent,
-            method: work.plan.sections.percentiles,
-            meetings,
-        }
-    }
-
     fn of(&self, side: Side) -> &'a [RecordOfSide] {
         match side {
             Side::Simulated => self.simulated,
@@ -126,37 +151,29 @@ impl<'a> Sides<'a> {
         }
     }
 
+    fn two(&'a self, simulated: &'a NodeValues, measured: &'a NodeValues) -> Two<'a> {
+        let (known, extent) = (self.known, self.known.extent);
+        Two { sides: self, simulated, measured, known, extent, shift: 0.0 }
+    }
+
     /// One record in the place of both sides.
-    pub fn alone(&self, record: &'a RecordOfSide) -> Two<'a> {
-        let Self { known, extent, method, meetings, .. } = *self;
-        Two {
-            simulated: &record.found,
-            measured: &record.found,
-            known,
-            extent,
-            method,
-            shift: 0.0,
-            meetings,
-        }
+    pub fn alone(&'a self, record: &'a RecordOfSide) -> Two<'a> {
+        self.two(&record.found, &record.found)
     }
 
     /// Every record of one side with every record of the other, with the names of those of which
     /// there are several.
-    pub fn pairs(&self) -> impl Iterator<Item = (Option<Arc<str>>, Two<'a>)> {
-        let Self { known, extent, method, meetings, .. } = *self;
-        let of = |records: &'a [RecordOfSide]| -> Vec<(Option<Arc<str>>, &'a Evaluated)> {
+    pub fn pairs(&'a self) -> impl Iterator<Item = (Option<Arc<str>>, Two<'a>)> {
+        let of = |records: &'a [RecordOfSide]| -> Vec<(Option<&'a Arc<str>>, &'a NodeValues)> {
             if records.is_empty() {
                 return vec![(None, &NOT_READ)];
             }
-            records.iter().map(|record| (record.name.clone(), &record.found)).collect()
+            records.iter().map(|record| (record.name.as_ref(), &record.found)).collect()
         };
         let (simulated, measured) = (of(self.simulated), of(self.measured));
         simulated.into_iter().flat_map(move |(s, simulated)| {
-            let one = |(m, measured): &(Option<Arc<str>>, &'a Evaluated)| {
-                (
-                    names(s.as_ref(), m.as_ref()),
-                    Two { simulated, measured, known, extent, method, shift: 0.0, meetings },
-                )
+            let one = |(m, measured): &(Option<&Arc<str>>, &'a NodeValues)| {
+                (names(s, *m), self.two(simulated, measured))
             };
             measured.iter().map(one).collect::<Vec<_>>()
         })
@@ -164,30 +181,24 @@ impl<'a> Sides<'a> {
 
     /// Every measured record of a repeat with that of its original, which takes the place of the
     /// measurement. Distances are counted from the start of each section.
-    fn repeats(&self) -> impl Iterator<Item = Joined<'a>> {
-        let Self { known, extent: own, method, meetings, .. } = *self;
+    fn repeats(&'a self) -> impl Iterator<Item = Joined<'a>> {
         self.original.into_iter().flat_map(move |original| {
             let extent = original.unit.extent;
+            let own = self.known.extent;
             let shift = extent.zip(own).map_or(0.0, |((first, _), (again, _))| first - again);
-            self.measured.iter().zip(&original.records).map(move |(repeat, first)| {
-                let two = Two {
-                    simulated: &repeat.found,
-                    measured: &first.found,
-                    known,
-                    extent,
-                    method,
-                    shift,
-                    meetings,
-                };
-                let second = Two { known: &original.known, ..self.alone(first) };
-                Joined { record: repeat.name.clone(), two, first: self.alone(repeat), second }
+            self.measured.iter().zip(&original.records).map(move |(repeat, first)| Joined {
+                record: repeat.name.clone(),
+                two: Two { extent, shift, ..self.two(&repeat.found, &first.found) },
+                first: self.alone(repeat),
+                second: Two { known: &original.known, ..self.alone(first) },
             })
         })
     }
 
     /// The records that a rule asks for, in the order of the campaign.
-    fn chosen(&self, work: &Work<'_>, chosen: Chosen) -> Vec<&'a RecordOfSide> {
-        let members = chosen.record.map_or(&[][..], |index| &work.plan.records[index].members);
+    fn chosen(&self, chosen: Chosen) -> Vec<&'a RecordOfSide> {
+        let records = &self.work.plan.records;
+        let members = chosen.record.map_or(&[][..], |index| &records[index].members);
         let named = |record: &&RecordOfSide| {
             members.iter().any(|member| record.called.as_deref() == Some(member.value.as_str()))
         };
@@ -195,20 +206,17 @@ impl<'a> Sides<'a> {
     }
 
     /// Two records that are compared, and the names of those of which there are several.
-    fn joined(&self, work: &Work<'_>, pairing: Pairing) -> Result<Vec<Joined<'a>>, String> {
-        let pair = |first: &'a RecordOfSide, second: &'a RecordOfSide| {
-            let two = Two { simulated: &first.found, measured: &second.found, ..self.alone(first) };
-            Joined {
-                record: names(first.name.as_ref(), second.name.as_ref()),
-                two,
-                first: self.alone(first),
-                second: self.alone(second),
-            }
+    fn joined(&'a self, pairing: Pairing) -> Result<Vec<Joined<'a>>, String> {
+        let pair = |first: &'a RecordOfSide, second: &'a RecordOfSide| Joined {
+            record: names(first.name.as_ref(), second.name.as_ref()),
+            two: self.two(&first.found, &second.found),
+            first: self.alone(first),
+            second: self.alone(second),
         };
         match pairing {
             Pairing::Repeats => Ok(self.repeats().collect()),
             Pairing::EachOther(of) => {
-                let all = self.chosen(work, of);
+                let all = self.chosen(of);
                 if all.len() < 2 {
                     return Err(one_record(of.side));
                 }
@@ -219,7 +227,7 @@ impl<'a> Sides<'a> {
                     .collect())
             }
             Pairing::Each(one, other) => {
-                let (firsts, seconds) = (self.chosen(work, one), self.chosen(work, other));
+                let (firsts, seconds) = (self.chosen(one), self.chosen(other));
                 let with = |first: &'a RecordOfSide| {
                     let others = seconds.iter().filter(move |second| second.which != first.which);
                     others.map(|second| pair(first, second)).collect::<Vec<_>>()
@@ -231,57 +239,29 @@ impl<'a> Sides<'a> {
     }
 
     /// The rows of one position.
-    pub fn rows(
-        &self,
-        work: &Work<'_>,
-        position: usize,
-        nodes: &SignalNodes,
-    ) -> Result<Vec<Row>, String> {
-        let Operation::Compare(evaluation) = &work.graph.nodes[nodes.compare].operation else {
+    ///
+    /// # Errors
+    /// Why it has none.
+    pub fn rows(&'a self, position: usize, nodes: &SignalNodes) -> Result<Vec<Row>, String> {
+        let Operation::Compare(evaluation) = &self.work.graph.nodes[nodes.compare].operation else {
             return Err("this node gives no rows".into());
+        };
+        let of_pairs = |pairing: Pairing,
+                        of_two: &dyn Fn(&Two<'_>) -> Result<(f64, usize), String>|
+         -> Result<Vec<Row>, String> {
+            let one = |Joined { record, two, .. }: Joined<'_>| {
+                Ok(Row::single(position, 0, record, of_two(&two)?))
+            };
+            self.joined(pairing)?.into_iter().map(one).collect()
         };
         match evaluation.as_ref() {
             Evaluation::Metric { metric, pairing, .. } => {
-                let common = metric.on_common_points(keeps_samples(work, nodes));
+                let common = metric.on_common_points(keeps_samples(self.work, nodes));
                 let node = if common { nodes.filtered } else { nodes.processed };
-                let one = |Joined { record, two, .. }: Joined<'_>| {
-                    let (value, samples) = two.compared(*metric, common, node, nodes.over)?;
-                    Ok(Row {
-                        position,
-                        which: 0,
-                        record,
-                        simulated: None,
-                        measured: None,
-                        value,
-                        samples,
-                    })
-                };
-                self.joined(work, *pairing)?.into_iter().map(one).collect()
+                of_pairs(*pairing, &|two| two.compared(*metric, common, node, nodes.over))
             }
             Evaluation::Combined { of, pairing } => {
-                let one = |Joined { record, two, .. }: Joined<'_>| {
-                    let found: Vec<_> = nodes
-                        .inputs
-                        .iter()
-                        .map(|input| two.counted(input, InputSide::Measured))
-                        .collect();
-                    let samples =
-                        found.iter().flatten().map(|(_, samples)| *samples).max().unwrap_or(0);
-                    let inputs: Vec<Result<f64, String>> =
-                        found.into_iter().map(|found| found.map(|(value, _)| value)).collect();
-                    let value =
-                        number(&of.expr, &Known { inputs: &inputs, ..section(self.known) })?;
-                    Ok(Row {
-                        position,
-                        which: 0,
-                        record,
-                        simulated: None,
-                        measured: None,
-                        value,
-                        samples,
-                    })
-                };
-                self.joined(work, *pairing)?.into_iter().map(one).collect()
+                of_pairs(*pairing, &|two| two.combined(&of.expr, &nodes.inputs))
             }
             Evaluation::Values { values, records } => {
                 let mut rows = Vec::new();
@@ -292,7 +272,7 @@ impl<'a> Sides<'a> {
                         continue;
                     }
                     applied = true;
-                    rows.extend(self.of_value(work, records, (position, which), nodes, of)?);
+                    rows.extend(self.of_value(records, (position, which), nodes, of)?);
                 }
                 if applied {
                     Ok(rows)
@@ -304,67 +284,49 @@ impl<'a> Sides<'a> {
     }
 
     fn of_value(
-        &self,
-        work: &Work<'_>,
+        &'a self,
         records: &Records,
         (position, which): (usize, usize),
         nodes: &SignalNodes,
         value: &ValueNodes,
     ) -> Result<Vec<Row>, String> {
-        let samples = |two: &Two<'_>, side| two.samples(work, nodes, value, side);
+        let samples = |two: &Two<'_>, side| two.count(nodes, value, side);
         let alone = |of: Chosen| {
-            self.chosen(work, of).into_iter().map(move |record| {
-                let two = self.alone(record);
-                Ok::<_, String>((record.name.clone(), two, two.value(work, value, own(of.side))?))
+            self.chosen(of).into_iter().map(move |record| {
+                let (two, side) = (self.alone(record), own(of.side));
+                let found = (two.value(value, side)?, samples(&two, side));
+                Ok::<_, String>(Row::single(position, which, record.name.clone(), found))
             })
         };
-        let difference_of = |difference: &Expr, s: f64, m: f64| {
-            number(difference, &Known { sides: Some((s, m)), ..section(self.known) })
+        let compared = |row: Row, difference: &Expr, (s, m): (f64, f64)| -> Result<Row, String> {
+            let value = number(difference, &Known { sides: Some((s, m)), ..*self.known })?;
+            Ok(Row { simulated: Some(s), measured: Some(m), value, ..row })
         };
         match records {
-            Records::Of(of) => {
-                let one = |(record, two, value): (Option<Arc<str>>, Two<'_>, f64)| {
-                    let samples = samples(&two, own(of.side));
-                    Row { position, which, record, simulated: None, measured: None, value, samples }
-                };
-                alone(*of).map(|found| found.map(one)).collect()
-            }
+            Records::Of(of) => alone(*of).collect(),
             Records::Compared { pairing, difference } => {
+                let within = pairing.within();
+                let within = within.or((*pairing == Pairing::Repeats).then_some(Side::Measured));
                 let one = |Joined { record, two, first, second }: Joined<'_>| {
                     // Of two sides, each number may also take values of the other one.
-                    let (s, m, samples) = match pairing
-                        .within()
-                        .or((*pairing == Pairing::Repeats).then_some(Side::Measured))
-                    {
+                    let (s, m, of) = match within.map(own) {
                         None => {
-                            let s = two.value(work, value, InputSide::Simulated)?;
-                            (
-                                s,
-                                two.value(work, value, InputSide::Measured)?,
-                                samples(&two, InputSide::Measured),
-                            )
+                            let s = two.value(value, InputSide::Simulated)?;
+                            let m = two.value(value, InputSide::Measured)?;
+                            (s, m, samples(&two, InputSide::Measured))
                         }
                         Some(side) => {
-                            let s = first.value(work, value, own(side))?;
-                            (s, second.value(work, value, own(side))?, samples(&first, own(side)))
+                            let s = first.value(value, side)?;
+                            (s, second.value(value, side)?, samples(&first, side))
                         }
                     };
-                    let value = difference_of(difference, s, m)?;
-                    Ok(Row {
-                        position,
-                        which,
-                        record,
-                        simulated: Some(s),
-                        measured: Some(m),
-                        value,
-                        samples,
-                    })
+                    compared(Row::single(position, which, record, (0.0, of)), difference, (s, m))
                 };
-                self.joined(work, *pairing)?.into_iter().map(one).collect()
+                self.joined(*pairing)?.into_iter().map(one).collect()
             }
             Records::Spread { of, among, center, difference } => {
-                let all = alone(*among).collect::<Result<Vec<_>, _>>()?;
-                let values: Vec<f64> = all.iter().map(|(_, _, value)| *value).collect();
+                let all = alone(*among).map(|row| Ok(row?.value));
+                let values = all.collect::<Result<Vec<f64>, String>>()?;
                 if values.len() < 2 {
                     return Err(one_record(of.side));
                 }
@@ -373,20 +335,12 @@ impl<'a> Sides<'a> {
                     Center::Median => statistics::median(&values),
                 };
                 let center = center.ok_or("the records have no mean")?;
-                let one = |(record, two, value): (Option<Arc<str>>, Two<'_>, f64)| {
-                    let samples = samples(&two, own(of.side));
-                    let difference = difference_of(difference, value, center)?;
-                    Ok(Row {
-                        position,
-                        which,
-                        record,
-                        simulated: Some(value),
-                        measured: Some(center),
-                        value: difference,
-                        samples,
-                    })
+                let one = |row: Result<Row, String>| {
+                    let row = row?;
+                    let value = row.value;
+                    compared(row, difference, (value, center))
                 };
-                alone(*of).map(|found| found.and_then(one)).collect()
+                alone(*of).map(one).collect()
             }
         }
     }
@@ -422,7 +376,7 @@ fn own(side: Side) -> InputSide {
 }
 
 /// Whether the samples of the record are still available after the quantity's filter.
-pub fn keeps_samples(work: &Work<'_>, nodes: &SignalNodes) -> bool {
+fn keeps_samples(work: &Work<'_>, nodes: &SignalNodes) -> bool {
     let quantity = work
         .graph
         .quantities
@@ -435,7 +389,7 @@ pub fn keeps_samples(work: &Work<'_>, nodes: &SignalNodes) -> bool {
 fn applies(expr: &Expr, known: &Known<'_>) -> Result<bool, String> {
     let Kind::Cases(arms, None) = &expr.kind else { return Ok(true) };
     for (_, condition) in arms {
-        if flag(condition, &section(known))? {
+        if flag(condition, known)? {
             return Ok(true);
         }
     }
@@ -444,15 +398,25 @@ fn applies(expr: &Expr, known: &Known<'_>) -> Result<bool, String> {
 
 impl Two<'_> {
     /// The value of a node for one side.
-    fn value(&self, work: &Work<'_>, value: &ValueNodes, side: InputSide) -> Result<f64, String> {
-        match &work.graph.nodes[value.node].operation {
+    fn value(&self, value: &ValueNodes, side: InputSide) -> Result<f64, String> {
+        match &self.sides.work.graph.nodes[value.node].operation {
             Operation::Value(expr) => {
                 let inputs: Vec<Result<f64, String>> =
                     value.inputs.iter().map(|input| self.input(input, side)).collect();
-                number(expr, &Known { inputs: &inputs, ..section(self.known) })
+                number(expr, &Known { inputs: &inputs, ..*self.known })
             }
             _ => self.input(value.inputs.first().ok_or("a value takes nothing")?, side),
         }
+    }
+
+    /// An expression of metrics of both signals, and the number of samples.
+    fn combined(&self, of: &Expr, inputs: &[InputNode]) -> Result<(f64, usize), String> {
+        let found: Vec<_> =
+            inputs.iter().map(|input| self.counted(input, InputSide::Measured)).collect();
+        let samples = found.iter().flatten().map(|(_, samples)| *samples).max().unwrap_or(0);
+        let inputs: Vec<Result<f64, String>> =
+            found.into_iter().map(|found| found.map(|(value, _)| value)).collect();
+        Ok((number(of, &Known { inputs: &inputs, ..*self.sides.known })?, samples))
     }
 
     /// A metric of both signals of a node, and the number of measured samples.
@@ -464,17 +428,15 @@ impl Two<'_> {
         over: Option<NodeId>,
     ) -> Result<(f64, usize), String> {
         let of @ (simulated, measured) =
-            (samples_of(self.simulated, node)?, samples_of(self.measured, node)?);
+            (self.simulated.samples(node)?, self.measured.samples(node)?);
         let meeting = if on_common_points {
-            Some(self.meetings.of(simulated, measured, self.extent, self.shift)?)
+            Some(self.sides.meetings.of(simulated, measured, self.extent, self.shift)?)
         } else {
             None
         };
         let over = match over {
             None => None,
-            Some(node) => {
-                Some((samples_of(self.simulated, node)?, samples_of(self.measured, node)?))
-            }
+            Some(node) => Some((self.simulated.samples(node)?, self.measured.samples(node)?)),
         };
         let over = over.map(|(s, m)| (s.values.as_slice(), m.values.as_slice()));
         let (Rate::PerTime(rate) | Rate::PerLength(rate)) = measured.along.rate;
@@ -491,7 +453,7 @@ impl Two<'_> {
         let pair = Pair { axis, simulated: &simulated, measured, rate, band: None, over };
         let Some(points) = metric.points() else { return Ok((metric.run(&pair)?, measured.len())) };
         let quantiles = |side: Side, samples: &Samples, values: &[f64]| {
-            let sorted = self.meetings.sorted((samples, meeting.as_ref(), side), values);
+            let sorted = self.sides.meetings.sorted((samples, meeting.as_ref(), side), values);
             pair::quantiles_of_sorted(&sorted, points).map_err(|undefined| undefined.to_string())
         };
         let of_simulated = quantiles(Side::Simulated, of.0, &simulated)?;
@@ -509,77 +471,37 @@ impl Two<'_> {
     /// A value, and the number of samples.
     fn counted(&self, input: &InputNode, side: InputSide) -> Result<(f64, usize), String> {
         match &input.joint {
-            None => {
-                let record = self.record(input.side.resolve(side));
-                let samples = match record.get(input.node) {
-                    Some(Found::Number(_, samples)) => *samples,
-                    _ => 0,
-                };
-                Ok((number_of(record, input.node)?, samples))
-            }
+            None => self.record(input.side.resolve(side)).number(input.node),
             Some(Joint::Metric { metric, on_common_points, over }) => {
                 self.compared(*metric, *on_common_points, input.node, *over)
             }
             Some(Joint::Samples { reducer, signal }) => {
                 let both = Both {
-                    simulated: samples_of(self.simulated, input.node)?,
-                    measured: samples_of(self.measured, input.node)?,
+                    simulated: self.simulated.samples(input.node)?,
+                    measured: self.measured.samples(input.node)?,
                     known: self.known,
                     extent: self.extent,
                     shift: self.shift,
-                    meetings: self.meetings,
+                    meetings: self.sides.meetings,
                 };
-                both.reduced(*reducer, self.method, signal)
+                both.reduced(*reducer, self.sides.work.plan.sections.percentiles, signal)
             }
         }
     }
 
-    pub fn record(&self, side: InputSide) -> &Evaluated {
+    fn record(&self, side: InputSide) -> &NodeValues {
         if side == InputSide::Measured { self.measured } else { self.simulated }
     }
 
     /// Number of samples or windows of the quantity's own signal that a value was taken from.
-    fn samples(
-        &self,
-        work: &Work<'_>,
-        nodes: &SignalNodes,
-        value: &ValueNodes,
-        side: InputSide,
-    ) -> usize {
-        let own =
-            |input: &&InputNode| work.graph.nodes[input.node].inputs.contains(&nodes.processed);
+    fn count(&self, nodes: &SignalNodes, value: &ValueNodes, side: InputSide) -> usize {
+        let graph = self.sides.work.graph;
+        let own = |input: &&InputNode| graph.nodes[input.node].inputs.contains(&nodes.processed);
         let input = value.inputs.iter().find(own).or(value.inputs.first());
         match input.and_then(|input| self.record(side).get(input.node)) {
-            Some(Found::Number(_, samples)) => *samples,
-            Some(Found::Samples(samples)) => samples.values.len(),
-            Some(Found::Failed(_)) | None => 0,
+            Some(NodeValue::Number(_, samples)) => *samples,
+            Some(NodeValue::Samples(samples)) => samples.values.len(),
+            Some(NodeValue::Failed(_)) | None => 0,
         }
-    }
-}
-
-pub fn number_of(found: &Evaluated, node: NodeId) -> Result<f64, String> {
-    match found.get(node) {
-        Some(Found::Number(value, _)) => Ok(*value),
-        Some(Found::Failed(reason)) => Err(reason.clone()),
-        _ => Err("a value is missing".into()),
-    }
-}
-
-pub fn samples_of(found: &Evaluated, node: NodeId) -> Result<&Samples, String> {
-    match found.get(node) {
-        Some(Found::Samples(samples)) => Ok(samples),
-        Some(Found::Failed(reason)) => Err(reason.clone()),
-        _ => Err("a signal is missing".into()),
-    }
-}
-
-/// The same names, without inputs and sides.
-pub fn section<'a>(known: &Known<'a>) -> Known<'a> {
-    Known {
-        vehicle: known.vehicle,
-        columns: known.columns,
-        extent: known.extent,
-        inputs: &[],
-        sides: None,
     }
 }

@@ -1,46 +1,13 @@
-//! Shift of the measurement against the simulation along the axis: requested shifts, and the shift
-//! estimated from the signals.
+//! Shift of the measurement against the simulation along the axis, estimated from the signals.
 
 use std::collections::BTreeSet;
 
-use serde::{Deserialize, Serialize};
-
-use super::sides::Evaluated;
+use super::shifts::Offset;
+use super::sides::NodeValues;
 use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::synchronise::{self, Estimate, Search};
-use crate::run::record::{Found, Held, Work};
+use crate::run::record::{Held, NodeValue, Work};
 use crate::run::sections::Unit;
-
-/// The shifts at which the measurement is evaluated.
-#[derive(Clone, Copy, Debug)]
-pub struct Shifts<'a> {
-    /// Added to the measurement's axis before sections are cut, SI.
-    pub offsets: &'a [f64],
-    /// Largest shift of the search, where the shift of each section is to be estimated, SI.
-    pub farthest: Option<f64>,
-    /// Whether the estimated shift is added as well.
-    pub correct: bool,
-}
-
-impl Shifts<'_> {
-    /// The records without a shift.
-    pub const NONE: Shifts<'static> = Shifts { offsets: &[0.0], farthest: None, correct: false };
-
-    pub fn plain(&self) -> bool {
-        self.offsets == [0.0] && self.farthest.is_none()
-    }
-}
-
-/// The shift that aligns a section's measurement with its simulation, in SI of the axis.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Offset {
-    pub shift: f64,
-    /// 95 % interval.
-    pub low: f64,
-    pub high: f64,
-    /// Correlation of both sides at that shift, over all signals.
-    pub correlation: f64,
-}
 
 /// Number of steps of the search up to its largest shift.
 const STEPS: f64 = 100.0;
@@ -63,14 +30,15 @@ pub fn estimate(
     graph: &Graph,
     unit: &Unit,
     farthest: f64,
-    simulated: &Evaluated,
+    simulated: &NodeValues,
     measured: &Held<'_>,
 ) -> Option<Offset> {
     let (start, end) = unit.extent?;
     let mut pairs = Vec::new();
     let nodes: Vec<NodeId> = simulated.iter().map(|(node, _)| *node).collect();
     for ((node, found), group) in simulated.iter().zip(groups(graph, &nodes)) {
-        let (Found::Samples(simulated), Some(measured)) = (found, measured.samples(*node)) else {
+        let (NodeValue::Samples(simulated), Some(measured)) = (found, measured.samples(*node))
+        else {
             continue;
         };
         pairs.push(synchronise::Pair {

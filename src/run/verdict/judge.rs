@@ -4,17 +4,15 @@
 use std::collections::BTreeSet;
 
 use super::verdicts;
-use crate::check::constant;
-use crate::check::plan::{Chosen, Evaluation, Pairing, Plan, Quantity, Records, Valued, Zone};
+use crate::check::plan::{Chosen, Evaluation, Pairing, Plan, Quantity, Records, Zone};
 use crate::graph::Graph;
-use crate::metrics::rounded;
 use crate::result::{
     Consequence, Finding, PairValue, QuantityResult, Reported, Verdict, VerdictResult, ZoneResult,
     usable_sections,
 };
 use crate::run::describe::{reports, spreads};
-use crate::run::estimate::{Member, TooFew, count_independent, minima};
-use crate::run::limit::{Judging, compared, limits, together};
+use crate::run::estimate::{Member, Rows, count_independent};
+use crate::run::limit::{Judging, compared, fails_alone, rule_place};
 use crate::run::sections::{Facts, Unit};
 use crate::run::values::SectionValues;
 use crate::run::words::count;
@@ -65,12 +63,7 @@ pub fn judge(
     missing.extend(without_sections(units));
     missing.extend(not_plausible(plan, told.findings, missing.is_empty()));
     missing.extend(told.barred.iter().cloned());
-    let rows: Vec<Rows<'_>> = plan
-        .quantities
-        .iter()
-        .enumerate()
-        .map(|(index, quantity)| rows(plan, quantity, index, &used, facts))
-        .collect();
+    let rows = Rows::of_all(plan, facts, &used);
     let table: Vec<_> = rows.iter().map(Rows::usable).collect();
     let of_quantity = |(index, quantity): (usize, &Quantity)| {
         let judging = Judging {
@@ -169,26 +162,6 @@ fn not_plausible(plan: &Plan, findings: &[Finding], complete: bool) -> Vec<Strin
     reasons
 }
 
-/// Why a quantity cannot be evaluated in some of the sections: the first of them in full.
-fn impossible(index: usize, used: &[(&Unit, &SectionValues)]) -> Option<String> {
-    let of_section = |values: &SectionValues| {
-        values
-            .impossible
-            .iter()
-            .find(|(quantity, _)| *quantity == index)
-            .map(|(_, says)| says.clone())
-    };
-    let mut found =
-        used.iter().filter_map(|(unit, values)| Some((&unit.name, of_section(values)?)));
-    let (name, says) = found.next()?;
-    let more = match found.count() {
-        0 => String::new(),
-        1 => "; the same holds for 1 other section".into(),
-        more => format!("; the same holds for {more} other sections"),
-    };
-    Some(format!("it cannot be evaluated in section {name}, {says}{more}"))
-}
-
 fn zone_result(zone: &Zone, units: &[Unit]) -> ZoneResult {
     let given: Vec<&Unit> =
         units.iter().filter(|unit| unit.zone.as_deref() == Some(zone.name.as_str())).collect();
@@ -204,107 +177,6 @@ fn zone_result(zone: &Zone, units: &[Unit]) -> ZoneResult {
         minimum: zone.minimum_sections,
         holds: sites >= zone.minimum_sections,
     }
-}
-
-/// The rows of a quantity over all sections used.
-pub fn members<'a>(
-    quantity: &'a Quantity,
-    index: usize,
-    used: &[(&'a Unit, &'a SectionValues)],
-) -> Vec<Member<'a>> {
-    let mut members = Vec::new();
-    for (unit, values) in used {
-        for row in values.rows.get(index).into_iter().flatten() {
-            members.push(Member { unit, signal: &quantity.positions[row.position].name, row });
-        }
-    }
-    members
-}
-
-/// The rows of a quantity, or the reason why they are not sufficient.
-pub struct Rows<'a> {
-    members: Vec<Member<'a>>,
-    too_few: Vec<TooFew>,
-    reason: Option<String>,
-}
-
-impl<'a> Rows<'a> {
-    /// The rows, for a quantity or limit that uses numbers of this one.
-    pub fn usable(&'a self) -> Result<&'a [Member<'a>], String> {
-        self.reason.clone().map_or(Ok(&self.members), Err)
-    }
-}
-
-pub fn rows<'a>(
-    plan: &Plan,
-    quantity: &'a Quantity,
-    index: usize,
-    used: &[(&'a Unit, &'a SectionValues)],
-    facts: &Facts,
-) -> Rows<'a> {
-    let members = members(quantity, index, used);
-    let recorded = members.iter().map(|member| member.signal).collect::<BTreeSet<_>>().len();
-    let pairs = minima::pairs(plan, &members);
-    let too_few = minima::too_few(plan, quantity, &members, facts);
-    let impossible = impossible(index, used);
-    let reason = if impossible.is_some() {
-        impossible
-    } else if members.is_empty() && quantity.evaluation.of_repeats() {
-        Some(
-            "no section with values repeats another one (column `repeat of` of the section table)"
-                .into(),
-        )
-    } else if recorded < quantity.minimum_signals {
-        Some(format!(
-            "{} recorded; at least {} required",
-            count(recorded, "signal"),
-            quantity.minimum_signals
-        ))
-    } else if pairs < quantity.minimum_pairs {
-        Some(minima::in_words(pairs, members.len(), quantity.minimum_pairs))
-    } else {
-        minima::reason(&too_few).or_else(|| whatever_the_records(quantity, &members, facts))
-    };
-    Rows { members, too_few, reason }
-}
-
-/// Why the values say nothing of the records: with the data of these sections and vehicles, each is
-/// the same number whatever the records are.
-fn whatever_the_records(
-    quantity: &Quantity,
-    members: &[Member<'_>],
-    facts: &Facts,
-) -> Option<String> {
-    let (first, others) = members.split_first()?;
-    if others.iter().any(|member| member.row.value != first.row.value) {
-        return None;
-    }
-    let fixed = |member: &Member<'_>| {
-        let known = member.unit.known(facts);
-        let of = |valued: &Valued| {
-            let inputs = valued.inputs.get(member.row.position)?;
-            constant::whatever_the_records(&valued.expr, inputs, &known)
-        };
-        match quantity.evaluation.as_ref() {
-            Evaluation::Combined { of: valued, .. } => of(valued),
-            Evaluation::Values { values, records } => match records {
-                Records::Compared { difference, .. } | Records::Spread { difference, .. } => {
-                    constant::whatever_the_records(difference, &[], &known)
-                        .or_else(|| of(values.get(member.row.which)?))
-                }
-                Records::Of(_) => of(values.get(member.row.which)?),
-            },
-            Evaluation::Metric { .. } => None,
-        }
-    };
-    let says = || {
-        let value = rounded(quantity.unit.from_si(first.row.value));
-        format!(
-            "every value is {value}{} whatever the records are, with the data of these sections and vehicles",
-            quantity.unit.suffix()
-        )
-    };
-    members.iter().all(|member| fixed(member).is_some()).then(says)
 }
 
 /// The result, and a sentence for each limit that is not met.
@@ -333,7 +205,7 @@ fn quantity_result(
             )
         });
     let met = statistics.iter().all(|statistic| statistic.holds == Some(true));
-    let alone = || together::fails_alone(graph, &graph.quantities[index], judging);
+    let alone = || fails_alone(graph, &graph.quantities[index], judging);
     let reason = reason.or(undefined).or_else(|| if met { alone() } else { None });
     let holds = if reason.is_some() { None } else { Some(met) };
     let show = |value: f64| quantity.unit.from_si(value);
@@ -395,7 +267,7 @@ fn quantity_result(
         values,
         holds,
         reason,
-        rule: limits::rule_place(&quantity.span),
+        rule: rule_place(&quantity.span),
     };
     (result, fails.into_iter().flatten().collect())
 }

@@ -1,9 +1,18 @@
 //! From rows and limits to results of quantities and verdicts.
+//!
+//! | file | content |
+//! |---|---|
+//! | `verdicts` | verdicts from limits, from other verdicts, or left to a person |
+//! | `judge` | results of quantities, and all verdicts |
+//! | `evaluated` | a campaign with every section evaluated: what is judged |
+//! | `section_ratios` | single sections against limits |
+//! | `replay` | a verdict again from the values of a result |
 
-pub mod basis;
-pub mod judge;
+mod evaluated;
+mod judge;
 pub mod replay;
-pub mod verdicts;
+mod section_ratios;
+mod verdicts;
 
-pub use basis::{Basis, without_unused_originals};
-pub use judge::{Rows, members, rows};
+pub use evaluated::{Evaluated, all_values};
+pub use judge::Judged;

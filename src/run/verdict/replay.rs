@@ -7,10 +7,10 @@ use crate::check::plan::{Evaluation, Plan, Records, Scalar};
 use crate::graph::{Graph, NodeId};
 use crate::result::{Consequence, DomainResult, Finding};
 use crate::run::describe::domain;
-use crate::run::estimate::Row;
-use crate::run::record::needed;
-use crate::run::sections::{Facts, Known, NOT_STATED, Unit, Vehicle, absent, requirements, scalar};
-use crate::run::values::SectionValues;
+use crate::run::sections::{
+    Facts, Known, NOT_STATED, Unit, Vehicle, absent, needed, requirements, scalar,
+};
+use crate::run::values::{Row, SectionValues};
 use crate::source::{Source, Spanned};
 
 /// The part of a result that rules use. All texts are as in the result, in the units that the
@@ -196,25 +196,18 @@ fn units(plan: &Plan, recorded: &Recorded) -> Result<Vec<Unit>, String> {
                 }
             };
         let none = || format!("section {}: the result has no data of its vehicle", section.name);
+        let cell = Spanned::new(section.name.clone(), nowhere.clone());
+        let site = place(&section.site).or_else(|| place(&section.name)).unwrap_or_default();
+        let columns = plan.columns.iter().zip(&section.columns).map(column).collect();
         Ok(Unit {
-            name: section.name.clone(),
-            campaign: 0,
             campaign_name: section.campaign.clone(),
             vehicle: vehicle(&section.vehicle).ok_or_else(none)?,
-            cell: Spanned::new(section.name.clone(), nowhere.clone()),
             zone: section.zone.clone(),
-            site: place(&section.site).or_else(|| place(&section.name)).unwrap_or_default(),
             site_name: section.site.clone(),
-            original: None,
             extent: (!plan.sections.whole_records)
                 .then(|| (axis.to_si(section.start), axis.to_si(section.end))),
-            stretch: None,
-            covered: None,
-            columns: plan.columns.iter().zip(&section.columns).map(column).collect(),
-            checks: Vec::new(),
             fault: section.fault.clone(),
-            faulty: false,
-            span: None,
+            ..Unit::new(&cell, site, columns)
         })
     };
     recorded.sections.iter().map(one).collect()

@@ -1,154 +1,21 @@
-//! What several protocols share of one section: each record is read once, and what two protocols
-//! compute alike of it is computed once.
-//!
-//! Two nodes of two graphs are alike if they do the same with the same: operation, inputs, and the
-//! values of all names in them, for this section. Each such operation has a number ([`Keys`]); its
-//! result is kept under this number while the section is worked on ([`Memo`]).
+//! The records of one section that several protocols evaluate: each record is read once, and what
+//! two protocols compute alike of it is computed once.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
-use indexmap::IndexMap;
-
-use super::signal::{Extent, Signal};
+use super::memo::{Keys, Memo, locked};
+use super::opened::{Fault, Opened, opened};
 use super::trial::Trial;
-use super::{Fault, Opened, Work, chosen, opened};
-use crate::check::evaluate::number;
-use crate::check::plan::AxisOperation;
+use crate::check::plan::Plan;
 use crate::data::campaign::{Part, ReadFile};
 use crate::data::record::Wanted;
 use crate::data::table::Cell;
 use crate::data::{Campaign, Record, RecordKind, WhichRecord};
 use crate::graph::{Graph, Operation};
 use crate::problem::Problem;
-use crate::run::sections::{Known, Unit};
-
-/// The number of what each node of a graph does, the same in every graph; `None` for nodes that
-/// join records.
-pub type Keys = Vec<Option<usize>>;
-
-/// What nodes do in one section, in words, with their numbers.
-#[derive(Debug, Default)]
-pub struct Numbers(IndexMap<String, usize>);
-
-impl Numbers {
-    fn of(&mut self, what: String) -> usize {
-        let next = self.0.len();
-        *self.0.entry(what).or_insert(next)
-    }
-
-    /// Numbers the nodes of a protocol's graph for a section.
-    pub fn keys(&mut self, work: &Work<'_>, unit: &Unit) -> Keys {
-        let known = unit.known(work.facts);
-        let mut keys: Keys = Vec::with_capacity(work.graph.nodes.len());
-        for node in &work.graph.nodes {
-            let inputs: Option<Vec<usize>> = node.inputs.iter().map(|&input| keys[input]).collect();
-            let key = match (&node.operation, inputs) {
-                (Operation::Select(conditions), _) => chosen(conditions, &node.inputs, &known)
-                    .ok()
-                    .and_then(|input| keys[node.inputs[input]]),
-                (operation, Some(inputs)) => does(work, unit, &known, operation, node.track)
-                    .map(|what| self.of(format!("{what} {inputs:?}"))),
-                _ => None,
-            };
-            keys.push(key);
-        }
-        keys
-    }
-}
-
-/// What an operation does, all names put in. `None` where it does not work on one record, or a name
-/// has no value.
-fn does(
-    work: &Work<'_>,
-    unit: &Unit,
-    known: &Known<'_>,
-    operation: &Operation,
-    track: bool,
-) -> Option<String> {
-    let place =
-        || format!("{:?}", unit.extent.map(|(start, end)| (start.to_bits(), end.to_bits())));
-    Some(match operation {
-        Operation::Read { column } => {
-            let time = work.plan.time.as_ref().map(|time| &time.column);
-            format!("read {column:?} {track} {:?} {time:?}", work.plan.axis.column)
-        }
-        Operation::Constant(expr) => format!("constant {:x}", number(expr, known).ok()?.to_bits()),
-        Operation::Arithmetic(operator) => format!("{operator:?}"),
-        Operation::Negative => "negative".into(),
-        Operation::Power(exponent) => format!("power {exponent}"),
-        Operation::Apply(function) => format!("apply {}", function.name),
-        Operation::OverAxis(AxisOperation::Shifted(distance)) => {
-            format!("shifted {:x} {}", number(distance, known).ok()?.to_bits(), place())
-        }
-        Operation::OverAxis(AxisOperation::Derivative { over_time }) => {
-            format!("derivative {over_time}")
-        }
-        Operation::OverAxis(AxisOperation::Integral { over_time }) => {
-            format!("integral {over_time}")
-        }
-        Operation::Level => format!("level {}", place()),
-        Operation::Step(spec) => format!("step {spec:?}"),
-        Operation::Cut => format!("cut {}", place()),
-        Operation::Window(spec) => format!("window {spec:?} {}", place()),
-        Operation::Reduce(reducer) => {
-            format!("reduce {} {:?}", reducer.in_words(), work.plan.sections.percentiles)
-        }
-        Operation::Select(_)
-        | Operation::Value(_)
-        | Operation::Compare(_)
-        | Operation::Estimate(_)
-        | Operation::Report(_)
-        | Operation::Limit(_)
-        | Operation::Verdict(_) => return None,
-    })
-}
-
-/// A result of a node.
-#[derive(Clone, Debug)]
-pub enum Kept {
-    Signal(Signal),
-    /// A reduced signal, and of how many samples.
-    Number(f64, usize),
-}
-
-/// Results of one record by the numbers of what made them.
-#[derive(Debug, Default)]
-pub struct Memo {
-    results: Mutex<Vec<Option<Kept>>>,
-    filtered: AtomicUsize,
-    asked: AtomicUsize,
-}
-
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    // A thread that panicked ends the run; what it left is not looked at.
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-impl Memo {
-    pub fn get(&self, key: usize) -> Option<Kept> {
-        locked(&self.results).get(key).cloned().flatten()
-    }
-
-    pub fn put(&self, key: usize, kept: Kept) {
-        let mut results = locked(&self.results);
-        if results.len() <= key {
-            results.resize(key + 1, None);
-        }
-        results[key] = Some(kept);
-    }
-
-    /// Signals that a filter ran over.
-    pub fn count_filtered(&self, signals: usize) {
-        self.filtered.fetch_add(signals, Ordering::Relaxed);
-    }
-
-    /// Signals that a protocol by itself would have filtered.
-    pub fn count_asked(&self, signals: usize) {
-        self.asked.fetch_add(signals, Ordering::Relaxed);
-    }
-}
+use crate::run::sections::{Extent, Unit};
 
 /// How much was read and filtered, and how much it would have been for each protocol by itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -180,12 +47,13 @@ pub struct Columns {
 }
 
 impl Columns {
-    pub fn add(&mut self, axis: &str, time: Option<&str>, graph: &Graph) {
-        for name in [Some(axis), time].into_iter().flatten() {
-            push(&mut self.axes, name);
-            push(&mut self.record, name);
+    /// Adds those of a protocol.
+    pub fn add(&mut self, plan: &Plan, graph: &Graph) {
+        for axis in std::iter::once(&plan.axis).chain(&plan.time) {
+            push(&mut self.axes, &axis.column);
+            push(&mut self.record, &axis.column);
         }
-        push(&mut self.track, axis);
+        push(&mut self.track, &plan.axis.column);
         for node in &graph.nodes {
             if let Operation::Read { column } = &node.operation {
                 push(if node.track { &mut self.track } else { &mut self.record }, column);
@@ -210,7 +78,7 @@ fn push(names: &mut Vec<String>, name: &str) {
 
 /// The records of one section, in one trial.
 #[derive(Debug)]
-pub struct Store<'a> {
+pub struct SectionRecords<'a> {
     campaign: &'a Campaign,
     cell: &'a Cell,
     columns: &'a Columns,
@@ -220,21 +88,25 @@ pub struct Store<'a> {
     part: Option<Part>,
     trial: Trial,
     /// The records as recorded.
-    base: Option<&'a Store<'a>>,
-    records: Mutex<BTreeMap<WhichRecord, Arc<Shared>>>,
+    base: Option<&'a SectionRecords<'a>>,
+    records: Mutex<BTreeMap<WhichRecord, Arc<SharedRecord>>>,
 }
 
 /// A record with all columns that some protocol reads.
 #[derive(Debug)]
-struct Shared {
+struct SharedRecord {
     record: Result<Option<(Record, ReadFile)>, String>,
     /// As protocols with the same axes and section see it.
-    opened: Mutex<Vec<(String, Opened)>>,
+    opened: Mutex<Vec<(View, Opened)>>,
     memo: Arc<Memo>,
     asked: AtomicUsize,
 }
 
-impl<'a> Store<'a> {
+/// What the checks of a record depend on: axis, time, section, and which record it is. Protocols for
+/// which these are the same share the opened record.
+type View = (String, Option<String>, Option<Extent>, WhichRecord);
+
+impl<'a> SectionRecords<'a> {
     /// `place`: the axis, where the section lies on it, and what is read of a run, as one of the
     /// protocols asks.
     pub fn new(
@@ -258,8 +130,8 @@ impl<'a> Store<'a> {
     }
 
     /// The same section with its records changed; records that stay keep what was computed of them.
-    pub fn with(&'a self, trial: Trial) -> Store<'a> {
-        Store {
+    pub fn with(&'a self, trial: Trial) -> SectionRecords<'a> {
+        SectionRecords {
             campaign: self.campaign,
             cell: self.cell,
             columns: self.columns,
@@ -291,7 +163,7 @@ impl<'a> Store<'a> {
         Ok(record)
     }
 
-    fn shared(&self, which: WhichRecord) -> Arc<Shared> {
+    fn shared(&self, which: WhichRecord) -> Arc<SharedRecord> {
         if let Some(base) = self.base.filter(|_| !self.trial.changes(which.kind)) {
             return base.shared(WhichRecord { kind: self.trial.kind(which.kind), ..which });
         }
@@ -309,7 +181,7 @@ impl<'a> Store<'a> {
                     other => other.clone(),
                 },
             };
-            Arc::new(Shared {
+            Arc::new(SharedRecord {
                 record,
                 opened: Mutex::default(),
                 memo: Arc::default(),
@@ -324,7 +196,7 @@ impl<'a> Store<'a> {
     /// is wrong with it.
     pub fn open(
         &self,
-        work: &Work<'_>,
+        plan: &Plan,
         unit: &Unit,
         which: WhichRecord,
         wanted: &[Wanted],
@@ -345,15 +217,16 @@ impl<'a> Store<'a> {
                 return None;
             }
         }
-        let time = work.plan.time.as_ref().map(|time| &time.column);
-        let key = format!("{:?} {time:?} {:?} {:?}", work.plan.axis.column, unit.extent, which);
+        let time = plan.time.as_ref().map(|time| time.column.clone());
+        let view = (plan.axis.column.clone(), time, unit.extent, which);
         let mut known = locked(&shared.opened);
-        if let Some((_, opened)) = known.iter().find(|(of, _)| *of == key) {
+        if let Some((_, opened)) = known.iter().find(|(of, _)| *of == view) {
             return Some(Ok(opened.clone()));
         }
-        let mut one = opened(work, unit, which, record.clone(), file.clone()).ok()?;
+        let read = (record.clone(), file.clone());
+        let mut one = opened(plan, self.campaign, unit, which, read).ok()?;
         one.memo = Some(Arc::clone(&shared.memo));
-        known.push((key, one.clone()));
+        known.push((view, one.clone()));
         Some(Ok(one))
     }
 
@@ -367,21 +240,25 @@ impl<'a> Store<'a> {
         let kind = self.trial.kind(which.kind);
         let (record, file) =
             self.campaign.read(WhichRecord { kind, ..which }, self.cell, wanted, part)?;
-        let record = if self.trial.changes(which.kind) {
-            self.changed(record).map_err(|says| vec![Problem::error("not-disturbed", says)])?
-        } else {
-            record
-        };
+        if !self.trial.changes(which.kind) {
+            return Ok((record, file));
+        }
+        let changed = self.changed(record);
+        let record = changed.map_err(|says| vec![Problem::error("not-disturbed", says)])?;
         Ok((record, file))
     }
 
     /// What was done for this section in this trial, without what its base did.
     pub fn counts(&self) -> Counts {
-        let of = |shared: &Arc<Shared>| Counts {
-            records_read: usize::from(self.base.is_none() && matches!(shared.record, Ok(Some(_)))),
-            records_asked: shared.asked.load(Ordering::Relaxed),
-            filters_run: shared.memo.filtered.load(Ordering::Relaxed),
-            filters_asked: shared.memo.asked.load(Ordering::Relaxed),
+        let of = |shared: &Arc<SharedRecord>| {
+            let (filters_run, filters_asked) = shared.memo.counts();
+            let read = self.base.is_none() && matches!(shared.record, Ok(Some(_)));
+            Counts {
+                records_read: usize::from(read),
+                records_asked: shared.asked.load(Ordering::Relaxed),
+                filters_run,
+                filters_asked,
+            }
         };
         locked(&self.records).values().map(of).sum()
     }
@@ -390,6 +267,6 @@ impl<'a> Store<'a> {
 /// A protocol's part in what is shared of a section.
 #[derive(Clone, Copy, Debug)]
 pub struct Sharing<'a> {
-    pub store: &'a Store<'a>,
+    pub records: &'a SectionRecords<'a>,
     pub keys: &'a Keys,
 }
