@@ -2,6 +2,7 @@
 
 mod about;
 mod again;
+mod opened;
 mod pool;
 
 use indexmap::IndexMap;
@@ -21,6 +22,7 @@ use crate::syntax::document::Block;
 
 pub use about::About;
 pub use again::{Rules, Setting, again};
+pub use opened::{Opened, Set, overrides};
 
 /// A checked and compiled protocol.
 #[derive(Debug)]
@@ -87,22 +89,23 @@ pub fn certify<'a>(
 /// The result of a run with the descriptions of protocol and campaign.
 pub fn certification(compiled: &Compiled, about: &About, outcome: Outcome) -> Certification {
     let campaign = about.info(outcome.files);
+    let judged = outcome.judged;
     let mut notes = outcome.notes;
     notes.extend(campaign.origin.as_ref().map(|origin| format!("{}.", origin.says)));
     Certification {
         protocol: protocol_info(compiled),
-        verdict: outcome.verdict,
-        own_word: outcome.own_word,
+        verdict: judged.verdict,
+        own_word: judged.own_word,
         verdict_note: campaign.origin.as_ref().and_then(OriginInfo::note),
         campaign,
-        reasons: outcome.reasons,
-        verdicts: outcome.verdicts,
-        quantities: outcome.quantities,
+        reasons: judged.reasons,
+        verdicts: judged.verdicts,
+        quantities: judged.quantities,
         sections: outcome.sections,
-        reported: outcome.reported,
+        reported: judged.reported,
         found: Vec::new(),
         reduction: outcome.reduction,
-        zones: outcome.zones,
+        zones: judged.zones,
         domain: outcome.domain,
         application: outcome.application,
         traces: outcome.traces,

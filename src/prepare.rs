@@ -3,9 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::certify::{Compiled, compile};
+use crate::certify::{Compiled, Opened, Set, compile, overrides};
 use crate::check::family::{self, Family};
-use crate::check::{Override, Overrides, plan::SetBy};
 use crate::data::{Campaign, Campaigns};
 use crate::diagnose::settings::Settings;
 use crate::effects::{self, Catalogue};
@@ -13,28 +12,10 @@ use crate::import::check::NotWritten;
 use crate::import::mapping::{Mapping, agree};
 use crate::library;
 use crate::problem::{Problem, Problems};
-use crate::result::found::FoundSections;
 use crate::run::{self, find, needs::needs};
 use crate::simulate::{Section, model_parameters, sections};
 use crate::source::{Source, Spanned};
 use crate::syntax::document::Text;
-
-/// A compiled protocol and its campaign.
-#[derive(Debug)]
-pub struct Prepared {
-    pub compiled: Compiled,
-    pub campaign: Campaign,
-}
-
-/// A compiled protocol and the campaigns that it is evaluated on as one.
-#[derive(Debug)]
-pub struct Pool {
-    pub compiled: Compiled,
-    pub campaigns: Vec<Campaign>,
-    pub overrides: Overrides,
-    /// How the sections of campaigns with runs were found.
-    pub found: Vec<FoundSections>,
-}
 
 /// A protocol that is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -132,10 +113,10 @@ pub fn prepare(
     protocol: Option<&str>,
     set: &[String],
     problems: &mut Problems,
-) -> Option<Prepared> {
-    let Pool { compiled, mut campaigns, .. } =
+) -> Option<(Compiled, Campaign)> {
+    let Opened { compiled, mut campaigns, .. } =
         prepare_all(&[folder.to_path_buf()], protocol, set, problems)?;
-    Some(Prepared { compiled, campaign: campaigns.pop()? })
+    Some((compiled, campaigns.pop()?))
 }
 
 /// As [`prepare`], of several campaigns. Sections that the protocol looks for in runs are found.
@@ -144,9 +125,8 @@ pub fn prepare_all(
     protocol: Option<&str>,
     set: &[String],
     problems: &mut Problems,
-) -> Option<Pool> {
-    let pool = compiled_for(folders, protocol, set, problems)?;
-    with_sections(pool, problems)
+) -> Option<Opened> {
+    with_sections(compiled_for(folders, protocol, set, problems)?, problems)
 }
 
 /// As [`prepare_all`], of campaigns that are open, with a protocol that is named or given as a
@@ -156,20 +136,20 @@ pub fn prepare_opened(
     protocol: Option<Protocol<'_>>,
     set: &[String],
     problems: &mut Problems,
-) -> Option<Pool> {
-    let pool = compiled_with(campaigns, protocol, set, problems)?;
-    with_sections(pool, problems)
+) -> Option<Opened> {
+    with_sections(compiled_with(campaigns, protocol, set, problems)?, problems)
 }
 
-fn with_sections(mut pool: Pool, problems: &mut Problems) -> Option<Pool> {
+fn with_sections(mut opened: Opened, problems: &mut Problems) -> Option<Opened> {
     if problems.any_error() {
-        return Some(pool);
+        return Some(opened);
     }
-    match find::in_all(&pool.compiled.plan, &pool.compiled.graph, &mut pool.campaigns) {
-        Ok(found) => pool.found = found,
-        Err(told) => told.0.into_iter().for_each(|problem| problems.push(problem)),
+    let Opened { compiled, campaigns, .. } = &mut opened;
+    match find::in_all(&compiled.plan, &compiled.graph, campaigns) {
+        Ok(found) => opened.found = found,
+        Err(told) => problems.add(told.0),
     }
-    Some(pool)
+    Some(opened)
 }
 
 /// As [`prepare_all`], before sections are looked for.
@@ -178,7 +158,7 @@ pub fn compiled_for(
     protocol: Option<&str>,
     set: &[String],
     problems: &mut Problems,
-) -> Option<Pool> {
+) -> Option<Opened> {
     let opened: Vec<Option<Campaign>> =
         folders.iter().map(|folder| Campaign::open(folder, problems)).collect();
     let campaigns: Vec<Campaign> = opened.into_iter().collect::<Option<_>>()?;
@@ -190,13 +170,14 @@ fn compiled_with(
     protocol: Option<Protocol<'_>>,
     set: &[String],
     problems: &mut Problems,
-) -> Option<Pool> {
+) -> Option<Opened> {
     Campaigns::from(&campaigns).check(problems);
     let family = match protocol {
         Some(protocol) => protocol.load(problems),
         None => own_protocol(&campaigns, problems),
     }?;
-    let overrides = overrides(set, &campaigns, problems)?;
+    let set = set_by_hand(set, problems)?;
+    let overrides = overrides(&set, &campaigns, problems)?;
     let compiled = compile(family, &overrides, problems)?;
     if protocol.is_none()
         && let Some(problem) =
@@ -206,7 +187,7 @@ fn compiled_with(
         return None;
     }
     campaigns.iter().for_each(|campaign| facts_like_parameters(&compiled, campaign, problems));
-    Some(Pool { compiled, campaigns, overrides, found: Vec::new() })
+    Some(Opened { compiled, campaigns, overrides, found: Vec::new() })
 }
 
 /// The protocol that the campaigns name: all the same one.
@@ -283,50 +264,11 @@ fn facts_like_parameters(compiled: &Compiled, campaign: &Campaign, problems: &mu
     }
 }
 
-/// Parameters of the campaigns, which must set them alike, and over them those of the command line.
-fn overrides(set: &[String], campaigns: &[Campaign], problems: &mut Problems) -> Option<Overrides> {
-    let mut overrides = Overrides::new();
-    let on_command_line = |name: &str| {
-        set.iter().any(|set| set.split_once('=').is_some_and(|(set, _)| set.trim() == name))
-    };
-    for parameter in campaigns.iter().flat_map(|campaign| &campaign.parameters) {
-        let name = &parameter.name.text;
-        let same = |other: &&Campaign| {
-            other
-                .parameters
-                .iter()
-                .any(|other| (&other.name.text, &other.value.raw) == (name, &parameter.value.raw))
-        };
-        if let Some(other) =
-            campaigns.iter().find(|other| !same(other)).filter(|_| !on_command_line(name))
-        {
-            let says = format!(
-                "the parameter `{name}` is `{}` here, and not in the campaign `{}`",
-                parameter.value.raw, other.short_name.value
-            );
-            let set = other.parameters.iter().find(|other| other.name.text == *name);
-            let place = set.map_or(&other.short_name.span, |set| &set.value.span);
-            let problem = Problem::error("parameters-differ", says).at(&parameter.value.span);
-            let problem =
-                problem.also(place, if set.is_some() { "another value" } else { "not set" });
-            problems.push(problem.help(format!("set one for all: `--set {name}=...`")));
-            return None;
-        }
-        let value = &parameter.value;
-        let text = Text { text: value.raw.clone(), span: value.span.clone(), exact: value.exact };
-        overrides.insert(parameter.name.text.clone(), Override { text, set_by: SetBy::Campaign });
-    }
-    for (name, text) in set_by_hand(set, problems)? {
-        overrides.insert(name, Override { text, set_by: SetBy::CommandLine });
-    }
-    Some(overrides)
-}
-
 /// The names and values of some `--set name=value`.
 ///
 /// Problems: `set` (no `=`), `set-twice`.
-pub fn set_by_hand(all: &[String], problems: &mut Problems) -> Option<Vec<(String, Text)>> {
-    let mut found: Vec<(String, Text)> = Vec::new();
+pub fn set_by_hand(all: &[String], problems: &mut Problems) -> Option<Vec<Set>> {
+    let mut found: Vec<Set> = Vec::new();
     for set in all {
         let Some((name, value)) = set.split_once('=') else {
             problems.push(

@@ -68,6 +68,12 @@ const MOST_CODES: usize = 4096;
 /// A list of members longer than this is cut off.
 const MOST_LISTED: usize = 8;
 
+impl From<Problem> for Problems {
+    fn from(problem: Problem) -> Self {
+        Self(vec![problem])
+    }
+}
+
 impl Problem {
     pub fn error(code: &'static str, says: impl Into<String>) -> Self {
         Self {
@@ -304,6 +310,11 @@ impl From<Problem> for Vec<Problem> {
 pub struct Problems(pub Vec<Problem>);
 
 impl Problems {
+    /// Adds problems, each as [`Problems::push`] does.
+    pub fn add(&mut self, problems: impl IntoIterator<Item = Problem>) {
+        problems.into_iter().for_each(|problem| self.push(problem));
+    }
+
     pub fn push(&mut self, problem: Problem) {
         // The same problem at the same place is reported once, also for several members of a
         // family.

@@ -8,9 +8,9 @@ use crate::error::or_raise;
 use crate::inputs::Campaign;
 use crate::table::Table;
 use crate::work::{self, Stopped};
-use crate::{Asked, error};
+use crate::{Asked, error, opened};
 use fishplate::diagnose::inputs::Inputs;
-use fishplate::prepare::{for_diagnosis, prepare_opened};
+use fishplate::prepare::for_diagnosis;
 use fishplate::problem::{Problem, Problems, Severity};
 use fishplate::simulate::{self, Builtin, Function, Simulator};
 
@@ -151,9 +151,8 @@ fn diagnosed(
     stopped: &Stopped,
     problems: &mut Problems,
 ) -> Option<fishplate::diagnose::Outcome> {
-    let mut pool = prepare_opened(vec![campaign], protocol.map(Asked::of), set, problems)
-        .filter(|_| !problems.any_error())?;
-    let campaign = pool.campaigns.pop()?;
+    let mut opened = opened(vec![campaign], protocol, set, problems)?;
+    let campaign = opened.campaigns.pop()?;
     let (catalogue, settings, sections) = for_diagnosis(&campaign, catalogue, problems)?;
     let call = |task: &simulate::Task<'_>| {
         let function = simulates
@@ -190,7 +189,7 @@ fn diagnosed(
         seed,
         trying: &|_| {},
     };
-    match fishplate::diagnose::diagnose(&inputs, &pool.compiled, sections) {
+    match fishplate::diagnose::diagnose(&inputs, &opened.compiled, sections) {
         Ok(found) => Some(found),
         Err(told) => {
             told.0.into_iter().for_each(|problem| problems.push(problem));

@@ -10,11 +10,10 @@ use crate::error::{or_raise, raised};
 use crate::inputs::Campaign;
 use crate::result::written;
 use crate::table::{Table, of_csv};
-use crate::{Asked, TYPESETS, html, work};
-use fishplate::data::Campaigns;
+use crate::{Asked, TYPESETS, html, opened, work};
 use fishplate::deliver::{self, Files, Reports};
 use fishplate::diagnose::Outcome;
-use fishplate::prepare::prepare_opened;
+use fishplate::prepare::set_by_hand;
 use fishplate::problem::Problems;
 use fishplate::report::study::Document;
 use fishplate::report::{comparison, diagnosis, study as report};
@@ -235,14 +234,12 @@ pub fn study(
     let campaigns: Vec<_> = campaigns.iter().map(|campaign| campaign.inner.clone()).collect();
     let (found, problems) = work::run(py, jobs, move |_| {
         let mut problems = Problems::default();
-        let pool = prepare_opened(campaigns, protocol.as_ref().map(Asked::of), &set, &mut problems)
-            .filter(|_| !problems.any_error());
-        let found = pool.and_then(|pool| {
-            let (asked, campaigns) = (studied.asked(), Campaigns::from(&pool.campaigns));
-            let found = asked.ready(&pool.compiled, campaigns).and_then(|_| {
-                asked.run(&pool.compiled, campaigns, &pool.overrides, &studied.settings(), &|_| {})
-            });
-            found.map_err(|told| told.0.into_iter().for_each(|problem| problems.push(problem))).ok()
+        let opened = opened(campaigns, protocol.as_ref(), &set, &mut problems);
+        let found = opened.and_then(|opened| {
+            let asked = studied.asked();
+            let found =
+                asked.ready(&opened).and_then(|_| asked.run(&opened, &studied.settings(), &|_| {}));
+            found.map_err(|told| problems.add(told.0)).ok()
         });
         (found, problems)
     })?;
@@ -266,8 +263,10 @@ pub fn compare(
         let families: Option<Vec<_>> =
             protocols.iter().map(|protocol| protocol.of().load(&mut problems)).collect();
         let sizes = sizes.unwrap_or_else(|| fishplate::compare::SIZES.to_vec());
-        let settings = fishplate::compare::Settings { sizes, set };
-        let prepared = families.and_then(|families| {
+        let set: Vec<String> = set.iter().map(|(name, value)| format!("{name}={value}")).collect();
+        let set = set_by_hand(&set, &mut problems);
+        let prepared = families.zip(set).and_then(|(families, set)| {
+            let settings = fishplate::compare::Settings { sizes, set };
             fishplate::compare::Prepared::new(families, campaigns, settings, &mut problems)
         });
         let found =

@@ -13,9 +13,11 @@ mod work;
 
 use pyo3::prelude::*;
 
+use fishplate::certify::Opened;
 use fishplate::check::{self, Overrides};
+use fishplate::data;
 use fishplate::library;
-use fishplate::prepare::Protocol;
+use fishplate::prepare::{Protocol, prepare_opened};
 use fishplate::problem::Problems;
 
 /// The allocator of the program: see `src/main.rs`. The memory of Python, NumPy and others is not
@@ -52,6 +54,17 @@ pub struct Asked {
     name: Option<String>,
     #[pyo3(item)]
     text: Option<String>,
+}
+
+/// Campaigns with the protocol that is asked for, if there is no error.
+pub fn opened(
+    campaigns: Vec<data::Campaign>,
+    protocol: Option<&Asked>,
+    set: &[String],
+    problems: &mut Problems,
+) -> Option<Opened> {
+    prepare_opened(campaigns, protocol.map(Asked::of), set, problems)
+        .filter(|_| !problems.any_error())
 }
 
 impl Asked {

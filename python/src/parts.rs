@@ -9,8 +9,7 @@ use pyo3::types::PyBytes;
 use crate::error::or_raise;
 use crate::inputs::Campaign;
 use crate::result::Result;
-use crate::{Asked, work};
-use fishplate::prepare::prepare_opened;
+use crate::{Asked, opened, work};
 use fishplate::problem::{Problem, Problems};
 use fishplate::run::{Settings, Shard};
 use fishplate::values::{self, Part};
@@ -32,20 +31,11 @@ pub fn reduce<'py>(
         let mut problems = Problems::default();
         let shard = Shard::parse(&format!("{}/{}", shard.0, shard.1));
         let shard = shard.map_err(|says| problems.push(Problem::error("shard", says))).ok();
-        let pool = prepare_opened(campaigns, protocol.as_ref().map(Asked::of), &set, &mut problems)
-            .filter(|_| !problems.any_error());
-        let made = shard.zip(pool).and_then(|(shard, pool)| {
-            let made = values::reduce(
-                &pool.compiled,
-                (&pool.campaigns, pool.found),
-                Part { shard, plots },
-                &|_| {},
-            )
-            .and_then(|found| {
-                values::write(&pool.compiled.plan, &found)
-                    .map_err(|problem| Problems(vec![problem]))
-            });
-            made.map_err(|told| told.0.into_iter().for_each(|problem| problems.push(problem))).ok()
+        let opened = opened(campaigns, protocol.as_ref(), &set, &mut problems);
+        let made = shard.zip(opened).and_then(|(shard, opened)| {
+            let found = values::reduce(&opened, Part { shard, plots }, &|_| {});
+            let made = found.and_then(|found| Ok(values::write(&opened.compiled.plan, &found)?));
+            made.map_err(|told| problems.add(told.0)).ok()
         });
         (made, problems)
     })?;
@@ -67,7 +57,7 @@ pub fn judge(py: Python<'_>, parts: Vec<(String, Vec<u8>)>, plots: usize) -> PyR
         let joined = if problems.any_error() { None } else { values::join(files, &mut problems) };
         let found = joined.filter(|_| !problems.any_error()).and_then(|joined| {
             let found = joined.certification(Settings { traces: plots });
-            found.map_err(|told| told.0.into_iter().for_each(|problem| problems.push(problem))).ok()
+            found.map_err(|told| problems.add(told.0)).ok()
         });
         (found, problems)
     })?;

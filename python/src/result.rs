@@ -10,11 +10,10 @@ use pyo3::types::{PyBytes, PyDict};
 use crate::error::{or_raise, raised};
 use crate::inputs::Campaign;
 use crate::table::{Table, of_csv};
-use crate::{Asked, TYPESETS, html, work};
+use crate::{Asked, TYPESETS, html, opened, work};
 use fishplate::data::write::Outputs;
 use fishplate::deliver::{self, Files, Reports};
 use fishplate::disk::SetKind;
-use fishplate::prepare::prepare_opened;
 use fishplate::problem::{Problem, Problems};
 use fishplate::report::{figure, json, tables};
 use fishplate::result::{Certification, PairValue, QuantityResult, StatisticResult, Verdict};
@@ -33,22 +32,9 @@ pub fn certify(
     let campaigns: Vec<_> = campaigns.iter().map(|campaign| campaign.inner.clone()).collect();
     let (found, problems) = work::run(py, jobs, move |_| {
         let mut problems = Problems::default();
-        let pool = prepare_opened(campaigns, protocol.as_ref().map(Asked::of), &set, &mut problems)
-            .filter(|_| !problems.any_error());
-        let found = pool.and_then(|pool| {
-            let found = fishplate::certify::certify(
-                &pool.compiled,
-                &pool.campaigns,
-                Settings { traces: plots },
-                &|_| {},
-            );
-            match found {
-                Ok(found) => Some(Certification { found: pool.found, ..found }),
-                Err(told) => {
-                    told.0.into_iter().for_each(|problem| problems.push(problem));
-                    None
-                }
-            }
+        let found = opened(campaigns, protocol.as_ref(), &set, &mut problems).and_then(|opened| {
+            let found = opened.certify(Settings { traces: plots }, &|_| {});
+            found.map_err(|told| problems.add(told.0)).ok()
         });
         (found, problems)
     })?;

@@ -8,7 +8,8 @@ use clap::Args;
 use rayon::prelude::*;
 
 use super::diagnose::{Asked, json};
-use super::output::{Console, Exit};
+use super::inputs::prepare;
+use super::output::{Console, Done, Ended, Exit};
 use super::places::{REPORT, check_folder, same};
 use super::protocols::load;
 use super::simulate::load_catalogue;
@@ -54,16 +55,14 @@ pub struct Blinded {
 }
 
 impl Blinded {
-    pub fn run(self, console: &Console) -> Exit {
+    pub fn run(self, console: &Console) -> Done {
         let mut campaigns = Vec::new();
         self.folders.iter().for_each(|folder| find(folder, &mut campaigns, 0));
         campaigns.sort();
         campaigns.dedup_by(|one, other| same(one, other));
         if campaigns.is_empty() {
-            return console.fail(
-                Problem::error("no-campaigns", "these folders contain no campaign"),
-                Exit::Wrong,
-            );
+            let says = "these folders contain no campaign";
+            return Err(Problem::error("no-campaigns", says).into());
         }
         let mut problems = Problems::default();
         // A fault of the catalogue is reported once, not for every campaign.
@@ -76,9 +75,9 @@ impl Blinded {
         if let Some(named) = &self.protocol {
             load(named, &mut problems);
         }
-        let Some(catalogue) = catalogue.filter(|_| !problems.any_error()) else {
-            console.problems(&problems);
-            return Exit::Wrong;
+        let catalogue = match catalogue.filter(|_| !problems.any_error()) {
+            Some(catalogue) => catalogue,
+            None => return Err(problems.into()),
         };
         let diagnosed = AtomicUsize::new(0);
         let out = Mutex::new(Outputs::new(&self.out));
@@ -87,40 +86,22 @@ impl Blinded {
             console.say(&format!("{} of {}: {}", at + 1, campaigns.len(), folder.display()));
             self.one(folder, &catalogue, &out, &diagnosed, console)
         };
-        let scored = match campaigns
-            .par_iter()
-            .enumerate()
-            .with_max_len(1)
-            .map(one)
-            .collect::<Result<Vec<Case>, Problem>>()
-        {
-            Ok(cases) => blind(cases),
-            Err(problem) => return console.fail(problem, Exit::Unfinished),
-        };
+        let cases: Result<Vec<Case>, Problem> =
+            campaigns.par_iter().enumerate().with_max_len(1).map(one).collect();
+        let scored = blind(cases.map_err(Ended::unfinished)?);
         if diagnosed.load(Ordering::Relaxed) == 0 {
-            return console.fail(
-                Problem::error("no-diagnosis", "none of the campaigns could be diagnosed"),
-                Exit::Wrong,
-            );
+            let says = "none of the campaigns could be diagnosed";
+            return Err(Problem::error("no-diagnosis", says).into());
         }
         let text = serde_json::to_string_pretty(&scored).unwrap_or_default() + "\n";
-        let page = match html::chapters_html(
-            "Diagnoses against withheld truths",
-            &report::chapters(&scored),
-        ) {
-            Ok(page) => page,
-            Err(problems) => {
-                console.problems(&problems);
-                return Exit::Unfinished;
-            }
-        };
+        let chapters = report::chapters(&scored);
+        let page = html::chapters_html("Diagnoses against withheld truths", &chapters);
+        let page = page.map_err(Ended::unfinished)?;
         let mut outputs = out.into_inner().unwrap_or_else(PoisonError::into_inner);
         let added = outputs
             .add("blind.json", text.as_bytes())
             .and_then(|()| outputs.add("blind.html", page.as_bytes()));
-        if let Err(exit) = console.commit(added.map(|()| outputs)) {
-            return exit;
-        }
+        console.commit(added.map(|()| outputs))?;
         for score in &scored.scores {
             let value = score.value.map_or("-".to_string(), |value| format!("{value:.3}"));
             let interval = score
@@ -129,7 +110,7 @@ impl Blinded {
                 .map_or(String::new(), |(low, high)| format!("  ({low:.2} to {high:.2})"));
             console.say(&format!("{:56} {:4}  {value}{interval}", score.name, score.cases));
         }
-        Exit::Done
+        Ok(Exit::Done)
     }
 
     /// The diagnosis is written and closed before the truth is opened.
@@ -192,13 +173,9 @@ impl Blinded {
         truth: &Truth,
     ) -> Option<Really> {
         let effects = truth.applied(catalogue).filter(|effects| !effects.is_empty())?;
-        let prepared = super::inputs::prepare(
-            folder,
-            self.protocol.as_deref(),
-            &[],
-            &mut Problems::default(),
-        )?;
-        effect_of_truth(campaign, &prepared.compiled, outcome, catalogue, &effects)
+        let mut problems = Problems::default();
+        let (compiled, _) = prepare(folder, self.protocol.as_deref(), &[], &mut problems)?;
+        effect_of_truth(campaign, &compiled, outcome, catalogue, &effects)
     }
 }
 

@@ -5,15 +5,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::inputs::{Pool, prepare_all, progress_bar, start_jobs};
-use super::output::{Console, Exit};
-use super::places::{REPORT, check_folder};
+use super::inputs::{check_outputs, prepare_all, start_jobs};
+use super::output::{Console, Done};
+use super::places::REPORT;
 use super::report::Report;
 use super::values::from_one;
-use crate::certify::certify;
-use crate::data::Campaigns;
-use crate::problem::{Problems, plain};
-use crate::result::Certification;
+use crate::problem::Problems;
 
 #[derive(Debug, Args)]
 pub struct Certify {
@@ -35,44 +32,17 @@ pub struct Certify {
 }
 
 impl Certify {
-    pub fn run(self, console: &Console) -> Exit {
-        if let Err(exit) = start_jobs(self.jobs, console) {
-            return exit;
-        }
+    pub fn run(self, console: &Console) -> Done {
+        start_jobs(self.jobs)?;
         let mut problems = Problems::default();
-        let prepared =
+        let opened =
             prepare_all(&self.campaigns, self.protocol.as_deref(), &self.set, &mut problems);
-        for campaign in prepared.iter().flat_map(|pool| &pool.campaigns) {
-            if let Err(problem) = check_folder(&self.report.out, REPORT, campaign) {
-                problems.push(problem);
-            }
-        }
-        console.problems(&problems);
-        let Some(Pool { compiled, campaigns, found: searched, .. }) =
-            prepared.filter(|_| !problems.any_error())
-        else {
-            return Exit::Wrong;
-        };
-        let key = match self.report.key(console) {
-            Ok(key) => key,
-            Err(exit) => return exit,
-        };
-        let bar = progress_bar(console, Campaigns::from(&campaigns).sections());
-        let found = certify(&compiled, &campaigns, self.report.settings(), &|section| {
-            bar.set_message(plain(section));
-            bar.inc(1);
-        });
-        bar.finish_and_clear();
-        match found {
-            Ok(found) => self.report.write(
-                &Certification { found: searched, ..found },
-                key.as_ref(),
-                console,
-            ),
-            Err(problems) => {
-                console.problems(&problems);
-                Exit::Wrong
-            }
-        }
+        check_outputs(&self.report.out, REPORT, opened.as_ref(), &mut problems);
+        let opened = console.sound(opened, &problems)?;
+        let key = self.report.key()?;
+        let found = console.with_progress(opened.campaigns().sections(), |progress| {
+            opened.certify(self.report.settings(), progress)
+        })?;
+        self.report.write(&found, key.as_ref(), console)
     }
 }

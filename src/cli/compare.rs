@@ -5,17 +5,18 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::inputs::{progress_bar, start_jobs};
-use super::output::{Console, Exit};
+use super::inputs::start_jobs;
+use super::output::{Console, Done, Ended, Exit};
 use super::places::{REPORT, check_folder};
 use super::protocols::load;
+use super::study::told;
 use super::values::{from_one, numbers};
 use crate::compare::{Prepared, SIZES, Settings};
 use crate::data::Campaign;
 use crate::deliver::{self, Reports};
 use crate::disk::SetKind;
 use crate::prepare::set_by_hand;
-use crate::problem::{Problem, Problems, plain};
+use crate::problem::{Problem, Problems};
 use crate::report::comparison as report;
 use crate::result::comparison::Comparison;
 
@@ -47,20 +48,12 @@ pub struct Compare {
 }
 
 impl Compare {
-    pub fn run(self, console: &Console) -> Exit {
-        if let Err(exit) = start_jobs(self.jobs, console) {
-            return exit;
-        }
+    pub fn run(self, console: &Console) -> Done {
+        start_jobs(self.jobs)?;
         let mut problems = Problems::default();
         let prepared = self.prepared(&mut problems);
-        console.problems(&problems);
-        let Some(prepared) = prepared.filter(|_| !problems.any_error()) else { return Exit::Wrong };
-        let bar = progress_bar(console, prepared.steps());
-        let found = prepared.compare(&|step| {
-            bar.set_message(plain(step));
-            bar.inc(1);
-        });
-        bar.finish_and_clear();
+        let prepared = console.sound(prepared, &problems)?;
+        let found = console.with_progress(prepared.steps(), |progress| prepared.compare(progress));
         self.write(&found, console)
     }
 
@@ -73,13 +66,9 @@ impl Compare {
         let campaigns: Vec<Campaign> = campaigns.into_iter().collect::<Option<_>>()?;
         let families = families.into_iter().collect::<Option<_>>()?;
         for campaign in &campaigns {
-            if let Err(problem) = check_folder(&self.out, REPORT, campaign) {
-                problems.push(problem);
-            }
+            problems.add(check_folder(&self.out, REPORT, campaign).err());
         }
-        let set =
-            set?.into_iter().map(|(name, value)| (name, value.text.trim().to_owned())).collect();
-        Prepared::new(families, campaigns, Settings { sizes: sizes?, set }, problems)
+        Prepared::new(families, campaigns, Settings { sizes: sizes?, set: set? }, problems)
     }
 
     fn sizes(&self, problems: &mut Problems) -> Option<Vec<f64>> {
@@ -91,34 +80,20 @@ impl Compare {
             Problem::error("sizes", format!("`--sizes {text}`: {says}"))
                 .help("for example `--sizes 0.1,0.2,0.4`")
         };
-        match numbers(text) {
-            Ok(sizes) if sizes.iter().all(|size| *size > 0.0 && *size <= 1.0) => Some(sizes),
-            Ok(_) => {
-                problems.push(wrong("each size must be above 0 and at most 1".into()));
-                None
+        let sizes = numbers(text).and_then(|sizes| {
+            match sizes.iter().all(|size| *size > 0.0 && *size <= 1.0) {
+                true => Ok(sizes),
+                false => Err("each size must be above 0 and at most 1".into()),
             }
-            Err(says) => {
-                problems.push(wrong(says));
-                None
-            }
-        }
+        });
+        sizes.map_err(|says| problems.push(wrong(says))).ok()
     }
 
     /// Writes all files or none.
-    fn write(&self, found: &Comparison, console: &Console) -> Exit {
-        let files = match deliver::comparison(
-            found,
-            if self.no_report { Reports::NONE } else { Reports::ALL },
-        ) {
-            Ok(files) => files,
-            Err(problems) => {
-                console.problems(&problems);
-                return Exit::Unfinished;
-            }
-        };
-        if let Err(exit) = console.write_all(SetKind::Report, &self.out, &files) {
-            return exit;
-        }
+    fn write(&self, found: &Comparison, console: &Console) -> Done {
+        let reports = if self.no_report { Reports::NONE } else { Reports::ALL };
+        let files = deliver::comparison(found, reports).map_err(Ended::unfinished)?;
+        console.write_all(SetKind::Report, &self.out, &files)?;
         if !console.quiet {
             let cells: Vec<String> = found
                 .verdicts
@@ -132,16 +107,9 @@ impl Compare {
                     format!("  {}, {}: {} ({why})\n", cell.campaign, cell.protocol, cell.verdict)
                 })
                 .collect();
-            let document = report::document(found);
-            console.print(&format!(
-                "{}\n\n{}\n{}\n{}",
-                document.title,
-                document.headline.word,
-                document.sentence,
-                cells.concat()
-            ));
+            told(&report::document(found), &cells.concat(), console);
             console.say(&format!("written: {}", self.out.display()));
         }
-        Exit::Done
+        Ok(Exit::Done)
     }
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::inputs::with_protocols;
-use super::output::{Console, Exit};
+use super::output::{Console, Done, Ended, Exit};
 use super::places::{CAMPAIGN, check_folder};
 use crate::data::Campaign;
 use crate::data::conversion::convert;
@@ -46,39 +46,26 @@ pub struct ConvertRecords {
 }
 
 impl ConvertRecords {
-    pub fn run(self, console: &Console) -> Exit {
+    pub fn run(self, console: &Console) -> Done {
         let mut problems = Problems::default();
         let campaign = Campaign::open(&self.campaign, &mut problems).map(with_protocols);
-        if let Some(campaign) = &campaign
-            && let Err(problem) = check_folder(&self.out, CAMPAIGN, campaign)
-        {
-            problems.push(problem);
+        if let Some(campaign) = &campaign {
+            problems.add(check_folder(&self.out, CAMPAIGN, campaign).err());
         }
-        console.problems(&problems);
-        let Some(campaign) = campaign.filter(|_| !problems.any_error()) else { return Exit::Wrong };
+        let campaign = console.sound(campaign, &problems)?;
         let mut outputs = Outputs::of(SetKind::Campaign, &self.out);
-        let done = match convert(&campaign, self.to.into(), &mut outputs) {
-            Ok(done) => done,
-            Err(found) => {
-                let failed = found.iter().any(|problem| problem.code == "write-failed");
-                console.problems(&Problems(found));
-                return if failed { Exit::Unfinished } else { Exit::Wrong };
-            }
+        let done = convert(&campaign, self.to.into(), &mut outputs)
+            .map_err(|found| Ended::wrong_or_unwritten(Problems(found)))?;
+        console.commit(Ok(outputs))?;
+        let counted = |count: usize, what: &str| {
+            if count == 0 { String::new() } else { format!(", {count} {what}") }
         };
-        match console.commit(Ok(outputs)) {
-            Ok(()) => {
-                let counted = |count: usize, what: &str| {
-                    if count == 0 { String::new() } else { format!(", {count} {what}") }
-                };
-                let others = counted(done.copied, "copied") + &counted(done.missing, "missing");
-                console.say(&format!(
-                    "written: {} records converted{others}, to {}",
-                    done.converted,
-                    self.out.display()
-                ));
-                Exit::Done
-            }
-            Err(exit) => exit,
-        }
+        let others = counted(done.copied, "copied") + &counted(done.missing, "missing");
+        console.say(&format!(
+            "written: {} records converted{others}, to {}",
+            done.converted,
+            self.out.display()
+        ));
+        Ok(Exit::Done)
     }
 }

@@ -8,9 +8,9 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::convert_records::Records;
-use super::inputs::{Prepared, prepare, start_jobs};
+use super::inputs::{prepare, start_jobs};
 use super::of_runs::WithFiles;
-use super::output::{Console, Exit};
+use super::output::{Console, Done, Ended, Exit};
 use super::places::{CAMPAIGN, REPORT, check_folder, same};
 use super::simulator::{Chosen, SimulatorChoice};
 use super::values::from_one;
@@ -98,10 +98,8 @@ impl Diagnose {
         }
     }
 
-    pub fn run(self, console: &Console) -> Exit {
-        if let Err(exit) = start_jobs(self.jobs, console) {
-            return exit;
-        }
+    pub fn run(self, console: &Console) -> Done {
+        start_jobs(self.jobs)?;
         let bar = ProgressBar::new_spinner();
         if console.quiet {
             bar.set_draw_target(ProgressDrawTarget::hidden());
@@ -123,21 +121,18 @@ impl Diagnose {
             bar.finish_and_clear();
             console.problems(&problems);
             return found
-                .map_or_else(|| stopped(&problems), |found| console.print(&found.in_words()));
+                .map_or_else(|| Ok(stopped(&problems)), |found| console.print(&found.in_words()));
         };
         let outcome = diagnosed(&asked, &places, &trying, &mut problems);
         bar.finish_and_clear();
         console.problems(&problems);
-        let Some((files, outcome)) = outcome else { return stopped(&problems) };
-        match self.write(&out, &files.campaign, &outcome, console) {
-            Ok(()) => {}
-            Err(problem) => return console.fail(problem, Exit::Unfinished),
-        }
+        let Some((files, outcome)) = outcome else { return Ok(stopped(&problems)) };
+        self.write(&out, &files.campaign, &outcome, console).map_err(Ended::unfinished)?;
         if !console.quiet {
-            console.print(&summary(&outcome.diagnosis));
+            console.show(&summary(&outcome.diagnosis));
             console.say(&format!("written: {}", out.display()));
         }
-        exit(&outcome.diagnosis)
+        Ok(exit(&outcome.diagnosis))
     }
 
     fn write(
@@ -212,7 +207,7 @@ fn opened(
     places: &dyn Fn(&Campaign) -> Result<(), Problem>,
     problems: &mut Problems,
 ) -> Option<Opened> {
-    let Prepared { compiled, campaign } = prepare(asked.folder, asked.protocol, &[], problems)?;
+    let (compiled, campaign) = prepare(asked.folder, asked.protocol, &[], problems)?;
     places(&campaign).map_err(|problem| problems.push(problem)).ok()?;
     let files = WithFiles::of(campaign, problems)?;
     let (catalogue, settings, sections) =
@@ -332,7 +327,7 @@ pub fn diagnosed(
             Some((files, outcome))
         }
         Err(found) => {
-            found.0.into_iter().for_each(|problem| problems.push(problem));
+            problems.add(found.0);
             None
         }
     }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use clap::Args;
 
-use super::output::{Console, Exit};
+use super::output::{Console, Done, Exit};
 use super::simulate::load_catalogue;
 use crate::effects::{Action, Catalogue};
 use crate::library;
@@ -21,11 +21,11 @@ pub struct Effects {
 }
 
 impl Effects {
-    pub fn run(self, console: &Console) -> Exit {
+    pub fn run(self, console: &Console) -> Done {
         let mut problems = Problems::default();
         let catalogue = load_catalogue(&self.catalogue, &mut problems);
         console.problems(&problems);
-        let Some(catalogue) = catalogue else { return Exit::Wrong };
+        let Some(catalogue) = catalogue else { return Ok(Exit::Wrong) };
         if self.text {
             console.print_file(&catalogue.source.text)
         } else {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
-use super::output::{Console, Exit};
+use super::output::{Console, Done, Ended};
 use super::places::check_file;
 use super::protocols::load;
 use crate::catalog::entries;
@@ -61,26 +61,16 @@ enum Format {
 }
 
 impl Explain {
-    pub fn run(self, console: &Console) -> Exit {
-        if let (Some(protocol), Some(output)) = (&self.protocol, &self.output)
-            && let Err(problem) = check_file(output, &[Path::new(protocol)])
-        {
-            return console.fail(problem, Exit::Wrong);
+    pub fn run(self, console: &Console) -> Done {
+        if let (Some(protocol), Some(output)) = (&self.protocol, &self.output) {
+            check_file(output, &[Path::new(protocol)])?;
         }
         let text = match &self.protocol {
             None if matches!(self.format, Format::Text | Format::Json) => {
                 registry(self.format == Format::Json)
             }
-            None => {
-                return console.fail(
-                    Problem::error("format", "without a protocol the format is text or json"),
-                    Exit::Wrong,
-                );
-            }
-            Some(name) => match self.stage_text(name, console) {
-                Ok(text) => text,
-                Err(exit) => return exit,
-            },
+            None => return Err(wrong("without a protocol the format is text or json")),
+            Some(name) => self.stage_text(name, console)?,
         };
         match &self.output {
             Some(path) => console.write(path, text.as_bytes()),
@@ -89,19 +79,13 @@ impl Explain {
         }
     }
 
-    fn stage_text(&self, name: &str, console: &Console) -> Result<String, Exit> {
+    fn stage_text(&self, name: &str, console: &Console) -> Result<String, Ended> {
         let stage = self.stage.unwrap_or(Stage::Plan);
         if stage != Stage::Graph && matches!(self.format, Format::Dot | Format::Svg) {
-            return Err(console.fail(
-                Problem::error("format", "only the graph can be drawn: add `--stage graph`"),
-                Exit::Wrong,
-            ));
+            return Err(wrong("only the graph can be drawn: add `--stage graph`"));
         }
         if stage != Stage::Needs && self.format == Format::Csv {
-            return Err(console.fail(
-                Problem::error("format", "only the needs are a table: add `--stage needs`"),
-                Exit::Wrong,
-            ));
+            return Err(wrong("only the needs are a table: add `--stage needs`"));
         }
         let mut problems = Problems::default();
         let family = load(name, &mut problems);
@@ -109,10 +93,7 @@ impl Explain {
         let checked = family.as_ref().filter(|_| stage != Stage::Ast);
         let plan =
             checked.and_then(|family| check::check(family, &Overrides::new(), &mut problems));
-        console.problems(&problems);
-        let Some(family) = family.filter(|_| !problems.any_error()) else {
-            return Err(Exit::Wrong);
-        };
+        let family = console.sound(family, &problems)?;
         if stage == Stage::Ast {
             return Ok(if self.format == Format::Json {
                 pretty(&document_json(&family.merged))
@@ -120,7 +101,7 @@ impl Explain {
                 document_text(&family.merged)
             });
         }
-        let Some(plan) = plan else { return Err(Exit::Wrong) };
+        let plan = plan.ok_or(Problems::default())?;
         Ok(match (stage, self.format) {
             (Stage::Graph, format) => {
                 let graph = graph::from_plan(&plan);
@@ -143,6 +124,10 @@ impl Explain {
             _ => plan_text(&plan),
         })
     }
+}
+
+fn wrong(says: &str) -> Ended {
+    Problem::error("format", says).into()
 }
 
 fn pretty(value: &Value) -> String {

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::convert_records::Records;
-use super::inputs::{progress_bar, start_jobs};
-use super::output::{Console, Exit};
+use super::inputs::start_jobs;
+use super::output::{Console, Done, Ended, Exit};
 use super::places::{check_file, same};
 use super::protocols::load;
 use super::values::from_one;
@@ -24,7 +24,7 @@ use crate::import::exchanged::exchanged;
 use crate::import::mapping::{self, Mapping};
 use crate::library;
 use crate::prepare::for_import;
-use crate::problem::{Problem, Problems, plain};
+use crate::problem::{Problem, Problems};
 use crate::report::findings;
 use crate::result::Finding;
 use crate::run::needs::needs;
@@ -58,49 +58,27 @@ pub struct Import {
 }
 
 impl Import {
-    pub fn run(self, console: &Console) -> Exit {
-        if let Err(exit) = start_jobs(self.jobs, console) {
-            return exit;
-        }
+    pub fn run(self, console: &Console) -> Done {
+        start_jobs(self.jobs)?;
         if self.draft {
             return self.propose(console);
         }
         let ([path], Some(out)) = (&self.inputs[..], &self.out) else {
             let problem = Problem::error("several-mappings", "an import takes one mapping");
-            return console
-                .fail(problem.help("to propose a mapping from files, add `--draft`"), Exit::Wrong);
+            return Err(problem.help("to propose a mapping from files, add `--draft`").into());
         };
         let mut problems = Problems::default();
         let checked = checked(path, out, &mut problems);
-        console.problems(&problems);
-        let Some((mapping, compiled)) = checked.filter(|_| !problems.any_error()) else {
-            return Exit::Wrong;
-        };
+        let (mapping, compiled) = console.sound(checked, &problems)?;
         let needs = compiled.as_ref().map(|compiled| needs(&compiled.plan, &compiled.graph));
-        let bar = progress_bar(console, mapping.sections.names.len() * mapping.sides.len());
+        let steps = mapping.sections.names.len() * mapping.sides.len();
         let mut outputs = Outputs::of(SetKind::Campaign, out);
-        let done = crate::import::import(
-            &mapping,
-            needs.as_ref(),
-            Format::from(self.records),
-            &mut outputs,
-            &|section| {
-                bar.set_message(plain(section));
-                bar.inc(1);
-            },
-        );
-        bar.finish_and_clear();
-        match done {
-            Ok(warnings) => console.problems(&warnings),
-            Err(problems) => {
-                console.problems(&problems);
-                let failed = problems.0.iter().any(|problem| problem.code == "write-failed");
-                return if failed { Exit::Unfinished } else { Exit::Wrong };
-            }
-        }
-        if let Err(exit) = console.commit(Ok(outputs)) {
-            return exit;
-        }
+        let done = console.with_progress(steps, |progress| {
+            let format = Format::from(self.records);
+            crate::import::import(&mapping, needs.as_ref(), format, &mut outputs, progress)
+        });
+        console.problems(&done.map_err(Ended::wrong_or_unwritten)?);
+        console.commit(Ok(outputs))?;
         let records = mapping.sections.names.len() * mapping.sides.len();
         let (count, word) = (mapping.sections.names.len(), mapping.sections.word);
         let ending = if word == "run" && count == 1 { "" } else { "s" };
@@ -111,10 +89,10 @@ impl Import {
         if !console.quiet {
             look(&mapping, compiled.as_ref(), out, console);
         }
-        Exit::Done
+        Ok(Exit::Done)
     }
 
-    fn propose(&self, console: &Console) -> Exit {
+    fn propose(&self, console: &Console) -> Done {
         let mut problems = Problems::default();
         let compiled = load(&self.protocol, &mut problems)
             .and_then(|family| compile(family, &Overrides::new(), &mut problems));
@@ -124,18 +102,12 @@ impl Import {
         );
         let convention = mapping::find_convention(&named, Path::new(""), &mut problems);
         console.problems(&problems);
-        let (Some(compiled), Some(convention)) = (compiled, convention) else { return Exit::Wrong };
-        let paths: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
-        if let Some(Err(problem)) = self.out.as_ref().map(|out| check_file(out, &paths)) {
-            return console.fail(problem, Exit::Wrong);
-        }
-        let mut groups = match groups(&paths) {
-            Ok(groups) => groups,
-            Err(problems) => {
-                console.problems(&Problems(problems));
-                return Exit::Wrong;
-            }
+        let (Some(compiled), Some(convention)) = (compiled, convention) else {
+            return Ok(Exit::Wrong);
         };
+        let paths: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
+        self.out.as_ref().map_or(Ok(()), |out| check_file(out, &paths))?;
+        let mut groups = groups(&paths).map_err(Problems)?;
         relative_to(
             &mut groups,
             self.out.as_deref().and_then(Path::parent).unwrap_or(Path::new("")),

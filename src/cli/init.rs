@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use clap::Args;
 
-use super::output::{Console, Exit};
+use super::output::{Console, Done, Ended, Exit};
 use super::protocols::load;
 use crate::check::{self, Overrides, family, family::Family};
 use crate::data::record::{listed_headings, read_headings};
@@ -38,20 +38,15 @@ pub struct Init {
 }
 
 impl Init {
-    pub fn run(self, console: &Console) -> Exit {
+    pub fn run(self, console: &Console) -> Done {
         let mut problems = Problems::default();
-        if let Err(problem) = check_folder(&self.folder) {
-            problems.push(problem);
-        }
+        problems.add(check_folder(&self.folder).err());
         let files = self.files(&mut problems);
-        console.problems(&problems);
-        let Some(files) = files.filter(|_| !problems.any_error()) else { return Exit::Wrong };
-        if let Err(problem) = write(&self.folder, &files) {
-            return console.fail(problem, Exit::Unfinished);
-        }
+        let files = console.sound(files, &problems)?;
+        write(&self.folder, &files).map_err(Ended::unfinished)?;
         console.say(&format!("written: {}", self.folder.display()));
         files.iter().for_each(|(path, _)| console.say(&format!("  {path}")));
-        Exit::Done
+        Ok(Exit::Done)
     }
 
     fn listed(&self, problems: &mut Problems) -> Option<Listed> {

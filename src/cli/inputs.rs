@@ -1,13 +1,13 @@
 //! Common inputs of the subcommands that evaluate a protocol on a campaign.
 
 use std::num::NonZeroUsize;
-use std::sync::Arc;
+use std::path::Path;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-
-use super::output::{Console, Exit};
-pub use crate::prepare::{Pool, Prepared, compiled_for, prepare, prepare_all, with_protocols};
-use crate::problem::Problem;
+use super::output::Ended;
+use super::places::check_folder;
+use crate::certify::Opened;
+pub use crate::prepare::{compiled_for, prepare, prepare_all, with_protocols};
+use crate::problem::{Problem, Problems};
 
 /// Maximum number of records processed in parallel. Each takes a thread, and memory for its text
 /// and signals. The value exceeds the number of cores of the machines the program is used on.
@@ -16,27 +16,21 @@ const MOST_JOBS: usize = 256;
 /// Starts the requested number of threads.
 ///
 /// # Errors
-/// The number exceeds [`MOST_JOBS`]; the exit code.
-pub fn start_jobs(jobs: Option<NonZeroUsize>, console: &Console) -> Result<(), Exit> {
+/// The number exceeds [`MOST_JOBS`].
+pub fn start_jobs(jobs: Option<NonZeroUsize>) -> Result<(), Ended> {
     let Some(jobs) = jobs.map(NonZeroUsize::get) else { return Ok(()) };
     if jobs > MOST_JOBS {
         let says = format!("`--jobs {jobs}` exceeds the maximum of {MOST_JOBS}");
-        return Err(console
-            .fail(Problem::error("jobs", says).help("omit it to use one per core"), Exit::Wrong));
+        return Err(Problem::error("jobs", says).help("omit it to use one per core").into());
     }
     // Fails only if the thread pool exists already, which is not the case here.
     let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs).build_global();
     Ok(())
 }
 
-/// A progress bar on a terminal; nothing if the output is redirected.
-pub fn progress_bar(console: &Console, steps: usize) -> Arc<ProgressBar> {
-    let bar = ProgressBar::new(steps as u64);
-    if console.quiet {
-        bar.set_draw_target(ProgressDrawTarget::hidden());
+/// Refuses an output folder if files of one of the campaigns would be overwritten.
+pub fn check_outputs(out: &Path, names: &[&str], opened: Option<&Opened>, problems: &mut Problems) {
+    for campaign in opened.iter().flat_map(|opened| &opened.campaigns) {
+        problems.add(check_folder(out, names, campaign).err());
     }
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
-        bar.set_style(style);
-    }
-    Arc::new(bar)
 }

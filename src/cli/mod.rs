@@ -259,7 +259,7 @@ pub fn run_with(words: impl IntoIterator<Item = OsString>) -> Exit {
         }
     };
     let console = Console::new(arguments.quiet, arguments.color);
-    match arguments.command {
+    let done = match arguments.command {
         Command::Certify(certify) => certify.run(&console),
         Command::Reduce(reduce) => reduce.run(&console),
         Command::Judge(judge) => judge.run(&console),
@@ -302,5 +302,9 @@ pub fn run_with(words: impl IntoIterator<Item = OsString>) -> Exit {
             console.print(&String::from_utf8_lossy(&bytes))
         }
         Command::Man { out } => protocols::man(&out, &console),
-    }
+    };
+    done.unwrap_or_else(|ended| {
+        console.problems(&ended.problems);
+        ended.exit
+    })
 }

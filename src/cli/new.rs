@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::init::{check_folder, write};
-use super::output::{Console, Exit};
+use super::output::{Console, Done, Ended, Exit};
 use crate::check::{self, Overrides, family};
 use crate::library;
 use crate::new::records::Pair;
@@ -37,17 +37,12 @@ pub struct New {
 }
 
 impl New {
-    pub fn run(self, console: &Console) -> Exit {
+    pub fn run(self, console: &Console) -> Done {
         let mut problems = Problems::default();
-        if let Err(problem) = check_folder(&self.folder) {
-            problems.push(problem);
-        }
+        problems.add(check_folder(&self.folder).err());
         let made = self.made(&mut problems);
-        console.problems(&problems);
-        let Some(made) = made.filter(|_| !problems.any_error()) else { return Exit::Wrong };
-        if let Err(problem) = write(&self.folder, &made.files) {
-            return console.fail(problem, Exit::Unfinished);
-        }
+        let made = console.sound(made, &problems)?;
+        write(&self.folder, &made.files).map_err(Ended::unfinished)?;
         made.told.iter().for_each(|line| console.say(line));
         let folder = self.folder.display();
         console.say(&format!("written: {folder}"));
@@ -56,7 +51,7 @@ impl New {
         let with = format!("--effects {folder}/effects.yaml --simulator {folder}/sim.yaml");
         console.say(&format!("      fishplate diagnose {folder} {with} --preflight"));
         console.say(&format!("      fishplate diagnose {folder} {with} --out {folder}/diagnosis"));
-        Exit::Done
+        Ok(Exit::Done)
     }
 
     fn made(&self, problems: &mut Problems) -> Option<Made> {

@@ -57,6 +57,6 @@ impl WithFiles {
         if campaign.runs().is_empty() {
             return Self::of(campaign, problems);
         }
-        Self::of(prepare(folder, protocol, &[], problems)?.campaign, problems)
+        Self::of(prepare(folder, protocol, &[], problems)?.1, problems)
     }
 }

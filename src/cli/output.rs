@@ -3,10 +3,13 @@
 use std::io::{IsTerminal, Write};
 use std::path::Path;
 
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
 use super::Color;
-use crate::data::write::Outputs;
+use crate::data::write::{Outputs, write_whole};
 use crate::disk::SetKind;
 use crate::problem::{Problem, Problems, acts, plain};
+use crate::run::Progress;
 
 /// Exit codes, as documented.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +27,37 @@ pub enum Exit {
 impl From<Exit> for std::process::ExitCode {
     fn from(exit: Exit) -> Self {
         Self::from(exit as u8)
+    }
+}
+
+/// Why a command ends early: the problems that are told at last, and its exit code.
+#[derive(Debug)]
+pub struct Ended {
+    pub problems: Problems,
+    pub exit: Exit,
+}
+
+/// How a command ends.
+pub type Done = Result<Exit, Ended>;
+
+impl Ended {
+    /// What could not be completed, though the inputs are right.
+    pub fn unfinished(problems: impl Into<Problems>) -> Self {
+        Self { problems: problems.into(), exit: Exit::Unfinished }
+    }
+
+    /// Inputs that are wrong, or a file that could not be written.
+    pub fn wrong_or_unwritten(problems: impl Into<Problems>) -> Self {
+        let problems = problems.into();
+        let failed = problems.0.iter().any(|problem| problem.code == "write-failed");
+        Self { problems, exit: if failed { Exit::Unfinished } else { Exit::Wrong } }
+    }
+}
+
+/// Inputs that are wrong.
+impl<T: Into<Problems>> From<T> for Ended {
+    fn from(problems: T) -> Self {
+        Self { problems: problems.into(), exit: Exit::Wrong }
     }
 }
 
@@ -49,33 +83,39 @@ impl Console {
     }
 
     /// Prints a result to standard output. Control characters are made visible.
-    pub fn print(&self, text: &str) -> Exit {
+    ///
+    /// # Errors
+    /// Standard output cannot be written.
+    pub fn print(&self, text: &str) -> Done {
         self.put(&painted(&readable(text)))
+    }
+
+    /// The same beside files that were written: that it cannot be printed is told.
+    pub fn show(&self, text: &str) {
+        if let Err(ended) = self.print(text) {
+            self.problems(&ended.problems);
+        }
     }
 
     /// Prints the text of a file: unchanged if redirected, with visible control characters on a
     /// terminal.
-    pub fn print_file(&self, text: &str) -> Exit {
+    pub fn print_file(&self, text: &str) -> Done {
         if std::io::stdout().is_terminal() { self.put(&readable(text)) } else { self.put(text) }
     }
 
     /// Prints JSON with control characters escaped.
-    pub fn print_json(&self, text: &str) -> Exit {
+    pub fn print_json(&self, text: &str) -> Done {
         self.put(&escaped(text))
     }
 
     /// A closed pipe is not an error.
-    fn put(&self, text: &str) -> Exit {
+    fn put(&self, text: &str) -> Done {
         match std::io::stdout().lock().write_all(text.as_bytes()) {
-            Ok(()) => Exit::Done,
-            Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Exit::Done,
-            Err(error) => self.fail(
-                Problem::error(
-                    "write-failed",
-                    format!("standard output cannot be written: {error}"),
-                ),
-                Exit::Unfinished,
-            ),
+            Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+                let says = format!("standard output cannot be written: {error}");
+                Err(Ended::unfinished(Problem::error("write-failed", says)))
+            }
+            _ => Ok(Exit::Done),
         }
     }
 
@@ -107,22 +147,43 @@ impl Console {
         }
     }
 
-    /// Prints the problem that ends the program.
-    pub fn fail(&self, problem: Problem, exit: Exit) -> Exit {
-        self.problems(&Problems(vec![problem]));
-        exit
-    }
-
-    /// Writes a set of files, all or none, and then prints their names.
+    /// Prints problems; an input that was read, unless one of them is an error.
     ///
     /// # Errors
-    /// A file cannot be written; the exit code.
+    /// An input is wrong.
+    pub fn sound<T>(&self, input: Option<T>, problems: &Problems) -> Result<T, Ended> {
+        self.problems(problems);
+        input.filter(|_| !problems.any_error()).ok_or(Problems::default().into())
+    }
+
+    /// Does work of so many steps beside a progress bar on a terminal; nothing is shown if the
+    /// output is redirected.
+    pub fn with_progress<T>(&self, steps: usize, work: impl FnOnce(Progress<'_>) -> T) -> T {
+        let bar = ProgressBar::new(steps as u64);
+        if self.quiet {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
+            bar.set_style(style);
+        }
+        let done = work(&|step| {
+            bar.set_message(plain(step));
+            bar.inc(1);
+        });
+        bar.finish_and_clear();
+        done
+    }
+
+    /// Writes a set of files, all or none.
+    ///
+    /// # Errors
+    /// A file cannot be written.
     pub fn write_all(
         &self,
         kind: SetKind,
         folder: &Path,
         files: &[(String, Vec<u8>)],
-    ) -> Result<(), Exit> {
+    ) -> Result<(), Ended> {
         let mut outputs = Outputs::of(kind, folder);
         let added = files.iter().try_for_each(|(name, bytes)| outputs.add(name, bytes));
         self.commit(added.map(|()| outputs))
@@ -131,19 +192,19 @@ impl Console {
     /// Completes [`Console::write_all`] for files that were added elsewhere.
     ///
     /// # Errors
-    /// A file cannot be written; the exit code.
-    pub fn commit(&self, outputs: Result<Outputs, Problem>) -> Result<(), Exit> {
-        let outputs = outputs.map_err(|problem| self.fail(problem, Exit::Unfinished))?;
+    /// A file cannot be written.
+    pub fn commit(&self, outputs: Result<Outputs, Problem>) -> Result<(), Ended> {
+        let outputs = outputs.map_err(Ended::unfinished)?;
         self.problems(&Problems(outputs.mended().into_iter().collect()));
-        outputs.commit().map_err(|problem| self.fail(problem, Exit::Unfinished))
+        outputs.commit().map_err(Ended::unfinished)
     }
 
     /// Writes a file completely or not at all.
-    pub fn write(&self, path: &Path, bytes: &[u8]) -> Exit {
-        match crate::data::write::write_whole(path, bytes) {
-            Ok(()) => Exit::Done,
-            Err(problem) => self.fail(problem, Exit::Unfinished),
-        }
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn write(&self, path: &Path, bytes: &[u8]) -> Done {
+        write_whole(path, bytes).map(|()| Exit::Done).map_err(Ended::unfinished)
     }
 }
 

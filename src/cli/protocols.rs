@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::output::{Console, Exit};
+use super::output::{Console, Done, Exit};
 use super::places::{check_file, check_out};
 use crate::check::{self, Overrides};
 use crate::disk::SetKind;
@@ -13,7 +13,7 @@ use crate::problem::{Problem, Problems};
 use crate::source::Source;
 use crate::syntax;
 
-pub fn check(names: &[String], console: &Console) -> Exit {
+pub fn check(names: &[String], console: &Console) -> Done {
     let mut exit = Exit::Done;
     for name in names {
         let mut problems = Problems::default();
@@ -34,7 +34,7 @@ pub fn check(names: &[String], console: &Console) -> Exit {
             None => exit = Exit::Wrong,
         }
     }
-    exit
+    Ok(exit)
 }
 
 fn counted(count: usize, one: &str, several: &str) -> String {
@@ -42,14 +42,15 @@ fn counted(count: usize, one: &str, several: &str) -> String {
 }
 
 /// Writes nothing before all texts have been read.
-pub fn fmt(paths: &[PathBuf], only_check: bool, console: &Console) -> Exit {
+pub fn fmt(paths: &[PathBuf], only_check: bool, console: &Console) -> Done {
     let mut exit = Exit::Done;
     let mut changed = Vec::new();
     for path in paths {
         let source = match library::read(path) {
             Ok(source) => source,
             Err(problem) => {
-                exit = console.fail(*problem, Exit::Wrong);
+                console.problems(&(*problem).into());
+                exit = Exit::Wrong;
                 continue;
             }
         };
@@ -73,12 +74,12 @@ pub fn fmt(paths: &[PathBuf], only_check: bool, console: &Console) -> Exit {
             changed.push((path, text));
         }
     }
-    if exit != Exit::Wrong
-        && changed.iter().any(|(path, text)| console.write(path, text.as_bytes()) != Exit::Done)
-    {
-        exit = Exit::Unfinished;
+    if exit != Exit::Wrong {
+        for (path, text) in changed {
+            console.write(path, text.as_bytes())?;
+        }
     }
-    exit
+    Ok(exit)
 }
 
 fn canonical(source: &Arc<Source>, problems: &mut Problems, yaml: bool) -> String {
@@ -86,34 +87,22 @@ fn canonical(source: &Arc<Source>, problems: &mut Problems, yaml: bool) -> Strin
     if yaml { syntax::print_yaml(&document) } else { syntax::print_text(&document) }
 }
 
-pub fn convert(name: &str, yaml: bool, output: Option<&Path>, console: &Console) -> Exit {
-    if let Some(Err(problem)) = output.map(|output| check_file(output, &[Path::new(name)])) {
-        return console.fail(problem, Exit::Wrong);
-    }
-    let source = match library::find(name, None) {
-        Ok(source) => source,
-        Err(problem) => return console.fail(*problem, Exit::Wrong),
-    };
+pub fn convert(name: &str, yaml: bool, output: Option<&Path>, console: &Console) -> Done {
+    output.map_or(Ok(()), |output| check_file(output, &[Path::new(name)]))?;
+    let source = library::find(name, None).map_err(|problem| *problem)?;
     let mut problems = Problems::default();
     let text = canonical(&source, &mut problems, yaml);
-    console.problems(&problems);
-    if problems.any_error() {
-        return Exit::Wrong;
-    }
+    let text = console.sound(Some(text), &problems)?;
     match output {
         Some(path) => console.write(path, text.as_bytes()),
         None => console.print_file(&text),
     }
 }
 
-pub fn diff(before: &str, after: &str, console: &Console) -> Exit {
+pub fn diff(before: &str, after: &str, console: &Console) -> Done {
     let mut problems = Problems::default();
     let (before, after) = (load(before, &mut problems), load(after, &mut problems));
-    console.problems(&problems);
-    let (Some(before), Some(after)) = (before, after) else { return Exit::Wrong };
-    if problems.any_error() {
-        return Exit::Wrong;
-    }
+    let (before, after) = console.sound(before.zip(after), &problems)?;
     let found = check::diff::diff(&before.merged, &after.merged);
     if found.is_empty() {
         return console.print("no rule differs\n");
@@ -131,7 +120,7 @@ pub fn diff(before: &str, after: &str, console: &Console) -> Exit {
     console.print(&text)
 }
 
-pub fn list(name: Option<&str>, console: &Console) -> Exit {
+pub fn list(name: Option<&str>, console: &Console) -> Done {
     match name {
         Some(name) => match library::shipped(name) {
             Some(source) => console.print_file(&source.text),
@@ -140,7 +129,7 @@ pub fn list(name: Option<&str>, console: &Console) -> Exit {
                     "no-such-protocol",
                     format!("no shipped protocol is called `{name}`"),
                 );
-                console.fail(problem.suggest(name, library::names()), Exit::Wrong)
+                Err(problem.suggest(name, library::names()).into())
             }
         },
         None => {
@@ -169,10 +158,8 @@ pub fn list(name: Option<&str>, console: &Console) -> Exit {
 }
 
 /// One page for the program and one for each subcommand.
-pub fn man(out: &Path, console: &Console) -> Exit {
-    if let Err(problem) = check_out(out) {
-        return console.fail(problem, Exit::Wrong);
-    }
+pub fn man(out: &Path, console: &Console) -> Done {
+    check_out(out)?;
     let command = <super::Arguments as clap::CommandFactory>::command();
     let mut pages = vec![("fishplate.1".to_string(), clap_mangen::Man::new(command.clone()))];
     for sub in command.get_subcommands() {
@@ -185,9 +172,9 @@ pub fn man(out: &Path, console: &Console) -> Exit {
     for (name, page) in pages {
         let mut bytes = Vec::new();
         if page.render(&mut bytes).is_err() {
-            return Exit::Unfinished;
+            return Ok(Exit::Unfinished);
         }
         files.push((name, bytes));
     }
-    console.write_all(SetKind::Manual, out, &files).map_or_else(|exit| exit, |()| Exit::Done)
+    console.write_all(SetKind::Manual, out, &files).map(|()| Exit::Done)
 }

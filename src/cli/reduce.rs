@@ -6,14 +6,13 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::inputs::{Pool, prepare_all, progress_bar, start_jobs};
-use super::output::{Console, Exit};
+use super::inputs::{prepare_all, start_jobs};
+use super::output::{Console, Done, Ended, Exit};
 use super::places::{check_file, check_folder, check_not_input, check_out};
 use super::report::Report;
 use super::values::from_one;
-use crate::data::Campaigns;
 use crate::disk;
-use crate::problem::{Problem, Problems, plain};
+use crate::problem::{Problem, Problems};
 use crate::run::{SectionValues, Shard};
 use crate::values::{self, File, Joined, Part, Values};
 
@@ -45,12 +44,10 @@ pub struct Reduce {
 }
 
 impl Reduce {
-    pub fn run(self, console: &Console) -> Exit {
-        if let Err(exit) = start_jobs(self.jobs, console) {
-            return exit;
-        }
+    pub fn run(self, console: &Console) -> Done {
+        start_jobs(self.jobs)?;
         let mut problems = Problems::default();
-        let prepared =
+        let opened =
             prepare_all(&self.campaigns, self.protocol.as_deref(), &self.set, &mut problems);
         let name = self.out.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         let folder = self
@@ -58,12 +55,10 @@ impl Reduce {
             .parent()
             .filter(|folder| !folder.as_os_str().is_empty())
             .unwrap_or(Path::new("."));
-        for campaign in prepared.iter().flat_map(|pool| &pool.campaigns) {
-            if let Err(problem) =
-                check_file(&self.out, &[]).and_then(|()| check_folder(folder, &[name], campaign))
-            {
-                problems.push(problem);
-            }
+        for campaign in opened.iter().flat_map(|opened| &opened.campaigns) {
+            let checked =
+                check_file(&self.out, &[]).and_then(|()| check_folder(folder, &[name], campaign));
+            problems.add(checked.err());
         }
         if !problems.any_error()
             && self.out.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("parquet"))
@@ -74,37 +69,18 @@ impl Reduce {
             );
             problems.push(Problem::warning("values-name", says).help("name it `values.parquet`"));
         }
-        console.problems(&problems);
-        let Some(Pool { compiled, campaigns, found, .. }) =
-            prepared.filter(|_| !problems.any_error())
-        else {
-            return Exit::Wrong;
-        };
+        let opened = console.sound(opened, &problems)?;
         let part = Part { shard: self.shard.unwrap_or(Shard::WHOLE), plots: !self.no_plots };
-        let bar =
-            progress_bar(console, part.shard.range(Campaigns::from(&campaigns).sections()).len());
-        let values = values::reduce(&compiled, (&campaigns, found), part, &|section| {
-            bar.set_message(plain(section));
-            bar.inc(1);
-        });
-        bar.finish_and_clear();
-        let values = match values {
-            Ok(values) => values,
-            Err(problems) => {
-                console.problems(&problems);
-                return Exit::Wrong;
-            }
-        };
-        let bytes = match values::write(&compiled.plan, &values) {
-            Ok(bytes) => bytes,
-            Err(problem) => return console.fail(problem, Exit::Unfinished),
-        };
-        let written = console.write(&self.out, &bytes);
-        if written == Exit::Done && !console.quiet {
-            console.print(&told(&values));
+        let steps = part.shard.range(opened.campaigns().sections()).len();
+        let values =
+            console.with_progress(steps, |progress| values::reduce(&opened, part, progress))?;
+        let bytes = values::write(&opened.compiled.plan, &values).map_err(Ended::unfinished)?;
+        console.write(&self.out, &bytes)?;
+        if !console.quiet {
+            console.show(&told(&values));
             console.say(&format!("written: {}", self.out.display()));
         }
-        written
+        Ok(Exit::Done)
     }
 }
 
@@ -137,31 +113,18 @@ pub struct Judge {
 }
 
 impl Judge {
-    pub fn run(self, console: &Console) -> Exit {
+    pub fn run(self, console: &Console) -> Done {
         let mut problems = Problems::default();
         let inputs: Vec<&Path> = self.values.iter().map(PathBuf::as_path).collect();
         for name in super::places::REPORT {
-            if let Err(problem) = check_not_input(&self.report.out.join(name), &inputs) {
-                problems.push(problem);
-            }
+            problems.add(check_not_input(&self.report.out.join(name), &inputs).err());
         }
-        if let Err(problem) = check_out(&self.report.out) {
-            problems.push(problem);
-        }
+        problems.add(check_out(&self.report.out).err());
         let joined = joined(&self.values, &mut problems);
-        console.problems(&problems);
-        let Some(joined) = joined.filter(|_| !problems.any_error()) else { return Exit::Wrong };
-        let key = match self.report.key(console) {
-            Ok(key) => key,
-            Err(exit) => return exit,
-        };
-        match joined.certification(self.report.settings()) {
-            Ok(found) => self.report.write(&found, key.as_ref(), console),
-            Err(problems) => {
-                console.problems(&problems);
-                Exit::Wrong
-            }
-        }
+        let joined = console.sound(joined, &problems)?;
+        let key = self.report.key()?;
+        let found = joined.certification(self.report.settings())?;
+        self.report.write(&found, key.as_ref(), console)
     }
 }
 

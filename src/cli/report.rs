@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::output::{Console, Exit};
+use super::output::{Console, Done, Ended, Exit};
 use super::sign;
 use crate::deliver::{self, Reports};
 use crate::disk::{SIGNATURE, SetKind};
-use crate::problem::Problems;
+use crate::problem::{Problem, Problems};
 use crate::provenance::carried::REPORT_PDF;
 use crate::provenance::signature::{self, SecretKey, secret_key};
 use crate::provenance::statement;
@@ -56,29 +56,23 @@ impl Report {
     /// reported at once.
     ///
     /// # Errors
-    /// The key cannot be read; the exit code.
-    pub fn key(&self, console: &Console) -> Result<Option<SecretKey>, Exit> {
-        let key = self.sign.as_deref().map(|path| secret_key(path, sign::password())).transpose();
-        key.map_err(|problem| console.fail(problem, Exit::Wrong))
+    /// The key cannot be read.
+    pub fn key(&self) -> Result<Option<SecretKey>, Problem> {
+        self.sign.as_deref().map(|path| secret_key(path, sign::password())).transpose()
     }
 
     /// Writes all files or none, and prints the summary.
-    pub fn write(&self, found: &Certification, key: Option<&SecretKey>, console: &Console) -> Exit {
-        let files = match self.files(found, key) {
-            Ok(files) => files,
-            Err(problems) => {
-                console.problems(&problems);
-                return Exit::Unfinished;
-            }
-        };
-        if let Err(exit) = console.write_all(SetKind::Report, &self.out, &files) {
-            return exit;
-        }
+    ///
+    /// # Errors
+    /// The report cannot be made, or a file not be written.
+    pub fn write(&self, found: &Certification, key: Option<&SecretKey>, console: &Console) -> Done {
+        let files = self.files(found, key).map_err(Ended::unfinished)?;
+        console.write_all(SetKind::Report, &self.out, &files)?;
         if !console.quiet {
-            console.print(&summary(found, console));
+            console.show(&summary(found, console));
             console.say(&format!("written: {}", self.out.display()));
         }
-        if found.verdict == Verdict::Validated { Exit::Done } else { Exit::DoesNotHold }
+        Ok(if found.verdict == Verdict::Validated { Exit::Done } else { Exit::DoesNotHold })
     }
 
     /// All files of the report, by path relative to the output folder.
@@ -97,9 +91,7 @@ impl Report {
             let signed = signed.map(|(name, bytes)| {
                 Ok((format!("{name}{SIGNATURE}"), signature::sign(key, name, bytes)?.into_bytes()))
             });
-            let signed =
-                signed.collect::<Result<Vec<_>, _>>().map_err(|problem| Problems(vec![problem]))?;
-            files.extend(signed);
+            files.extend(signed.collect::<Result<Vec<_>, Problem>>()?);
         }
         Ok(files)
     }

@@ -2,16 +2,16 @@
 
 use std::fmt::Write;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
 use super::convert_records::Records;
-use super::inputs::{Pool, compiled_for, start_jobs, with_protocols};
-use super::output::{Console, Exit};
+use super::inputs::{compiled_for, start_jobs, with_protocols};
+use super::output::{Console, Done, Ended, Exit};
 use super::places::{CAMPAIGN, check_file, check_folder};
 use super::values::from_one;
-use crate::data::Campaign;
+use crate::certify::Opened;
 use crate::data::cut::cut;
 use crate::data::record::Format;
 use crate::data::write::Outputs;
@@ -52,73 +52,52 @@ pub struct Sections {
 }
 
 impl Sections {
-    pub fn run(self, console: &Console) -> Exit {
-        if let Err(exit) = start_jobs(self.jobs, console) {
-            return exit;
-        }
+    pub fn run(self, console: &Console) -> Done {
+        start_jobs(self.jobs)?;
         let mut problems = Problems::default();
-        let pool = compiled_for(
+        let opened = compiled_for(
             std::slice::from_ref(&self.campaign),
             self.protocol.as_deref(),
             &self.set,
             &mut problems,
         );
-        for campaign in pool.iter().flat_map(|pool| &pool.campaigns) {
+        for campaign in opened.iter().flat_map(|opened| &opened.campaigns) {
             let inputs = campaign.inputs();
             let files: Vec<_> = inputs.files.iter().map(PathBuf::as_path).collect();
             let table = self.out.as_ref().map_or(Ok(()), |out| check_file(out, &files));
             let copy =
                 self.cut.as_ref().map_or(Ok(()), |folder| check_folder(folder, CAMPAIGN, campaign));
-            [table, copy]
-                .into_iter()
-                .filter_map(Result::err)
-                .for_each(|problem| problems.push(problem));
+            problems.add([table, copy].into_iter().filter_map(Result::err));
         }
-        console.problems(&problems);
-        let Some(Pool { compiled, campaigns, .. }) = pool.filter(|_| !problems.any_error()) else {
-            return Exit::Wrong;
-        };
+        let Opened { compiled, campaigns, .. } = console.sound(opened, &problems)?;
         // A table that the campaign has can be cut by; it is not looked for again.
         let given = campaigns[0].sections.is_some() && self.out.is_none();
         let (campaign, told) = if given {
             (campaigns[0].clone(), None)
         } else {
-            match find::find(&compiled.plan, &compiled.graph, &campaigns[0], &|_| {}) {
-                Ok(found) => (found.campaign, Some(found.told)),
-                Err(problems) => {
-                    console.problems(&problems);
-                    return Exit::Wrong;
-                }
-            }
+            let found = find::find(&compiled.plan, &compiled.graph, &campaigns[0], &|_| {})?;
+            (found.campaign, Some(found.told))
         };
         let campaign = with_protocols(campaign);
         // The copy is complete beside its folder before the table is written: if one of them cannot
         // be written, neither is.
-        let copy = match self
-            .cut
-            .as_ref()
-            .map(|folder| cut_to(folder, &campaign, Format::from(self.records), console))
-            .transpose()
-        {
-            Ok(copy) => copy,
-            Err(exit) => return exit,
+        let cut_to = |folder: &PathBuf| {
+            let mut outputs = Outputs::of(SetKind::Campaign, folder);
+            let records = cut(&campaign, Format::from(self.records), &mut outputs);
+            records
+                .map(|records| (outputs, records))
+                .map_err(|found| Ended::wrong_or_unwritten(Problems(found)))
         };
+        let copy = self.cut.as_ref().map(cut_to).transpose()?;
         if let (Some(out), Some(table)) = (&self.out, &campaign.sections) {
-            let written = console.write(out, table.source.text.as_bytes());
-            if written != Exit::Done {
-                return written;
-            }
+            console.write(out, table.source.text.as_bytes())?;
         }
-        let records = match copy
-            .map(|(outputs, records)| console.commit(Ok(outputs)).map(|()| records))
-            .transpose()
-        {
-            Ok(records) => records,
-            Err(exit) => return exit,
-        };
+        let committed =
+            copy.map(|(outputs, records)| console.commit(Ok(outputs)).map(|()| records));
+        let records = committed.transpose()?;
         if !console.quiet {
             if let Some(found) = &told {
-                console.print(&words(found));
+                console.show(&words(found));
             }
             self.out.iter().for_each(|out| console.say(&format!("written: {}", out.display())));
             for (folder, records) in self.cut.iter().zip(records) {
@@ -129,25 +108,7 @@ impl Sections {
                 ));
             }
         }
-        Exit::Done
-    }
-}
-
-/// The copy with a record for each section, and their number.
-fn cut_to(
-    folder: &Path,
-    campaign: &Campaign,
-    format: Format,
-    console: &Console,
-) -> Result<(Outputs, usize), Exit> {
-    let mut outputs = Outputs::of(SetKind::Campaign, folder);
-    match cut(campaign, format, &mut outputs) {
-        Ok(records) => Ok((outputs, records)),
-        Err(problems) => {
-            let of_disk = problems.iter().any(|problem| problem.code == "write-failed");
-            console.problems(&Problems(problems));
-            Err(if of_disk { Exit::Unfinished } else { Exit::Wrong })
-        }
+        Ok(Exit::Done)
     }
 }
 

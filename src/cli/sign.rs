@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::output::{Console, Exit};
+use super::output::{Console, Done, Ended, Exit};
 use crate::disk;
 use crate::problem::Problem;
 use crate::provenance::signature::{PASSWORD, beside, content, new_keys, secret_key, sign};
@@ -36,7 +36,7 @@ pub fn password() -> Option<String> {
 }
 
 impl Keygen {
-    pub fn run(self, console: &Console) -> Exit {
+    pub fn run(self, console: &Console) -> Done {
         let with = |extension: &str| {
             let mut name = self.name.clone().into_os_string();
             name.push(extension);
@@ -48,30 +48,22 @@ impl Keygen {
                 "key-exists",
                 format!("`{}` is there already; a key is never overwritten", there.display()),
             );
-            return console
-                .fail(problem.help("choose another name, or move the old key away"), Exit::Wrong);
+            return Err(problem.help("choose another name, or move the old key away").into());
         }
-        let keys = match new_keys(password(), !self.no_password) {
-            Ok(keys) => keys,
-            Err(problem) => return console.fail(problem, Exit::Unfinished),
-        };
+        let keys = new_keys(password(), !self.no_password).map_err(Ended::unfinished)?;
         let written = create(&secret, keys.0.as_bytes(), true).and_then(|()| {
             create(&public, keys.1.as_bytes(), false).inspect_err(|_| {
                 // A secret key without its public key is not usable.
                 let _ = disk::remove(&secret);
             })
         });
-        match written {
-            Ok(()) => {
-                console.say(&format!(
-                    "written: {} (keep it secret), {} (publish it for verification)",
-                    secret.display(),
-                    public.display()
-                ));
-                Exit::Done
-            }
-            Err(problem) => console.fail(problem, Exit::Unfinished),
-        }
+        written.map_err(Ended::unfinished)?;
+        console.say(&format!(
+            "written: {} (keep it secret), {} (publish it for verification)",
+            secret.display(),
+            public.display()
+        ));
+        Ok(Exit::Done)
     }
 }
 
@@ -83,26 +75,19 @@ fn create(path: &Path, bytes: &[u8], secret: bool) -> Result<(), Problem> {
 }
 
 impl Sign {
-    pub fn run(self, console: &Console) -> Exit {
-        let key = match secret_key(&self.key, password()) {
-            Ok(key) => key,
-            Err(problem) => return console.fail(problem, Exit::Wrong),
-        };
+    pub fn run(self, console: &Console) -> Done {
+        let key = secret_key(&self.key, password())?;
         // All files are read and signed before any signature is written.
         let mut signed = Vec::new();
         for path in &self.files {
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            match content(path).and_then(|bytes| sign(&key, &name, &bytes)) {
-                Ok(text) => signed.push((beside(path), text)),
-                Err(problem) => return console.fail(problem, Exit::Wrong),
-            }
+            let text = content(path).and_then(|bytes| sign(&key, &name, &bytes))?;
+            signed.push((beside(path), text));
         }
         for (path, text) in signed {
-            if console.write(&path, text.as_bytes()) != Exit::Done {
-                return Exit::Unfinished;
-            }
+            console.write(&path, text.as_bytes())?;
             console.say(&format!("written: {}", path.display()));
         }
-        Exit::Done
+        Ok(Exit::Done)
     }
 }

@@ -7,15 +7,15 @@ use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 
 use super::convert_records::Records;
-use super::inputs::{progress_bar, start_jobs};
+use super::inputs::start_jobs;
 use super::of_runs::WithFiles;
-use super::output::{Console, Exit};
+use super::output::{Console, Done, Ended, Exit};
 use super::places::{CAMPAIGN, check_file, check_folder};
 use super::simulator::{Chosen, SimulatorChoice};
 use super::values::from_one;
 use crate::data::record::Format;
 use crate::data::text::read_text;
-use crate::data::write::{Outputs, write_whole};
+use crate::data::write::Outputs;
 use crate::data::{Campaign, RecordKind};
 use crate::disk::SetKind;
 use crate::effects::{self, Applied, Catalogue};
@@ -23,7 +23,7 @@ use crate::library;
 use crate::model::CHANNELS;
 use crate::model::integrate::{MOST_STEPS, Method, SAMPLE, Steps};
 pub use crate::prepare::load_catalogue;
-use crate::problem::{Problem, Problems, plain};
+use crate::problem::{Problem, Problems};
 use crate::simulate::{
     Deviation, Made, Plan, Section, check_confined, effects_of_origin, record_file, sections,
     simulate, single, write_campaign,
@@ -97,29 +97,18 @@ pub enum Integrator {
     Midpoint,
 }
 impl Simulate {
-    pub fn run(self, console: &Console) -> Exit {
-        if let Err(exit) = start_jobs(self.jobs, console) {
-            return exit;
-        }
+    pub fn run(self, console: &Console) -> Done {
+        start_jobs(self.jobs)?;
         let mut problems = Problems::default();
         let catalogue = load_catalogue(&self.catalogue, &mut problems);
         console.problems(&problems);
-        let Some(catalogue) = catalogue else { return Exit::Wrong };
-        let effects = match effects::choose(&catalogue, &self.effects) {
-            Ok(effects) => effects,
-            Err(found) => {
-                console.problems(&Problems(found));
-                return Exit::Wrong;
-            }
-        };
-        let steps = match steps(self.integrator, &self.step) {
-            Ok(steps) => steps,
-            Err(problem) => return console.fail(problem, Exit::Wrong),
-        };
+        let Some(catalogue) = catalogue else { return Ok(Exit::Wrong) };
+        let effects = effects::choose(&catalogue, &self.effects).map_err(Problems)?;
+        let steps = steps(self.integrator, &self.step)?;
         match (&self.campaign, &self.vehicle) {
             (Some(campaign), _) => self.whole(campaign, (&catalogue, &effects), steps, console),
             (None, Some(vehicle)) => self.one(vehicle, (&catalogue, &effects), steps, console),
-            (None, None) => Exit::Wrong,
+            (None, None) => Ok(Exit::Wrong),
         }
     }
 
@@ -130,7 +119,7 @@ impl Simulate {
         (catalogue, effects): (&Catalogue, &[Applied]),
         steps: Steps,
         console: &Console,
-    ) -> Exit {
+    ) -> Done {
         let mut problems = Problems::default();
         let places = |campaign: &Campaign| {
             self.out.as_ref().map_or(Ok(()), |out| check_folder(out, CAMPAIGN, campaign))
@@ -146,47 +135,33 @@ impl Simulate {
             campaign.one_vehicle().map_err(|problem| problems.push(problem)).ok()?;
             let sections = sections(campaign, &mut problems)?;
             let chosen = self.simulator.open(campaign, &mut problems)?.integrated(steps);
-            if let Err(found) = chosen.check(catalogue) {
-                found.into_iter().for_each(|problem| problems.push(problem));
-                return None;
-            }
-            for problem in unusable(catalogue, effects, &sections, &chosen) {
-                problems.push(problem);
-            }
+            chosen.check(catalogue).map_err(|found| problems.add(found)).ok()?;
+            problems.add(unusable(catalogue, effects, &sections, &chosen));
             Some((campaign, chosen, sections))
         });
-        console.problems(&problems);
-        let (Some((campaign, chosen, sections)), Some(out)) =
-            (prepared.filter(|_| !problems.any_error()), &self.out)
-        else {
-            return Exit::Wrong;
-        };
+        let (campaign, chosen, sections) = console.sound(prepared, &problems)?;
+        let Some(out) = &self.out else { return Ok(Exit::Wrong) };
         if self.baseline {
-            match chosen.baseline(campaign, &sections) {
-                Ok((deviations, warning)) => say_baseline(console, &chosen, &deviations, warning),
-                Err(failed) => {
-                    console.problems(&Problems(failed));
-                    return Exit::Unfinished;
-                }
-            }
+            let found = chosen.baseline(campaign, &sections);
+            let (deviations, warning) =
+                found.map_err(|failed| Ended::unfinished(Problems(failed)))?;
+            say_baseline(console, &chosen, &deviations, warning);
         }
-        let bar = progress_bar(console, sections.len());
         let format = Format::from(self.records);
-        let made: Vec<Result<Vec<u8>, Problem>> = sections
-            .par_iter()
-            .map(|section| {
-                let file = self.record(format, &chosen, campaign, (catalogue, effects), section);
-                bar.set_message(plain(section.name()));
-                bar.inc(1);
-                file
-            })
-            .collect();
-        bar.finish_and_clear();
+        let of = (catalogue, effects);
+        let made: Vec<Result<Vec<u8>, Problem>> =
+            console.with_progress(sections.len(), |progress| {
+                let one = |section: &Section| {
+                    let file = self.record(format, &chosen, campaign, of, section);
+                    progress(section.name());
+                    file
+                };
+                sections.par_iter().map(one).collect()
+            });
         let failed: Vec<Problem> =
             made.iter().filter_map(|made| made.as_ref().err().cloned()).collect();
         if !failed.is_empty() {
-            console.problems(&Problems(failed));
-            return Exit::Unfinished;
+            return Err(Ended::unfinished(Problems(failed)));
         }
         let records = sections.iter().map(Section::name).zip(made.into_iter().flatten());
         let made = Made {
@@ -199,18 +174,14 @@ impl Simulate {
         console.problems(&Problems(chosen.warning().into_iter().collect()));
         let mut outputs = Outputs::of(SetKind::Campaign, out);
         let added = write_campaign(&mut outputs, campaign, (format, records), Some(&made));
-        match console.commit(added.map(|()| outputs)) {
-            Ok(()) => {
-                console.say(&format!(
-                    "written: {} sections to {}{}",
-                    sections.len(),
-                    out.display(),
-                    chosen.effort()
-                ));
-                Exit::Done
-            }
-            Err(exit) => exit,
-        }
+        console.commit(added.map(|()| outputs))?;
+        console.say(&format!(
+            "written: {} sections to {}{}",
+            sections.len(),
+            out.display(),
+            chosen.effort()
+        ));
+        Ok(Exit::Done)
     }
 
     /// The file of a section's record.
@@ -244,11 +215,11 @@ impl Simulate {
         (catalogue, effects): (&Catalogue, &[Applied]),
         steps: Steps,
         console: &Console,
-    ) -> Exit {
-        let (Some(track), Some(output)) = (&self.track, &self.output) else { return Exit::Wrong };
-        if let Err(problem) = check_file(output, &[vehicle, track]) {
-            return console.fail(problem, Exit::Wrong);
-        }
+    ) -> Done {
+        let (Some(track), Some(output)) = (&self.track, &self.output) else {
+            return Ok(Exit::Wrong);
+        };
+        check_file(output, &[vehicle, track])?;
         let mut problems = Problems::default();
         let tree = read_text(vehicle, &vehicle.display().to_string())
             .map_err(|problem| problems.push(problem))
@@ -256,37 +227,23 @@ impl Simulate {
             .and_then(|(source, _)| yaml::load(&source, &mut problems));
         let speed = speed(self.speed.as_deref()).map_err(|problem| problems.push(problem));
         console.problems(&problems);
-        let (Some(tree), Ok(speed)) = (tree, speed) else { return Exit::Wrong };
+        let (Some(tree), Ok(speed)) = (tree, speed) else { return Ok(Exit::Wrong) };
         let nowhere = Section::nowhere();
         if let Some(confined) = effects.iter().find(|applied| applied.confined.is_some()) {
             let says = format!(
                 "`{}` is confined to some sections, but only one record is simulated",
                 confined.effect
             );
-            return console.fail(Problem::error("no-such-section", says), Exit::Wrong);
+            return Err(Problem::error("no-such-section", says).into());
         }
-        let plan = match Plan::new(catalogue, effects, &nowhere, None) {
-            Ok(plan) => plan,
-            Err(problem) => return console.fail(problem, Exit::Wrong),
-        };
+        let plan = Plan::new(catalogue, effects, &nowhere, None)?;
         let made = single((vehicle, &tree), track, speed, (&plan.settings, plan.shift()), steps);
-        let file = made.and_then(|mut signals| {
-            let done = plan
-                .operate(&mut signals, &nowhere)
-                .and_then(|()| record_file(Format::of(output), &signals, &unit));
-            done.map_err(|problem| Problems(vec![problem]))
-        });
-        match file {
-            Ok(bytes) => match write_whole(output, &bytes) {
-                Ok(()) => Exit::Done,
-                Err(problem) => console.fail(problem, Exit::Unfinished),
-            },
-            Err(problems) => {
-                console.problems(&problems);
-                let failed = problems.0.iter().any(|problem| problem.code == "simulation-failed");
-                if failed { Exit::Unfinished } else { Exit::Wrong }
-            }
-        }
+        let mut signals = made.map_err(|problems| {
+            let failed = problems.0.iter().any(|problem| problem.code == "simulation-failed");
+            Ended { problems, exit: if failed { Exit::Unfinished } else { Exit::Wrong } }
+        })?;
+        plan.operate(&mut signals, &nowhere)?;
+        console.write(output, &record_file(Format::of(output), &signals, &unit)?)
     }
 }
 

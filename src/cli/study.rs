@@ -5,16 +5,15 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::inputs::{prepare_all, progress_bar, start_jobs};
-use super::output::{Console, Exit};
-use super::places::{REPORT, check_folder};
+use super::inputs::{check_outputs, prepare_all, start_jobs};
+use super::output::{Console, Done, Ended, Exit};
+use super::places::REPORT;
 use super::reduce::joined;
 use super::values::{from_one, numbers, values};
-use crate::data::Campaigns;
 use crate::deliver::{self, Reports};
 use crate::disk::SetKind;
-use crate::problem::{Problem, Problems, plain};
-use crate::report::study as report;
+use crate::problem::{Problem, Problems};
+use crate::report::study::{self as report, Document};
 use crate::result::study as found;
 use crate::robustness::{self, Asked, Settings, Synchronisation, Vary};
 use crate::run::Row;
@@ -104,15 +103,13 @@ pub struct Common {
 }
 
 impl Study {
-    pub fn run(self, console: &Console) -> Exit {
+    pub fn run(self, console: &Console) -> Done {
         let common = match &self {
             Self::Sections { common }
             | Self::Sync { common, .. }
             | Self::Parameters { common, .. } => common,
         };
-        if let Err(exit) = start_jobs(common.jobs, console) {
-            return exit;
-        }
+        start_jobs(common.jobs)?;
         let mut problems = common.wrong();
         if common
             .campaigns
@@ -122,47 +119,18 @@ impl Study {
             return self.of_values(common, problems, console);
         }
         let asked = self.asked(&mut problems);
-        let prepared =
+        let opened =
             prepare_all(&common.campaigns, common.protocol.as_deref(), &common.set, &mut problems);
-        for campaign in prepared.iter().flat_map(|pool| &pool.campaigns) {
-            if let Err(problem) = check_folder(&common.out, REPORT, campaign) {
-                problems.push(problem);
-            }
-        }
-        console.problems(&problems);
-        let Some((asked, prepared)) = asked.zip(prepared).filter(|_| !problems.any_error()) else {
-            return Exit::Wrong;
-        };
-        let steps = match asked.ready(&prepared.compiled, Campaigns::from(&prepared.campaigns)) {
-            Ok(steps) => steps,
-            Err(problems) => {
-                console.problems(&problems);
-                return Exit::Wrong;
-            }
-        };
-        let bar = progress_bar(console, steps);
-        let found = asked.run(
-            &prepared.compiled,
-            Campaigns::from(&prepared.campaigns),
-            &prepared.overrides,
-            &common.settings(),
-            &|step| {
-                bar.set_message(plain(step));
-                bar.inc(1);
-            },
-        );
-        bar.finish_and_clear();
-        match found {
-            Ok(study) => write(common, &study, console),
-            Err(problems) => {
-                console.problems(&problems);
-                Exit::Wrong
-            }
-        }
+        check_outputs(&common.out, REPORT, opened.as_ref(), &mut problems);
+        let (asked, opened) = console.sound(asked.zip(opened), &problems)?;
+        let steps = asked.ready(&opened)?;
+        let study = console
+            .with_progress(steps, |progress| asked.run(&opened, &common.settings(), progress))?;
+        write(common, &study, console)
     }
 
     /// The study of sections that `reduce` evaluated.
-    fn of_values(&self, common: &Common, mut problems: Problems, console: &Console) -> Exit {
+    fn of_values(&self, common: &Common, mut problems: Problems, console: &Console) -> Done {
         if !matches!(self, Self::Sections { .. }) {
             let says = "this study evaluates records again, and files of values contain none";
             problems.push(
@@ -189,25 +157,17 @@ impl Study {
             let says = "a selection takes one value of each section and signal, and the values are of several records";
             problems.push(Problem::error("several-records", says));
         }
-        console.problems(&problems);
-        let Some(joined) = joined.filter(|_| !problems.any_error()) else { return Exit::Wrong };
-        let found = robustness::countable(&joined.compiled).and_then(|()| {
-            let evaluated = joined.evaluated()?;
-            if let Some(says) = evaluated.missing() {
-                let problem =
-                    Problem::error("values-missing", says).help("give the files of all parts");
-                return Err(Problems(vec![problem]));
-            }
-            let campaign = joined.head.about.info(evaluated.files.clone());
-            robustness::sections_of(&joined.compiled, &evaluated, campaign, &common.settings())
-        });
-        match found {
-            Ok(study) => write(common, &study, console),
-            Err(problems) => {
-                console.problems(&problems);
-                Exit::Wrong
-            }
+        let joined = console.sound(joined, &problems)?;
+        robustness::countable(&joined.compiled)?;
+        let evaluated = joined.evaluated()?;
+        if let Some(says) = &evaluated.missing {
+            let problem = Problem::error("values-missing", says);
+            return Err(problem.help("give the files of all parts").into());
         }
+        let campaign = joined.head.about.info(evaluated.files.clone());
+        let settings = common.settings();
+        let study = robustness::sections_of(&joined.compiled, &evaluated, campaign, &settings)?;
+        write(common, &study, console)
     }
 
     /// The study that the arguments describe.
@@ -295,32 +255,22 @@ impl Common {
 }
 
 /// Writes all files or none.
-fn write(common: &Common, study: &found::Study, console: &Console) -> Exit {
-    let files = match deliver::study(study, Reports::ALL) {
-        Ok(files) => files,
-        Err(problems) => {
-            console.problems(&problems);
-            return Exit::Unfinished;
-        }
-    };
-    if let Err(exit) = console.write_all(SetKind::Report, &common.out, &files) {
-        return exit;
-    }
+fn write(common: &Common, study: &found::Study, console: &Console) -> Done {
+    let files = deliver::study(study, Reports::ALL).map_err(Ended::unfinished)?;
+    console.write_all(SetKind::Report, &common.out, &files)?;
     if !console.quiet {
         let document = report::document(study);
-        let facts: Vec<String> = document
-            .key_facts
-            .iter()
-            .map(|fact| format!("  {}: {}\n", fact.name, fact.value))
-            .collect();
-        console.print(&format!(
-            "{}\n\n{}\n{}\n{}",
-            document.title,
-            document.headline.word,
-            document.sentence,
-            facts.concat()
-        ));
+        let facts = document.key_facts.iter();
+        let facts: Vec<String> =
+            facts.map(|fact| format!("  {}: {}\n", fact.name, fact.value)).collect();
+        told(&document, &facts.concat(), console);
         console.say(&format!("written: {}", common.out.display()));
     }
-    Exit::Done
+    Ok(Exit::Done)
+}
+
+/// What a document says at its beginning, and some facts.
+pub fn told(document: &Document, facts: &str, console: &Console) {
+    let Document { title, headline, sentence, .. } = document;
+    console.show(&format!("{title}\n\n{}\n{sentence}\n{facts}", headline.word));
 }

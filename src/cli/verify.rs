@@ -5,13 +5,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::inputs::progress_bar;
-use super::output::{Console, Exit};
+use super::output::{Console, Done, Exit};
 use super::protocols::load;
 use super::values::from_one;
 use crate::check::family::Family;
 use crate::disk;
-use crate::problem::Problems;
+use crate::problem::{Problem, Problems};
 use crate::provenance::carried::{self, Carried};
 use crate::provenance::signature;
 use crate::provenance::trace::{Asked, trace};
@@ -50,51 +49,29 @@ pub struct Verify {
 const MOST: usize = 20;
 
 impl Verify {
-    pub fn run(self, console: &Console) -> Exit {
+    pub fn run(self, console: &Console) -> Done {
         if let Some(jobs) = self.jobs {
             // Fails only if the thread pool exists already, which is not the case here.
             let _ = rayon::ThreadPoolBuilder::new().num_threads(jobs.get()).build_global();
         }
         if let Some(folder) = self.campaigns.iter().find(|folder| !disk::may_exist(folder)) {
             let says = format!("there is no campaign `{}`", folder.display());
-            return console
-                .fail(crate::problem::Problem::error("folder-missing", says), Exit::Wrong);
+            return Err(Problem::error("folder-missing", says).into());
         }
-        let opened = open(&self.report, self.protocol.as_deref());
-        let (carried, given) = match opened {
-            Ok(opened) => opened,
-            Err(problems) => {
-                console.problems(&problems);
-                return Exit::Wrong;
-            }
-        };
-        if !self.campaigns.is_empty()
-            && let Err(problem) = of_as_many(&carried, &self.campaigns)
-        {
-            return console.fail(problem, Exit::Wrong);
+        let (carried, given) = open(&self.report, self.protocol.as_deref())?;
+        if !self.campaigns.is_empty() {
+            of_as_many(&carried, &self.campaigns)?;
         }
-        let key = self.public_key.as_deref().map(signature::public_key).transpose();
-        let signed = key.and_then(|key| {
-            signature::check(&carried.path, self.signature.as_deref(), key.as_ref())
-        });
-        let signed = match signed {
-            Ok(signed) => signed,
-            Err(problem) => return console.fail(problem, Exit::Wrong),
-        };
+        let key = self.public_key.as_deref().map(signature::public_key).transpose()?;
+        let signed = signature::check(&carried.path, self.signature.as_deref(), key.as_ref())?;
         let (mut checks, compiled) = alone(&carried, given.as_ref());
         checks.push(signed);
         if !self.campaigns.is_empty() {
-            let bar = progress_bar(console, carried.results.sections.len());
-            let progress = |section: &str| {
-                bar.set_message(section.to_string());
-                bar.inc(1);
-            };
-            checks.extend(against(
-                &carried,
-                compiled.as_ref(),
-                Again { campaigns: &self.campaigns, plots: self.plots, progress: &progress },
-            ));
-            bar.finish_and_clear();
+            let found = console.with_progress(carried.results.sections.len(), |progress| {
+                let again = Again { campaigns: &self.campaigns, plots: self.plots, progress };
+                against(&carried, compiled.as_ref(), again)
+            });
+            checks.extend(found);
         }
         let any = |outcome: Outcome| checks.iter().any(|check| check.outcome == outcome);
         let exit = match (any(Outcome::Differs), any(Outcome::NotPossible)) {
@@ -104,18 +81,10 @@ impl Verify {
         };
         if !console.quiet || exit != Exit::Done {
             let most = if self.all { usize::MAX } else { MOST };
-            if console.print(&told(
-                &carried,
-                &checks,
-                !self.campaigns.is_empty(),
-                most,
-                console.color,
-            )) != Exit::Done
-            {
-                return Exit::Unfinished;
-            }
+            let with_campaign = !self.campaigns.is_empty();
+            console.print(&told(&carried, &checks, with_campaign, most, console.color))?;
         }
-        exit
+        Ok(exit)
     }
 }
 
@@ -129,7 +98,7 @@ fn open(
     if problems.any_error() {
         return Err(problems);
     }
-    let carried = carried::open(report).map_err(|problem| Problems(vec![problem]))?;
+    let carried = carried::open(report)?;
     Ok((carried, given.flatten()))
 }
 
@@ -212,29 +181,20 @@ pub struct Trace {
 }
 
 impl Trace {
-    pub fn run(self, console: &Console) -> Exit {
-        let wrong = |problems: Problems| {
-            console.problems(&problems);
-            Exit::Wrong
-        };
-        let (carried, given) = match open(&self.results, self.protocol.as_deref()) {
-            Ok(opened) => opened,
-            Err(problems) => return wrong(problems),
-        };
-        if !self.campaigns.is_empty()
-            && let Err(problem) = of_as_many(&carried, &self.campaigns)
-        {
-            return wrong(Problems(vec![problem]));
+    pub fn run(self, console: &Console) -> Done {
+        let (carried, given) = open(&self.results, self.protocol.as_deref())?;
+        if !self.campaigns.is_empty() {
+            of_as_many(&carried, &self.campaigns)?;
         }
         let mut problems = Problems::default();
         let compiled = match carried.sources(given.as_ref()) {
             Ok(sources) => carried.compiled(&sources, &mut problems),
             // Without its protocol, the contents of a report can be shown, but not computed again.
-            Err(problem) if !self.campaigns.is_empty() => return wrong(Problems(vec![problem])),
+            Err(problem) if !self.campaigns.is_empty() => return Err(problem.into()),
             Err(_) => None,
         };
         if problems.any_error() {
-            return wrong(problems);
+            return Err(problems.into());
         }
         let asked = Asked {
             quantity: &self.quantity,
@@ -242,15 +202,9 @@ impl Trace {
             signal: &self.signal,
             record: self.record.as_deref(),
         };
-        match trace(&carried, compiled.as_ref(), asked, &self.campaigns) {
-            Ok(found) => {
-                let text: Vec<String> = found.text.split('\n').map(visible).collect();
-                match console.print(&text.join("\n")) {
-                    Exit::Done if !found.agrees => Exit::DoesNotHold,
-                    exit => exit,
-                }
-            }
-            Err(problems) => wrong(problems),
-        }
+        let found = trace(&carried, compiled.as_ref(), asked, &self.campaigns)?;
+        let text: Vec<String> = found.text.split('\n').map(visible).collect();
+        console.print(&text.join("\n"))?;
+        Ok(if found.agrees { Exit::Done } else { Exit::DoesNotHold })
     }
 }

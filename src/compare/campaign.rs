@@ -6,7 +6,7 @@ use super::applicability;
 use super::found::{Found, Judgement, Moved};
 use super::metric::{self, Base};
 use super::sensitivity;
-use super::subject::CompiledAll;
+use super::subject::WithProtocols;
 use super::{KINDS, Settings};
 use crate::certify::Compiled;
 use crate::check::plan::Decision;
@@ -18,14 +18,15 @@ use crate::run::several::{Rules, several};
 use crate::run::trial::Trial;
 use crate::run::{Evaluated, Judged, Progress};
 
+/// What the protocols make of a campaign.
 pub fn found(
-    (name, campaign): (&str, &Campaign),
+    WithProtocols { name, campaign, compiled }: &WithProtocols,
     names: &[&str],
-    compiled: &CompiledAll,
     trials: &[Trial],
     settings: &Settings,
     progress: Progress<'_>,
 ) -> Found {
+    let name = name.as_str();
     let rules: Vec<Rules<'_>> = compiled
         .protocols
         .iter()

@@ -55,9 +55,7 @@ mod rules;
 mod sensitivity;
 mod subject;
 
-use std::sync::Arc;
-
-use crate::certify::{Compiled, protocol_info};
+use crate::certify::{Compiled, Set, protocol_info};
 use crate::check::diff::Change;
 use crate::check::family::Family;
 use crate::data::Campaign;
@@ -66,7 +64,7 @@ use crate::result::comparison::{Compared, Comparison, OnCampaign, Work};
 use crate::run::find;
 use crate::run::trial::{Disturbance, Kind, Trial};
 use crate::run::{Counts, Progress};
-use subject::{CompiledAll, Subject};
+use subject::{Subject, WithProtocols};
 
 pub use rules::ALL;
 
@@ -75,8 +73,8 @@ pub use rules::ALL;
 pub struct Settings {
     /// Sizes of disturbances; none for no sensitivities.
     pub sizes: Vec<f64>,
-    /// `--set`: name and value.
-    pub set: Vec<(String, String)>,
+    /// Parameters that are set, of every protocol that has them.
+    pub set: Vec<Set>,
 }
 
 /// Sizes of disturbances, if none are given.
@@ -98,39 +96,25 @@ fn trials(sizes: &[f64]) -> Vec<Trial> {
     disturbed.chain([Trial::Doubled, Trial::Exchanged]).collect()
 }
 
-/// The campaigns with the sections that the first protocol which looks for sections finds in their
-/// runs: all are compared on the same.
-fn with_found_sections(
-    campaigns: Vec<(String, Campaign)>,
-    compiled: &[Arc<CompiledAll>],
-    problems: &mut Problems,
-) -> Option<Vec<(String, Campaign)>> {
-    let found = campaigns.into_iter().zip(compiled).map(|((name, campaign), compiled)| {
-        let Some(first) = compiled.protocols.iter().find(|one| find::applies(&one.plan, &campaign))
-        else {
-            return Some((name, campaign));
-        };
-        match find::find(&first.plan, &first.graph, &campaign, &|_| {}) {
-            Ok(found) => Some((name, found.campaign)),
-            Err(told) => {
-                told.0.into_iter().for_each(|problem| problems.push(problem));
-                None
-            }
-        }
-    });
-    found.collect::<Vec<_>>().into_iter().collect()
+/// Gives a campaign the sections that the first protocol which looks for sections finds in its
+/// runs: all protocols are compared on the same.
+fn with_found_sections(opened: WithProtocols, problems: &mut Problems) -> Option<WithProtocols> {
+    let applies = |one: &&Compiled| find::applies(&one.plan, &opened.campaign);
+    let Some(first) = opened.compiled.protocols.iter().find(applies) else { return Some(opened) };
+    let found = find::find(&first.plan, &first.graph, &opened.campaign, &|_| {});
+    let found = found.map_err(|told| problems.add(told.0)).ok()?;
+    Some(WithProtocols { campaign: found.campaign, ..opened })
 }
 
 /// A comparison, checked and compiled.
 #[derive(Debug)]
 pub struct Prepared {
     protocols: Vec<Subject>,
-    campaigns: Vec<(String, Campaign)>,
+    campaigns: Vec<WithProtocols>,
     changes: Vec<Change>,
     /// Number of differences of two protocols that have nothing in common; none of them is applied
     /// alone.
     unrelated: Option<usize>,
-    compiled: Vec<Arc<CompiledAll>>,
     settings: Settings,
 }
 
@@ -158,29 +142,28 @@ impl Prepared {
             [before, after] => (Vec::new(), Some(rules::changes(before, after).len())),
             _ => (Vec::new(), None),
         };
-        let compiled = subject::compiled(&protocols, &campaigns, &changes, &settings, problems)?;
-        let campaigns = with_found_sections(campaigns, &compiled, problems)?;
-        Some(Self { protocols, campaigns, changes, unrelated, compiled, settings })
+        let opened = subject::opened(&protocols, campaigns, &changes, &settings, problems)?;
+        let campaigns: Vec<Option<WithProtocols>> =
+            opened.into_iter().map(|opened| with_found_sections(opened, problems)).collect();
+        let campaigns = campaigns.into_iter().collect::<Option<_>>()?;
+        Some(Self { protocols, campaigns, changes, unrelated, settings })
     }
 
     /// Number of times that progress is told.
     #[must_use]
     pub fn steps(&self) -> usize {
-        let sections: usize = self.campaigns.iter().map(|(_, campaign)| campaign.names.len()).sum();
+        let sections: usize = self.campaigns.iter().map(|one| one.campaign.names.len()).sum();
         sections * (1 + trials(&self.settings.sizes).len())
     }
 
     /// Compares the protocols.
     pub fn compare(&self, progress: Progress<'_>) -> Comparison {
-        let Self { protocols, campaigns, changes, unrelated, compiled, settings } = self;
+        let Self { protocols, campaigns, changes, unrelated, settings } = self;
         let trials = trials(&settings.sizes);
         let names: Vec<&str> = protocols.iter().map(|subject| subject.name.as_str()).collect();
         let found: Vec<found::Found> = campaigns
             .iter()
-            .zip(compiled)
-            .map(|((name, campaign), compiled)| {
-                campaign::found((name, campaign), &names, compiled, &trials, settings, progress)
-            })
+            .map(|opened| campaign::found(opened, &names, &trials, settings, progress))
             .collect();
         let counts: Counts = found.iter().map(|found| found.counts).sum();
         let protocols = self.compared();
@@ -191,9 +174,9 @@ impl Prepared {
             campaigns: campaigns
                 .iter()
                 .zip(&found)
-                .map(|((name, campaign), found)| OnCampaign {
-                    name: name.clone(),
-                    sections: campaign.names.len(),
+                .map(|(opened, found)| OnCampaign {
+                    name: opened.name.clone(),
+                    sections: opened.campaign.names.len(),
                     files: found.files.clone(),
                 })
                 .collect(),
@@ -208,7 +191,7 @@ impl Prepared {
             agreement: agreement::agreement(&names, &found),
             sensitivity: sensitivity::curves(&names, &found, &settings.sizes),
             applicability: applicability::put_together(&found),
-            differences: rules::differences(changes, compiled, &found),
+            differences: rules::differences(changes, campaigns, &found),
             unrelated: *unrelated,
             scores: found.iter().flat_map(|found| found.scores.clone()).collect(),
             work: Work {
@@ -216,16 +199,19 @@ impl Prepared {
                 records_asked: counts.records_asked,
                 filters_run: counts.filters_run,
                 filters_asked: counts.filters_asked,
-                operations: compiled
-                    .first()
-                    .map_or(0, |all| all.protocols.iter().map(|one| one.graph.nodes.len()).sum()),
+                operations: self.compiled().iter().map(|one| one.graph.nodes.len()).sum(),
                 sha256: crate::data::hash::sha256(hashes.as_bytes()),
             },
         }
     }
 
+    /// The protocols as compiled for the first campaign.
+    fn compiled(&self) -> &[Compiled] {
+        self.campaigns.first().map_or(&[][..], |opened| &opened.compiled.protocols)
+    }
+
     fn compared(&self) -> Vec<Compared> {
-        let compiled = self.compiled.first().map_or(&[][..], |compiled| &compiled.protocols);
+        let compiled = self.compiled();
         let one = |(compiled, subject): (&Compiled, &Subject)| {
             let info = protocol_info(compiled);
             Compared {

@@ -1,10 +1,8 @@
 //! What differs between two protocols, and what each difference does to the verdict by itself.
 
-use std::sync::Arc;
-
 use super::Subject;
 use super::found::{Found, Judgement};
-use super::subject::CompiledAll;
+use super::subject::WithProtocols;
 use crate::check::diff::{self, Change};
 use crate::result::comparison::{Difference, Ratio};
 
@@ -27,15 +25,15 @@ pub fn related(before: &Subject, after: &Subject) -> bool {
 /// protocols.
 pub fn differences(
     changes: &[Change],
-    compiled: &[Arc<CompiledAll>],
+    campaigns: &[WithProtocols],
     found: &[Found],
 ) -> Vec<Difference> {
     let mut all = Vec::new();
     for (at, change) in changes.iter().enumerate() {
-        for (found, compiled) in found.iter().zip(compiled) {
+        for (found, opened) in found.iter().zip(campaigns) {
             let deviation = &change.deviation;
             let reason =
-                compiled.changed.get(at).and_then(|changed| changed.as_ref().err().cloned());
+                opened.compiled.changed.get(at).and_then(|changed| changed.as_ref().err().cloned());
             let after = found.changed.get(at).and_then(Option::as_ref);
             let one = Difference {
                 before: deviation.before.clone(),

@@ -3,15 +3,12 @@
 use std::sync::Arc;
 
 use super::Settings;
-use crate::certify::{Compiled, compile};
+use crate::certify::{Compiled, compile, overrides};
+use crate::check::Overrides;
 use crate::check::diff::Change;
 use crate::check::family::Family;
-use crate::check::plan::SetBy;
-use crate::check::{Override, Overrides};
 use crate::data::Campaign;
 use crate::problem::{Problem, Problems, Severity};
-use crate::source::Source;
-use crate::syntax::document::Text;
 
 /// A protocol with the name it has in the comparison.
 #[derive(Clone, Debug)]
@@ -91,19 +88,27 @@ pub struct CompiledAll {
     pub changed: Vec<Result<Compiled, String>>,
 }
 
+/// A campaign, and the protocols as compiled for it.
+#[derive(Debug)]
+pub struct WithProtocols {
+    pub name: String,
+    pub campaign: Campaign,
+    pub compiled: Arc<CompiledAll>,
+}
+
 /// Compiles every protocol with the parameters of each campaign and of the command line, as far as
 /// it has them.
 ///
 /// # Errors
 /// A protocol or a value of a parameter is not valid; no protocol has a parameter of the command
 /// line.
-pub fn compiled(
+pub fn opened(
     protocols: &[Subject],
-    campaigns: &[(String, Campaign)],
+    campaigns: Vec<(String, Campaign)>,
     changes: &[Change],
     settings: &Settings,
     problems: &mut Problems,
-) -> Option<Vec<Arc<CompiledAll>>> {
+) -> Option<Vec<WithProtocols>> {
     for (name, _) in &settings.set {
         let known: Vec<&str> =
             protocols.iter().flat_map(|subject| parameters(&subject.family)).collect();
@@ -116,21 +121,21 @@ pub fn compiled(
         }
     }
     // Campaigns that set the same parameters share the compiled protocols.
-    let mut known: Vec<(String, Arc<CompiledAll>)> = Vec::new();
+    let mut known: Vec<(Vec<(String, String)>, Arc<CompiledAll>)> = Vec::new();
     let mut all = Vec::new();
-    for (_, campaign) in campaigns {
-        let overrides = overrides(campaign, settings);
-        let key = format!(
-            "{:?}",
-            overrides.iter().map(|(name, set)| (name, &set.text.text)).collect::<Vec<_>>()
-        );
-        if let Some((_, compiled)) = known.iter().find(|(of, _)| *of == key) {
-            all.push(Arc::clone(compiled));
-            continue;
-        }
-        let compiled = Arc::new(compiled_with(protocols, changes, &overrides, problems)?);
-        known.push((key, Arc::clone(&compiled)));
-        all.push(compiled);
+    for (name, campaign) in campaigns {
+        let overrides = overrides(&settings.set, std::slice::from_ref(&campaign), problems)?;
+        let values = overrides.iter().map(|(name, set)| (name.clone(), set.text.text.clone()));
+        let values = values.collect();
+        let compiled = match known.iter().find(|(of, _)| *of == values) {
+            Some((_, compiled)) => Arc::clone(compiled),
+            None => {
+                let new = Arc::new(compiled_with(protocols, changes, &overrides, problems)?);
+                known.push((values, Arc::clone(&new)));
+                new
+            }
+        };
+        all.push(WithProtocols { name, campaign, compiled });
     }
     (!problems.any_error()).then_some(all)
 }
@@ -184,23 +189,6 @@ fn of_protocol(family: &Family, overrides: &Overrides) -> Overrides {
         .filter(|(name, _)| has(name))
         .map(|(name, set)| (name.clone(), set.clone()))
         .collect()
-}
-
-/// Parameters of the campaign, and over them those of the command line.
-fn overrides(campaign: &Campaign, settings: &Settings) -> Overrides {
-    let mut overrides = Overrides::new();
-    for parameter in &campaign.parameters {
-        let value = &parameter.value;
-        let text = Text { text: value.raw.clone(), span: value.span.clone(), exact: value.exact };
-        overrides.insert(parameter.name.text.clone(), Override { text, set_by: SetBy::Campaign });
-    }
-    for (name, value) in &settings.set {
-        let source = Source::new("--set", format!("{name}={value}"));
-        let span = source.span(name.len() + 1..source.text.len());
-        let text = Text { text: value.clone(), span, exact: true };
-        overrides.insert(name.clone(), Override { text, set_by: SetBy::CommandLine });
-    }
-    overrides
 }
 
 /// The protocol with one change.

@@ -3,9 +3,7 @@
 use super::{
     Settings, Synchronisation, Vary, all_choices, countable, parameters, sections, synchronisation,
 };
-use crate::certify::Compiled;
-use crate::check::Overrides;
-use crate::data::Campaigns;
+use crate::certify::{Compiled, Opened};
 use crate::problem::Problems;
 use crate::result::study::Study;
 use crate::run::Progress;
@@ -24,11 +22,12 @@ impl Asked {
     /// # Errors
     /// The verdict does not rest on limits alone; `several-records`: a selection takes one value of
     /// each section and signal.
-    pub fn ready(&self, compiled: &Compiled, campaigns: Campaigns<'_>) -> Result<usize, Problems> {
+    pub fn ready(&self, opened: &Opened) -> Result<usize, Problems> {
+        let (compiled, campaigns) = (&opened.compiled, opened.campaigns());
         countable(compiled)?;
         match self {
             Self::Sections | Self::Sync(_) => {
-                campaigns.one_of_each().map_err(|problem| Problems(vec![problem]))?;
+                campaigns.one_of_each()?;
                 Ok(campaigns.sections())
             }
             Self::Parameters(_) => {
@@ -49,12 +48,12 @@ impl Asked {
     /// Of the evaluation.
     pub fn run(
         &self,
-        compiled: &Compiled,
-        campaigns: Campaigns<'_>,
-        overrides: &Overrides,
+        opened: &Opened,
         settings: &Settings,
         progress: Progress<'_>,
     ) -> Result<Study, Problems> {
+        let Opened { compiled, overrides, .. } = opened;
+        let campaigns = opened.campaigns();
         match self {
             Self::Sections => sections(compiled, campaigns, settings, progress),
             Self::Sync(asked) => synchronisation(compiled, campaigns, settings, asked, progress),

@@ -46,7 +46,7 @@ pub fn sections<'a>(
     let campaigns = campaigns.into();
     let evaluated = evaluate(&compiled.plan, &compiled.graph, campaigns, &Shifts::NONE, progress)?
         .swap_remove(0);
-    let vehicle = evaluated.vehicle(&compiled.plan);
+    let vehicle = evaluated.facts.items(&compiled.plan);
     sections_of(
         compiled,
         &evaluated,
@@ -67,7 +67,7 @@ pub fn sections_of(
 ) -> Result<Study, Problems> {
     let (case, reduction) = case_of(evaluated, &compiled.plan, settings).map_err(too_few)?;
     let found = SelectionStudy { reduction, ..selections(&case, &settings.selections) };
-    let notes = evaluated.notes().iter().chain(&found.lacking).cloned().collect();
+    let notes = evaluated.notes.iter().chain(&found.lacking).cloned().collect();
     Ok(Study { protocol: protocol_info(compiled), campaign, notes, found: Found::Sections(found) })
 }
 
@@ -128,9 +128,9 @@ fn joined(
             &compiled.plan,
             campaigns,
             evaluated.files.clone(),
-            evaluated.vehicle(&compiled.plan),
+            evaluated.facts.items(&compiled.plan),
         ),
-        notes: evaluated.notes().to_vec(),
+        notes: evaluated.notes.clone(),
         found,
     }
 }

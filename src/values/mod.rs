@@ -17,8 +17,7 @@ mod write;
 
 use serde::{Deserialize, Serialize};
 
-use crate::certify::{About, Compiled, Rules};
-use crate::data::Campaigns;
+use crate::certify::{About, Opened, Rules};
 use crate::problem::Problems;
 use crate::result::found::FoundSections;
 use crate::run::{self, Basis, Kept, Numbered, Progress, Shard};
@@ -75,13 +74,8 @@ pub struct Part {
 ///
 /// # Errors
 /// As [`run::reduce`].
-pub fn reduce<'a>(
-    compiled: &Compiled,
-    (campaigns, found): (impl Into<Campaigns<'a>>, Vec<FoundSections>),
-    part: Part,
-    progress: Progress<'_>,
-) -> Result<Values, Problems> {
-    let campaigns = campaigns.into();
+pub fn reduce(opened: &Opened, part: Part, progress: Progress<'_>) -> Result<Values, Problems> {
+    let (compiled, campaigns) = (&opened.compiled, opened.campaigns());
     let reduced = run::reduce(
         &compiled.plan,
         &compiled.graph,
@@ -107,7 +101,12 @@ pub fn reduce<'a>(
     Ok(Values {
         program: PROGRAM.into(),
         labels: reduced.sections.iter().map(label).collect(),
-        head: Head { rules: Rules::of(compiled), about, basis: reduced.basis, found },
+        head: Head {
+            rules: Rules::of(compiled),
+            about,
+            basis: reduced.basis,
+            found: opened.found.clone(),
+        },
         shard: part.shard,
         sections: reduced.sections,
         traces: reduced.traces,

@@ -284,10 +284,14 @@ fn tiny_values(shard: Shard) -> (fishplate::certify::Compiled, Values) {
     let compiled =
         fishplate::certify::compile(family, &Default::default(), &mut problems).expect("compiled");
     let campaign = Campaign::open(folder.path(), &mut problems).expect("a campaign");
-    let values =
-        values::reduce(&compiled, (&campaign, Vec::new()), Part { shard, plots: true }, &|_| {})
-            .expect("reduced");
-    (compiled, values)
+    let opened = fishplate::certify::Opened {
+        compiled,
+        campaigns: vec![campaign],
+        overrides: Default::default(),
+        found: Vec::new(),
+    };
+    let values = values::reduce(&opened, Part { shard, plots: true }, &|_| {}).expect("reduced");
+    (opened.compiled, values)
 }
 
 #[test]

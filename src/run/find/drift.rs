@@ -8,7 +8,8 @@ use crate::data::Campaign;
 use crate::data::campaign::Run;
 use crate::graph::Graph;
 use crate::result::found::{Drift, DriftPoint};
-use crate::run::{Offset, Shifts, evaluate};
+use crate::run::campaign::evaluate;
+use crate::run::values::{Offset, Shifts};
 
 /// Largest shift that is looked for, in lengths of the shortest section: 21 m for 70 m. Twice as
 /// much and more is read beside a section.

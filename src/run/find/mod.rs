@@ -10,15 +10,15 @@ mod signals;
 mod table;
 mod window;
 
-use super::Progress;
-use super::facts::Facts;
 use crate::check::plan::{Plan, Side};
 use crate::data::campaign::Run;
 use crate::data::record::Wanted;
-use crate::data::{Campaign, Campaigns, RecordKind};
+use crate::data::{Campaign, Campaigns};
 use crate::graph::{Graph, Operation};
 use crate::problem::{Problem, Problems};
 use crate::result::found::{FoundInRun, FoundSections, Rejected, Stretch};
+use crate::run::reduce::Progress;
+use crate::run::sections::Facts;
 use chosen::Chosen;
 use place::{Rules, Tried};
 use signals::{Signals, Source};
@@ -33,7 +33,7 @@ const PIECE: f64 = 16.0;
 
 /// A campaign with the sections that were found in its runs.
 #[derive(Debug)]
-pub struct Found {
+pub struct Searched {
     pub campaign: Campaign,
     pub told: FoundSections,
 }
@@ -63,19 +63,18 @@ pub fn find(
     graph: &Graph,
     campaign: &Campaign,
     progress: Progress<'_>,
-) -> Result<Found, Problems> {
-    let one = |problem: Problem| Problems(vec![problem]);
+) -> Result<Searched, Problems> {
     let Some(rules) = &plan.sections.find else {
         let problem = Problem::error(
             "no-search",
             format!("the protocol `{}` does not look for sections", plan.name),
         );
-        return Err(one(problem.help("in its block `sections`, write `use found sections`, and what is looked for in blocks `find`")));
+        return Err(problem.help("in its block `sections`, write `use found sections`, and what is looked for in blocks `find`").into());
     };
     if campaign.runs().is_empty() {
         let says = "the campaign has no runs to look for sections in";
         let problem = Problem::error("no-runs", says).at(&campaign.tree.span.part(0..0));
-        return Err(one(problem.help("name them in campaign.yaml: `runs: {R1: {measurement: ..., simulation: ..., track: ...}}`")));
+        return Err(problem.help("name them in campaign.yaml: `runs: {R1: {measurement: ..., simulation: ..., track: ...}}`").into());
     }
     let mut problems = Problems::default();
     let facts = Facts::read(plan, Campaigns::from(campaign), &mut problems);
@@ -113,18 +112,16 @@ pub fn find(
             )
         });
         let says = format!("no section was found in the runs of the campaign{why}");
-        return Err(one(Problem::error("nothing-found", says).at(&campaign.runs_span())));
+        return Err(Problem::error("nothing-found", says).at(&campaign.runs_span()).into());
     }
-    let table = table::table(plan, &places, None).map_err(one)?;
+    let table = table::table(plan, &places, None)?;
     let found = campaign.with_sections(table);
     let offsets = drifts(plan, graph, &found, &places, &mut told);
     let found = match offsets {
-        Some(offsets) => {
-            campaign.with_sections(table::table(plan, &places, Some(&offsets)).map_err(one)?)
-        }
+        Some(offsets) => campaign.with_sections(table::table(plan, &places, Some(&offsets))?),
         None => found,
     };
-    Ok(Found { campaign: found, told })
+    Ok(Searched { campaign: found, told })
 }
 
 /// Tells the shift of the measurement along each run, and gives what is added to the axis of each
@@ -202,12 +199,10 @@ impl Windows {
         let columns = |source: Source| signals::columns(graph, source, own_side(plan));
         for source in [Source::Side(Side::Measured), Source::Side(Side::Simulated), Source::Track] {
             let columns = columns(source);
-            let (kind, needed) = match source {
-                // Every side that the protocol evaluates must cover a section.
-                Source::Side(side) => (side.kind(), plan.reads(side) || !columns.is_empty()),
-                Source::Track => (RecordKind::Track, !columns.is_empty()),
-            };
-            if !needed {
+            // Every side that the protocol evaluates must cover a section.
+            let read = matches!(source, Source::Side(side) if plan.reads(side));
+            let kind = source.kind();
+            if columns.is_empty() && !read {
                 continue;
             }
             let mut wanted = vec![Wanted::new(plan.axis.column.as_str(), plan.axis.unit.dimension)];
@@ -223,8 +218,7 @@ impl Windows {
                     wanted.push(Wanted::new(column.as_str(), node.dimension));
                 }
             }
-            let record =
-                campaign.run_source(run, kind).map_err(|problem| Problems(vec![problem]))?;
+            let record = campaign.run_source(run, kind)?;
             all.push((source, Window::open(record, wanted, run.known(kind).clone())));
         }
         Ok(Self { all })

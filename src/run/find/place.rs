@@ -8,9 +8,7 @@ use crate::check::values::Values;
 use crate::data::Campaign;
 use crate::data::campaign::Run;
 use crate::graph::{Graph, InputNode};
-use crate::run::facts::{Facts, Known, Vehicle};
-use crate::run::sections::of_run;
-use crate::run::signal::Extent;
+use crate::run::sections::{Extent, Facts, Known, Vehicle, of_run};
 
 /// How often a length that depends on data of the section is computed again from those of the new
 /// length.

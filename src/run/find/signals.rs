@@ -5,18 +5,27 @@ use std::sync::Arc;
 
 use super::Windows;
 use crate::check::plan::{InputSide, Plan, Side, StepSpec};
+use crate::data::RecordKind;
 use crate::graph::{Graph, InputNode, NodeId, Operation};
 use crate::metrics::percentile::Method;
 use crate::problem::{Problem, Problems};
-use crate::run::facts::{Known, Vehicle};
-use crate::run::record::{Found, Opened, needed};
-use crate::run::signal::{Extent, Samples};
+use crate::run::record::{NodeValue, Opened, Samples};
+use crate::run::sections::{Extent, Known, Vehicle, needed};
 
 /// A record of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     Side(Side),
     Track,
+}
+
+impl Source {
+    pub fn kind(self) -> RecordKind {
+        match self {
+            Self::Side(side) => side.kind(),
+            Self::Track => RecordKind::Track,
+        }
+    }
 }
 
 /// All values that the search takes from signals.
@@ -115,15 +124,14 @@ impl<'a> Signals<'a> {
                 Problems(vec![Problem::error("find-signal", says)])
             };
             let needed = needed(graph, &wanted, &known).map_err(failed)?;
-            let opened =
-                Opened::piece(plan, *of == Source::Track, window.columns(), window.first_row());
-            let found =
-                opened.evaluate(graph, &needed, &wanted, &known, method, None).map_err(failed)?;
+            let opened = Opened::piece(plan, of.kind(), window.columns(), window.first_row());
+            let found = opened.evaluate((plan, graph), &needed, &wanted, &known, None);
+            let found = found.map_err(failed)?;
             for (id, found) in found {
                 let samples = match found {
-                    Found::Samples(samples) => Ok(samples),
-                    Found::Failed(reason) => Err(reason),
-                    Found::Number(..) => Err("a number, and not a signal".to_string()),
+                    NodeValue::Samples(samples) => Ok(samples),
+                    NodeValue::Failed(reason) => Err(reason),
+                    NodeValue::Number(..) => Err("a number, and not a signal".to_string()),
                 };
                 signals.samples.push((*of, id, samples));
             }

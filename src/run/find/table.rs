@@ -8,8 +8,7 @@ use crate::data::campaign::{OFFSET, RUN_COLUMN, Run};
 use crate::data::table::Table;
 use crate::data::write::table_csv;
 use crate::problem::{Problem, Problems, nearest};
-use crate::run::facts::trimmed;
-use crate::run::sections::of_run;
+use crate::run::sections::{of_run, trimmed};
 
 /// What the table of found sections is called in messages: it is in no file.
 const NAME: &str = "found sections";

@@ -96,8 +96,8 @@ impl Window {
         self.blocks.is_none().then_some(self.last)
     }
 
-    pub fn columns(&self) -> Vec<(String, Vec<f64>)> {
-        self.names.iter().cloned().zip(self.columns.iter().cloned()).collect()
+    pub fn columns(&self) -> impl Iterator<Item = (String, Vec<f64>)> {
+        self.names.iter().cloned().zip(self.columns.iter().cloned())
     }
 
     pub fn first_row(&self) -> usize {

@@ -3,23 +3,33 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::{Found, Opened, chosen};
+use super::memo::{Computed, Keys, Memo};
+use super::opened::Opened;
+use super::signal::{Cutter, Samples, Signal, apply, arithmetic, each};
 use crate::catalog::Reducer;
 use crate::check::evaluate::number;
-use crate::check::plan::StepSpec;
+use crate::check::plan::{Plan, StepSpec};
 use crate::graph::{Graph, NodeId, Operation};
-use crate::metrics::percentile::{Method, percentiles};
-use crate::run::facts::Known;
-use crate::run::shared::{Kept, Keys, Memo};
-use crate::run::signal::{Cutter, Extent, Samples, Signal, apply, arithmetic, each};
+use crate::metrics::percentile::percentiles;
+use crate::run::sections::{Extent, Known, chosen};
+
+/// Value of a requested node.
+#[derive(Clone, Debug)]
+pub enum NodeValue {
+    /// A value of a signal, and the number of samples or windows.
+    Number(f64, usize),
+    Samples(Samples),
+    /// The value cannot be computed from this record: the reason.
+    Failed(String),
+}
 
 /// The nodes of a graph on one record, level by level.
 #[derive(Clone, Debug)]
 pub(super) struct State<'a> {
     pub(super) opened: &'a Opened,
+    pub(super) plan: &'a Plan,
     pub(super) graph: &'a Graph,
     pub(super) known: &'a Known<'a>,
-    pub(super) method: Method,
     pub(super) values: Vec<Option<Signal>>,
     /// Why a node has no value. Nodes that depend on it have none either; the others run on.
     pub(super) failed: Vec<Option<String>>,
@@ -28,7 +38,7 @@ pub(super) struct State<'a> {
     pub(super) cutter: Cutter,
     /// The part of the section that is evaluated.
     pub(super) extent: Extent,
-    pub(super) found: Vec<(NodeId, Found)>,
+    pub(super) found: Vec<(NodeId, NodeValue)>,
     /// Where results are kept for other protocols, and under which numbers.
     pub(super) memo: Option<(&'a Memo, &'a Keys)>,
 }
@@ -36,17 +46,16 @@ pub(super) struct State<'a> {
 impl<'a> State<'a> {
     pub(super) fn new(
         opened: &'a Opened,
-        graph: &'a Graph,
+        (plan, graph): (&'a Plan, &'a Graph),
         known: &'a Known<'a>,
-        method: Method,
     ) -> Self {
         let nodes = graph.nodes.len();
         let cutter = Cutter::new(opened.extent);
         Self {
             opened,
+            plan,
             graph,
             known,
-            method,
             values: vec![None; nodes],
             failed: vec![None; nodes],
             uses: vec![0; nodes],
@@ -99,10 +108,10 @@ impl<'a> State<'a> {
             for &id in &here {
                 if wanted.contains(&id) {
                     if let Some(reason) = &self.failed[id] {
-                        self.found.push((id, Found::Failed(reason.clone())));
+                        self.found.push((id, NodeValue::Failed(reason.clone())));
                     } else if self.values[id].is_some() {
                         let samples = self.samples(id)?;
-                        self.found.push((id, Found::Samples(samples)));
+                        self.found.push((id, NodeValue::Samples(samples)));
                     }
                 }
                 self.release(id);
@@ -113,44 +122,47 @@ impl<'a> State<'a> {
 }
 
 impl State<'_> {
-    /// Takes what others have computed of this record already; what is left to compute, where
-    /// results are shared.
+    /// Takes results from a memo, from the nodes in `open` backwards, as far as nodes are `inside`;
+    /// what is left to compute.
     pub(super) fn recall(
         &mut self,
-        needed: &BTreeSet<NodeId>,
+        (memo, keys): (&Memo, &Keys),
+        mut open: Vec<NodeId>,
         wanted: &BTreeSet<NodeId>,
-    ) -> Option<BTreeSet<NodeId>> {
-        let (memo, keys) = self.memo?;
-        let filters = |id: &&NodeId| matches!(&self.graph.nodes[**id].operation, Operation::Step(spec) if spec.is_filter());
-        memo.count_asked(needed.iter().filter(filters).count());
-        let mut left = BTreeSet::new();
-        let mut seen = BTreeSet::new();
-        let mut open: Vec<NodeId> = wanted.iter().copied().collect();
+        inside: impl Fn(NodeId) -> bool,
+    ) -> Result<BTreeSet<NodeId>, String> {
+        let (mut left, mut seen) = (BTreeSet::new(), BTreeSet::new());
         while let Some(id) = open.pop() {
             if !seen.insert(id) {
                 continue;
             }
             match keys[id].and_then(|key| memo.get(key)) {
-                Some(Kept::Signal(signal)) => {
+                Some(Computed::Signal(signal)) => {
                     self.values[id] = Some(signal);
-                    if wanted.contains(&id)
-                        && let Ok(samples) = self.samples(id)
-                    {
-                        self.found.push((id, Found::Samples(samples)));
+                    if wanted.contains(&id) {
+                        let samples = self.samples(id)?;
+                        self.found.push((id, NodeValue::Samples(samples)));
                     }
                 }
-                Some(Kept::Number(value, samples)) => {
-                    self.found.push((id, Found::Number(value, samples)))
+                Some(Computed::Number(value, samples)) => {
+                    self.found.push((id, NodeValue::Number(value, samples)))
                 }
                 None => {
                     left.insert(id);
-                    open.extend(
-                        self.graph.nodes[id].inputs.iter().filter(|input| needed.contains(input)),
-                    );
+                    let inputs = &self.graph.nodes[id].inputs;
+                    open.extend(inputs.iter().filter(|&&input| inside(input)));
                 }
             }
         }
-        Some(left)
+        Ok(left)
+    }
+
+    /// Counts the filters among nodes for a comparison of protocols.
+    pub(super) fn count_asked(&self, memo: &Memo, needed: &BTreeSet<NodeId>) {
+        let filters = needed.iter().filter(|&&id| {
+            matches!(&self.graph.nodes[id].operation, Operation::Step(spec) if spec.is_filter())
+        });
+        memo.count_asked(filters.count());
     }
 
     /// Keeps the results of a level; those before `from` were there already.
@@ -159,12 +171,12 @@ impl State<'_> {
         let key = |id: NodeId| keys.get(id).copied().flatten();
         for &id in here {
             if let (Some(key), Some(signal)) = (key(id), &self.values[id]) {
-                memo.put(key, Kept::Signal(signal.clone()));
+                memo.put(key, Computed::Signal(signal.clone()));
             }
         }
         for (id, found) in &self.found[from..] {
-            if let (Some(key), Found::Number(value, samples)) = (key(*id), found) {
-                memo.put(key, Kept::Number(*value, *samples));
+            if let (Some(key), NodeValue::Number(value, samples)) = (key(*id), found) {
+                memo.put(key, Computed::Number(*value, *samples));
             }
         }
     }
@@ -228,8 +240,8 @@ impl State<'_> {
             Signal::Samples(samples) => Ok(samples.clone()),
             // A constant becomes a signal of equal samples where a signal is needed.
             Signal::Constant(value) => Ok(Samples {
-                along: Arc::clone(&self.opened.along),
-                values: Arc::new(vec![*value; self.opened.along.axis.len()]),
+                along: Arc::clone(&self.opened.sampled.along),
+                values: Arc::new(vec![*value; self.opened.sampled.along.axis.len()]),
             }),
         }
     }
@@ -296,11 +308,11 @@ impl State<'_> {
                     let over = node.inputs.get(1).map(|&over| self.samples(over)).transpose()?;
                     let axis = over.as_ref().map_or(&samples.along.axis, |over| &over.values);
                     let value = reducer
-                        .run(axis, &samples.values, self.method)
+                        .run(axis, &samples.values, self.plan.sections.percentiles)
                         .filter(|value| value.is_finite());
                     match value {
                         Some(value) => {
-                            self.found.push((id, Found::Number(value, samples.values.len())))
+                            self.found.push((id, NodeValue::Number(value, samples.values.len())))
                         }
                         None => {
                             let says = format!(
@@ -322,18 +334,21 @@ impl State<'_> {
         for (input, members) in sorted {
             let samples = self.samples(input)?;
             let percents: Vec<f64> = members.iter().map(|(_, percent)| *percent).collect();
-            let values = match percentiles(&samples.values, &percents, self.method) {
-                Ok(values) => values,
-                Err(error) => {
-                    members.iter().for_each(|(id, _)| self.failed[*id] = Some(error.to_string()));
-                    continue;
-                }
-            };
+            let values =
+                match percentiles(&samples.values, &percents, self.plan.sections.percentiles) {
+                    Ok(values) => values,
+                    Err(error) => {
+                        members
+                            .iter()
+                            .for_each(|(id, _)| self.failed[*id] = Some(error.to_string()));
+                        continue;
+                    }
+                };
             self.found.extend(
                 members
                     .iter()
                     .zip(values)
-                    .map(|((id, _), value)| (*id, Found::Number(value, samples.values.len()))),
+                    .map(|((id, _), value)| (*id, NodeValue::Number(value, samples.values.len()))),
             );
         }
         Ok(())
@@ -344,17 +359,15 @@ impl State<'_> {
         let input = |index: usize| self.signal(node.inputs[index]);
         match &node.operation {
             Operation::Read { column } => {
-                let found = self.opened.columns.iter().find(|(name, _)| name == column);
-                let (_, values) = found.ok_or_else(|| format!("no column `{column}`"))?;
-                Ok(Signal::Samples(Samples {
-                    along: Arc::clone(&self.opened.along),
-                    values: Arc::clone(values),
-                }))
+                let values = self.opened.sampled.column(column);
+                let values = values.ok_or_else(|| format!("no column `{column}`"))?;
+                let along = Arc::clone(&self.opened.sampled.along);
+                Ok(Signal::Samples(Samples { along, values: Arc::clone(values) }))
             }
             Operation::Constant(expr) => Ok(Signal::Constant(number(expr, self.known)?)),
             Operation::Level => {
-                let of = |(id, found): &(NodeId, Found)| match found {
-                    Found::Number(value, _) if *id == node.inputs[0] => Some(*value),
+                let of = |(id, found): &(NodeId, NodeValue)| match found {
+                    NodeValue::Number(value, _) if *id == node.inputs[0] => Some(*value),
                     _ => None,
                 };
                 Ok(Signal::Constant(
@@ -365,12 +378,9 @@ impl State<'_> {
             Operation::Negative => each(input(0)?, |value| -value),
             Operation::Power(exponent) => each(input(0)?, |value| value.powi(i32::from(*exponent))),
             Operation::Apply(function) => {
-                let inputs = node.inputs.iter().map(|&input| self.signal(input)).collect::<Result<
-                    Vec<_>,
-                    _,
-                >>(
-                )?;
-                apply(&inputs, function.run)
+                let inputs: Result<Vec<_>, _> =
+                    node.inputs.iter().map(|&input| self.signal(input)).collect();
+                apply(&inputs?, function.run)
             }
             Operation::Select(conditions) => {
                 Ok(input(chosen(conditions, &node.inputs, self.known)?)?.clone())

@@ -1,22 +1,19 @@
 //! Records of stretches that neighbouring sections share: each is read once, and what no section
 //! changes is computed once.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, Mutex};
 
-use super::{
-    Fault, FileHash, Found, Opened, Sampled, State, Work, chosen, clock, columns, file_of, part,
-};
-use crate::check::evaluate::number;
+use super::memo::{Computed, Memo, locked};
+use super::opened::{Fault, Opened, Sampled, Stretched, clock, file_of};
+use super::signal::{Cutter, Signal};
+use super::state::State;
 use crate::check::plan::{AxisOperation, Kind, Plan, StepSpec};
 use crate::data::campaign::ReadFile;
 use crate::data::checks::check_axis;
-use crate::data::record::Wanted;
-use crate::data::{Record, RecordKind, WhichRecord};
+use crate::data::{Campaign, Record, RecordKind, WhichRecord};
 use crate::graph::{Graph, NodeId, Operation};
-use crate::run::shared::{Kept, Memo};
-use crate::run::signal::{Cutter, Signal};
-use crate::run::unit::Unit;
+use crate::run::sections::{Facts, Unit};
 
 /// A record of the stretch with this number.
 type RecordOfStretch = (usize, WhichRecord);
@@ -30,13 +27,13 @@ impl Stretches {
     ///
     /// # Errors
     /// Of `read`.
-    fn get(
+    pub(super) fn get(
         &self,
         key: RecordOfStretch,
         read: impl FnOnce() -> Result<Option<Arc<Stretched>>, Fault>,
     ) -> Result<Option<Arc<Stretched>>, Fault> {
         // The sections of a stretch are evaluated one after the other: no one waits for this lock.
-        let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut all = locked(&self.0);
         if let Some(known) = all.get(&key) {
             return Ok(known.clone());
         }
@@ -54,154 +51,88 @@ impl Stretches {
 pub struct Soundness(Mutex<BTreeMap<RecordOfStretch, bool>>);
 
 impl Soundness {
-    fn known(&self, key: RecordOfStretch) -> Option<bool> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&key).copied()
+    pub(super) fn known(&self, key: RecordOfStretch) -> Option<bool> {
+        locked(&self.0).get(&key).copied()
     }
 
-    fn keep(&self, key: RecordOfStretch, sound: bool) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(key, sound);
+    pub(super) fn keep(&self, key: RecordOfStretch, sound: bool) {
+        locked(&self.0).insert(key, sound);
     }
-}
-
-/// The stretch of a section, if it is sound. Once it is known to be, only the columns are read that
-/// are wanted, outside a group of sections.
-///
-/// # Errors
-/// The record cannot be read at all, now.
-pub(super) fn shared(
-    work: &Work<'_>,
-    unit: &Unit,
-    which: WhichRecord,
-    wanted: &[Wanted],
-) -> Result<Option<Arc<Stretched>>, Fault> {
-    let Some(stretch) = unit.stretch else { return Ok(None) };
-    let key = (stretch.number, which);
-    let read = |wanted: &[Wanted]| match work.campaign(unit).read(
-        which,
-        &unit.cell,
-        wanted,
-        Some(&stretch.part(work.plan)),
-    ) {
-        Ok(read) => Ok(Stretched::new(work.plan, which, read).map(Arc::new)),
-        Err(problems) if problems.iter().any(|problem| problem.code == "file-unreadable") => {
-            Err(Fault::of(work.campaign(unit), problems))
-        }
-        Err(_) => Ok(None),
-    };
-    match (work.soundness.known(key), work.stretches) {
-        (Some(false), _) => Ok(None),
-        (Some(true), None) => read(wanted),
-        (_, stretches) => {
-            let alone = Stretches::default();
-            let found = stretches.unwrap_or(&alone).get(key, || {
-                let all =
-                    read(&columns(work, which, &(0..work.graph.nodes.len()).collect(), false))?;
-                Ok(all.filter(|stretched| stretched.is_sound(work, unit, which)))
-            })?;
-            work.soundness.keep(key, found.is_some());
-            Ok(found)
-        }
-    }
-}
-
-/// Whether the stretch of a section is sound.
-///
-/// # Errors
-/// As of [`shared`].
-pub(super) fn is_sound(work: &Work<'_>, unit: &Unit, which: WhichRecord) -> Result<bool, Fault> {
-    match unit.stretch.and_then(|stretch| work.soundness.known((stretch.number, which))) {
-        Some(known) => Ok(known),
-        None => shared(work, unit, which, &[]).map(|found| found.is_some()),
-    }
-}
-
-/// A record of a stretch, and the values of nodes on it.
-#[derive(Debug)]
-pub struct Stretched {
-    sampled: Sampled,
-    read: ReadFile,
-    numbers: Mutex<HashMap<Does, usize>>,
-    results: Memo,
-}
-
-/// What a node does: nodes that do the same have the same value, whatever section asks.
-#[derive(Debug, PartialEq, Eq, Hash)]
-struct Does {
-    node: NodeId,
-    /// Numbers of what its inputs do.
-    inputs: Vec<usize>,
-    /// The bits of a number that may depend on the section.
-    number: Option<u64>,
 }
 
 impl Stretched {
     /// `None` if its axes are not sound somewhere.
-    fn new(plan: &Plan, which: WhichRecord, (record, read): (Record, ReadFile)) -> Option<Self> {
+    pub(super) fn new(
+        plan: &Plan,
+        which: WhichRecord,
+        (record, read): (Record, ReadFile),
+    ) -> Option<Self> {
         let axis = &plan.axis.column;
-        let time = clock(plan, which).map_or(axis.as_str(), |time| time.column.as_str());
+        let time = clock(plan, which.kind).map_or(axis, |time| &time.column);
         let rate = check_axis(&record, time, axis, None).ok()?.sampling_rate;
-        let sampled = Sampled::new(plan, which, record, rate);
+        let sampled = Sampled::of_record(plan, which.kind, record, rate);
         Some(Self { sampled, read, numbers: Mutex::default(), results: Memo::default() })
     }
 
     /// Whether the nodes that no section changes have finite values all along. Their values are
     /// kept for the sections.
-    fn is_sound(self: &Arc<Self>, work: &Work<'_>, unit: &Unit, which: WhichRecord) -> bool {
-        let Sampled { columns, along, .. } = &self.sampled;
-        let (Some(first), Some(last)) = (along.axis.first(), along.axis.last()) else {
-            return false;
-        };
-        let nodes = common(work.graph, which.kind == RecordKind::Track, |column| {
-            columns.iter().any(|(name, _)| name == column)
-        });
-        let whole = Opened {
-            columns: Arc::clone(columns),
-            along: Arc::clone(along),
-            extent: (*first, *last),
-            file: file_of(work, unit, which, &self.read),
-            margins: None,
-            memo: None,
-            own: Some((*first, *last)),
-            stretch: Some(Arc::clone(self)),
-        };
-        let known = unit.known(work.facts);
-        let mut state = State::new(&whole, work.graph, &known, work.plan.sections.percentiles);
+    pub(super) fn is_sound(
+        self: &Arc<Self>,
+        (plan, graph, facts): (&Plan, &Graph, &Facts),
+        campaign: &Campaign,
+        unit: &Unit,
+        which: WhichRecord,
+    ) -> bool {
+        let Some(all) = self.sampled.extent() else { return false };
+        let track = which.kind == RecordKind::Track;
+        let nodes = common(graph, track, |column| self.sampled.column(column).is_some());
+        let whole = Opened { own: Some(all), ..self.opened(campaign, unit, which, all) };
+        let known = unit.known(facts);
+        let mut state = State::new(&whole, (plan, graph), &known);
         let levels = state.count(&nodes);
         state.on_stretch(&nodes, &nodes, &levels).is_ok()
+    }
+
+    fn opened(
+        self: &Arc<Self>,
+        campaign: &Campaign,
+        unit: &Unit,
+        which: WhichRecord,
+        extent: (f64, f64),
+    ) -> Opened {
+        Opened {
+            sampled: self.sampled.clone(),
+            extent,
+            file: file_of(campaign, unit, which, &self.read),
+            margins: None,
+            memo: None,
+            own: None,
+            stretch: Some(Arc::clone(self)),
+        }
     }
 
     /// The record as one section sees it; `None` if it does not cover the section.
     pub(super) fn section(
         self: &Arc<Self>,
-        work: &Work<'_>,
+        plan: &Plan,
+        campaign: &Campaign,
         unit: &Unit,
         which: WhichRecord,
     ) -> Option<Opened> {
-        let (extent, Sampled { columns, along, in_time }) = (unit.extent?, &self.sampled);
-        let (first, last) = (*along.axis.first()?, *along.axis.last()?);
+        let (extent, (first, last)) = (unit.extent?, self.sampled.extent()?);
+        let along = &self.sampled.along;
         let inside = along.inside(extent);
         if extent.0 < first || extent.1 > last || inside.is_empty() {
             return None;
         }
         let times = along.time.as_ref().unwrap_or(&along.axis);
-        let margins = in_time.then(|| {
-            (times[inside.start] - times[0], times[times.len() - 1] - times[inside.end - 1])
-        });
-        let file: FileHash = file_of(work, unit, which, &self.read);
-        let own = part(work.plan, unit).map(|part| (part.from, part.to));
-        let (columns, along, stretch) =
-            (Arc::clone(columns), Arc::clone(along), Some(Arc::clone(self)));
-        Some(Opened { columns, along, extent, file, margins, memo: None, own, stretch })
-    }
-
-    pub(super) fn has(&self, column: &str) -> bool {
-        self.sampled.columns.iter().any(|(name, _)| name == column)
-    }
-
-    fn number(&self, does: Does) -> usize {
-        let mut numbers = self.numbers.lock().unwrap_or_else(PoisonError::into_inner);
-        let next = numbers.len();
-        *numbers.entry(does).or_insert(next)
+        let margins =
+            (times[inside.start] - times[0], times[times.len() - 1] - times[inside.end - 1]);
+        Some(Opened {
+            margins: self.sampled.in_time.then_some(margins),
+            own: unit.part(plan).map(|part| (part.from, part.to)),
+            ..self.opened(campaign, unit, which, extent)
+        })
     }
 }
 
@@ -301,7 +232,7 @@ impl State<'_> {
             return Ok(vec![false; self.graph.nodes.len()]);
         }
         let early = early(self.graph, needed);
-        // Kept until they are noted: a later level would free them.
+        // A later level would free them before they are put into the memo.
         let uses = self.uses.clone();
         self.uses.iter_mut().for_each(|uses| *uses += 1);
         match self.opened.stretch.clone() {
@@ -320,69 +251,20 @@ impl State<'_> {
         levels: &[Vec<NodeId>],
         early: &[bool],
     ) -> Result<(), String> {
-        let numbers = self.numbers(stretch, needed, early);
+        let mut keys = locked(&stretch.numbers).keys(self.plan, self.graph, self.known);
+        keys.iter_mut().zip(early).filter(|(_, early)| !**early).for_each(|(key, _)| *key = None);
         let mut open: Vec<NodeId> = wanted.iter().copied().filter(|&id| early[id]).collect();
         for &user in needed.iter().filter(|&&id| !early[id]) {
             open.extend(self.graph.nodes[user].inputs.iter().filter(|&&input| early[input]));
         }
-        let mut left = vec![false; early.len()];
-        let mut seen = vec![false; early.len()];
-        while let Some(id) = open.pop() {
-            if std::mem::replace(&mut seen[id], true) {
-                continue;
-            }
-            match numbers[id].and_then(|number| stretch.results.get(number)) {
-                Some(Kept::Signal(signal)) => {
-                    self.values[id] = Some(signal);
-                    if wanted.contains(&id) {
-                        let samples = self.samples(id)?;
-                        self.found.push((id, Found::Samples(samples)));
-                    }
-                }
-                _ => {
-                    left[id] = true;
-                    open.extend(self.graph.nodes[id].inputs.iter().filter(|&&input| early[input]));
-                }
-            }
-        }
-        self.run(levels, wanted, |id| left[id])?;
-        for id in (0..early.len()).filter(|&id| left[id]) {
-            if let (Some(number), Some(signal)) = (numbers[id], &self.values[id]) {
-                stretch.results.put(number, Kept::Signal(signal.clone()));
+        let left = self.recall((&stretch.results, &keys), open, wanted, |id| early[id])?;
+        self.run(levels, wanted, |id| left.contains(&id))?;
+        for id in left {
+            if let (Some(key), Some(signal)) = (keys[id], &self.values[id]) {
+                stretch.results.put(key, Computed::Signal(signal.clone()));
             }
         }
         Ok(())
-    }
-
-    /// The number of what each early node does; `None` where only this section has its value.
-    fn numbers(
-        &self,
-        stretch: &Stretched,
-        needed: &BTreeSet<NodeId>,
-        early: &[bool],
-    ) -> Vec<Option<usize>> {
-        let mut numbers: Vec<Option<usize>> = vec![None; early.len()];
-        for &id in needed.iter().filter(|&&id| early[id]) {
-            let node = &self.graph.nodes[id];
-            let of = match &node.operation {
-                Operation::Select(conditions) => {
-                    numbers[id] = chosen(conditions, &node.inputs, self.known)
-                        .ok()
-                        .and_then(|input| numbers[node.inputs[input]]);
-                    continue;
-                }
-                Operation::Constant(of) => match number(of, self.known) {
-                    Ok(number) => Some(number.to_bits()),
-                    Err(_) => continue,
-                },
-                _ => None,
-            };
-            let inputs: Option<Vec<usize>> =
-                node.inputs.iter().map(|&input| numbers[input]).collect();
-            numbers[id] =
-                inputs.map(|inputs| stretch.number(Does { node: id, inputs, number: of }));
-        }
-        numbers
     }
 
     fn shorten(&mut self, needed: &BTreeSet<NodeId>, early: &[bool]) {

@@ -1,0 +1,58 @@
+//! Plausibility rules that cannot be asked of a section, because a cell of the table of sections is
+//! empty: sound data and data that were never looked at must not look alike.
+
+use crate::check::evaluate::flag;
+use crate::check::plan::{Plan, Plausibility, Test};
+use crate::result::Finding;
+use crate::run::sections::{Facts, Known, Unit, sections_in_words};
+
+/// Code of the finding about rules that were not asked. It does not change the verdict.
+const NOT_ASKED: &str = "plausibility-not-checked";
+
+/// One finding for each column that is empty in used sections, with the rules that need it there.
+pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
+    let mut found: Vec<(usize, Vec<&str>, Vec<&str>)> = Vec::new();
+    for unit in units.iter().filter(|unit| unit.fault.is_none()) {
+        for rule in &plan.plausibility {
+            let Some(column) = missing(rule, facts, unit) else { continue };
+            let at = found.iter().position(|(known, ..)| *known == column).unwrap_or_else(|| {
+                found.push((column, Vec::new(), Vec::new()));
+                found.len() - 1
+            });
+            let (_, names, rules) = &mut found[at];
+            if names.last() != Some(&unit.name.as_str()) {
+                names.push(&unit.name);
+            }
+            if !rules.contains(&rule.title.as_str()) {
+                rules.push(&rule.title);
+            }
+        }
+    }
+    let finding = |(column, names, rules): (usize, Vec<&str>, Vec<&str>)| {
+        let key = &plan.columns[column].key;
+        let of = sections_in_words(&names, units.len());
+        let says = format!(
+            "the table of sections does not state `{key}` ({of}); not checked there: {}",
+            rules.join("; ")
+        );
+        Finding { channel: Some(key.clone()), ..Finding::note(NOT_ASKED, says) }
+    };
+    found.into_iter().map(finding).collect()
+}
+
+/// The column without which the rule has no answer in this section.
+fn missing(rule: &Plausibility, facts: &Facts, unit: &Unit) -> Option<usize> {
+    let Test::Require(requirement) = &rule.test else { return None };
+    let of = |reason: String| {
+        unit.columns.iter().position(|column| column.as_ref().err() == Some(&reason))
+    };
+    let known = unit.known(facts);
+    match rule.unless.as_ref().map(|unless| flag(unless, &known)) {
+        Some(Ok(true)) => return None,
+        Some(Err(reason)) => return of(reason),
+        _ => {}
+    }
+    // Whatever the signals are: only data can be missing here.
+    let inputs: Vec<Result<f64, String>> = vec![Ok(1.0); requirement.inputs.len()];
+    flag(&requirement.holds, &Known { inputs: &inputs, ..known }).err().and_then(of)
+}

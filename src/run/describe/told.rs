@@ -1,0 +1,76 @@
+//! Findings about the vehicle data: assumed units, and limits with factors that depend on these
+//! data.
+
+use crate::check::plan::Plan;
+use crate::result::{Finding, LimitFactor, QuantityResult};
+use crate::run::sections::{Facts, Vehicle, is_dimensioned, vehicle_item};
+
+/// Code of the finding about units that the vehicle file does not state.
+const UNIT_ASSUMED: &str = "unit-assumed";
+/// Code of the finding about limits with factors that depend on vehicle data.
+const LIMIT_FACTOR: &str = "limit-factor";
+
+/// Findings about the vehicle data; none of them changes the verdict.
+pub fn findings(plan: &Plan, facts: &Facts, quantities: &[QuantityResult]) -> Vec<Finding> {
+    facts
+        .vehicles
+        .iter()
+        .filter_map(|vehicle| assumed(plan, vehicle))
+        .chain(multiplied(quantities))
+        .collect()
+}
+
+/// One finding for all numbers without a unit whose size depends on one.
+fn assumed(plan: &Plan, vehicle: &Vehicle) -> Option<Finding> {
+    let bare: Vec<String> = plan
+        .vehicle
+        .iter()
+        .zip(vehicle.data.iter().zip(&vehicle.assumed))
+        .filter(|(datum, (_, assumed))| **assumed && is_dimensioned(&datum.kind))
+        .map(|(datum, (value, _))| {
+            let item = vehicle_item(datum, value);
+            format!(
+                "{} = {}{}",
+                datum.key,
+                item.value,
+                item.unit.map_or(String::new(), |unit| format!(" {unit}"))
+            )
+        })
+        .collect();
+    (!bare.is_empty()).then(|| {
+        let of = vehicle.of.as_ref().map_or_else(String::new, |of| format!(" of {of}"));
+        let says = format!(
+            "the vehicle file{of} states no unit; read in the unit of the protocol: {}",
+            bare.join(", ")
+        );
+        Finding::note(UNIT_ASSUMED, says)
+    })
+}
+
+/// One finding for each factor and its reason, with the quantities whose limits it multiplies.
+fn multiplied(quantities: &[QuantityResult]) -> Vec<Finding> {
+    let mut found: Vec<(&LimitFactor, Vec<&str>)> = Vec::new();
+    for quantity in quantities {
+        for factor in quantity.statistics.iter().flat_map(|statistic| &statistic.factors) {
+            match found.iter_mut().find(|(known, _)| *known == factor) {
+                Some((_, of)) if of.last() == Some(&quantity.id.as_str()) => {}
+                Some((_, of)) => of.push(&quantity.id),
+                None => found.push((factor, vec![&quantity.id])),
+            }
+        }
+    }
+    let finding = |(factor, of): (&LimitFactor, Vec<&str>)| {
+        let says = format!(
+            "the limits of {} are {}, because {}",
+            of.join(", "),
+            times(factor.by),
+            factor.because
+        );
+        Finding { value: Some(factor.by), ..Finding::note(LIMIT_FACTOR, says) }
+    };
+    found.into_iter().map(finding).collect()
+}
+
+fn times(by: f64) -> String {
+    if by == 2.0 { "doubled".into() } else { format!("multiplied by {by}") }
+}

@@ -1,0 +1,483 @@
+//! Estimates from the rows of a group.
+
+use std::collections::{BTreeSet, HashSet};
+
+use indexmap::IndexMap;
+
+use super::groups::of_key;
+use super::table::{Member, Table, independent};
+use crate::catalog::Statistic;
+use crate::check::evaluate::{flag, number, words};
+use crate::check::plan::{
+    DataReducer, DatumKind, Estimate, EstimateKind, Expr, Fit, Key, Kind, OfGroup, Operator, Plan,
+    Position, Taking, Type,
+};
+use crate::metrics::cluster::{self, Bounds, Draws, Mean, StandardDeviation};
+use crate::metrics::percentile::{Method, percentile};
+use crate::metrics::regression::{self, Regression, Tails};
+use crate::metrics::weighted;
+use crate::result::{RegressionAt, RegressionFigure, RegressionPoint};
+use crate::run::sections::{Facts, Known, Unit, Vehicle};
+use crate::units;
+
+/// The rows of one group.
+#[derive(Clone, Copy, Debug)]
+pub struct Group<'a> {
+    pub plan: &'a Plan,
+    pub facts: &'a Facts,
+    pub positions: &'a [Position],
+    pub members: &'a [Member<'a>],
+    pub table: &'a Table<'a>,
+}
+
+impl Group<'_> {
+    pub fn values(&self) -> Vec<f64> {
+        self.members.iter().map(|member| member.row.value).collect()
+    }
+
+    /// The index of the independent unit of each row.
+    pub fn units(&self) -> Vec<usize> {
+        independent(self.plan, self.members)
+    }
+
+    fn sections(&self) -> Vec<&Unit> {
+        let mut seen = HashSet::new();
+        self.members
+            .iter()
+            .map(|member| member.unit)
+            .filter(|unit| seen.insert(unit.name.as_str()))
+            .collect()
+    }
+
+    /// The value of an expression over the group, SI.
+    ///
+    /// # Errors
+    /// What cannot be estimated from these rows, and why.
+    pub fn number(&self, of: &OfGroup) -> Result<f64, String> {
+        let values = self.values();
+        self.over(of, &values)
+    }
+
+    /// The numbers that an expression takes from the group, in order.
+    pub fn taken(&self, of: &OfGroup) -> Vec<Result<f64, String>> {
+        let values = self.values();
+        of.taken.iter().map(|taking| self.take(taking, &values)).collect()
+    }
+
+    /// As [`Self::number`], with other values in place of those of the rows.
+    fn over(&self, of: &OfGroup, values: &[f64]) -> Result<f64, String> {
+        let taken: Vec<Result<f64, String>> =
+            of.taken.iter().map(|taking| self.take(taking, values)).collect();
+        let of_vehicle = |vehicle: &Vehicle| {
+            number(&of.expr, &Known { inputs: &taken, ..Known::vehicle(vehicle) })
+        };
+        self.facts.agreed(self.members, of_vehicle, |value| format!("{value} (SI)"))
+    }
+
+    fn take(&self, taking: &Taking, values: &[f64]) -> Result<f64, String> {
+        match taking {
+            Taking::Statistic(statistic, ddof) => statistic_of(*statistic, *ddof, values),
+            Taking::Count => Ok(self.units().into_iter().collect::<BTreeSet<_>>().len() as f64),
+            Taking::Weighted { statistic, ddof, by } => weighted_statistic(
+                *statistic,
+                *ddof,
+                values,
+                &self.weights(by, self.units_of_rows())?,
+            ),
+            Taking::EachGroup { reducer, keys, of } => {
+                self.of_each_group(*reducer, keys, of, values)
+            }
+            Taking::Share { condition, of_sections: true, by, .. } => {
+                let sections = self.sections();
+                let holds = sections.iter().map(|unit| flag(condition, &unit.known(self.facts)));
+                share(holds, by.as_ref().map(|by| self.weights(by, sections.iter().copied())))
+            }
+            Taking::Share { condition, of_sections: false, others, by } => {
+                let others: Vec<Result<f64, String>> =
+                    others.iter().map(|other| self.take(other, values)).collect();
+                let of_row = |(member, value): (&Member<'_>, &f64)| {
+                    let inputs: Vec<Result<f64, String>> =
+                        [Ok(*value)].into_iter().chain(others.iter().cloned()).collect();
+                    flag(condition, &Known { inputs: &inputs, ..member.unit.known(self.facts) })
+                };
+                let weights = by.as_ref().map(|by| self.weights(by, self.units_of_rows()));
+                share(self.members.iter().zip(values).map(of_row), weights)
+            }
+            Taking::Other { quantity, id, statistic, ddof } => {
+                let rows = self.table.get(*quantity).ok_or_else(|| format!("{id} has no rows"))?;
+                let found = rows.clone().and_then(|rows| {
+                    let values: Vec<f64> = rows.iter().map(|member| member.row.value).collect();
+                    statistic_of(*statistic, *ddof, &values)
+                });
+                found.map_err(|reason| format!("{} of {id}: {reason}", statistic.name()))
+            }
+            Taking::Data { reducer, of, by } => {
+                let sections = self.sections();
+                let data = self.data(of, sections.iter().copied())?;
+                match (reducer, by) {
+                    (DataReducer::Statistic(statistic, ddof), Some(by)) => weighted_statistic(
+                        *statistic,
+                        *ddof,
+                        &data,
+                        &self.weights(by, sections.iter().copied())?,
+                    ),
+                    _ => reduced(*reducer, &data),
+                }
+            }
+            Taking::Bound { of, upper, confidence, bootstrap } => {
+                self.bound(of, *upper, *confidence, *bootstrap, values)
+            }
+            Taking::Fit(fit) => self.fit(fit, values),
+        }
+    }
+
+    fn units_of_rows(&self) -> impl Iterator<Item = &Unit> + Clone {
+        self.members.iter().map(|member| member.unit)
+    }
+
+    /// A number of each section.
+    fn data<'u>(
+        &self,
+        of: &Expr,
+        units: impl Iterator<Item = &'u Unit>,
+    ) -> Result<Vec<f64>, String> {
+        units
+            .map(|unit| {
+                number(of, &unit.known(self.facts))
+                    .map_err(|reason| format!("section {}: {reason}", unit.name))
+            })
+            .collect()
+    }
+
+    /// Weights are not negative.
+    fn weights<'u>(
+        &self,
+        by: &Expr,
+        units: impl Iterator<Item = &'u Unit> + Clone,
+    ) -> Result<Vec<f64>, String> {
+        let weights = self.data(by, units.clone())?;
+        match units.zip(&weights).find(|(_, weight)| **weight < 0.0) {
+            Some((unit, _)) => {
+                Err(format!("section {}: its weight `{}` is negative", unit.name, words(by)))
+            }
+            None => Ok(weights),
+        }
+    }
+
+    /// The groups that the rows form by some keys: what each is called, and the numbers of its
+    /// rows.
+    pub fn groups(&self, keys: &[Key]) -> IndexMap<String, Vec<usize>> {
+        let mut groups: IndexMap<String, Vec<usize>> = IndexMap::new();
+        for (row, member) in self.members.iter().enumerate() {
+            let name: Vec<String> =
+                keys.iter().map(|key| of_key(self.plan, self.positions, key, member).1).collect();
+            groups.entry(name.join(", ")).or_default().push(row);
+        }
+        groups
+    }
+
+    fn of_each_group(
+        &self,
+        reducer: DataReducer,
+        keys: &[Key],
+        of: &OfGroup,
+        values: &[f64],
+    ) -> Result<f64, String> {
+        let one = |(name, rows): (String, Vec<usize>)| {
+            let members: Vec<Member<'_>> = rows.iter().map(|&row| self.members[row]).collect();
+            let values: Vec<f64> = rows.iter().map(|&row| values[row]).collect();
+            Group { members: &members, ..*self }
+                .over(of, &values)
+                .map_err(|reason| format!("{name}: {reason}"))
+        };
+        let numbers =
+            self.groups(keys).into_iter().map(one).collect::<Result<Vec<f64>, String>>()?;
+        reduced(reducer, &numbers).map_err(|reason| reason.replace("value", "group"))
+    }
+
+    /// An end of the one-sided confidence interval of an estimate: in closed form for a mean or a
+    /// standard deviation with divisor n-1, else by a bootstrap of the independent units.
+    fn bound(
+        &self,
+        of: &Estimate,
+        upper: bool,
+        confidence: f64,
+        bootstrap: bool,
+        values: &[f64],
+    ) -> Result<f64, String> {
+        let EstimateKind::Of(of_group) = &of.kind else {
+            return Err("a single value has no interval".into());
+        };
+        some_scatter(values)?;
+        let units = self.units();
+        let probability = if upper { confidence } else { 1.0 - confidence };
+        if let Some((Statistic::Named(entry), _, by)) = of.weighted().filter(|_| !bootstrap)
+            && entry.name == "mean"
+        {
+            let weights = self.weights(by, self.units_of_rows())?;
+            let rows: Vec<(f64, f64)> = values.iter().copied().zip(weights).collect();
+            let found = cluster::by_site(&rows, &units)
+                .and_then(|sites| cluster::weighted_mean(&sites)?.bound(probability));
+            return found.map_err(|error| error.to_string());
+        }
+        let found = match of.statistic() {
+            Some((Statistic::Named(entry), _)) if !bootstrap && entry.name == "mean" => {
+                cluster::by_site(values, &units)
+                    .and_then(|sites| Mean::of(&sites)?.bound(probability))
+            }
+            Some((Statistic::Named(entry), 1)) if !bootstrap && entry.name == "std" => {
+                cluster::by_site(values, &units)
+                    .and_then(|sites| StandardDeviation::of(&sites)?.bound(probability))
+            }
+            _ => {
+                // A statistic alone depends on the values only, and the draws are many.
+                if let (Kind::Input(0), [Taking::Statistic(statistic, ddof)]) =
+                    (&of_group.expr.kind, of_group.taken.as_slice())
+                {
+                    let found = cluster::by_site(values, &units).and_then(|sites| {
+                        let estimate =
+                            |values: &[f64]| statistic_of(*statistic, *ddof, values).ok();
+                        cluster::bootstrap(&sites, &*Draws::usual(sites.len())?, estimate)?
+                            .bound(probability)
+                    });
+                    return found.map_err(|error| error.to_string());
+                }
+                let rows: Vec<usize> = (0..values.len()).collect();
+                let estimate = |rows: &[usize]| {
+                    let members: Vec<Member<'_>> =
+                        rows.iter().map(|&row| self.members[row]).collect();
+                    let values: Vec<f64> = rows.iter().map(|&row| values[row]).collect();
+                    Group { members: &members, ..*self }.over(of_group, &values).ok()
+                };
+                cluster::by_site(&rows, &units).and_then(|sites| {
+                    cluster::bootstrap(&sites, &*Draws::usual(sites.len())?, estimate)?
+                        .bound(probability)
+                })
+            }
+        };
+        found.map_err(|error| error.to_string())
+    }
+
+    fn fit(&self, fit: &Fit, values: &[f64]) -> Result<f64, String> {
+        let Fitted { regression, at, .. } = self.fitted(fit, values)?;
+        match fit.confidence {
+            None => regression.at(&at).map_err(|error| error.to_string()),
+            Some(confidence) => {
+                some_scatter(values)?;
+                bound_at(&regression, fit, confidence, &at)
+            }
+        }
+    }
+
+    pub(in crate::run) fn fitted(&self, fit: &Fit, values: &[f64]) -> Result<Fitted, String> {
+        let regressors = fit
+            .over
+            .iter()
+            .map(|regressor| self.data(regressor, self.units_of_rows()))
+            .collect::<Result<Vec<_>, _>>()?;
+        let at =
+            fit.at.iter().map(|target| self.over(target, values)).collect::<Result<Vec<_>, _>>()?;
+        let regression = Regression::fit(values, &regressors).map_err(|error| error.to_string())?;
+        Ok(Fitted { regression, regressors, at })
+    }
+
+    /// The bound of a share of the values: X of `share where value <= X`, in SI. `None` of other
+    /// estimates, and of a bound that differs from section to section.
+    pub fn divided_at(&self, of: &OfGroup) -> Option<f64> {
+        let (Kind::Input(0), [Taking::Share { condition, of_sections: false, others, by: None }]) =
+            (&of.expr.kind, of.taken.as_slice())
+        else {
+            return None;
+        };
+        let Kind::Binary(operator, left, right) = &condition.kind else { return None };
+        let compares = matches!(
+            operator,
+            Operator::Less | Operator::LessEqual | Operator::Greater | Operator::GreaterEqual
+        );
+        if !compares || !matches!(left.kind, Kind::Input(0)) {
+            return None;
+        }
+        let values = self.values();
+        let value = Err("the bound of a share is the same for all values".to_string());
+        let inputs: Vec<Result<f64, String>> = [value]
+            .into_iter()
+            .chain(others.iter().map(|other| self.take(other, &values)))
+            .collect();
+        let of_vehicle = |vehicle: &Vehicle| {
+            number(right, &Known { inputs: &inputs, ..Known::vehicle(vehicle) })
+        };
+        self.facts.agreed(self.members, of_vehicle, f64::to_string).ok()
+    }
+
+    /// The diagram of a regression with one regressor, in the unit of the quantity; `None` for
+    /// other estimates and where there is no value.
+    pub fn figure(&self, of: &OfGroup, unit: &units::Unit) -> Option<RegressionFigure> {
+        let (Kind::Input(0), [Taking::Fit(fit)]) = (&of.expr.kind, of.taken.as_slice()) else {
+            return None;
+        };
+        let [over] = fit.over.as_slice() else { return None };
+        let values = self.values();
+        let Fitted { regression, regressors, at } = self.fitted(fit, &values).ok()?;
+        let (xs, target) = (regressors.first()?, *at.first()?);
+        let x_unit = self.unit_of(over);
+        let (low, high) =
+            xs.iter().fold((target, target), |(low, high), x| (low.min(*x), high.max(*x)));
+        let at_place = |step: usize| {
+            let x = low + (high - low) * step as f64 / STEPS as f64;
+            let bound = fit
+                .confidence
+                .and_then(|confidence| bound_at(&regression, fit, confidence, &[x]).ok());
+            Some(RegressionAt {
+                x: x_unit.from_si(x),
+                fitted: unit.from_si(regression.at(&[x]).ok()?),
+                bound: bound.map(|y| unit.from_si(y)),
+            })
+        };
+        let point = |(member, x): (&Member<'_>, &f64)| RegressionPoint {
+            section: member.unit.name.clone(),
+            zone: member.unit.zone.clone(),
+            signal: member.signal.to_string(),
+            x: x_unit.from_si(*x),
+            y: unit.from_si(member.row.value),
+        };
+        let [intercept, slope] = regression.coefficients()[..] else { return None };
+        let kind = if fit.prediction { "prediction bound" } else { "confidence bound of the mean" };
+        Some(RegressionFigure {
+            regressor: over.span.words.to_string(),
+            points: self.members.iter().zip(xs).map(point).collect(),
+            intercept: unit.from_si(intercept),
+            slope: unit.from_si(x_unit.to_si(slope)),
+            curve: (0..=STEPS).map(at_place).collect::<Option<_>>()?,
+            bound: fit
+                .confidence
+                .map(|confidence| format!("{} % {kind}", rounded(100.0 * confidence))),
+            target: x_unit.from_si(target),
+            value: unit.from_si(self.fit(fit, &values).ok()?),
+            regressor_unit: x_unit.text,
+        })
+    }
+}
+
+impl Group<'_> {
+    /// In which a regressor is printed.
+    pub(in crate::run) fn unit_of(&self, regressor: &Expr) -> units::Unit {
+        match (&regressor.kind, &regressor.ty) {
+            (Kind::Column(index), _)
+                if let DatumKind::Number(unit) = &self.plan.columns[*index].kind =>
+            {
+                unit.clone()
+            }
+            (_, Type::Number(dimension)) => units::Unit::si(*dimension),
+            _ => units::Unit::one(),
+        }
+    }
+}
+
+/// Number of pieces of a regression curve in a diagram. A hyperbola then looks smooth at a few
+/// centimetres.
+const STEPS: usize = 32;
+
+/// A regression with the numbers it was fitted to and the point at which it is evaluated.
+pub(in crate::run) struct Fitted {
+    regression: Regression,
+    pub regressors: Vec<Vec<f64>>,
+    pub at: Vec<f64>,
+}
+
+fn bound_at(
+    regression: &Regression,
+    fit: &Fit,
+    confidence: f64,
+    at: &[f64],
+) -> Result<f64, String> {
+    let kind = if fit.prediction { regression::Kind::Prediction } else { regression::Kind::Mean };
+    let side = if fit.lower { regression::Side::Lower } else { regression::Side::Upper };
+    let tails = if fit.one_sided { Tails::One } else { Tails::Two };
+    regression.bound(at, kind, side, tails, confidence).map_err(|error| error.to_string())
+}
+
+/// Values that are all equal have no scatter from which an interval could follow: one of width zero
+/// would claim certainty.
+fn some_scatter(values: &[f64]) -> Result<(), String> {
+    match values {
+        [first, rest @ ..] if !rest.is_empty() && rest.iter().all(|value| value == first) => {
+            Err(format!("all {} values are equal, so their scatter is not known", values.len()))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A percentage without rounding errors of its conversion from a share: 99.9, not
+/// 99.90000000000001.
+fn rounded(percent: f64) -> f64 {
+    (percent * 1e9).round() / 1e9
+}
+
+/// The statistic of the values, with divisor n - `ddof`.
+///
+/// # Errors
+/// It is not defined for so few values.
+pub fn statistic_of(statistic: Statistic, ddof: usize, values: &[f64]) -> Result<f64, String> {
+    let found = match statistic {
+        Statistic::Percentile(percent) => percentile(values, percent, Method::Linear).ok(),
+        Statistic::Named(entry) => (entry.run)(values, ddof),
+        Statistic::Each => None,
+    };
+    found.filter(|value| value.is_finite()).ok_or_else(|| {
+        format!(
+            "not defined for {} value{}",
+            values.len(),
+            if values.len() == 1 { "" } else { "s" }
+        )
+    })
+}
+
+/// Of numbers of sections or of groups.
+fn reduced(reducer: DataReducer, numbers: &[f64]) -> Result<f64, String> {
+    match reducer {
+        DataReducer::Total => Ok(numbers.iter().sum()),
+        DataReducer::Statistic(statistic, ddof) => statistic_of(statistic, ddof, numbers),
+    }
+}
+
+/// # Errors
+/// No weight is above zero, or too few are.
+fn weighted_statistic(
+    statistic: Statistic,
+    ddof: usize,
+    values: &[f64],
+    weights: &[f64],
+) -> Result<f64, String> {
+    let counting = weights.iter().filter(|weight| **weight > 0.0).count();
+    if counting == 0 {
+        return Err("no weight is above zero".into());
+    }
+    let found = match statistic {
+        Statistic::Percentile(percent) => weighted::percentile(values, weights, percent),
+        Statistic::Named(entry) => match entry.name {
+            "mean" => weighted::mean(values, weights),
+            "std" => weighted::standard_deviation(values, weights, ddof),
+            "rms" => weighted::rms(values, weights),
+            "median" => weighted::percentile(values, weights, 50.0),
+            _ => None,
+        },
+        Statistic::Each => None,
+    };
+    let s = if counting == 1 { "" } else { "s" };
+    found.ok_or_else(|| format!("not defined for {counting} value{s} with a weight above zero"))
+}
+
+fn share(
+    found: impl Iterator<Item = Result<bool, String>>,
+    weights: Option<Result<Vec<f64>, String>>,
+) -> Result<f64, String> {
+    let found = found.collect::<Result<Vec<bool>, _>>()?;
+    if found.is_empty() {
+        return Err("a share needs at least one value".into());
+    }
+    if let Some(weights) = weights {
+        let holds: Vec<f64> = found.iter().map(|holds| if *holds { 1.0 } else { 0.0 }).collect();
+        return weighted::mean(&holds, &weights?).ok_or_else(|| "no weight is above zero".into());
+    }
+    Ok(found.iter().filter(|holds| **holds).count() as f64 / found.len() as f64)
+}

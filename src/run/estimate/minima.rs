@@ -1,0 +1,86 @@
+//! Groups of a quantity that have fewer pairs than the protocol requires.
+
+use std::collections::BTreeSet;
+
+use super::groups::{Grouped, parts};
+use super::table::{Member, independent};
+use crate::check::plan::{Plan, Quantity};
+use crate::run::sections::Facts;
+use crate::run::values::Row;
+use crate::run::words::count;
+
+/// A group with too few pairs.
+#[derive(Debug)]
+pub struct TooFew {
+    /// `zone 3, wheelset 1`
+    group: String,
+    says: String,
+    /// Its rows, by where they are kept.
+    rows: Vec<*const Row>,
+}
+
+impl TooFew {
+    /// Why nothing is estimated of some rows: all of them are of this group.
+    pub fn reason(&self, members: &[Member<'_>]) -> Option<String> {
+        members
+            .iter()
+            .all(|member| self.rows.contains(&std::ptr::from_ref(member.row)))
+            .then(|| self.says.clone())
+    }
+}
+
+/// Pairs of members: of one unit of independence and signal, repeats are no further pairs.
+pub fn pairs(plan: &Plan, members: &[Member<'_>]) -> usize {
+    independent(plan, members)
+        .into_iter()
+        .zip(members.iter().map(|member| member.signal))
+        .collect::<BTreeSet<_>>()
+        .len()
+}
+
+/// `2 pairs of section and signal; at least 3 required`
+pub fn in_words(pairs: usize, rows: usize, needed: usize) -> String {
+    let of = if pairs == rows {
+        "section and signal"
+    } else {
+        "site and signal (a repeat is no further section)"
+    };
+    format!("{} of {of}; at least {needed} required", count(pairs, "pair"))
+}
+
+/// The groups of a quantity with too few pairs.
+pub fn too_few(
+    plan: &Plan,
+    quantity: &Quantity,
+    members: &[Member<'_>],
+    facts: &Facts,
+) -> Vec<TooFew> {
+    let mut found = Vec::new();
+    for minimum in &quantity.minimum_of_groups {
+        for part in parts(plan, Grouped::values(quantity), &minimum.scope, members, facts) {
+            let (says, inside) = match part.members(facts, members) {
+                Ok(inside) => {
+                    let pairs = pairs(plan, &inside);
+                    if pairs >= minimum.needed {
+                        continue;
+                    }
+                    (in_words(pairs, inside.len(), minimum.needed), inside)
+                }
+                Err(reason) => (reason, Vec::new()),
+            };
+            let rows = inside.iter().map(|member| std::ptr::from_ref(member.row)).collect();
+            found.push(TooFew { group: part.in_words(), says, rows });
+        }
+    }
+    found
+}
+
+/// Why the quantity is not assessable: the first of its groups in full.
+pub fn reason(too_few: &[TooFew]) -> Option<String> {
+    let (first, others) = too_few.split_first()?;
+    let more = match others.len() {
+        0 => String::new(),
+        others => format!("; also too few in {}", count(others, "other group")),
+    };
+    Some(format!("{}: {}{more}", first.group, first.says))
+}

@@ -1,0 +1,95 @@
+//! The table of values, one row for each section, position and record or pair of records: rows with
+//! their sections, and what their vehicles agree on.
+
+use std::collections::BTreeSet;
+
+use crate::check::plan::{Independent, Plan, Scalar};
+use crate::run::sections::{Facts, Unit, Vehicle};
+use crate::run::values::Row;
+
+/// A row with its section.
+#[derive(Clone, Copy, Debug)]
+pub struct Member<'a> {
+    pub unit: &'a Unit,
+    /// Name of its position.
+    pub signal: &'a str,
+    pub row: &'a Row,
+}
+
+/// The rows of every quantity, or the reason why they cannot be used.
+pub type Table<'a> = [Result<&'a [Member<'a>], String>];
+
+/// The index of the independent unit of each member.
+pub fn independent(plan: &Plan, members: &[Member<'_>]) -> Vec<usize> {
+    let mut names: Vec<String> = Vec::new();
+    let mut of_column = |unit: &Unit, index: usize| {
+        let name = match &unit.columns[index] {
+            Ok(Scalar::Word(word)) => word.clone(),
+            Ok(Scalar::Number(number)) => format!("{number:e}"),
+            Ok(Scalar::Flag(flag)) => flag.to_string(),
+            // A section that does not state its unit counts as part of its site.
+            Err(_) => format!("site {}", unit.site),
+        };
+        names.iter().position(|known| *known == name).unwrap_or_else(|| {
+            names.push(name);
+            names.len() - 1
+        })
+    };
+    let mut sections: Vec<String> = Vec::new();
+    let one = |member: &Member<'_>| match plan.independent {
+        Independent::Site => member.unit.site,
+        Independent::Section => {
+            sections.iter().position(|known| *known == member.unit.name).unwrap_or_else(|| {
+                sections.push(member.unit.name.clone());
+                sections.len() - 1
+            })
+        }
+        Independent::Column(index) => of_column(member.unit, index),
+    };
+    members.iter().map(one).collect()
+}
+
+/// Number of independent units of the members.
+pub fn count_independent(plan: &Plan, members: &[Member<'_>]) -> usize {
+    independent(plan, members).into_iter().collect::<BTreeSet<_>>().len()
+}
+
+impl Facts {
+    /// The vehicles of some rows, each once; all where there are no rows.
+    pub fn among(&self, members: &[Member<'_>]) -> Vec<&Vehicle> {
+        if self.vehicles.len() == 1 || members.is_empty() {
+            return self.vehicles.iter().collect();
+        }
+        let used: BTreeSet<usize> = members.iter().map(|member| member.unit.vehicle).collect();
+        used.into_iter().map(|number| &self.vehicles[number]).collect()
+    }
+
+    /// What holds of the vehicles of some rows, if it is the same for all of them.
+    ///
+    /// # Errors
+    /// It has no value, or differs; `shown` tells the values.
+    pub fn agreed<T: PartialEq>(
+        &self,
+        members: &[Member<'_>],
+        mut of: impl FnMut(&Vehicle) -> Result<T, String>,
+        shown: impl Fn(&T) -> String,
+    ) -> Result<T, String> {
+        let mut found: Vec<(&Vehicle, T)> = Vec::new();
+        for vehicle in self.among(members) {
+            let value = of(vehicle).map_err(|reason| vehicle.told(reason))?;
+            if found.iter().all(|(_, known)| *known != value) {
+                found.push((vehicle, value));
+            }
+        }
+        if found.len() > 1 {
+            let each: Vec<String> = found
+                .iter()
+                .map(|(vehicle, value)| {
+                    format!("{} for {}", shown(value), vehicle.of.as_deref().unwrap_or_default())
+                })
+                .collect();
+            return Err(format!("it depends on the vehicle: {}", each.join(", ")));
+        }
+        found.pop().map(|(_, value)| value).ok_or_else(|| "there is no vehicle".to_string())
+    }
+}

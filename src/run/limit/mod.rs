@@ -1,0 +1,18 @@
+//! Estimates against their limits.
+//!
+//! | file | content |
+//! |---|---|
+//! | `factors` | factors of limits that apply because of vehicle data |
+//! | `limits` | estimates compared with limits, group by group |
+//! | `together` | simulations that meet limits together, and not alone |
+//! | `pool` | all values and limits, for selections of sections |
+//! | `keep` | the selection that keeps the scatter, as a step of the protocol |
+
+mod factors;
+pub mod keep;
+mod limits;
+pub mod pool;
+mod together;
+
+pub use limits::{Estimated, Judging, applying, compared, rule_place};
+pub use together::fails_alone;

@@ -1,0 +1,84 @@
+//! Several simulations under a protocol that does not tell them apart: a good one must not hide a
+//! bad one.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::limits::{Judging, compared};
+use crate::check::plan::{Chosen, Evaluation, Key, Limit, Pairing, Plan, Records, Side};
+use crate::graph::{Graph, QuantityNodes};
+use crate::run::estimate::{Member, Table};
+
+/// Why limits that all simulations together meet do not decide the quantity: the first simulation
+/// that does not meet one by itself. Only for values of simulations, by themselves or with
+/// measurements, where neither quantity nor limit names a record: otherwise the protocol knows of
+/// several.
+pub fn fails_alone(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) -> Option<String> {
+    let Judging { plan, quantity, members, table, .. } = *judging;
+    let by_record = |limit: &Limit| limit.scope.each.contains(&Key::Record);
+    let several = members.iter().any(|member| member.row.record.is_some());
+    if !several || quantity.limits.iter().all(|limit| by_record(limit)) {
+        return None;
+    }
+    let simulations = match quantity.evaluation.as_ref() {
+        Evaluation::Values {
+            records: Records::Of(Chosen { side: Side::Simulated, record: None }),
+            ..
+        } => names_of(members),
+        evaluation if evaluation.pairing() == Some(Pairing::SIDES) => simulations(plan, table),
+        _ => return None,
+    };
+    simulations.iter().find_map(|simulation| {
+        let own: Vec<Member<'_>> = members.iter().copied().filter(|member| of(member, simulation)).collect();
+        let fails = compared(graph, nodes, &Judging { members: &own, too_few: &[], ..*judging })
+            .into_iter()
+            .filter(|compared| compared.result.group.iter().all(|(key, _)| key != "record"))
+            .find_map(|compared| compared.fails)?;
+        let fails = fails.strip_prefix(&format!("{}: ", quantity.id)).map(str::to_string).unwrap_or(fails);
+        Some(format!(
+            "{} simulations together meet the limits, but {simulation} by itself does not: {fails}; add `for each record` to the limits, \
+             or certify one simulation at a time",
+            simulations.len()
+        ))
+    })
+}
+
+/// Whether a row is of the simulation: its record is `simulation`, or `simulation, run`.
+fn of(member: &Member<'_>, simulation: &str) -> bool {
+    let record = member.row.record.as_deref().unwrap_or_default();
+    record.split(", ").next() == Some(simulation)
+}
+
+fn names_of(members: &[Member<'_>]) -> BTreeSet<String> {
+    members.iter().filter_map(|member| member.row.record.as_deref().map(str::to_string)).collect()
+}
+
+/// The names of the simulations, if there are several.
+fn simulations(plan: &Plan, table: &Table<'_>) -> BTreeSet<String> {
+    let mut names = BTreeSet::new();
+    let quantities = plan
+        .quantities
+        .iter()
+        .zip(table)
+        .filter(|(quantity, _)| quantity.evaluation.pairing() == Some(Pairing::SIDES));
+    for (_, members) in quantities {
+        // With several of one side only, records have the names of that side: of the simulation, if
+        // the simulated values differ.
+        let mut seen: BTreeMap<(&str, usize, usize), u64> = BTreeMap::new();
+        let mut differ = false;
+        for member in members.iter().copied().flatten() {
+            let (Some(record), row) = (member.row.record.as_deref(), member.row) else { continue };
+            if let Some((simulation, _)) = record.split_once(", ") {
+                names.insert(simulation.to_string());
+            } else if let Some(value) = row.simulated {
+                let first = seen
+                    .entry((&member.unit.name, row.position, row.which))
+                    .or_insert(value.to_bits());
+                differ |= *first != value.to_bits();
+            }
+        }
+        if differ {
+            names.extend(members.iter().flat_map(|members| names_of(members)));
+        }
+    }
+    if names.len() < 2 { BTreeSet::new() } else { names }
+}

@@ -1,0 +1,385 @@
+//! Signals along a record, and the operations of the graph on them.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::check::evaluate::number;
+use crate::check::plan::{AxisOperation, Operator, StepSpec};
+use crate::check::values::Values;
+use crate::metrics::filter::Filter;
+use crate::metrics::window::{Kind, Sliding};
+use crate::metrics::{along, resample, rounded};
+use crate::run::sections::Extent;
+
+/// The axis of the samples, and their time, in SI; both increase strictly.
+#[derive(Debug)]
+pub struct Along {
+    pub axis: Arc<Vec<f64>>,
+    pub time: Option<Arc<Vec<f64>>>,
+    pub rate: Rate,
+    /// Row of the file of the first sample; `None` where the samples are not those of the file.
+    pub first_row: Option<usize>,
+}
+
+/// Samples per second, or per metre after resampling over a length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rate {
+    PerTime(f64),
+    PerLength(f64),
+}
+
+#[derive(Clone, Debug)]
+pub struct Samples {
+    pub along: Arc<Along>,
+    pub values: Arc<Vec<f64>>,
+}
+
+/// Value of a signal node; a number that is constant along the record is stored once.
+#[derive(Clone, Debug)]
+pub enum Signal {
+    Samples(Samples),
+    Constant(f64),
+}
+
+impl Along {
+    /// The samples with start <= axis <= end.
+    pub fn inside(&self, (start, end): Extent) -> Range<usize> {
+        let from = self.axis.partition_point(|&x| x < start);
+        let to = self.axis.partition_point(|&x| x <= end);
+        from..to.max(from)
+    }
+
+    /// The same, of a section or of all; there must be one sample.
+    pub fn part_inside(&self, extent: Option<Extent>) -> Result<Range<usize>, String> {
+        let Some((start, end)) = extent else { return Ok(0..self.axis.len()) };
+        let range = self.inside((start, end));
+        if range.is_empty() {
+            Err(format!("no sample lies between {} and {}", rounded(start), rounded(end)))
+        } else {
+            Ok(range)
+        }
+    }
+
+    pub fn part(&self, range: Range<usize>) -> Self {
+        let part = |of: &[f64]| Arc::new(of[range.clone()].to_vec());
+        Self {
+            axis: part(&self.axis),
+            time: self.time.as_deref().map(|time| part(time)),
+            rate: self.rate,
+            first_row: self.first_row.map(|row| row + range.start),
+        }
+    }
+
+    /// The same samples, moved along the axis by `shift`.
+    pub fn moved(&self, shift: f64) -> Self {
+        Self {
+            axis: Arc::new(self.axis.iter().map(|x| x + shift).collect()),
+            time: self.time.clone(),
+            rate: self.rate,
+            first_row: self.first_row,
+        }
+    }
+
+    /// Where a sample is, as text.
+    fn place(&self, sample: usize) -> String {
+        match self.first_row {
+            Some(row) => format!("in row {}", row + sample),
+            None => format!("at {:.3} on the axis", self.axis[sample]),
+        }
+    }
+}
+
+/// Cuts signals to one section. Signals of a record share their axis, whose part is cut once for
+/// all of them.
+#[derive(Clone, Debug)]
+pub struct Cutter {
+    extent: Extent,
+    known: Vec<(Arc<Along>, Range<usize>, Arc<Along>)>,
+}
+
+impl Cutter {
+    pub fn new(extent: Extent) -> Self {
+        Self { extent, known: Vec::new() }
+    }
+
+    pub fn cut(&mut self, samples: &Samples) -> Result<Samples, String> {
+        let cut = match self.known.iter().position(|(whole, ..)| Arc::ptr_eq(whole, &samples.along))
+        {
+            Some(known) => &self.known[known],
+            None => {
+                let range = samples.along.part_inside(Some(self.extent))?;
+                let part = Arc::new(samples.along.part(range.clone()));
+                self.known.push((Arc::clone(&samples.along), range, part));
+                &self.known[self.known.len() - 1]
+            }
+        };
+        let (_, range, part) = cut;
+        Ok(Samples {
+            along: Arc::clone(part),
+            values: Arc::new(samples.values[range.clone()].to_vec()),
+        })
+    }
+}
+
+impl Samples {
+    pub fn with(&self, values: Vec<f64>) -> Self {
+        Self { along: Arc::clone(&self.along), values: Arc::new(values) }
+    }
+
+    pub fn cut(&self, extent: Extent) -> Result<Self, String> {
+        Cutter::new(extent).cut(self)
+    }
+
+    pub fn designed(&self, spec: &StepSpec) -> Result<Filter, String> {
+        let (Rate::PerTime(rate) | Rate::PerLength(rate)) = self.along.rate;
+        let designed = match spec {
+            StepSpec::Butterworth { band, order, phase, cutoff } => {
+                Filter::design(*band, *order, rate, *phase, *cutoff)
+            }
+            StepSpec::Transfer { function, phase, warping } => {
+                Filter::transfer(function, rate, *phase, *warping)
+            }
+            _ => return Err("not a filter".into()),
+        };
+        designed.map_err(|error| error.to_string())
+    }
+
+    /// A step over the whole record that is not a filter.
+    pub fn stepped(&self, spec: &StepSpec) -> Result<Self, String> {
+        match spec {
+            StepSpec::Magnitude => {
+                Ok(self.with(self.values.iter().map(|value| value.abs()).collect()))
+            }
+            StepSpec::Resample { step, over_time } => self.resampled(*step, *over_time),
+            _ => Err("this step works inside the section".into()),
+        }
+    }
+
+    fn resampled(&self, step: f64, over_time: bool) -> Result<Self, String> {
+        let error = |error: resample::ResampleError| error.to_string();
+        let axis = &self.along.axis;
+        let over = if over_time { self.along.time.as_ref().unwrap_or(axis) } else { axis };
+        let (grid, values) = resample::resample(over, &self.values, step).map_err(error)?;
+        let along = if over_time {
+            let axis = resample::interpolate(over, axis, &grid).map_err(error)?;
+            Along {
+                axis: Arc::new(axis),
+                time: Some(Arc::new(grid)),
+                rate: Rate::PerTime(1.0 / step),
+                first_row: None,
+            }
+        } else {
+            let time = self
+                .along
+                .time
+                .as_ref()
+                .map(|time| resample::interpolate(over, time, &grid))
+                .transpose()
+                .map_err(error)?;
+            Along {
+                axis: Arc::new(grid),
+                time: time.map(Arc::new),
+                rate: Rate::PerLength(1.0 / step),
+                first_row: None,
+            }
+        };
+        Ok(Self { along: Arc::new(along), values: Arc::new(values) })
+    }
+
+    /// A step inside the section. A window uses the samples of the record and stays inside the
+    /// section.
+    pub fn windowed(&self, spec: &StepSpec, extent: Extent) -> Result<Self, String> {
+        match spec {
+            StepSpec::RemoveMean => {
+                let mean =
+                    crate::metrics::statistics::mean(&self.values).ok_or("a mean of no samples")?;
+                Ok(self.with(self.values.iter().map(|value| value - mean).collect()))
+            }
+            StepSpec::Magnitude => self.stepped(spec),
+            StepSpec::Window { rms, width, step, over_time, ends, short_sections } => {
+                let kind = if *rms { Kind::Rms } else { Kind::Mean };
+                let (over, (start, end)) = self.window_axis(*over_time, extent)?;
+                let sliding = Sliding {
+                    width: *width,
+                    step: *step,
+                    kind,
+                    ends: *ends,
+                    short_sections: *short_sections,
+                };
+                let values = sliding
+                    .over(over, &self.values, start, end)
+                    .map_err(|error| error.in_words(if *over_time { "s" } else { "m" }))?;
+                let starts = sliding.starts(start, end).map_err(|error| error.to_string())?;
+                let middle: Vec<f64> =
+                    starts.iter().map(|from| from + width.min(end - start) / 2.0).collect();
+                let along = if *over_time {
+                    let axis = resample::interpolate(over, &self.along.axis, &middle)
+                        .map_err(|error| error.to_string())?;
+                    Along {
+                        axis: Arc::new(axis),
+                        time: Some(Arc::new(middle)),
+                        rate: Rate::PerTime(1.0 / step),
+                        first_row: None,
+                    }
+                } else {
+                    Along {
+                        axis: Arc::new(middle),
+                        time: None,
+                        rate: Rate::PerLength(1.0 / step),
+                        first_row: None,
+                    }
+                };
+                Ok(Self { along: Arc::new(along), values: Arc::new(values) })
+            }
+            _ => Err("this step works on the whole record".into()),
+        }
+    }
+
+    /// A signal shifted, differentiated or integrated. A shift needs a record that extends beyond
+    /// the section by the same distance.
+    pub fn over_axis(
+        &self,
+        operation: &AxisOperation,
+        known: &dyn Values,
+        extent: Extent,
+    ) -> Result<Self, String> {
+        let axis = |over_time: bool| {
+            if over_time {
+                self.along.time.as_ref().unwrap_or(&self.along.axis)
+            } else {
+                &self.along.axis
+            }
+        };
+        let few = || "at least two samples are needed".to_string();
+        let values = match operation {
+            AxisOperation::Derivative { over_time } => {
+                along::derivative(axis(*over_time), &self.values).ok_or_else(few)?
+            }
+            AxisOperation::Integral { over_time } => {
+                along::integral(axis(*over_time), &self.values).ok_or_else(few)?
+            }
+            AxisOperation::Shifted(distance) => {
+                let distance = number(distance, known)?;
+                let axis = &self.along.axis;
+                let (first, last) = (
+                    axis.first().copied().unwrap_or(f64::NAN),
+                    axis.last().copied().unwrap_or(f64::NAN),
+                );
+                let (from, to) = (extent.0 - distance, extent.1 - distance);
+                let slack = 1e-9 * (last - first);
+                if !(first <= from + slack && to <= last + slack) {
+                    let (first, last, from, to) =
+                        (rounded(first), rounded(last), rounded(from), rounded(to));
+                    return Err(format!(
+                        "the record extends from {first} to {last}; {from} to {to} is needed"
+                    ));
+                }
+                along::moved(axis, &self.values, distance).map_err(|error| error.to_string())?
+            }
+        };
+        match values.iter().position(|value| !value.is_finite()) {
+            None => Ok(self.with(values)),
+            Some(at) => Err(format!("no finite number {}", self.along.place(at))),
+        }
+    }
+
+    fn window_axis(&self, over_time: bool, extent: Extent) -> Result<(&[f64], Extent), String> {
+        if !over_time {
+            return Ok((&self.along.axis, extent));
+        }
+        let time = self.along.time.as_ref().unwrap_or(&self.along.axis);
+        let inside = self.along.inside(extent);
+        let (Some(first), Some(last)) =
+            (time.get(inside.start), time.get(inside.end.wrapping_sub(1)))
+        else {
+            return Err("no sample lies in the section".into());
+        };
+        Ok((time, (*first, *last)))
+    }
+}
+
+/// `left op right`, sample by sample.
+///
+/// # Errors
+/// The signals have different samples, or a result is not finite: which sample, and why.
+pub fn arithmetic(operator: Operator, left: &Signal, right: &Signal) -> Result<Signal, String> {
+    match operator {
+        Operator::Add => each_pair(left, right, |a, b| a + b),
+        Operator::Subtract => each_pair(left, right, |a, b| a - b),
+        Operator::Multiply => each_pair(left, right, |a, b| a * b),
+        _ => each_pair(left, right, |a, b| a / b),
+    }
+}
+
+/// A function of one or two signals, sample by sample.
+///
+/// # Errors
+/// As [`arithmetic`].
+pub fn apply(inputs: &[&Signal], run: fn(&[f64]) -> f64) -> Result<Signal, String> {
+    match *inputs {
+        [of] => each(of, |value| run(&[value])),
+        [left, right] => each_pair(left, right, |a, b| run(&[a, b])),
+        _ => Err(format!("a function of {} signals is not known", inputs.len())),
+    }
+}
+
+/// A function of each sample.
+///
+/// # Errors
+/// As [`arithmetic`].
+pub fn each(of: &Signal, run: impl Fn(f64) -> f64) -> Result<Signal, String> {
+    match of {
+        Signal::Constant(value) => constant(run(*value)),
+        Signal::Samples(samples) => {
+            finite(samples, samples.values.iter().map(|value| run(*value)).collect())
+        }
+    }
+}
+
+// One loop for each operation, so that the compiler vectorises it.
+fn each_pair(
+    left: &Signal,
+    right: &Signal,
+    run: impl Fn(f64, f64) -> f64,
+) -> Result<Signal, String> {
+    match (left, right) {
+        (Signal::Constant(a), Signal::Constant(b)) => constant(run(*a, *b)),
+        (Signal::Samples(left), Signal::Constant(b)) => {
+            finite(left, left.values.iter().map(|a| run(*a, *b)).collect())
+        }
+        (Signal::Constant(a), Signal::Samples(right)) => {
+            finite(right, right.values.iter().map(|b| run(*a, *b)).collect())
+        }
+        (Signal::Samples(left), Signal::Samples(right)) => {
+            if !Arc::ptr_eq(&left.along, &right.along) && left.along.axis != right.along.axis {
+                return Err(
+                    "signals of different sampling are combined; resample both alike".into()
+                );
+            }
+            finite(
+                left,
+                left.values.iter().zip(right.values.iter()).map(|(a, b)| run(*a, *b)).collect(),
+            )
+        }
+    }
+}
+
+fn constant(value: f64) -> Result<Signal, String> {
+    if value.is_finite() {
+        Ok(Signal::Constant(value))
+    } else {
+        Err("a number is not finite".into())
+    }
+}
+
+fn finite(along: &Samples, values: Vec<f64>) -> Result<Signal, String> {
+    // The loop checks all values without an early exit, which is faster.
+    if values.iter().fold(true, |all, value| all & value.is_finite()) {
+        return Ok(Signal::Samples(along.with(values)));
+    }
+    let at = values.iter().position(|value| !value.is_finite()).unwrap_or(0);
+    Err(format!(
+        "no finite number {}: a division by zero, or a value a function is not defined for",
+        along.along.place(at)
+    ))
+}

@@ -1,0 +1,323 @@
+//! Vehicle data under the names of the protocol, and values of names in expressions during a run.
+
+use serde::{Deserialize, Serialize};
+
+use super::unit::Unit;
+use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
+use crate::check::values::Values;
+use crate::data::Campaigns;
+use crate::data::campaign::VehicleState;
+use crate::problem::{Problem, Problems};
+use crate::result::DataItem;
+use crate::units::{self, Dimension, number::Refused};
+use crate::yaml::Value;
+
+/// Values of one vehicle, one for each [`Plan::vehicle`].
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Vehicle {
+    /// Which one it is, where there are several: the campaign, its state.
+    pub of: Option<String>,
+    /// An error states why a datum that may be absent has no value.
+    pub data: Vec<Result<Scalar, String>>,
+    /// For each datum, whether it is a number without a unit in the vehicle file.
+    pub assumed: Vec<bool>,
+}
+
+/// The vehicles of a run, to which `Unit::vehicle` refers; at least one.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Facts {
+    pub vehicles: Vec<Vehicle>,
+    /// Whether campaigns tell vehicles apart, and not only states.
+    pub by_campaign: bool,
+}
+
+impl Facts {
+    /// Reads every vehicle datum that the protocol declares. A missing or ill-formed one is a
+    /// problem.
+    pub fn read(plan: &Plan, campaigns: Campaigns<'_>, problems: &mut Problems) -> Self {
+        let mut vehicles = Vec::new();
+        for (number, campaign) in campaigns.iter().enumerate() {
+            for vehicle in &campaign.vehicles {
+                let read = |datum| {
+                    vehicle_datum(datum, vehicle, problems)
+                        .unwrap_or((Ok(Scalar::Number(0.0)), false))
+                };
+                let (data, assumed) = plan.vehicle.iter().map(read).unzip();
+                vehicles.push(Vehicle {
+                    of: campaigns.vehicle_name(number, vehicle),
+                    data,
+                    assumed,
+                });
+            }
+        }
+        Self { vehicles, by_campaign: campaigns.pooled() }
+    }
+
+    pub fn of(&self, unit: &Unit) -> &Vehicle {
+        &self.vehicles[unit.vehicle]
+    }
+
+    /// The vehicle data as printed in a report.
+    pub fn items(&self, plan: &Plan) -> Vec<DataItem> {
+        self.vehicles.iter().flat_map(|vehicle| vehicle.items(plan)).collect()
+    }
+}
+
+impl Unit {
+    /// The values of names in the section.
+    pub fn known<'a>(&'a self, facts: &'a Facts) -> Known<'a> {
+        Known {
+            columns: Some(&self.columns),
+            extent: self.extent,
+            ..Known::vehicle(facts.of(self))
+        }
+    }
+}
+
+impl Vehicle {
+    /// The values as a report prints them.
+    fn items(&self, plan: &Plan) -> Vec<DataItem> {
+        let of = |(datum, (value, assumed)): (&Datum, (&Result<Scalar, String>, &bool))| {
+            let unit_assumed = *assumed && is_dimensioned(&datum.kind);
+            DataItem { unit_assumed, of: self.of.clone(), ..vehicle_item(datum, value) }
+        };
+        plan.vehicle.iter().zip(self.data.iter().zip(&self.assumed)).map(of).collect()
+    }
+
+    /// A reason with the vehicle that it is of, where there are several.
+    pub fn told(&self, reason: String) -> String {
+        self.of.as_ref().map_or(reason.clone(), |of| format!("{reason} ({of})"))
+    }
+}
+
+/// Whether the size of such a number depends on its unit.
+pub fn is_dimensioned(kind: &DatumKind) -> bool {
+    matches!(kind, DatumKind::Number(unit) if unit.dimension != Dimension::ONE)
+}
+
+/// A value as printed in a report, in the unit declared in the protocol.
+pub fn item(datum: &Datum, value: Option<&Scalar>) -> DataItem {
+    let unit = if let DatumKind::Number(unit) = &datum.kind { Some(unit) } else { None };
+    let value = match value {
+        Some(Scalar::Number(value)) => trimmed(unit.map_or(*value, |unit| unit.from_si(*value))),
+        Some(Scalar::Word(word)) => word.clone(),
+        Some(Scalar::Flag(flag)) => flag.to_string(),
+        None => String::new(),
+    };
+    DataItem {
+        name: datum.title.clone(),
+        value,
+        unit: unit.map(|unit| unit.text.clone()),
+        used: true,
+        unit_assumed: false,
+        of: None,
+    }
+}
+
+/// The reason why a datum that may be absent has no value.
+pub fn absent(datum: &Datum) -> String {
+    format!("the vehicle file does not state `{}`", datum.key)
+}
+
+/// Printed in place of a value that the vehicle file does not state.
+pub const NOT_STATED: &str = "not stated";
+
+/// As [`item`], for vehicle data; a value that is not stated is marked so.
+pub fn vehicle_item(datum: &Datum, value: &Result<Scalar, String>) -> DataItem {
+    match value {
+        Ok(value) => item(datum, Some(value)),
+        Err(_) => DataItem {
+            name: datum.title.clone(),
+            value: NOT_STATED.into(),
+            unit: None,
+            used: true,
+            unit_assumed: false,
+            of: None,
+        },
+    }
+}
+
+/// A number without rounding errors of unit conversion: `56.3`, not `56.300000000000004`.
+pub fn trimmed(value: f64) -> String {
+    let rounded: f64 = format!("{value:.11e}").parse().unwrap_or(value);
+    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
+}
+
+fn vehicle_datum(
+    datum: &Datum,
+    vehicle: &VehicleState,
+    problems: &mut Problems,
+) -> Option<(Result<Scalar, String>, bool)> {
+    let Some(node) = vehicle.data.lookup(&datum.key) else {
+        if let Some(default) = &datum.default {
+            return Some((Ok(default.clone()), false));
+        }
+        if datum.may_be_absent {
+            return Some((Err(absent(datum)), false));
+        }
+        let known: Vec<&str> =
+            vehicle.data.entries().iter().map(|(key, _)| key.text.as_str()).collect();
+        problems.push(
+            Problem::error(
+                "missing-vehicle-data",
+                format!("the vehicle file has no `{}` ({})", datum.key, datum.title),
+            )
+            .at(&vehicle.data.span.part(0..0))
+            .also(&datum.span, "the protocol needs it")
+            .suggest(&datum.key, known),
+        );
+        return None;
+    };
+    if node.value == Value::Null {
+        let problem =
+            Problem::error("vehicle-data", format!("`{}` has no value", datum.key)).at(&node.span);
+        problems.push(problem.also(&datum.span, "declared here").help(format!(
+            "{}: write its value{}",
+            datum.title,
+            with_unit(&datum.kind)
+        )));
+        return None;
+    }
+    let text = node.scalar_text().unwrap_or("").trim();
+    let read = match &datum.kind {
+        DatumKind::Number(unit) => {
+            units::number::read(text, unit).map(|read| (Scalar::Number(read.si), !read.unit_stated))
+        }
+        kind => scalar(kind, text)
+            .map(|value| (value, false))
+            .map_err(|says| Refused { says, help: None }),
+    };
+    let refused = match read {
+        Ok((value, assumed)) => match out_of_range(datum, &value, assumed) {
+            None => return Some((Ok(value), assumed)),
+            Some(refused) => refused,
+        },
+        Err(refused) => refused,
+    };
+    let problem =
+        Problem::error("vehicle-data", format!("`{}`: {}", datum.key, refused.says)).at(&node.span);
+    let problem = problem
+        .also(datum.range.as_ref().map_or(&datum.span, |range| &range.span), "declared here");
+    problems.push(match refused.help {
+        Some(help) => problem.help(help),
+        None => problem,
+    });
+    None
+}
+
+/// ` with its unit, such as kN`, or the possible words.
+fn with_unit(kind: &DatumKind) -> String {
+    match kind {
+        DatumKind::Number(unit) if unit.text != "-" => format!(" with its unit, such as {unit}"),
+        DatumKind::Words(words) => format!(", one of {}", words.join(", ")),
+        DatumKind::Flag => ", true or false".into(),
+        DatumKind::Number(_) | DatumKind::Campaign => String::new(),
+    }
+}
+
+/// Why a number is not allowed. If its unit was assumed, the help names a unit in which the number
+/// would be allowed.
+fn out_of_range(datum: &Datum, value: &Scalar, assumed: bool) -> Option<Refused> {
+    let (Some(range), Scalar::Number(si), DatumKind::Number(unit)) =
+        (&datum.range, value, &datum.kind)
+    else {
+        return None;
+    };
+    if (range.low..=range.high).contains(si) {
+        return None;
+    }
+    let number = unit.from_si(*si);
+    let shown = trimmed(number);
+    let says =
+        format!("{shown}{} is outside the range of the protocol, {}", unit.suffix(), range.words);
+    let other = if assumed {
+        units::number::units_within(number, unit, (range.low, range.high))
+    } else {
+        Vec::new()
+    };
+    let help = match other.first() {
+        Some(other) => format!(
+            "a number without a unit is read in {unit}; write `{shown} {other}` if that is meant"
+        ),
+        None => format!("{}: give its value with the unit", datum.title),
+    };
+    Some(Refused { says, help: Some(help) })
+}
+
+/// Converts a text to a value of the declared kind; numbers are in the declared unit.
+pub fn scalar(kind: &DatumKind, text: &str) -> Result<Scalar, String> {
+    match kind {
+        DatumKind::Number(unit) => match text.parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(Scalar::Number(unit.to_si(number))),
+            _ if text.contains(',') => {
+                Err(format!("`{text}` has a decimal comma; numbers are written with a point"))
+            }
+            _ => Err(format!("`{text}` is not a number (in {unit})")),
+        },
+        DatumKind::Campaign => Ok(Scalar::Word(text.to_string())),
+        DatumKind::Flag => match text {
+            "true" => Ok(Scalar::Flag(true)),
+            "false" => Ok(Scalar::Flag(false)),
+            _ => Err(format!("`{text}` is neither true nor false")),
+        },
+        DatumKind::Words(words) => {
+            if words.iter().any(|word| word == text) {
+                return Ok(Scalar::Word(text.to_string()));
+            }
+            // A zone written as 1.0 is zone 1.
+            let number = text
+                .parse::<f64>()
+                .ok()
+                .and_then(|number| words.iter().find(|word| word.parse() == Ok(number)));
+            match (number, crate::problem::nearest(text, words.iter().map(String::as_str))) {
+                (Some(word), _) => Ok(Scalar::Word(word.clone())),
+                (None, Some(near)) => Err(format!(
+                    "`{text}` is not one of {}; did you mean `{near}`?",
+                    words.join(", ")
+                )),
+                (None, None) => Err(format!("`{text}` is not one of {}", words.join(", "))),
+            }
+        }
+    }
+}
+
+/// Values of the names in one section. Where a value is not known, the reason is given.
+#[derive(Clone, Copy, Debug)]
+pub struct Known<'a> {
+    pub vehicle: &'a Vehicle,
+    pub columns: Option<&'a [Result<Scalar, String>]>,
+    pub extent: Option<(f64, f64)>,
+    pub inputs: &'a [Result<f64, String>],
+    pub sides: Option<(f64, f64)>,
+}
+
+impl<'a> Known<'a> {
+    pub fn vehicle(vehicle: &'a Vehicle) -> Self {
+        Self { vehicle, columns: None, extent: None, inputs: &[], sides: None }
+    }
+}
+
+impl Values for Known<'_> {
+    fn vehicle(&self, index: usize) -> Result<Scalar, String> {
+        self.vehicle.data[index].clone()
+    }
+
+    fn column(&self, index: usize) -> Result<Scalar, String> {
+        match self.columns {
+            Some(columns) => columns[index].clone(),
+            None => Err("it differs between sections".into()),
+        }
+    }
+
+    fn extent(&self) -> Result<(f64, f64), String> {
+        self.extent.ok_or_else(|| "there is no section here".into())
+    }
+
+    fn input(&self, index: usize) -> Result<f64, String> {
+        self.inputs.get(index).cloned().unwrap_or_else(|| Err("there is no signal here".into()))
+    }
+
+    fn sides(&self) -> Result<(f64, f64), String> {
+        self.sides.ok_or_else(|| "there is no pair of values here".into())
+    }
+}

@@ -1,0 +1,198 @@
+//! Requirements on the data of sections, which need no record.
+
+use super::facts::{Facts, Vehicle, item, trimmed};
+use super::unit::Unit;
+use crate::check::evaluate::{flag, number};
+use crate::check::plan::{Expr, Kind, Plan, Zone};
+use crate::check::possible::{Possible, possible};
+use crate::check::values::Watched;
+use crate::result::{CheckResult, Finding};
+
+/// Relative tolerance for a minimum length, for the rounding of section ends written with two
+/// decimals.
+const ROUNDING: f64 = 1e-9;
+
+/// Requirements that need no record: selection of sections, condition of the zone, length.
+pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
+    for unit in units.iter_mut() {
+        if let Some(index) = plan.sections.zone
+            && let Err(reason) = &unit.columns[index]
+        {
+            let reason = reason.clone();
+            unit.refuse(reason, true);
+        }
+        let mut checks = Vec::new();
+        if let Some(only) = &plan.sections.only {
+            checks.push(condition(
+                plan,
+                facts,
+                unit,
+                "selection",
+                "Selection of sections",
+                only,
+                &plan.sections.only_words,
+            ));
+        }
+        if let Some(zone) =
+            unit.zone.as_ref().and_then(|name| plan.zones.iter().find(|zone| zone.name == *name))
+        {
+            if let Some(of_zone) = &zone.condition {
+                let title = format!("Zone {}", zone.name);
+                checks.push(condition(
+                    plan,
+                    facts,
+                    unit,
+                    "zone",
+                    &title,
+                    of_zone,
+                    &zone.condition_words,
+                ));
+            }
+            checks.extend(length(plan, facts, unit, zone));
+        }
+        for check in checks {
+            // A datum missing from the vehicle file is not a fault of the section. The section is
+            // used, and a finding reports it.
+            let untold = check.name == "length" && check.holds.is_none() && {
+                let minimum = asked(plan, unit, &check);
+                minimum.is_some_and(|minimum| !not_stated(minimum, facts.of(unit)).is_empty())
+            };
+            if check.holds != Some(true) && !untold {
+                let subject = match (check.name.as_str(), check.holds) {
+                    ("zone", Some(_)) => format!(
+                        "does not meet the condition of zone {}",
+                        unit.zone.as_deref().unwrap_or_default()
+                    ),
+                    ("zone", None) => format!(
+                        "it cannot be determined whether it meets the condition of zone {}",
+                        unit.zone.as_deref().unwrap_or_default()
+                    ),
+                    _ => check.title.to_lowercase(),
+                };
+                unit.refuse(format!("{subject}: {}", check.says), false);
+            }
+            unit.checks.push(check);
+        }
+    }
+}
+
+/// A condition on the section's data, reported with the data that it uses.
+fn condition(
+    plan: &Plan,
+    facts: &Facts,
+    unit: &Unit,
+    name: &str,
+    title: &str,
+    expr: &Expr,
+    words: &str,
+) -> CheckResult {
+    let known = unit.known(facts);
+    let watched = Watched::new(&known);
+    let found = flag(expr, &watched);
+    let read: Vec<String> = watched
+        .columns()
+        .iter()
+        .map(|&index| item(&plan.columns[index], unit.columns[index].as_ref().ok()))
+        .map(|item| {
+            format!(
+                "{} {}{}",
+                item.name.to_lowercase(),
+                item.value,
+                item.unit.map_or(String::new(), |unit| format!(" {unit}"))
+            )
+        })
+        .collect();
+    let with =
+        if read.is_empty() { String::new() } else { format!("; found: {}", read.join(", ")) };
+    let (holds, says) = match found {
+        Ok(true) => (Some(true), format!("{words}{with}")),
+        Ok(false) => (Some(false), format!("not met: {words}{with}")),
+        Err(reason) => (None, reason),
+    };
+    CheckResult { name: name.into(), title: title.into(), holds, says }
+}
+
+fn length(plan: &Plan, facts: &Facts, unit: &Unit, zone: &Zone) -> Option<CheckResult> {
+    let (minimum, (start, end)) = (zone.minimum_length.as_ref()?, unit.extent?);
+    let axis = &plan.axis.unit;
+    let shown = |length: f64| format!("{} {axis}", trimmed(axis.from_si(length)));
+    let known = unit.known(facts);
+    // A length written with two decimals may be below the minimum by rounding only.
+    let reaches = |minimum: f64| end - start >= minimum * (1.0 - ROUNDING);
+    let found =
+        |minimum: f64| format!("{}; at least {} required", shown(end - start), shown(minimum));
+    let (holds, says) = match number(minimum, &known) {
+        Ok(minimum) => (Some(reaches(minimum)), found(minimum)),
+        // Long enough or too short for every value of the unknown names, or not decided.
+        Err(reason) => match possible(minimum, &known) {
+            Possible::Number(_, most) if reaches(most) => {
+                (Some(true), format!("{}; at most {} required", shown(end - start), shown(most)))
+            }
+            Possible::Number(least, _) if least.is_finite() && !reaches(least) => {
+                (Some(false), found(least))
+            }
+            _ => (None, format!("not checked: {reason}")),
+        },
+    };
+    Some(CheckResult { name: "length".into(), title: "Minimum length".into(), holds, says })
+}
+
+/// Vehicle data that an expression depends on and that the vehicle file does not state.
+pub fn not_stated(expr: &Expr, vehicle: &Vehicle) -> Vec<usize> {
+    let mut found = Vec::new();
+    expr.visit(&mut |part| match part.kind {
+        Kind::Vehicle(index) if vehicle.data[index].is_err() && !found.contains(&index) => {
+            found.push(index)
+        }
+        _ => {}
+    });
+    found
+}
+
+/// One finding for each vehicle datum that is not stated and each requirement that could not be
+/// checked without it.
+pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
+    let mut found: Vec<(usize, &str, Vec<&str>)> = Vec::new();
+    for unit in units.iter().filter(|unit| unit.fault.is_none()) {
+        for check in unit.checks.iter().filter(|check| check.holds.is_none()) {
+            for index in asked(plan, unit, check)
+                .map_or_else(Vec::new, |expr| not_stated(expr, facts.of(unit)))
+            {
+                match found
+                    .iter_mut()
+                    .find(|(known, title, _)| *known == index && *title == check.title)
+                {
+                    Some((_, _, names)) => names.push(&unit.name),
+                    None => found.push((index, &check.title, vec![&unit.name])),
+                }
+            }
+        }
+    }
+    let finding = |(index, title, names): (usize, &str, Vec<&str>)| {
+        let key = &plan.vehicle[index].key;
+        let of = sections_in_words(&names, units.len());
+        let says = format!(
+            "the vehicle file does not state `{key}`: {} not checked ({of})",
+            title.to_lowercase()
+        );
+        Finding { channel: Some(key.clone()), ..Finding::note("vehicle-data-not-stated", says) }
+    };
+    found.into_iter().map(finding).collect()
+}
+
+/// The rule behind a requirement that may remain unchecked.
+pub fn asked<'a>(plan: &'a Plan, unit: &Unit, check: &CheckResult) -> Option<&'a Expr> {
+    if check.name == "length" {
+        let zone = plan.zones.iter().find(|zone| Some(&zone.name) == unit.zone.as_ref())?;
+        return zone.minimum_length.as_ref();
+    }
+    plan.checks.iter().find(|rule| rule.name == check.name).map(|rule| &rule.require)
+}
+
+pub fn sections_in_words(names: &[&str], of: usize) -> String {
+    match names {
+        all if all.len() == of => "all sections".to_string(),
+        [one] => format!("section {one}"),
+        _ => format!("sections {}", names.join(", ")),
+    }
+}

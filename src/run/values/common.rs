@@ -1,0 +1,278 @@
+//! Both sides of a section at common points, and values of expressions over their samples.
+
+use std::borrow::Cow;
+use std::cell::RefCell;
+use std::ops::Range;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use crate::catalog::Reducer;
+use crate::check::evaluate::number;
+use crate::check::plan::{self, AxisOperation, Side, SignalKind};
+use crate::metrics::percentile::Method;
+use crate::metrics::resample::{self, Located};
+use crate::run::record::{Along, Samples, Signal, apply, arithmetic, each};
+use crate::run::sections::{Extent, Known};
+
+/// Where the samples of two records meet. It is the same for all signals of the two.
+#[derive(Debug)]
+pub struct Meeting {
+    /// The measured samples of the section.
+    along: Arc<Along>,
+    inside: Range<usize>,
+    onto: Onto,
+}
+
+/// The simulated values at the measured samples.
+#[derive(Debug)]
+enum Onto {
+    /// These samples lie there already.
+    Samples(Range<usize>),
+    Interpolated(Located),
+}
+
+/// What all comparisons of the records of one section need, each computed once.
+#[derive(Debug, Default)]
+pub struct Meetings {
+    met: RefCell<Vec<Met>>,
+    sorted: RefCell<Vec<Sorted>>,
+}
+
+/// The values of a signal that a meeting has of one side, sorted.
+#[derive(Debug)]
+struct Sorted {
+    of: (Arc<Vec<f64>>, Option<Rc<Meeting>>, Side),
+    values: Rc<Vec<f64>>,
+}
+
+/// A meeting, and of what: both axes and the shift between them.
+#[derive(Debug)]
+struct Met {
+    of: (Arc<Along>, Arc<Along>, u64),
+    found: Result<Rc<Meeting>, String>,
+}
+
+impl Meetings {
+    /// The simulated axis is moved by `shift` (SI). Simulated values are interpolated at the
+    /// measured samples of the section, unless their own lie there already. The section is the same
+    /// for all meetings.
+    pub fn of(
+        &self,
+        simulated: &Samples,
+        measured: &Samples,
+        extent: Option<Extent>,
+        shift: f64,
+    ) -> Result<Rc<Meeting>, String> {
+        let mut all = self.met.borrow_mut();
+        let (s, m) = (&simulated.along, &measured.along);
+        let same = |met: &&Met| {
+            Arc::ptr_eq(&met.of.0, s) && Arc::ptr_eq(&met.of.1, m) && met.of.2 == shift.to_bits()
+        };
+        if let Some(met) = all.iter().find(same) {
+            return met.found.clone();
+        }
+        let found = Meeting::of(s, m, extent, shift).map(Rc::new);
+        all.push(Met { of: (Arc::clone(s), Arc::clone(m), shift.to_bits()), found: found.clone() });
+        found
+    }
+
+    /// The values that a meeting has of a signal, sorted: several metrics take their distribution,
+    /// at several numbers of points.
+    pub fn sorted(
+        &self,
+        (samples, meeting, side): (&Samples, Option<&Rc<Meeting>>, Side),
+        values: &[f64],
+    ) -> Rc<Vec<f64>> {
+        let mut all = self.sorted.borrow_mut();
+        let same = |known: &&Sorted| {
+            let (of, met, from) = &known.of;
+            Arc::ptr_eq(of, &samples.values)
+                && met.as_ref().map(Rc::as_ptr) == meeting.map(Rc::as_ptr)
+                && *from == side
+        };
+        if let Some(known) = all.iter().find(same) {
+            return Rc::clone(&known.values);
+        }
+        let mut sorted = values.to_vec();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let sorted = Rc::new(sorted);
+        all.push(Sorted {
+            of: (Arc::clone(&samples.values), meeting.cloned(), side),
+            values: Rc::clone(&sorted),
+        });
+        sorted
+    }
+}
+
+impl Meeting {
+    fn of(
+        simulated: &Along,
+        measured: &Arc<Along>,
+        extent: Option<Extent>,
+        shift: f64,
+    ) -> Result<Self, String> {
+        let inside = measured.part_inside(extent)?;
+        let along = if inside.len() == measured.axis.len() {
+            Arc::clone(measured)
+        } else {
+            Arc::new(measured.part(inside.clone()))
+        };
+        let own = if shift == 0.0 { Some(simulated.part_inside(extent)?) } else { None };
+        let there = |own: &Range<usize>| {
+            let (s, m) = (&simulated.axis[own.clone()], &along.axis);
+            s.len() == m.len()
+                && s.iter().zip(m.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + b.abs()))
+        };
+        let onto = match own.filter(there) {
+            Some(own) => Onto::Samples(own),
+            None => Onto::Interpolated(located(simulated, &along.axis, shift)?),
+        };
+        Ok(Self { along, inside, onto })
+    }
+
+    /// Axis values at which both have a sample.
+    pub fn axis(&self) -> &[f64] {
+        &self.along.axis
+    }
+
+    pub fn simulated<'a>(&self, samples: &'a Samples) -> Cow<'a, [f64]> {
+        match &self.onto {
+            Onto::Samples(own) => Cow::Borrowed(&samples.values[own.clone()]),
+            Onto::Interpolated(located) => Cow::Owned(located.values(&samples.values)),
+        }
+    }
+
+    pub fn measured<'a>(&self, samples: &'a Samples) -> &'a [f64] {
+        &samples.values[self.inside.clone()]
+    }
+}
+
+/// Both signals at the measured samples of the section.
+struct Common {
+    simulated: Vec<f64>,
+    measured: Samples,
+}
+
+impl Common {
+    fn of(both: &Both<'_>) -> Result<Self, String> {
+        let meeting = both.meetings.of(both.simulated, both.measured, both.extent, both.shift)?;
+        let measured = Samples {
+            along: Arc::clone(&meeting.along),
+            values: Arc::new(meeting.measured(both.measured).to_vec()),
+        };
+        Ok(Self { simulated: meeting.simulated(both.simulated).into_owned(), measured })
+    }
+
+    /// Samples of a signal that may be one number all along.
+    fn filled(&self, signal: Signal) -> Samples {
+        match signal {
+            Signal::Samples(samples) => samples,
+            Signal::Constant(value) => self.measured.with(vec![value; self.measured.values.len()]),
+        }
+    }
+}
+
+/// # Errors
+/// It is not defined for these samples.
+fn number_of(reducer: Reducer, samples: &Samples, method: Method) -> Result<f64, String> {
+    let value =
+        reducer.run(&samples.along.axis, &samples.values, method).filter(|value| value.is_finite());
+    value.ok_or_else(|| {
+        format!("the {} of {} samples is not defined", reducer.in_words(), samples.values.len())
+    })
+}
+
+/// Points on the simulated axis, moved along by `shift`.
+fn located(simulated: &Along, points: &[f64], shift: f64) -> Result<Located, String> {
+    let own = &simulated.axis;
+    let located = match shift {
+        0.0 => Located::on(own, points),
+        _ => Located::on(&own.iter().map(|at| at + shift).collect::<Vec<_>>(), points),
+    };
+    located.map_err(|error| match shift {
+        0.0 => format!("the simulation cannot be interpolated at the measured points: {error}"),
+        _ => format!("the repeat cannot be interpolated at the points of its original: {error}"),
+    })
+}
+
+/// The filtered signals of both records, from which an expression takes its samples.
+pub struct Both<'a> {
+    pub simulated: &'a Samples,
+    pub measured: &'a Samples,
+    pub known: &'a Known<'a>,
+    pub extent: Option<Extent>,
+    /// Added to the axis of the simulated signal, SI.
+    pub shift: f64,
+    pub meetings: &'a Meetings,
+}
+
+impl Both<'_> {
+    /// The value of a reduced expression over both sides, and the number of samples.
+    pub fn reduced(
+        &self,
+        reducer: Reducer,
+        method: Method,
+        of: &plan::Signal,
+    ) -> Result<(f64, usize), String> {
+        let common = Common::of(self)?;
+        let samples = common.filled(self.signal(of, &common, method)?);
+        Ok((number_of(reducer, &samples, method)?, samples.values.len()))
+    }
+
+    fn signal(&self, of: &plan::Signal, common: &Common, method: Method) -> Result<Signal, String> {
+        let inner = |signal: &plan::Signal| self.signal(signal, common, method);
+        match &of.kind {
+            SignalKind::Side(Side::Simulated) => {
+                Ok(Signal::Samples(common.measured.with(common.simulated.clone())))
+            }
+            SignalKind::Side(Side::Measured) => Ok(Signal::Samples(common.measured.clone())),
+            SignalKind::Scalar(expr) => Ok(Signal::Constant(number(expr, self.known)?)),
+            SignalKind::Binary(operator, left, right) => {
+                arithmetic(*operator, &inner(left)?, &inner(right)?)
+            }
+            SignalKind::Negative(signal) => each(&inner(signal)?, |value| -value),
+            SignalKind::Power(signal, exponent) => {
+                each(&inner(signal)?, |value| value.powi(i32::from(*exponent)))
+            }
+            SignalKind::Call(function, arguments) => {
+                let arguments = arguments.iter().map(inner).collect::<Result<Vec<_>, _>>()?;
+                apply(&arguments.iter().collect::<Vec<_>>(), function.run)
+            }
+            SignalKind::OverAxis(AxisOperation::Shifted(distance), signal) => {
+                let (of_record, moved) = match signal.kind {
+                    SignalKind::Side(Side::Simulated) => (self.simulated, self.shift),
+                    _ => (self.measured, 0.0),
+                };
+                let distance = number(distance, self.known)?;
+                let points: Vec<f64> =
+                    common.measured.along.axis.iter().map(|x| x - distance - moved).collect();
+                let moved =
+                    resample::interpolate(&of_record.along.axis, &of_record.values, &points)
+                        .map_err(|error| {
+                            format!(
+                                "the record is too short beyond the section for this shift: {error}"
+                            )
+                        })?;
+                Ok(Signal::Samples(common.measured.with(moved)))
+            }
+            SignalKind::OverAxis(operation, signal) => match inner(signal)? {
+                Signal::Samples(samples) => {
+                    let axis = &samples.along.axis;
+                    let extent =
+                        (axis.first().copied().unwrap_or(0.0), axis.last().copied().unwrap_or(0.0));
+                    Ok(Signal::Samples(samples.over_axis(operation, self.known, extent)?))
+                }
+                Signal::Constant(_) => {
+                    Err("a constant number has no samples along the axis".into())
+                }
+            },
+            SignalKind::Level(reducer, signal) => {
+                Ok(Signal::Constant(number_of(*reducer, &common.filled(inner(signal)?), method)?))
+            }
+            // The checker does not allow these here.
+            SignalKind::Column { .. } | SignalKind::Filtered(..) | SignalKind::Select(..) => {
+                Err("this signal has other samples".into())
+            }
+        }
+    }
+}

@@ -1,0 +1,507 @@
+//! The evaluated records of one section, and the values, differences and metrics computed from
+//! them.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use super::common::{Both, Meetings};
+use super::row::Row;
+use crate::catalog::{Metric, Pair};
+use crate::check::evaluate::{flag, number};
+use crate::check::plan::{
+    Center, Chosen, Evaluation, Expr, InputSide, Kind, Pairing, Records, Side,
+};
+use crate::data::WhichRecord;
+use crate::graph::{InputNode, Joint, NodeId, Operation, SignalNodes, ValueNodes};
+use crate::metrics::{pair, statistics};
+use crate::result::FileHash;
+use crate::run::record::{NodeValue, Opened, Rate, Samples, Work};
+use crate::run::sections::{Extent, Known, Unit};
+
+/// Values of the requested nodes of one record, in the order in which they were computed.
+#[derive(Clone, Debug, Default)]
+pub struct NodeValues {
+    all: Vec<(NodeId, NodeValue)>,
+    /// For each node, one more than the index of its value; 0 if it has no value.
+    places: Vec<usize>,
+}
+
+impl From<Vec<(NodeId, NodeValue)>> for NodeValues {
+    fn from(all: Vec<(NodeId, NodeValue)>) -> Self {
+        let mut places = vec![0; all.iter().map(|(node, _)| node + 1).max().unwrap_or(0)];
+        // If a node has two values, the first counts.
+        for (at, (node, _)) in all.iter().enumerate().rev() {
+            places[*node] = at + 1;
+        }
+        Self { all, places }
+    }
+}
+
+impl NodeValues {
+    pub fn get(&self, node: NodeId) -> Option<&NodeValue> {
+        let place = self.places.get(node)?.checked_sub(1)?;
+        self.all.get(place).map(|(_, found)| found)
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = &(NodeId, NodeValue)> {
+        self.all.iter()
+    }
+
+    /// A number of a signal, and of how many samples it is.
+    ///
+    /// # Errors
+    /// It could not be computed, and why.
+    pub fn number(&self, node: NodeId) -> Result<(f64, usize), String> {
+        match self.get(node) {
+            Some(NodeValue::Number(value, samples)) => Ok((*value, *samples)),
+            Some(NodeValue::Failed(reason)) => Err(reason.clone()),
+            _ => Err("a value is missing".into()),
+        }
+    }
+
+    /// # Errors
+    /// As [`NodeValues::number`].
+    pub fn samples(&self, node: NodeId) -> Result<&Samples, String> {
+        match self.get(node) {
+            Some(NodeValue::Samples(samples)) => Ok(samples),
+            Some(NodeValue::Failed(reason)) => Err(reason.clone()),
+            _ => Err("a signal is missing".into()),
+        }
+    }
+}
+
+/// One record of a side.
+#[derive(Clone, Debug)]
+pub struct RecordOfSide {
+    /// Its name, where the campaign has several records of the side.
+    pub name: Option<Arc<str>>,
+    /// What the campaign calls it, also if it is the only one.
+    pub called: Option<Arc<str>>,
+    pub which: WhichRecord,
+    pub found: NodeValues,
+    pub file: FileHash,
+    /// The section on the axis; of a whole record all of it.
+    pub extent: Extent,
+    /// As [`Opened::rows`].
+    pub rows: [(usize, usize); 2],
+}
+
+impl RecordOfSide {
+    pub fn new(
+        work: &Work<'_>,
+        unit: &Unit,
+        which: WhichRecord,
+        opened: &Opened,
+        found: Vec<(NodeId, NodeValue)>,
+    ) -> Self {
+        let campaign = work.campaign(unit);
+        Self {
+            name: campaign.record_name(which).cloned(),
+            called: campaign.record_called(which).cloned(),
+            which,
+            found: found.into(),
+            file: opened.file.clone(),
+            extent: opened.extent,
+            rows: opened.rows(),
+        }
+    }
+}
+
+/// All records of a section.
+#[derive(Debug)]
+pub struct Sides<'a> {
+    pub work: &'a Work<'a>,
+    pub simulated: &'a [RecordOfSide],
+    pub measured: &'a [RecordOfSide],
+    /// The section that this one repeats.
+    pub original: Option<&'a Original<'a>>,
+    pub known: &'a Known<'a>,
+    pub meetings: &'a Meetings,
+}
+
+/// The original of a repeated section, and its measured records.
+#[derive(Debug)]
+pub struct Original<'a> {
+    pub unit: &'a Unit,
+    pub known: Known<'a>,
+    pub records: Vec<RecordOfSide>,
+}
+
+/// One record of each side; a side that is not read has none.
+#[derive(Clone, Copy, Debug)]
+pub struct Two<'a> {
+    pub sides: &'a Sides<'a>,
+    pub simulated: &'a NodeValues,
+    pub measured: &'a NodeValues,
+    pub known: &'a Known<'a>,
+    pub extent: Option<Extent>,
+    /// Added to the axis of the simulated record, SI: a repeat is at another distance than its
+    /// original.
+    pub shift: f64,
+}
+
+/// The values of a side that is not read.
+static NOT_READ: NodeValues = NodeValues { all: Vec::new(), places: Vec::new() };
+
+impl<'a> Sides<'a> {
+    fn of(&self, side: Side) -> &'a [RecordOfSide] {
+        match side {
+            Side::Simulated => self.simulated,
+            Side::Measured => self.measured,
+        }
+    }
+
+    fn two(&'a self, simulated: &'a NodeValues, measured: &'a NodeValues) -> Two<'a> {
+        let (known, extent) = (self.known, self.known.extent);
+        Two { sides: self, simulated, measured, known, extent, shift: 0.0 }
+    }
+
+    /// One record in the place of both sides.
+    pub fn alone(&'a self, record: &'a RecordOfSide) -> Two<'a> {
+        self.two(&record.found, &record.found)
+    }
+
+    /// Every record of one side with every record of the other, with the names of those of which
+    /// there are several.
+    pub fn pairs(&'a self) -> impl Iterator<Item = (Option<Arc<str>>, Two<'a>)> {
+        let of = |records: &'a [RecordOfSide]| -> Vec<(Option<&'a Arc<str>>, &'a NodeValues)> {
+            if records.is_empty() {
+                return vec![(None, &NOT_READ)];
+            }
+            records.iter().map(|record| (record.name.as_ref(), &record.found)).collect()
+        };
+        let (simulated, measured) = (of(self.simulated), of(self.measured));
+        simulated.into_iter().flat_map(move |(s, simulated)| {
+            let one = |(m, measured): &(Option<&Arc<str>>, &'a NodeValues)| {
+                (names(s, *m), self.two(simulated, measured))
+            };
+            measured.iter().map(one).collect::<Vec<_>>()
+        })
+    }
+
+    /// Every measured record of a repeat with that of its original, which takes the place of the
+    /// measurement. Distances are counted from the start of each section.
+    fn repeats(&'a self) -> impl Iterator<Item = Joined<'a>> {
+        self.original.into_iter().flat_map(move |original| {
+            let extent = original.unit.extent;
+            let own = self.known.extent;
+            let shift = extent.zip(own).map_or(0.0, |((first, _), (again, _))| first - again);
+            self.measured.iter().zip(&original.records).map(move |(repeat, first)| Joined {
+                record: repeat.name.clone(),
+                two: Two { extent, shift, ..self.two(&repeat.found, &first.found) },
+                first: self.alone(repeat),
+                second: Two { known: &original.known, ..self.alone(first) },
+            })
+        })
+    }
+
+    /// The records that a rule asks for, in the order of the campaign.
+    fn chosen(&self, chosen: Chosen) -> Vec<&'a RecordOfSide> {
+        let records = &self.work.plan.records;
+        let members = chosen.record.map_or(&[][..], |index| &records[index].members);
+        let named = |record: &&RecordOfSide| {
+            members.iter().any(|member| record.called.as_deref() == Some(member.value.as_str()))
+        };
+        self.of(chosen.side).iter().filter(|record| members.is_empty() || named(record)).collect()
+    }
+
+    /// Two records that are compared, and the names of those of which there are several.
+    fn joined(&'a self, pairing: Pairing) -> Result<Vec<Joined<'a>>, String> {
+        let pair = |first: &'a RecordOfSide, second: &'a RecordOfSide| Joined {
+            record: names(first.name.as_ref(), second.name.as_ref()),
+            two: self.two(&first.found, &second.found),
+            first: self.alone(first),
+            second: self.alone(second),
+        };
+        match pairing {
+            Pairing::Repeats => Ok(self.repeats().collect()),
+            Pairing::EachOther(of) => {
+                let all = self.chosen(of);
+                if all.len() < 2 {
+                    return Err(one_record(of.side));
+                }
+                Ok(all
+                    .iter()
+                    .enumerate()
+                    .flat_map(|(at, first)| all[at + 1..].iter().map(|second| pair(first, second)))
+                    .collect())
+            }
+            Pairing::Each(one, other) => {
+                let (firsts, seconds) = (self.chosen(one), self.chosen(other));
+                let with = |first: &'a RecordOfSide| {
+                    let others = seconds.iter().filter(move |second| second.which != first.which);
+                    others.map(|second| pair(first, second)).collect::<Vec<_>>()
+                };
+                let found: Vec<Joined<'a>> = firsts.into_iter().flat_map(with).collect();
+                if found.is_empty() { Err(one_record(one.side)) } else { Ok(found) }
+            }
+        }
+    }
+
+    /// The rows of one position.
+    ///
+    /// # Errors
+    /// Why it has none.
+    pub fn rows(&'a self, position: usize, nodes: &SignalNodes) -> Result<Vec<Row>, String> {
+        let Operation::Compare(evaluation) = &self.work.graph.nodes[nodes.compare].operation else {
+            return Err("this node gives no rows".into());
+        };
+        let of_pairs = |pairing: Pairing,
+                        of_two: &dyn Fn(&Two<'_>) -> Result<(f64, usize), String>|
+         -> Result<Vec<Row>, String> {
+            let one = |Joined { record, two, .. }: Joined<'_>| {
+                Ok(Row::single(position, 0, record, of_two(&two)?))
+            };
+            self.joined(pairing)?.into_iter().map(one).collect()
+        };
+        match evaluation.as_ref() {
+            Evaluation::Metric { metric, pairing, .. } => {
+                let common = metric.on_common_points(keeps_samples(self.work, nodes));
+                let node = if common { nodes.filtered } else { nodes.processed };
+                of_pairs(*pairing, &|two| two.compared(*metric, common, node, nodes.over))
+            }
+            Evaluation::Combined { of, pairing } => {
+                of_pairs(*pairing, &|two| two.combined(&of.expr, &nodes.inputs))
+            }
+            Evaluation::Values { values, records } => {
+                let mut rows = Vec::new();
+                let mut applied = false;
+                for (which, (value, of)) in values.iter().zip(&nodes.values).enumerate() {
+                    // Of several values, only those whose case applies.
+                    if values.len() > 1 && !applies(&value.expr, self.known)? {
+                        continue;
+                    }
+                    applied = true;
+                    rows.extend(self.of_value(records, (position, which), nodes, of)?);
+                }
+                if applied {
+                    Ok(rows)
+                } else {
+                    Err("none of its values applies to this section".into())
+                }
+            }
+        }
+    }
+
+    fn of_value(
+        &'a self,
+        records: &Records,
+        (position, which): (usize, usize),
+        nodes: &SignalNodes,
+        value: &ValueNodes,
+    ) -> Result<Vec<Row>, String> {
+        let samples = |two: &Two<'_>, side| two.count(nodes, value, side);
+        let alone = |of: Chosen| {
+            self.chosen(of).into_iter().map(move |record| {
+                let (two, side) = (self.alone(record), own(of.side));
+                let found = (two.value(value, side)?, samples(&two, side));
+                Ok::<_, String>(Row::single(position, which, record.name.clone(), found))
+            })
+        };
+        let compared = |row: Row, difference: &Expr, (s, m): (f64, f64)| -> Result<Row, String> {
+            let value = number(difference, &Known { sides: Some((s, m)), ..*self.known })?;
+            Ok(Row { simulated: Some(s), measured: Some(m), value, ..row })
+        };
+        match records {
+            Records::Of(of) => alone(*of).collect(),
+            Records::Compared { pairing, difference } => {
+                let within = pairing.within();
+                let within = within.or((*pairing == Pairing::Repeats).then_some(Side::Measured));
+                let one = |Joined { record, two, first, second }: Joined<'_>| {
+                    // Of two sides, each number may also take values of the other one.
+                    let (s, m, of) = match within.map(own) {
+                        None => {
+                            let s = two.value(value, InputSide::Simulated)?;
+                            let m = two.value(value, InputSide::Measured)?;
+                            (s, m, samples(&two, InputSide::Measured))
+                        }
+                        Some(side) => {
+                            let s = first.value(value, side)?;
+                            (s, second.value(value, side)?, samples(&first, side))
+                        }
+                    };
+                    compared(Row::single(position, which, record, (0.0, of)), difference, (s, m))
+                };
+                self.joined(*pairing)?.into_iter().map(one).collect()
+            }
+            Records::Spread { of, among, center, difference } => {
+                let all = alone(*among).map(|row| Ok(row?.value));
+                let values = all.collect::<Result<Vec<f64>, String>>()?;
+                if values.len() < 2 {
+                    return Err(one_record(of.side));
+                }
+                let center = match center {
+                    Center::Mean => statistics::mean(&values),
+                    Center::Median => statistics::median(&values),
+                };
+                let center = center.ok_or("the records have no mean")?;
+                let one = |row: Result<Row, String>| {
+                    let row = row?;
+                    let value = row.value;
+                    compared(row, difference, (value, center))
+                };
+                alone(*of).map(one).collect()
+            }
+        }
+    }
+}
+
+/// Two records that are compared.
+struct Joined<'a> {
+    /// The names of those of which there are several.
+    record: Option<Arc<str>>,
+    two: Two<'a>,
+    /// Each by itself.
+    first: Two<'a>,
+    second: Two<'a>,
+}
+
+/// `simpack`, and of several on both sides `simpack, run1`.
+fn names(first: Option<&Arc<str>>, second: Option<&Arc<str>>) -> Option<Arc<str>> {
+    match (first, second) {
+        (Some(first), Some(second)) => Some(format!("{first}, {second}").into()),
+        (one, other) => one.or(other).cloned(),
+    }
+}
+
+fn one_record(side: Side) -> String {
+    format!("there is one {} record, and several are compared", side.in_words())
+}
+
+fn own(side: Side) -> InputSide {
+    match side {
+        Side::Simulated => InputSide::Simulated,
+        Side::Measured => InputSide::Measured,
+    }
+}
+
+/// Whether the samples of the record are still available after the quantity's filter.
+fn keeps_samples(work: &Work<'_>, nodes: &SignalNodes) -> bool {
+    let quantity = work
+        .graph
+        .quantities
+        .iter()
+        .position(|known| known.signals.iter().any(|signal| signal.compare == nodes.compare));
+    quantity.is_none_or(|index| work.plan.quantities[index].keeps_samples())
+}
+
+/// Whether some case of an expression holds; an expression without cases always applies.
+fn applies(expr: &Expr, known: &Known<'_>) -> Result<bool, String> {
+    let Kind::Cases(arms, None) = &expr.kind else { return Ok(true) };
+    for (_, condition) in arms {
+        if flag(condition, known)? {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+impl Two<'_> {
+    /// The value of a node for one side.
+    fn value(&self, value: &ValueNodes, side: InputSide) -> Result<f64, String> {
+        match &self.sides.work.graph.nodes[value.node].operation {
+            Operation::Value(expr) => {
+                let inputs: Vec<Result<f64, String>> =
+                    value.inputs.iter().map(|input| self.input(input, side)).collect();
+                number(expr, &Known { inputs: &inputs, ..*self.known })
+            }
+            _ => self.input(value.inputs.first().ok_or("a value takes nothing")?, side),
+        }
+    }
+
+    /// An expression of metrics of both signals, and the number of samples.
+    fn combined(&self, of: &Expr, inputs: &[InputNode]) -> Result<(f64, usize), String> {
+        let found: Vec<_> =
+            inputs.iter().map(|input| self.counted(input, InputSide::Measured)).collect();
+        let samples = found.iter().flatten().map(|(_, samples)| *samples).max().unwrap_or(0);
+        let inputs: Vec<Result<f64, String>> =
+            found.into_iter().map(|found| found.map(|(value, _)| value)).collect();
+        Ok((number(of, &Known { inputs: &inputs, ..*self.sides.known })?, samples))
+    }
+
+    /// A metric of both signals of a node, and the number of measured samples.
+    fn compared(
+        &self,
+        metric: Metric,
+        on_common_points: bool,
+        node: NodeId,
+        over: Option<NodeId>,
+    ) -> Result<(f64, usize), String> {
+        let of @ (simulated, measured) =
+            (self.simulated.samples(node)?, self.measured.samples(node)?);
+        let meeting = if on_common_points {
+            Some(self.sides.meetings.of(simulated, measured, self.extent, self.shift)?)
+        } else {
+            None
+        };
+        let over = match over {
+            None => None,
+            Some(node) => Some((self.simulated.samples(node)?, self.measured.samples(node)?)),
+        };
+        let over = over.map(|(s, m)| (s.values.as_slice(), m.values.as_slice()));
+        let (Rate::PerTime(rate) | Rate::PerLength(rate)) = measured.along.rate;
+        let (axis, simulated, measured) = match &meeting {
+            Some(meeting) => {
+                (meeting.axis(), meeting.simulated(simulated), meeting.measured(measured))
+            }
+            None => (
+                measured.along.axis.as_slice(),
+                Cow::Borrowed(simulated.values.as_slice()),
+                measured.values.as_slice(),
+            ),
+        };
+        let pair = Pair { axis, simulated: &simulated, measured, rate, band: None, over };
+        let Some(points) = metric.points() else { return Ok((metric.run(&pair)?, measured.len())) };
+        let quantiles = |side: Side, samples: &Samples, values: &[f64]| {
+            let sorted = self.sides.meetings.sorted((samples, meeting.as_ref(), side), values);
+            pair::quantiles_of_sorted(&sorted, points).map_err(|undefined| undefined.to_string())
+        };
+        let of_simulated = quantiles(Side::Simulated, of.0, &simulated)?;
+        let of_measured = quantiles(Side::Measured, of.1, measured)?;
+        Ok((
+            metric.run(&Pair { simulated: &of_simulated, measured: &of_measured, ..pair })?,
+            measured.len(),
+        ))
+    }
+
+    pub fn input(&self, input: &InputNode, side: InputSide) -> Result<f64, String> {
+        self.counted(input, side).map(|(value, _)| value)
+    }
+
+    /// A value, and the number of samples.
+    fn counted(&self, input: &InputNode, side: InputSide) -> Result<(f64, usize), String> {
+        match &input.joint {
+            None => self.record(input.side.resolve(side)).number(input.node),
+            Some(Joint::Metric { metric, on_common_points, over }) => {
+                self.compared(*metric, *on_common_points, input.node, *over)
+            }
+            Some(Joint::Samples { reducer, signal }) => {
+                let both = Both {
+                    simulated: self.simulated.samples(input.node)?,
+                    measured: self.measured.samples(input.node)?,
+                    known: self.known,
+                    extent: self.extent,
+                    shift: self.shift,
+                    meetings: self.sides.meetings,
+                };
+                both.reduced(*reducer, self.sides.work.plan.sections.percentiles, signal)
+            }
+        }
+    }
+
+    fn record(&self, side: InputSide) -> &NodeValues {
+        if side == InputSide::Measured { self.measured } else { self.simulated }
+    }
+
+    /// Number of samples or windows of the quantity's own signal that a value was taken from.
+    fn count(&self, nodes: &SignalNodes, value: &ValueNodes, side: InputSide) -> usize {
+        let graph = self.sides.work.graph;
+        let own = |input: &&InputNode| graph.nodes[input.node].inputs.contains(&nodes.processed);
+        let input = value.inputs.iter().find(own).or(value.inputs.first());
+        match input.and_then(|input| self.record(side).get(input.node)) {
+            Some(NodeValue::Number(_, samples)) => *samples,
+            Some(NodeValue::Samples(samples)) => samples.values.len(),
+            Some(NodeValue::Failed(_)) | None => 0,
+        }
+    }
+}

@@ -1,0 +1,273 @@
+//! From the rows of all sections to results of quantities and verdicts: the nodes of the graph
+//! after the table of values.
+
+use std::collections::BTreeSet;
+
+use super::verdicts;
+use crate::check::plan::{Chosen, Evaluation, Pairing, Plan, Quantity, Records, Zone};
+use crate::graph::Graph;
+use crate::result::{
+    Consequence, Finding, PairValue, QuantityResult, Reported, Verdict, VerdictResult, ZoneResult,
+    usable_sections,
+};
+use crate::run::describe::{reports, spreads};
+use crate::run::estimate::{Member, Rows, count_independent};
+use crate::run::limit::{Judging, compared, fails_alone, rule_place};
+use crate::run::sections::{Facts, Unit};
+use crate::run::values::SectionValues;
+use crate::run::words::count;
+
+#[derive(Debug)]
+pub struct Judged {
+    pub verdict: Verdict,
+    /// The overall verdict in the words of the protocol, if it states them.
+    pub own_word: Option<String>,
+    pub reasons: Vec<String>,
+    /// Verdicts with a name.
+    pub verdicts: Vec<VerdictResult>,
+    pub quantities: Vec<QuantityResult>,
+    pub zones: Vec<ZoneResult>,
+    /// Numbers of the data of the sections.
+    pub reported: Vec<Reported>,
+}
+
+/// What was told before anything is judged.
+#[derive(Debug)]
+pub struct Told<'a> {
+    pub findings: &'a [Finding],
+    /// Why nothing can be assessed, beside findings of plausibility.
+    pub barred: Vec<String>,
+}
+
+pub fn judge(
+    plan: &Plan,
+    graph: &Graph,
+    facts: &Facts,
+    units: &[Unit],
+    values: &[SectionValues],
+    told: &Told<'_>,
+) -> Judged {
+    let used: Vec<(&Unit, &SectionValues)> =
+        units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
+    let mut missing: Vec<String> = Vec::new();
+    let zones: Vec<ZoneResult> = plan.zones.iter().map(|zone| zone_result(zone, units)).collect();
+    missing.extend(zones.iter().filter_map(ZoneResult::lack));
+    let sites = sites(used.iter().map(|(unit, _)| *unit));
+    if sites < plan.sections.minimum {
+        missing.push(format!(
+            "{}; at least {} required",
+            usable_sections(used.len(), sites),
+            plan.sections.minimum
+        ));
+    }
+    missing.extend(without_sections(units));
+    missing.extend(not_plausible(plan, told.findings, missing.is_empty()));
+    missing.extend(told.barred.iter().cloned());
+    let rows = Rows::of_all(plan, facts, &used);
+    let table: Vec<_> = rows.iter().map(Rows::usable).collect();
+    let of_quantity = |(index, quantity): (usize, &Quantity)| {
+        let judging = Judging {
+            plan,
+            facts,
+            quantity,
+            members: &rows[index].members,
+            table: &table,
+            too_few: &rows[index].too_few,
+        };
+        quantity_result(graph, index, &judging, rows[index].reason.clone())
+    };
+    let (quantities, fails): (Vec<QuantityResult>, Vec<Vec<String>>) =
+        plan.quantities.iter().enumerate().map(of_quantity).unzip();
+    let decided = verdicts::decide(
+        plan,
+        graph,
+        &verdicts::Given { barred: missing, quantities: &quantities, fails },
+    );
+    let named = verdicts::named(plan, &decided);
+    let (rule, overall) = (plan.overall(), decided.into_iter().next().unwrap_or_default());
+    let verdict = overall.outcome.overall();
+    let own = rule.has_words().then(|| match verdict {
+        Verdict::NotAssessable => verdict.in_words().to_string(),
+        _ => overall.outcome.word(&rule.words).to_string(),
+    });
+    let reported = reports::of_sections(plan, facts, used.iter().map(|(unit, _)| *unit));
+    Judged {
+        verdict,
+        own_word: own,
+        reasons: overall.reasons,
+        verdicts: named,
+        quantities,
+        zones,
+        reported,
+    }
+}
+
+/// One reason for each of several campaigns of which no section is used: the verdict names it, but
+/// nothing of it was assessed.
+fn without_sections(units: &[Unit]) -> Vec<String> {
+    let mut used: Vec<(&str, bool)> = Vec::new();
+    for unit in units {
+        let Some(name) = unit.campaign_name.as_deref() else { continue };
+        match used.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, any)) => *any |= unit.fault.is_none(),
+            None => used.push((name, unit.fault.is_none())),
+        }
+    }
+    used.iter()
+        .filter(|(_, any)| !any)
+        .map(|(name, _)| format!("no section of campaign {name} is used"))
+        .collect()
+}
+
+/// Number of different sites of the sections.
+fn sites<'a>(units: impl Iterator<Item = &'a Unit>) -> usize {
+    units.map(|unit| unit.site).collect::<BTreeSet<_>>().len()
+}
+
+/// One reason for each plausibility rule that makes the campaign not assessable. If sections are
+/// missing, also one for each rule that excluded sections.
+fn not_plausible(plan: &Plan, findings: &[Finding], complete: bool) -> Vec<String> {
+    let mut reasons: Vec<String> = Vec::new();
+    for rule in &plan.plausibility {
+        let sections = |consequence: Consequence| {
+            let mut names: Vec<&str> = Vec::new();
+            for finding in findings
+                .iter()
+                .filter(|finding| finding.code == rule.name && finding.consequence == consequence)
+            {
+                let name = finding.section.as_deref().unwrap_or_default();
+                if !names.contains(&name) {
+                    names.push(name);
+                }
+            }
+            names.len()
+        };
+        let (barred, taken) =
+            (sections(Consequence::NotAssessable), sections(Consequence::NotUsed));
+        let reason = match (barred, taken) {
+            (0, taken) if taken > 0 && !complete => {
+                format!("{}: {} not used; see the findings", rule.title, count(taken, "section"))
+            }
+            (0, _) => continue,
+            (barred, _) => format!(
+                "{}: implausible in {}; see the findings",
+                rule.title,
+                count(barred, "section")
+            ),
+        };
+        if !reasons.contains(&reason) {
+            reasons.push(reason);
+        }
+    }
+    reasons
+}
+
+fn zone_result(zone: &Zone, units: &[Unit]) -> ZoneResult {
+    let given: Vec<&Unit> =
+        units.iter().filter(|unit| unit.zone.as_deref() == Some(zone.name.as_str())).collect();
+    let used: Vec<&Unit> = given.iter().copied().filter(|unit| unit.fault.is_none()).collect();
+    let sites = sites(used.iter().copied());
+    ZoneResult {
+        zone: zone.name.clone(),
+        title: zone.title.clone(),
+        condition: zone.condition_words.clone(),
+        used: used.len(),
+        sites,
+        given: given.len(),
+        minimum: zone.minimum_sections,
+        holds: sites >= zone.minimum_sections,
+    }
+}
+
+/// The result, and a sentence for each limit that is not met.
+fn quantity_result(
+    graph: &Graph,
+    index: usize,
+    judging: &Judging<'_>,
+    reason: Option<String>,
+) -> (QuantityResult, Vec<String>) {
+    let Judging { plan, quantity, members, .. } = *judging;
+    let (statistics, fails): (Vec<_>, Vec<_>) = compared(graph, &graph.quantities[index], judging)
+        .into_iter()
+        .map(|compared| (compared.result, compared.fails))
+        .unzip();
+    let undefined =
+        statistics.iter().find(|statistic| statistic.holds.is_none()).map(|statistic| {
+            let scope = if statistic.scope == "all" {
+                String::new()
+            } else {
+                format!(", {}", statistic.scope)
+            };
+            format!(
+                "{}{scope}: {}",
+                statistic.title,
+                statistic.reason.as_deref().unwrap_or_default()
+            )
+        });
+    let met = statistics.iter().all(|statistic| statistic.holds == Some(true));
+    let alone = || fails_alone(graph, &graph.quantities[index], judging);
+    let reason = reason.or(undefined).or_else(|| if met { alone() } else { None });
+    let holds = if reason.is_some() { None } else { Some(met) };
+    let show = |value: f64| quantity.unit.from_si(value);
+    let value = |member: &Member<'_>| PairValue {
+        campaign: member.unit.campaign_name.clone(),
+        section: member.unit.name.clone(),
+        zone: member.unit.zone.clone(),
+        signal: member.signal.to_string(),
+        taken: quantity.evaluation.value_in_words(member.row.which),
+        record: member.row.record.as_deref().map(str::to_string),
+        simulated: member.row.simulated.map(show),
+        measured: member.row.measured.map(show),
+        difference: show(member.row.value),
+        samples: member.row.samples,
+    };
+    let values: Vec<PairValue> = members.iter().map(value).collect();
+    let result = QuantityResult {
+        id: quantity.id.clone(),
+        title: quantity.title.clone(),
+        symbol: quantity.symbol.clone(),
+        unit: quantity.unit.text.clone(),
+        of: quantity.words.of.clone(),
+        filter: quantity.words.filter.clone(),
+        processing: quantity.words.processing.clone(),
+        comparison: quantity.words.comparison.clone(),
+        clause: quantity.clause.clone(),
+        source: quantity.source.clone(),
+        notes: quantity.notes.clone(),
+        has_sides: quantity.evaluation.has_sides(),
+        from: match quantity.evaluation.as_ref() {
+            Evaluation::Values { records: Records::Of(of), .. } => Some(of.side.in_words().into()),
+            _ => None,
+        },
+        among: match quantity.evaluation.as_ref() {
+            Evaluation::Values { records: Records::Spread { of, .. }, .. } => {
+                Some(of.side.in_words().into())
+            }
+            other => other.pairing().and_then(Pairing::within).map(|side| side.in_words().into()),
+        },
+        against: match quantity.evaluation.pairing() {
+            Some(Pairing::Each(first, Chosen { record: Some(index), side }))
+                if first.side == side =>
+            {
+                Some(plan.records[index].title.clone())
+            }
+            Some(pairing) if pairing.within().is_some() => Some("Other record".into()),
+            _ => None,
+        },
+        repeats: quantity.evaluation.of_repeats(),
+        spread: match quantity.evaluation.as_ref() {
+            Evaluation::Values { records: Records::Spread { center, .. }, .. } => {
+                spreads::spread(*center, &values)
+            }
+            _ => None,
+        },
+        statistics,
+        reported: reports::of_quantity(graph, &graph.quantities[index].reports, judging),
+        n: count_independent(plan, members),
+        values,
+        holds,
+        reason,
+        rule: rule_place(&quantity.span),
+    };
+    (result, fails.into_iter().flatten().collect())
+}

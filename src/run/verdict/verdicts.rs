@@ -1,0 +1,241 @@
+//! Verdicts: from limits of quantities, from other verdicts, or left to a person.
+
+use crate::check::plan::{Decision, Over, Plan, Rule};
+use crate::graph::{Graph, Operation};
+use crate::result::{Outcome, QuantityResult, VerdictResult};
+use crate::run::limit::rule_place;
+use crate::run::words::count;
+
+/// What verdicts depend on.
+#[derive(Debug)]
+pub struct Given<'a> {
+    /// Why no verdict on limits can be given: missing sections, implausible data.
+    pub barred: Vec<String>,
+    pub quantities: &'a [QuantityResult],
+    /// For each quantity, a sentence for each limit that is not met.
+    pub fails: Vec<Vec<String>>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Decided {
+    pub outcome: Outcome,
+    pub reasons: Vec<String>,
+}
+
+impl Default for Decided {
+    fn default() -> Self {
+        Self::not_assessable(vec![
+            "the graph ends without a verdict; this is an error of the program".into(),
+        ])
+    }
+}
+
+impl Decided {
+    fn not_assessable(reasons: Vec<String>) -> Self {
+        Self { outcome: Outcome::NotAssessable, reasons }
+    }
+
+    fn holds() -> Self {
+        Self { outcome: Outcome::Holds, reasons: Vec::new() }
+    }
+}
+
+/// One result for each verdict of the plan. They run in the order of their nodes, so that each
+/// comes after those it uses.
+pub fn decide(plan: &Plan, graph: &Graph, given: &Given<'_>) -> Vec<Decided> {
+    let mut order: Vec<usize> = (0..graph.verdicts.len()).collect();
+    order.sort_by_key(|&at| graph.verdicts[at]);
+    let mut decided = vec![Decided::default(); plan.verdicts.len()];
+    for at in order {
+        if let Operation::Verdict(decision) = &graph.nodes[graph.verdicts[at]].operation {
+            decided[at] = match decision.as_ref() {
+                Decision::Limits { rule, quantities } => by_limits(plan, given, *rule, quantities),
+                Decision::Verdicts(over) => by_verdicts(plan, over, &decided),
+                Decision::Person(person) => Decided {
+                    outcome: Outcome::Open,
+                    reasons: vec![format!("to be judged by {person}")],
+                },
+            };
+        }
+    }
+    decided
+}
+
+/// The results of the verdicts with a name.
+pub fn named(plan: &Plan, decided: &[Decided]) -> Vec<VerdictResult> {
+    let all = plan.verdicts.iter().zip(decided).enumerate();
+    let result = |(at, (rule, found)): (usize, (&crate::check::plan::VerdictRule, &Decided))| {
+        Some(VerdictResult {
+            name: rule.name.clone()?,
+            title: rule.title.clone(),
+            overall: at == 0,
+            outcome: found.outcome,
+            word: found.outcome.word(&rule.words).to_string(),
+            words: rule.words.clone(),
+            criterion: rule.criterion.clone(),
+            reasons: found.reasons.clone(),
+            judged_by: match &rule.decision {
+                Decision::Person(person) => Some(person.clone()),
+                _ => None,
+            },
+            clause: rule.clause.clone(),
+            source: rule.source.clone(),
+            notes: rule.notes.clone(),
+            rule: rule_place(&rule.span),
+        })
+    };
+    all.filter_map(result).collect()
+}
+
+fn by_limits(plan: &Plan, given: &Given<'_>, rule: Rule, about: &[usize]) -> Decided {
+    let quantities = || about.iter().map(|&at| &given.quantities[at]);
+    let mut missing = given.barred.clone();
+    // A quantity without limits is reported and has no effect.
+    let without = |quantity: &&QuantityResult| quantity.statistics.is_empty();
+    missing.extend(
+        quantities()
+            .filter(|quantity| !without(quantity))
+            .filter_map(|quantity| Some(format!("{}: {}", quantity.id, quantity.reason.as_ref()?))),
+    );
+    if quantities().all(|quantity| without(&quantity)) {
+        missing.push(without_criterion(plan, about).into());
+    }
+    if !missing.is_empty() {
+        return Decided::not_assessable(missing);
+    }
+    let holding =
+        quantities().filter(|quantity| quantity.holds == Some(true) && !without(quantity)).count();
+    let limits_holding: usize = quantities().map(limits_holding).sum();
+    let mut reasons: Vec<String> =
+        about.iter().flat_map(|&at| given.fails[at].iter().cloned()).collect();
+    let holds = match rule {
+        Rule::EveryLimit => reasons.is_empty(),
+        Rule::AtLeastQuantities(needed) => holding >= needed,
+        Rule::AtLeastLimits(needed) => limits_holding >= needed,
+    };
+    if holds {
+        return Decided::holds();
+    }
+    match rule {
+        Rule::EveryLimit => {}
+        Rule::AtLeastQuantities(needed) => reasons.insert(
+            0,
+            format!(
+                "{} of {} meet their criteria; at least {needed} required",
+                holding,
+                count(about.len(), "quantity")
+            ),
+        ),
+        Rule::AtLeastLimits(needed) => reasons.insert(
+            0,
+            format!("{} met; at least {needed} required", count(limits_holding, "limit")),
+        ),
+    }
+    Decided { outcome: Outcome::DoesNotHold, reasons }
+}
+
+/// Why no verdict can be given: it needs at least one limit that applies.
+fn without_criterion(plan: &Plan, about: &[usize]) -> &'static str {
+    let all = about.len() == plan.quantities.len();
+    match (about.iter().all(|&at| plan.quantities[at].limits.is_empty()), all) {
+        (true, true) => "the protocol states no acceptance criterion",
+        (false, true) => {
+            "no acceptance criterion of the protocol applies to this vehicle and its sections"
+        }
+        (true, false) => "its quantities have no acceptance criterion",
+        (false, false) => {
+            "no acceptance criterion of its quantities applies to this vehicle and its sections"
+        }
+    }
+}
+
+/// A verdict that uses others can be given when all of them are given.
+fn by_verdicts(plan: &Plan, over: &Over, decided: &[Decided]) -> Decided {
+    let title = |at: usize| plan.verdicts[at].title.as_str();
+    let undecided = over.verdicts().into_iter().filter(|&at| decided[at].outcome.holds().is_none());
+    let missing: Vec<String> = undecided
+        .flat_map(|at| {
+            decided[at].reasons.iter().map(move |reason| format!("{}: {reason}", title(at)))
+        })
+        .collect();
+    if !missing.is_empty() {
+        return Decided::not_assessable(missing);
+    }
+    if holds(over, decided) {
+        return Decided::holds();
+    }
+    let parts = match over {
+        Over::All(parts) => parts.iter().collect(),
+        other => vec![other],
+    };
+    let reason = |part: &Over| {
+        let found = |at: usize| {
+            format!("{}: {}", title(at), decided[at].outcome.word(&plan.verdicts[at].words))
+        };
+        let found: Vec<String> = part.verdicts().into_iter().map(found).collect();
+        format!("{}; required: {}", found.join(", "), in_words(part, plan))
+    };
+    Decided {
+        outcome: Outcome::DoesNotHold,
+        reasons: parts.into_iter().filter(|part| !holds(part, decided)).map(reason).collect(),
+    }
+}
+
+/// Whether the condition holds, for verdicts that are all given.
+fn holds(over: &Over, decided: &[Decided]) -> bool {
+    let is = |at: &usize| decided[*at].outcome == Outcome::Holds;
+    match over {
+        Over::Holds(at) => is(at),
+        Over::Same(one, other) => is(one) == is(other),
+        Over::AtLeast(needed, of) => of.iter().filter(|at| is(at)).count() >= *needed,
+        Over::Not(inner) => !holds(inner, decided),
+        Over::All(parts) => parts.iter().all(|part| holds(part, decided)),
+        Over::Any(parts) => parts.iter().any(|part| holds(part, decided)),
+    }
+}
+
+/// The condition as it is written in a protocol.
+fn in_words(over: &Over, plan: &Plan) -> String {
+    let name = |at: &usize| plan.verdicts[*at].name.clone().unwrap_or_default();
+    let joined = |parts: &[Over], between: &str| {
+        let one = |part: &Over| match part {
+            Over::All(_) | Over::Any(_) => format!("({})", in_words(part, plan)),
+            _ => in_words(part, plan),
+        };
+        parts.iter().map(one).collect::<Vec<_>>().join(between)
+    };
+    match over {
+        Over::Holds(at) => format!("{} holds", name(at)),
+        Over::Same(one, other) => format!("{} is {}", name(one), name(other)),
+        Over::AtLeast(needed, of) => format!(
+            "at least {needed} of {} hold",
+            of.iter().map(name).collect::<Vec<_>>().join(", ")
+        ),
+        Over::Not(inner) => match inner.as_ref() {
+            Over::Holds(at) => format!("{} does not hold", name(at)),
+            Over::Same(one, other) => format!("{} is not {}", name(one), name(other)),
+            inner => format!("not ({})", in_words(inner, plan)),
+        },
+        Over::All(parts) => joined(parts, " and "),
+        Over::Any(parts) => joined(parts, " or "),
+    }
+}
+
+/// Number of limits of a quantity that are met. A limit of several groups is met if all groups meet
+/// it, and counts once.
+fn limits_holding(quantity: &QuantityResult) -> usize {
+    let mut limits: Vec<(&str, &str, usize, bool)> = Vec::new();
+    for one in &quantity.statistics {
+        let zone =
+            one.scope.split(", ").next().filter(|first| first.starts_with("zone ")).unwrap_or("");
+        let holds = one.holds == Some(true);
+        match limits
+            .iter_mut()
+            .find(|(name, of, line, _)| (*name, *of, *line) == (&one.name, zone, one.rule.line))
+        {
+            Some((.., all)) => *all &= holds,
+            None => limits.push((&one.name, zone, one.rule.line, holds)),
+        }
+    }
+    limits.into_iter().filter(|(.., holds)| *holds).count()
+}
