@@ -138,27 +138,9 @@ fn reasons(
 
 /// Vehicle data that an expression uses, in the order of their occurrence.
 fn vehicle_data(expr: &Expr, found: &mut Vec<usize>) {
-    match &expr.kind {
-        Kind::Vehicle(index) => found.push(*index),
-        Kind::Negative(inner) | Kind::Not(inner) | Kind::Power(inner, _) => {
-            vehicle_data(inner, found)
+    expr.visit(&mut |part| {
+        if let Kind::Vehicle(index) = part.kind {
+            found.push(index);
         }
-        Kind::Binary(_, a, b) => [a, b].into_iter().for_each(|side| vehicle_data(side, found)),
-        Kind::Call(_, arguments) => {
-            arguments.iter().for_each(|argument| vehicle_data(argument, found))
-        }
-        Kind::Cases(cases, otherwise) => {
-            let parts =
-                cases.iter().flat_map(|(when, then)| [when, then]).chain(otherwise.as_deref());
-            parts.for_each(|part| vehicle_data(part, found));
-        }
-        Kind::Constant(_)
-        | Kind::Column(_)
-        | Kind::Start
-        | Kind::End
-        | Kind::Input(_)
-        | Kind::Simulated
-        | Kind::Measured
-        | Kind::LimitOf(_) => {}
-    }
+    });
 }
