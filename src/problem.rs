@@ -128,12 +128,13 @@ impl Problem {
     /// Adds the help "did you mean ...?" if a candidate is similar, else the list of candidates if
     /// it is short.
     #[must_use]
-    pub fn suggest<'a>(
+    pub fn suggest(
         mut self,
         word: &str,
-        candidates: impl IntoIterator<Item = &'a str>,
+        candidates: impl IntoIterator<Item = impl AsRef<str>>,
     ) -> Self {
-        let all: Vec<&str> = candidates.into_iter().collect();
+        let all: Vec<_> = candidates.into_iter().collect();
+        let all: Vec<&str> = all.iter().map(AsRef::as_ref).collect();
         if let Some(near) = nearest(word, all.iter().copied()) {
             return self.meant(near);
         } else if !all.is_empty() && all.len() <= 16 {
@@ -303,6 +304,16 @@ impl From<Problem> for Vec<Problem> {
     fn from(problem: Problem) -> Self {
         vec![problem]
     }
+}
+
+/// An error with its code and message, at a place.
+pub fn error(code: &'static str, says: impl Into<String>, at: &Span) -> Problem {
+    Problem::error(code, says).at(at)
+}
+
+/// A warning with its code and message, at a place.
+pub fn warning(code: &'static str, says: impl Into<String>, at: &Span) -> Problem {
+    Problem::warning(code, says).at(at)
 }
 
 /// The problems of one stage or input, in the order found.

@@ -19,6 +19,13 @@ pub enum Part {
     Signal(&'static str),
 }
 
+impl Part {
+    /// The word, where it is a fixed one.
+    pub fn word(&self) -> Option<&'static str> {
+        if let Self::Word(word) = self { Some(word) } else { None }
+    }
+}
+
 /// An option with a few possible words; the first is the default.
 #[derive(Clone, Copy, Debug)]
 pub struct Choice {
@@ -47,6 +54,11 @@ pub struct Form {
 }
 
 impl Form {
+    /// The word that it begins with.
+    pub fn first_word(&self) -> Option<&'static str> {
+        self.head.first()?.word()
+    }
+
     /// The wording as text: `band-pass <low: a frequency> to <high: a frequency>`.
     pub fn in_words(&self) -> String {
         let parts: Vec<String> = self

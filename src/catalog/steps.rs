@@ -1,6 +1,7 @@
 //! Steps of a filter chain.
 
-use super::forms::{Choice, Form, NumberOption, Part};
+use super::forms::Part::{self, Extent, Frequency, FrequencyOrZero, Number, Word};
+use super::forms::{Choice, Form, NumberOption};
 use crate::units::Dimension;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,9 +82,9 @@ const fn transfer(head: &'static [Part], about: &'static str) -> StepEntry {
     }
 }
 
-const ABOVE_ZERO: Part = Part::Frequency("frequency");
-const FROM_ZERO: Part = Part::FrequencyOrZero("frequency");
-const QUALITY: Part = Part::Number("quality", Dimension::ONE);
+const ABOVE_ZERO: Part = Frequency("frequency");
+const FROM_ZERO: Part = FrequencyOrZero("frequency");
+const QUALITY: Part = Number("quality", Dimension::ONE);
 
 const fn window(kind: StepKind, head: &'static [Part], about: &'static str) -> StepEntry {
     StepEntry { kind, form: Form { head, numbers: &[], choices: WINDOW_CHOICES }, about }
@@ -96,100 +97,71 @@ const fn bare(kind: StepKind, head: &'static [Part], about: &'static str) -> Ste
 /// The wording of two poles, and what follows it.
 macro_rules! poles {
     ($($zeros:expr),*) => {
-        &[Part::Word("transfer"), Part::Word("function"), Part::Word("poles"), ABOVE_ZERO, Part::Word("quality"), QUALITY, $($zeros),*]
+        &[Word("transfer"), Word("function"), Word("poles"), ABOVE_ZERO, Word("quality"), QUALITY, $($zeros),*]
     };
 }
 
 pub const STEPS: &[StepEntry] = &[
     butterworth(
         StepKind::LowPass,
-        &[Part::Word("low-pass"), Part::Frequency("cut-off")],
+        &[Word("low-pass"), Frequency("cut-off")],
         "Butterworth low-pass over the whole record.",
     ),
     butterworth(
         StepKind::HighPass,
-        &[Part::Word("high-pass"), Part::Frequency("cut-off")],
+        &[Word("high-pass"), Frequency("cut-off")],
         "Butterworth high-pass over the whole record.",
     ),
     butterworth(
         StepKind::BandPass,
-        &[
-            Part::Word("band-pass"),
-            Part::Frequency("low"),
-            Part::Word("to"),
-            Part::Frequency("high"),
-        ],
+        &[Word("band-pass"), Frequency("low"), Word("to"), Frequency("high")],
         "Butterworth band-pass over the whole record; the order is that of each edge.",
     ),
     butterworth(
         StepKind::BandStop,
-        &[
-            Part::Word("band-stop"),
-            Part::Frequency("low"),
-            Part::Word("to"),
-            Part::Frequency("high"),
-        ],
+        &[Word("band-stop"), Frequency("low"), Word("to"), Frequency("high")],
         "Butterworth band-stop over the whole record; the order is that of each edge.",
     ),
     transfer(
-        &[Part::Word("transfer"), Part::Word("function"), Part::Word("pole"), ABOVE_ZERO],
+        &[Word("transfer"), Word("function"), Word("pole"), ABOVE_ZERO],
         "One real pole: 1/(1 + s/p), p = 2π times its frequency, over the whole record.",
     ),
     transfer(
-        &[
-            Part::Word("transfer"),
-            Part::Word("function"),
-            Part::Word("pole"),
-            ABOVE_ZERO,
-            Part::Word("zero"),
-            FROM_ZERO,
-        ],
+        &[Word("transfer"), Word("function"), Word("pole"), ABOVE_ZERO, Word("zero"), FROM_ZERO],
         "One real pole and one real zero: (1 + s/z)/(1 + s/p); with the zero at 0 Hz (s/p)/(1 + s/p).",
     ),
     transfer(poles![], "Two poles: 1/P, P = 1 + s/(quality p) + (s/p)²."),
     transfer(
-        poles![Part::Word("zero"), FROM_ZERO],
+        poles![Word("zero"), FROM_ZERO],
         "Two poles and one real zero: (1 + s/z)/P; with the zero at 0 Hz (s/p)/P.",
     ),
     transfer(
-        poles![Part::Word("zeros"), FROM_ZERO],
+        poles![Word("zeros"), FROM_ZERO],
         "Two poles and two zeros without damping: (1 + (s/z)²)/P; with the zeros at 0 Hz (s/p)²/P.",
     ),
     transfer(
-        poles![Part::Word("zeros"), ABOVE_ZERO, Part::Word("quality"), QUALITY],
+        poles![Word("zeros"), ABOVE_ZERO, Word("quality"), QUALITY],
         "Two poles and two zeros: (1 + s/(quality z) + (s/z)²)/P.",
     ),
     window(
         StepKind::SlidingMean,
-        &[
-            Part::Word("sliding"),
-            Part::Word("mean"),
-            Part::Extent("window"),
-            Part::Word("every"),
-            Part::Extent("step"),
-        ],
+        &[Word("sliding"), Word("mean"), Extent("window"), Word("every"), Extent("step")],
         "Mean in a sliding window, from the start of the section; all windows are inside the section.",
     ),
     window(
         StepKind::SlidingRms,
-        &[
-            Part::Word("sliding"),
-            Part::Word("rms"),
-            Part::Extent("window"),
-            Part::Word("every"),
-            Part::Extent("step"),
-        ],
+        &[Word("sliding"), Word("rms"), Extent("window"), Word("every"), Extent("step")],
         "Root mean square in a sliding window, from the start of the section; all windows are inside the section.",
     ),
     bare(
         StepKind::Resample,
-        &[Part::Word("resample"), Part::Word("every"), Part::Extent("step")],
+        &[Word("resample"), Word("every"), Extent("step")],
         "Linear interpolation of the whole record at equal steps; after resampling over a length, filters have frequencies in cycles per length.",
     ),
     bare(
         StepKind::RemoveMean,
-        &[Part::Word("remove"), Part::Word("mean")],
+        &[Word("remove"), Word("mean")],
         "Subtracts the mean of the section.",
     ),
-    bare(StepKind::Magnitude, &[Part::Word("magnitude")], "Absolute values, sample by sample."),
+    bare(StepKind::Magnitude, &[Word("magnitude")], "Absolute values, sample by sample."),
 ];

@@ -1,7 +1,8 @@
 //! Metrics: one number from the simulated and the measured signal of a section. The measured signal
 //! is the reference.
 
-use super::forms::{Form, NumberOption, Part};
+use super::forms::Part::{self, Frequency, Signal, Word};
+use super::forms::{Form, NumberOption};
 use crate::metrics::{coherence, hysteresis, pair};
 use crate::units::Dimension;
 
@@ -124,11 +125,7 @@ impl MetricEntry {
         let slot = head.iter().position(|part| !matches!(part, Part::Word(_)));
         // The last word before a slot is a preposition: `over`, `from`.
         let words = &head[..slot.map_or(head.len(), |slot| slot.saturating_sub(1))];
-        let words: Vec<&str> = words
-            .iter()
-            .filter_map(|part| if let Part::Word(word) = part { Some(*word) } else { None })
-            .collect();
-        words.join("_").replace('-', "_")
+        words.iter().filter_map(Part::word).collect::<Vec<_>>().join("_").replace('-', "_")
     }
 
     /// The call in expressions: `coherence(<low>, <high>)`, `matching_probability` with or without
@@ -154,52 +151,64 @@ const fn form(head: &'static [Part]) -> Form {
     Form { head, numbers: &[], choices: &[] }
 }
 
-macro_rules! ratio {
-    ($head:expr, $best:expr, $about:expr, $source:expr, $run:path) => {
-        MetricEntry {
-            form: form($head),
-            gives: |_, _| Dimension::ONE,
-            common_points: true,
-            of_distributions: false,
-            best: $best,
-            about: $about,
-            source: $source,
-            unverified: false,
-            run: |p| $run(p.simulated, p.measured).map_err(|undefined| undefined.to_string()),
-        }
-    };
+/// A plain number from the samples at common points.
+const fn entry(
+    head: &'static [Part],
+    best: Best,
+    about: &'static str,
+    source: &'static str,
+    run: fn(&Pair<'_>) -> Result<f64, String>,
+) -> MetricEntry {
+    MetricEntry {
+        form: form(head),
+        gives: |_, _| Dimension::ONE,
+        common_points: true,
+        of_distributions: false,
+        best,
+        about,
+        source,
+        unverified: false,
+        run,
+    }
 }
 
-macro_rules! of_signal {
-    ($head:expr, $about:expr, $source:expr, $run:path) => {
-        MetricEntry {
-            gives: |signal, _| signal,
-            ..ratio!($head, Best::Least(0.0), $about, $source, $run)
-        }
+/// Of the loops of the signal over another one.
+const fn of_loops(
+    head: &'static [Part],
+    about: &'static str,
+    run: fn(&Pair<'_>) -> Result<f64, String>,
+) -> MetricEntry {
+    MetricEntry {
+        gives: |signal, _| signal,
+        common_points: false,
+        ..entry(head, Best::Least(0.0), about, "EN 15273-2, stationary sway test", run)
+    }
+}
+
+/// Words, best value, description, source and function of both signals.
+macro_rules! ratio {
+    ([$($word:literal)*], $way:ident($best:literal), $about:expr, $source:expr, $run:ident) => {
+        entry(&[$(Word($word)),*], Best::$way($best), $about, $source, |p| {
+            said(pair::$run(p.simulated, p.measured))
+        })
     };
 }
 
 macro_rules! of_distributions {
-    ($head:expr, $best:expr, $about:expr, $source:expr, $run:path) => {
+    ([$($word:literal)*], $way:ident($best:literal), $about:expr, $source:expr, $run:ident) => {
         MetricEntry {
-            form: Form { numbers: POINTS, ..form($head) },
+            form: Form { numbers: POINTS, ..form(&[$(Word($word)),*]) },
             of_distributions: true,
-            ..ratio!(&[], $best, $about, $source, $run)
+            ..ratio!([], $way($best), $about, $source, $run)
         }
     };
 }
 
 macro_rules! unverified {
-    ($part:literal, $about:expr, $run:path) => {
+    ($part:literal, $about:expr, $run:ident) => {
         MetricEntry {
             unverified: true,
-            ..ratio!(
-                &[Part::Word("cora"), Part::Word($part)],
-                Best::Greatest(1.0),
-                $about,
-                CORA,
-                $run
-            )
+            ..ratio!(["cora" $part], Greatest(1.0), $about, CORA, $run)
         }
     };
 }
@@ -216,315 +225,250 @@ const BOGOJEVIC: &str = "Bogojevic & Lucanin 2014, as described by Goetz & Polac
 
 pub const METRICS: &[MetricEntry] = &[
     ratio!(
-        &[Part::Word("sprague-geers"), Part::Word("magnitude")],
-        Best::Near(0.0),
+        ["sprague-geers" "magnitude"], Near(0.0),
         "Square root of the ratio of the sums of squares, minus 1; negative where the simulation is smaller.",
         SG,
-        pair::sprague_geers_magnitude
+        sprague_geers_magnitude
     ),
     ratio!(
-        &[Part::Word("sprague-geers"), Part::Word("phase")],
-        Best::Least(0.0),
+        ["sprague-geers" "phase"], Least(0.0),
         "Angle between the two signals as vectors, divided by pi: 0 for proportional signals, 0.5 for orthogonal ones, 1 for inverted ones.",
         SG,
-        pair::sprague_geers_phase
+        sprague_geers_phase
     ),
     ratio!(
-        &[Part::Word("sprague-geers"), Part::Word("comprehensive")],
-        Best::Least(0.0),
+        ["sprague-geers" "comprehensive"], Least(0.0),
         "Square root of the sum of the squares of the magnitude and phase errors.",
         SG,
-        pair::sprague_geers_comprehensive
+        sprague_geers_comprehensive
     ),
     ratio!(
-        &[Part::Word("russell"), Part::Word("magnitude")],
-        Best::Near(0.0),
+        ["russell" "magnitude"], Near(0.0),
         "Logarithmic magnitude error.",
         RUSSELL,
-        pair::russell_magnitude
+        russell_magnitude
     ),
     ratio!(
-        &[Part::Word("russell"), Part::Word("phase")],
-        Best::Least(0.0),
+        ["russell" "phase"], Least(0.0),
         "The same as the Sprague & Geers phase error.",
         RUSSELL,
-        pair::russell_phase
+        russell_phase
     ),
     ratio!(
-        &[Part::Word("russell"), Part::Word("comprehensive")],
-        Best::Least(0.0),
+        ["russell" "comprehensive"], Least(0.0),
         "Square root of pi/4 times the sum of the squares of the magnitude and phase errors.",
         RUSSELL,
-        pair::russell_comprehensive
+        russell_comprehensive
     ),
     ratio!(
-        &[Part::Word("theil"), Part::Word("inequality")],
-        Best::Least(0.0),
+        ["theil" "inequality"], Least(0.0),
         "Root mean square difference divided by the sum of the root mean squares, from 0 to 1.",
         THEIL,
-        pair::theil_u1
+        theil_u1
     ),
     ratio!(
-        &[Part::Word("theil"), Part::Word("bias")],
-        Best::Least(0.0),
+        ["theil" "bias"], Least(0.0),
         "Share of the mean square difference that is a difference of the means.",
         THEIL,
-        pair::theil_bias
+        theil_bias
     ),
     ratio!(
-        &[Part::Word("theil"), Part::Word("variance")],
-        Best::Least(0.0),
+        ["theil" "variance"], Least(0.0),
         "Share of the mean square difference that is a difference of the standard deviations.",
         THEIL,
-        pair::theil_variance
+        theil_variance
     ),
     ratio!(
-        &[Part::Word("theil"), Part::Word("covariance")],
-        Best::Greatest(1.0),
+        ["theil" "covariance"], Greatest(1.0),
         "Share of the mean square difference that is a lack of correlation: what is neither bias nor variance.",
         THEIL,
-        pair::theil_covariance
+        theil_covariance
     ),
     ratio!(
-        &[Part::Word("weighted"), Part::Word("integrated"), Part::Word("factor")],
-        Best::Greatest(1.0),
+        ["weighted" "integrated" "factor"], Greatest(1.0),
         "WIFac: 1 for equal signals, 0 for signals of opposite sign throughout.",
         "Ray et al., NCHRP 22-24",
-        pair::weighted_integrated_factor
+        weighted_integrated_factor
     ),
     ratio!(
-        &[Part::Word("correlation")],
-        Best::Greatest(1.0),
+        ["correlation"],
+        Greatest(1.0),
         "Pearson correlation of the samples.",
         "Pearson 1895",
-        pair::correlation
+        correlation
     ),
     ratio!(
-        &[Part::Word("mirrored_correlation")],
-        Best::Least(0.0),
+        ["mirrored_correlation"],
+        Least(0.0),
         "Pearson correlation with the simulated samples in reverse order: near 1 if a record is mirrored.",
         "definition",
-        pair::mirrored_correlation
+        mirrored_correlation
     ),
     ratio!(
-        &[Part::Word("iso18571"), Part::Word("corridor")],
-        Best::Greatest(1.0),
+        ["iso18571" "corridor"], Greatest(1.0),
         "Agreement with two corridors about the measurement: 5 % and 50 % of its largest magnitude either way.",
         ISO,
-        pair::iso18571_corridor
+        iso18571_corridor
     ),
     ratio!(
-        &[Part::Word("iso18571"), Part::Word("phase")],
-        Best::Greatest(1.0),
+        ["iso18571" "phase"], Greatest(1.0),
         "Rating of the shift with the best correlation: 1 at none, 0 at 20 % of the samples.",
         ISO,
-        pair::iso18571_phase
+        iso18571_phase
     ),
     ratio!(
-        &[Part::Word("iso18571"), Part::Word("magnitude")],
-        Best::Greatest(1.0),
+        ["iso18571" "magnitude"], Greatest(1.0),
         "Rating of the amplitudes after the shift and dynamic time warping.",
         ISO,
-        pair::iso18571_magnitude
+        iso18571_magnitude
     ),
     ratio!(
-        &[Part::Word("iso18571"), Part::Word("slope")],
-        Best::Greatest(1.0),
+        ["iso18571" "slope"], Greatest(1.0),
         "Rating of the smoothed slopes after the shift.",
         ISO,
-        pair::iso18571_slope
+        iso18571_slope
     ),
     ratio!(
-        &[Part::Word("iso18571"), Part::Word("overall")],
-        Best::Greatest(1.0),
+        ["iso18571" "overall"], Greatest(1.0),
         "0.4 corridor + 0.2 (phase + magnitude + slope).",
         ISO,
-        pair::iso18571_overall
+        iso18571_overall
     ),
-    unverified!(
-        "corridor",
-        "Corridor rating, with the corridors of ISO/TS 18571.",
-        pair::cora_corridor
-    ),
+    unverified!("corridor", "Corridor rating, with the corridors of ISO/TS 18571.", cora_corridor),
     unverified!(
         "progression",
         "Rating of the shape at the best shift: ((cosine + 1) / 2)^10.",
-        pair::cora_progression
+        cora_progression
     ),
     unverified!(
         "size",
         "Rating of the size at the best shift: the smaller over the larger sum of squares.",
-        pair::cora_size
+        cora_size
     ),
     unverified!(
         "phase",
         "Rating of the best shift: 1 up to 1 %, 0 from 12 % of the interval.",
-        pair::cora_phase
+        cora_phase
     ),
-    unverified!(
-        "total",
-        "(corridor + 0.5 progression + 0.25 size + 0.25 phase) / 2.",
-        pair::cora_total
-    ),
+    unverified!("total", "(corridor + 0.5 progression + 0.25 size + 0.25 phase) / 2.", cora_total),
     MetricEntry {
-        form: form(&[Part::Word("shift")]),
         gives: |_, axis| axis,
-        common_points: true,
-        of_distributions: false,
-        best: Best::Near(0.0),
-        about: "Shift to be added to the measured axis for the largest correlation, up to a quarter of the section.",
-        source: "definition",
-        unverified: false,
-        run: |p| {
-            pair::shift(p.axis, p.simulated, p.measured).map_err(|undefined| undefined.to_string())
-        },
+        ..entry(
+            &[Word("shift")],
+            Best::Near(0.0),
+            "Shift to be added to the measured axis for the largest correlation, up to a quarter of the section.",
+            "definition",
+            |p| said(pair::shift(p.axis, p.simulated, p.measured)),
+        )
     },
     MetricEntry {
-        form: form(&[Part::Word("drift")]),
         gives: |signal, _| signal,
-        common_points: true,
-        of_distributions: false,
-        best: Best::Near(0.0),
-        about: "Change over the section of the regression line of measured minus simulated samples.",
-        source: "definition",
-        unverified: false,
-        run: |p| {
-            pair::drift(p.axis, p.simulated, p.measured).map_err(|undefined| undefined.to_string())
-        },
+        ..entry(
+            &[Word("drift")],
+            Best::Near(0.0),
+            "Change over the section of the regression line of measured minus simulated samples.",
+            "definition",
+            |p| said(pair::drift(p.axis, p.simulated, p.measured)),
+        )
     },
     ratio!(
-        &[Part::Word("misfit")],
-        Best::Least(0.0),
+        ["misfit"],
+        Least(0.0),
         "Sum of the squared differences divided by the smaller of the sums of squares.",
         "Kraft et al. 2013, as described by Goetz & Polach",
-        pair::kraft_misfit
+        kraft_misfit
     ),
     of_distributions!(
-        &[Part::Word("matching"), Part::Word("probability")],
-        Best::Greatest(1.0),
+        ["matching" "probability"], Greatest(1.0),
         "Probability of equal variances (F test) times the agreement of the means.",
         BOGOJEVIC,
-        pair::bogojevic
+        bogojevic
     ),
     of_distributions!(
-        &[Part::Word("fisher"), Part::Word("probability")],
-        Best::Greatest(1.0),
+        ["fisher" "probability"], Greatest(1.0),
         "Two-sided probability of the F test that the variances are equal, for independent values; n - 1 degrees of freedom each.",
         BOGOJEVIC,
-        pair::bogojevic_variance_probability
+        bogojevic_variance_probability
     ),
     of_distributions!(
-        &[Part::Word("variance"), Part::Word("ratio")],
-        Best::Near(1.0),
+        ["variance" "ratio"], Near(1.0),
         "Variance (n - 1) of the simulation over that of the measurement.",
         BOGOJEVIC,
-        pair::bogojevic_variance_ratio
+        bogojevic_variance_ratio
     ),
     of_distributions!(
-        &[Part::Word("agreement"), Part::Word("in"), Part::Word("mean")],
-        Best::Greatest(1.0),
+        ["agreement" "in" "mean"], Greatest(1.0),
         "1 less the difference of the means over the larger magnitude of them; below 0 where their signs differ.",
         BOGOJEVIC,
-        pair::bogojevic_mean_term
+        bogojevic_mean_term
     ),
-    of_signal!(
-        &[Part::Word("root-mean-square"), Part::Word("difference")],
-        "Root mean square of the differences of the samples.",
-        "definition",
-        pair::root_mean_square_error
-    ),
+    MetricEntry {
+        gives: |signal, _| signal,
+        ..ratio!(["root-mean-square" "difference"], Least(0.0), "Root mean square of the differences of the samples.", "definition", root_mean_square_error)
+    },
     ratio!(
-        &[Part::Word("normalised"), Part::Word("root-mean-square"), Part::Word("difference")],
-        Best::Least(0.0),
+        ["normalised" "root-mean-square" "difference"], Least(0.0),
         "The same over the root mean square of the measurement: Theil's U2.",
         THEIL,
-        pair::theil_u2
+        theil_u2
     ),
     ratio!(
-        &[Part::Word("range-normalised"), Part::Word("root-mean-square"), Part::Word("difference")],
-        Best::Least(0.0),
+        ["range-normalised" "root-mean-square" "difference"], Least(0.0),
         "The same over the range of the measurement.",
         "definition",
-        pair::relative_to_range
+        relative_to_range
     ),
     MetricEntry {
         common_points: false,
         of_distributions: true,
         ..ratio!(
-            &[Part::Word("root-mean-square"), Part::Word("ratio")],
-            Best::Near(1.0),
+        ["root-mean-square" "ratio"], Near(1.0),
             "Root mean square of the simulation over that of the measurement; behind a band-pass filter that of the band.",
             "definition",
-            pair::rms_ratio
+            rms_ratio
         )
     },
     MetricEntry {
+        gives: |signal, _| signal,
         form: Form {
             numbers: POINTS,
-            ..form(&[Part::Word("area"), Part::Word("between"), Part::Word("distributions")])
+            ..form(&[Word("area"), Word("between"), Word("distributions")])
         },
         of_distributions: true,
-        ..of_signal!(
+        ..entry(
             &[],
+            Best::Least(0.0),
             "Area between the two cumulative distributions of the samples.",
             "Ferson, Oberkampf & Ginzburg 2008",
-            area
+            |p| said(area(p.simulated, p.measured)),
         )
     },
-    MetricEntry {
-        form: form(&[
-            Part::Word("coherence"),
-            Part::Word("from"),
-            Part::Frequency("low"),
-            Part::Word("to"),
-            Part::Frequency("high"),
-        ]),
-        gives: |_, _| Dimension::ONE,
-        common_points: true,
-        of_distributions: false,
-        best: Best::Greatest(1.0),
-        about: "Mean coherence of the spectral lines from the first frequency to below the second: Welch's method, Hann windows of 256 samples, 50 % overlap.",
-        source: "Welch 1967",
-        unverified: false,
-        run: |p| {
+    entry(
+        &[Word("coherence"), Word("from"), Frequency("low"), Word("to"), Frequency("high")],
+        Best::Greatest(1.0),
+        "Mean coherence of the spectral lines from the first frequency to below the second: Welch's method, Hann windows of 256 samples, 50 % overlap.",
+        "Welch 1967",
+        |p| {
             let band = p.band.ok_or("the frequencies are missing")?;
-            coherence::in_band(p.simulated, p.measured, p.rate, band)
-                .map_err(|undefined| undefined.to_string())
+            said(coherence::in_band(p.simulated, p.measured, p.rate, band))
         },
-    },
-    MetricEntry {
-        form: form(&[
-            Part::Word("hysteresis"),
-            Part::Word("maximum"),
-            Part::Word("over"),
-            Part::Signal("axis"),
-        ]),
-        gives: |signal, _| signal,
-        common_points: false,
-        of_distributions: false,
-        best: Best::Least(0.0),
-        about: "Largest difference of the hysteresis loops of the signal over another one: simulated and measured on the same branch.",
-        source: "EN 15273-2, stationary sway test",
-        unverified: false,
-        run: |p| loop_error(p).map(|error| error.maximum),
-    },
-    MetricEntry {
-        form: form(&[
-            Part::Word("hysteresis"),
-            Part::Word("mean"),
-            Part::Word("over"),
-            Part::Signal("axis"),
-        ]),
-        gives: |signal, _| signal,
-        common_points: false,
-        of_distributions: false,
-        best: Best::Least(0.0),
-        about: "Mean difference of the hysteresis loops of the signal over another one: simulated and measured on the same branch.",
-        source: "EN 15273-2, stationary sway test",
-        unverified: false,
-        run: |p| loop_error(p).map(|error| error.mean),
-    },
+    ),
+    of_loops(
+        &[Word("hysteresis"), Word("maximum"), Word("over"), Signal("axis")],
+        "Largest difference of the hysteresis loops of the signal over another one: simulated and measured on the same branch.",
+        |p| loop_error(p).map(|error| error.maximum),
+    ),
+    of_loops(
+        &[Word("hysteresis"), Word("mean"), Word("over"), Signal("axis")],
+        "Mean difference of the hysteresis loops of the signal over another one: simulated and measured on the same branch.",
+        |p| loop_error(p).map(|error| error.mean),
+    ),
 ];
+
+/// Why it is not defined, in words.
+fn said<T>(value: Result<T, impl std::fmt::Display>) -> Result<T, String> {
+    value.map_err(|undefined| undefined.to_string())
+}
 
 /// The area metric; for equal numbers of values the faster form.
 fn area(simulated: &[f64], measured: &[f64]) -> Result<f64, pair::Undefined> {
@@ -542,5 +486,5 @@ fn loop_error(pair: &Pair<'_>) -> Result<hysteresis::Matching, String> {
     let (x_simulated, x_measured) = pair.over.ok_or("the signal for the loop's axis is missing")?;
     let simulated = hysteresis::Loop { x: x_simulated, y: pair.simulated };
     let measured = hysteresis::Loop { x: x_measured, y: pair.measured };
-    hysteresis::matching(simulated, measured, TURNING).map_err(|undefined| undefined.to_string())
+    said(hysteresis::matching(simulated, measured, TURNING))
 }

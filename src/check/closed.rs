@@ -13,7 +13,8 @@ use crate::syntax::phrase::{At, Node, Phrase};
 use crate::units::Dimension;
 
 impl Checker<'_> {
-    pub(super) fn unused_parts(&mut self) {
+    /// Checks aliases, signals, estimates and definitions that nothing uses.
+    pub fn unused_parts(&mut self) {
         let places: Vec<_> =
             self.names.places.values().flat_map(|place| place.aliases.clone()).collect();
         for (alias, text) in places {
@@ -98,7 +99,7 @@ impl Checker<'_> {
     fn stands_for(&self, phrase: &Phrase, seen: &mut BTreeSet<String>) -> Meaning {
         let mut of = |phrase: &Phrase| self.stands_for(phrase, seen);
         match &phrase.node {
-            Node::Number { .. } | Node::Quoted(_) => Meaning::Closed,
+            Node::Number(_) | Node::Quoted(_) => Meaning::Closed,
             // Values of a signal, of one side or of other limits have no meaning before they are
             // used.
             Node::Percentile(_)

@@ -9,7 +9,7 @@ const MOST: usize = 256;
 
 /// Whether these conditions can certainly never hold together. With `false` beside it, a condition
 /// is taken as not satisfied.
-pub(super) fn impossible(conditions: &[(&Expr, bool)]) -> bool {
+pub fn impossible(conditions: &[(&Expr, bool)]) -> bool {
     let mut all: Vec<Vec<Test>> = vec![Vec::new()];
     for (condition, holds) in conditions {
         let Some(alternatives) = alternatives(condition, !holds) else { continue };

@@ -3,13 +3,10 @@
 use super::Checker;
 use super::evaluate::number;
 use super::names::normalised;
-use super::plan::{
-    Expr, Input, InputSide, Kind, Operator, Scalar, Side, Signal, SignalKind, Taken,
-};
+use super::plan::{Expr, Input, InputSide, Kind, Scalar, Taken};
 use super::values::{Nothing, Values};
-use crate::catalog::Function;
 use crate::metrics::rounded;
-use crate::problem::Problem;
+use crate::problem::error;
 use crate::source::Span;
 
 /// Number of sets of inputs that are tried. Arithmetic that gives the same for three sets without a
@@ -79,65 +76,23 @@ fn same(mut all: impl Iterator<Item = Option<f64>>) -> Option<f64> {
 }
 
 fn of_records(expr: &Expr) -> bool {
-    let mut any = false;
-    expr.visit(&mut |part| {
-        any |= matches!(part.kind, Kind::Input(_) | Kind::Simulated | Kind::Measured)
-    });
-    any
+    expr.any(&|part| matches!(part.kind, Kind::Input(_) | Kind::Side(_)))
 }
 
 /// Whether a value of the records decides between others.
 fn has_steps(expr: &Expr) -> bool {
-    let mut any = false;
-    expr.visit(&mut |part| {
-        any |= match &part.kind {
-            Kind::Cases(arms, _) => arms.iter().any(|(_, condition)| of_records(condition)),
-            Kind::Call(function, arguments) => {
-                WITH_STEPS.contains(&function.name) && arguments.iter().any(of_records)
-            }
-            _ => false,
-        };
-    });
-    any
-}
-
-/// A sample of a signal of both sides, from a sample of each; `None` where it takes more than that.
-fn sample(signal: &Signal, sides: (f64, f64)) -> Option<f64> {
-    let of = |inner: &Signal| sample(inner, sides);
-    let stepless = |function: &&'static Function| !WITH_STEPS.contains(&function.name);
-    match &signal.kind {
-        SignalKind::Side(Side::Simulated) => Some(sides.0),
-        SignalKind::Side(Side::Measured) => Some(sides.1),
-        SignalKind::Scalar(expr) => number(expr, &Nothing).ok(),
-        SignalKind::Negative(inner) => Some(-of(inner)?),
-        SignalKind::Power(inner, exponent) => Some(of(inner)?.powi(i32::from(*exponent))),
-        SignalKind::Call(function, arguments) => {
-            let function = Some(function).filter(|function| stepless(function))?;
-            Some((function.run)(&arguments.iter().map(of).collect::<Option<Vec<_>>>()?))
+    expr.any(&|part| match &part.kind {
+        Kind::Cases(arms, _) => arms.iter().any(|(_, condition)| of_records(condition)),
+        Kind::Call(function, arguments) => {
+            WITH_STEPS.contains(&function.name) && arguments.iter().any(of_records)
         }
-        SignalKind::Binary(operator, left, right) => {
-            let (left, right) = (of(left)?, of(right)?);
-            match operator {
-                Operator::Add => Some(left + right),
-                Operator::Subtract => Some(left - right),
-                Operator::Multiply => Some(left * right),
-                Operator::Divide => Some(left / right),
-                _ => None,
-            }
-        }
-        _ => None,
-    }
+        _ => false,
+    })
 }
 
 impl Checker<'_> {
     /// A metric, or a value (`what`), that no record can change.
-    pub(super) fn can_vary(
-        &mut self,
-        what: &str,
-        expr: &Expr,
-        inputs: &[Input],
-        at: &Span,
-    ) -> Option<()> {
+    pub fn can_vary(&mut self, what: &str, expr: &Expr, inputs: &[Input], at: &Span) -> Option<()> {
         let code = "constant-value";
         let help = if what == "metric" {
             "a metric uses metrics or the samples of both sides: `correlation`, `rms of (simulated - measured)`"
@@ -146,19 +101,24 @@ impl Checker<'_> {
         };
         for input in inputs {
             let (Taken::OfBoth(_), Some(signal)) = (input.taken, &input.signal) else { continue };
-            let samples = (0..SETS).map(|set| sample(signal, (tried(set, 0), tried(set, 1))));
-            if same(samples).is_some() {
-                let says = format!(
-                    "all samples of `{}` are the same whatever the records are",
-                    normalised(signal.span.text())
+            if whatever_the_records(signal, &[], &Nothing).is_some() {
+                return self.refuse(
+                    error(
+                        code,
+                        format!(
+                            "all samples of `{}` are the same whatever the records are",
+                            normalised(signal.span.text())
+                        ),
+                        &input.span,
+                    )
+                    .help(help),
                 );
-                self.problems.push(Problem::error(code, says).at(&input.span).help(help));
-                return None;
             }
         }
         let Some(value) = whatever_the_records(expr, inputs, &Nothing) else { return Some(()) };
-        let says = format!("this {what} is {} whatever the records are", rounded(value));
-        self.problems.push(Problem::error(code, says).at(at).help(help));
-        None
+        self.refuse(
+            error(code, format!("this {what} is {} whatever the records are", rounded(value)), at)
+                .help(help),
+        )
     }
 }

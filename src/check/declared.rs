@@ -1,10 +1,10 @@
 //! Checks blocks that declare the content of records, of the vehicle file and of the table of
 //! sections: places, data, channels, signals.
 
-use super::Checker;
 use super::names::{Channel, Place, SignalDef, normalised};
 use super::plan::{Datum, DatumKind, DatumRange, Scalar};
-use crate::problem::Problem;
+use super::{Checker, if_written};
+use crate::problem::error;
 use crate::source::Span;
 use crate::syntax::document::{Block, Field};
 use crate::syntax::phrase::{At, Pick};
@@ -17,34 +17,37 @@ const MOST_MEMBERS: usize = 500;
 const NOT_STATED: &str = "not stated";
 
 impl Checker<'_> {
-    pub(super) fn place(&mut self, name: &str, block: &Block) -> Option<Place> {
+    /// The positions of a place and their aliases.
+    pub fn place(&mut self, name: &str, block: &Block) -> Option<Place> {
         let field = self.required(block, "members")?;
         let written = from_pest::list(&field.value, self.problems)?;
         if written.len() > MOST_MEMBERS {
-            let says = format!(
-                "`{name}` has {} positions; there can be at most {MOST_MEMBERS}",
-                written.len()
+            return self.refuse(
+                error(
+                    "too-large",
+                    format!(
+                        "`{name}` has {} positions; there can be at most {MOST_MEMBERS}",
+                        written.len()
+                    ),
+                    &field.value.span,
+                )
+                .help("declare the positions that are compared; put the others into another place"),
             );
-            let problem = Problem::error("too-large", says).at(&field.value.span);
-            self.problems.push(problem.help(
-                "declare the positions that are compared; put the others into another place",
-            ));
-            return None;
         }
         let mut members: Vec<String> = Vec::new();
         for member in written {
             let place = field.value.place(member.range);
             if let Some(sign) = member.node.chars().find(|c| matches!(c, '-' | '.')) {
-                let says = format!(
+                self.problems.push(error("bad-name", format!(
                     "`{}` cannot be a position of `{name}`: in an expression, `{sign}` is not read as part of a name",
                     member.node
-                );
-                self.problems.push(Problem::error("bad-name", says).at(&place));
+                ), &place));
             } else if members.contains(&member.node) {
-                self.problems.push(
-                    Problem::error("duplicate-name", format!("`{}` is named twice", member.node))
-                        .at(&place),
-                );
+                self.problems.push(error(
+                    "duplicate-name",
+                    format!("`{}` is named twice", member.node),
+                    &place,
+                ));
             } else {
                 members.push(member.node);
             }
@@ -53,23 +56,27 @@ impl Checker<'_> {
         for field in block.fields_named("alias") {
             let Some(alias) = from_pest::alias(&field.value, self.problems) else { continue };
             if members.contains(&alias.name.node) {
-                let says =
-                    format!("`{}` is both a position of `{name}` and an alias", alias.name.node);
                 self.problems.push(
-                    Problem::error("name-clash", says)
-                        .at(&field.value.place(alias.name.range.clone()))
-                        .also(&block.span().clone(), "the members"),
+                    error(
+                        "name-clash",
+                        format!(
+                            "`{}` is both a position of `{name}` and an alias",
+                            alias.name.node
+                        ),
+                        &alias.name.place(&field.value),
+                    )
+                    .also(&block.span().clone(), "the members"),
                 );
             }
             for (member, _) in &alias.cases {
                 if !members.contains(&member.node) {
                     self.problems.push(
-                        Problem::error(
+                        error(
                             "unknown-place",
                             format!("`{}` is not a position of `{name}`", member.node),
+                            &member.place(&field.value),
                         )
-                        .at(&field.value.place(member.range.clone()))
-                        .suggest(&member.node, members.iter().map(String::as_str)),
+                        .suggest(&member.node, &members),
                     );
                 }
             }
@@ -78,15 +85,15 @@ impl Checker<'_> {
         Some(Place { members, aliases })
     }
 
-    pub(super) fn datum(
+    /// A value of the vehicle file or a column of the table of sections, yet without range and default.
+    pub fn datum(
         &mut self,
         name: &str,
         block: &Block,
         key: &str,
         standard_key: String,
     ) -> Option<Datum> {
-        let title =
-            block.title.as_ref().map_or_else(|| name.replace('_', " "), |title| title.text.clone());
+        let title = block.title_in_words();
         let kind = match (block.field("in"), block.field("one of")) {
             (Some(unit), None) => DatumKind::Number(self.unit(&unit.value)?),
             (None, Some(words)) => {
@@ -109,15 +116,14 @@ impl Checker<'_> {
                 }
             }
             _ => {
-                self.problems.push(
-                    Problem::error(
+                return self.refuse(
+                    error(
                         "missing-field",
                         format!("{} `{name}` needs a field `in` or `one of`", block.kind.text),
+                        block.span(),
                     )
-                    .at(block.span())
                     .help("`in kN` for a number, `one of right, left` for a word"),
                 );
-                return None;
             }
         };
         let key =
@@ -138,15 +144,19 @@ impl Checker<'_> {
     /// The range of a number of the vehicle, in its unit.
     fn datum_range(&mut self, name: &str, kind: &DatumKind, field: &Field) -> Option<DatumRange> {
         let DatumKind::Number(unit) = kind else {
-            let says = format!("`{name}` is a choice of words and cannot have a range");
-            self.problems.push(Problem::error("unknown-field", says).at(&field.key.span));
-            return None;
+            return self.refuse(error(
+                "unknown-field",
+                format!("`{name}` is a choice of words and cannot have a range"),
+                &field.key.span,
+            ));
         };
         let [low, high] = self.range_ends(name, unit.dimension, field, None)?;
         if low > high {
-            let says = format!("the range of `{name}` has its upper end below its lower end");
-            self.problems.push(Problem::error("out-of-range", says).at(&field.value.span));
-            return None;
+            return self.refuse(error(
+                "out-of-range",
+                format!("the range of `{name}` has its upper end below its lower end"),
+                &field.value.span,
+            ));
         }
         Some(DatumRange {
             low,
@@ -157,7 +167,7 @@ impl Checker<'_> {
     }
 
     /// Range and default of a datum, after all names are known.
-    pub(super) fn datum_default(&mut self, name: &str, block: &Block) -> Option<()> {
+    pub fn datum_default(&mut self, name: &str, block: &Block) -> Option<()> {
         let data =
             if block.kind.text == "vehicle" { &self.names.vehicle } else { &self.names.columns };
         let Some(index) = data.iter().position(|datum| datum.name == name) else { return Some(()) };
@@ -176,21 +186,22 @@ impl Checker<'_> {
             DatumKind::Number(unit) => {
                 let (value, dimension) = self.constant(&field.value)?;
                 if dimension != unit.dimension {
-                    let says = format!(
-                        "`{name}` is {}, its default is {}",
-                        unit.dimension.in_words(),
-                        dimension.in_words()
-                    );
-                    let problem = Problem::error("unit-mismatch", says)
-                        .at(&field.value.span)
-                        .label(dimension.in_words());
-                    self.problems.push(match block.field("in") {
+                    let problem = error(
+                        "unit-mismatch",
+                        format!(
+                            "`{name}` is {}, its default is {}",
+                            unit.dimension.in_words(),
+                            dimension.in_words()
+                        ),
+                        &field.value.span,
+                    )
+                    .label(dimension.in_words());
+                    return self.refuse(match block.field("in") {
                         Some(unit_field) => {
                             problem.also(&unit_field.value.span, unit.dimension.in_words())
                         }
                         None => problem,
                     });
-                    return None;
                 }
                 if let Some(range) = range {
                     self.within_range(name, value, dimension, &field.value, range);
@@ -210,15 +221,14 @@ impl Checker<'_> {
                 } else {
                     vec!["true".into(), "false".into()]
                 };
-                self.problems.push(
-                    Problem::error(
+                return self.refuse(
+                    error(
                         "unknown-choice",
                         format!("`{word}` is not one of the words of `{name}`"),
+                        &field.value.span,
                     )
-                    .at(&field.value.span)
-                    .suggest(word, words.iter().map(String::as_str)),
+                    .suggest(word, &words),
                 );
-                return None;
             }
         };
         let data = if block.kind.text == "vehicle" {
@@ -243,15 +253,18 @@ impl Checker<'_> {
             self.names.vehicle[index].may_be_absent = true;
             return Some(());
         }
-        let says = format!("`{NOT_STATED}` can only be written for vehicle data");
-        let problem = Problem::error("unknown-choice", says).at(&field.value.span);
-        self.problems.push(
-            problem.help("remove the line: without a default, an empty cell is a missing value"),
-        );
-        None
+        self.refuse(
+            error(
+                "unknown-choice",
+                format!("`{NOT_STATED}` can only be written for vehicle data"),
+                &field.value.span,
+            )
+            .help("remove the line: without a default, an empty cell is a missing value"),
+        )
     }
 
-    pub(super) fn channel(&mut self, name: &str, block: &Block) -> Option<()> {
+    /// Adds a channel to the names.
+    pub fn channel(&mut self, name: &str, block: &Block) -> Option<()> {
         let unit = self.required(block, "in").and_then(|field| self.unit(&field.value));
         let places = block.field("at").map_or(Some(Vec::new()), |field| self.place_names(field));
         let (unit, places) = (unit?, places?);
@@ -264,8 +277,7 @@ impl Checker<'_> {
             Some(("track", _)) => true,
             Some((other, field)) => {
                 self.problems.push(
-                    Problem::error("unknown-record", format!("`{other}` is not a kind of record"))
-                        .at(&field.value.span)
+                    error("unknown-record", format!("`{other}` is not a kind of record"), &field.value.span)
                         .help("write `record track` for the track file; without `record`, the channel is in the records of simulation and measurement"),
                 );
                 false
@@ -278,15 +290,12 @@ impl Checker<'_> {
         Some(())
     }
 
-    pub(super) fn signal_def(&mut self, name: &str, block: &Block) -> Option<()> {
+    /// Adds a computed signal to the names.
+    pub fn signal_def(&mut self, name: &str, block: &Block) -> Option<()> {
         let is = self.required(block, "is").and_then(|field| self.written(field));
         let places = block.field("at").map_or(Some(Vec::new()), |field| self.place_names(field));
         let unit = block.field("in").map(|field| self.unit(&field.value));
-        let (is, places) = (is?, places?);
-        let unit = match unit {
-            Some(unit) => Some(unit?),
-            None => None,
-        };
+        let (is, places, unit) = (is?, places?, if_written(unit)?);
         let named = block
             .field("named")
             .map_or_else(|| self.standard_pattern(name, &places), |field| field.value.text.clone());
@@ -311,11 +320,11 @@ impl Checker<'_> {
         for place in places {
             if !pattern.contains(&format!("{{{place}}}")) {
                 self.problems.push(
-                    Problem::error(
+                    error(
                         "pattern",
                         format!("`{pattern}` gives the same column for every {place}"),
+                        &span,
                     )
-                    .at(&span)
                     .help(format!("write {{{place}}} where the column name contains it")),
                 );
             }
@@ -324,12 +333,12 @@ impl Checker<'_> {
             let inside = part.split('}').next().unwrap_or("");
             if !places.iter().any(|place| place == inside) {
                 self.problems.push(
-                    Problem::error(
+                    error(
                         "pattern",
                         format!("`{{{inside}}}` in `{pattern}` is not a place of this channel"),
+                        &span,
                     )
-                    .at(&span)
-                    .suggest(inside, places.iter().map(String::as_str)),
+                    .suggest(inside, places),
                 );
             }
         }
@@ -364,7 +373,7 @@ impl Checker<'_> {
 
     /// The place with a name in the singular or plural: `wheelset`, `wheelsets`, `axle boxes`,
     /// `bodies`.
-    pub(super) fn place_called(&self, word: &str) -> Option<String> {
+    pub fn place_called(&self, word: &str) -> Option<String> {
         families::place_called(word, self.names.places.keys().map(String::as_str))
             .map(str::to_owned)
     }

@@ -5,8 +5,10 @@ use crate::result::Deviation;
 use crate::syntax::document::{Block, Document, Field, Text};
 use crate::syntax::from_pest;
 use crate::syntax::keys::{self, Sort};
-use crate::syntax::phrase::{Phrase, Pick};
-use crate::units::Unit;
+use crate::syntax::phrase::{
+    Alias, At, Domain, Limit, Minimum, Phrase, Pick, Report, Step, Verdict,
+};
+use crate::units::{Dimension, Unit};
 
 use super::names::normalised;
 use super::overlay::slot;
@@ -257,9 +259,27 @@ fn equal(kind: &str, a: &Field, b: &Field) -> bool {
         || meaning(kind, a).is_some_and(|meant| meaning(kind, b) == Some(meant))
 }
 
-/// What a field means, independent of how it is written; `None` for prose and for text that cannot
-/// be parsed.
-fn meaning(kind: &str, field: &Field) -> Option<String> {
+/// What a field means, independent of how it is written.
+#[derive(PartialEq)]
+enum Meaning {
+    Expression(Phrase),
+    Limit(Limit),
+    Report(Report),
+    Minimum(Minimum),
+    Domain(Domain),
+    Range(Phrase, Phrase),
+    Alias(Alias),
+    Chain(Vec<At<Step>>),
+    Verdict(Verdict),
+    List(Vec<At<String>>),
+    /// The signal, its positions and the condition.
+    Places(String, String, Option<Phrase>),
+    /// The name of an axis, and its unit.
+    Unit(String, f64, Dimension),
+}
+
+/// The meaning of a field; `None` for prose and for text that cannot be parsed.
+fn meaning(kind: &str, field: &Field) -> Option<Meaning> {
     let kind_of = keys::kind(kind)?;
     let key = [true, false]
         .into_iter()
@@ -269,46 +289,32 @@ fn meaning(kind: &str, field: &Field) -> Option<String> {
     }
     let quiet = &mut Problems::default();
     let text: &Text = &field.value;
+    let unit = |name: &str, unit: &str| {
+        let unit = Unit::parse(unit).ok()?;
+        Some(Meaning::Unit(name.to_string(), unit.factor, unit.dimension))
+    };
     match key.word {
-        "over" => from_pest::domain(text, quiet).map(|domain| domain.meaning()),
-        "limit" if kind == "quantity" => from_pest::limit(text, quiet).map(|limit| limit.meaning()),
-        "report" => from_pest::report(text, quiet).map(|report| report.meaning()),
-        "minimum pairs" => from_pest::minimum(text, quiet).map(|minimum| minimum.meaning()),
-        "filter" | "step" | "metric" => from_pest::chain(text, quiet).map(|chain| {
-            chain.iter().map(|step| step.node.meaning()).collect::<Vec<_>>().join("; ")
-        }),
-        "of" if kind == "verdict" => from_pest::list(text, quiet)
-            .map(|list| list.into_iter().map(|item| item.node).collect::<Vec<_>>().join(", ")),
-        "validated" | "holds" => from_pest::verdict(text, quiet).map(|verdict| verdict.meaning()),
-        "of" => from_pest::of_places(text, quiet).map(|of| {
-            let when =
-                of.when.as_ref().map_or(String::new(), |when| format!(" when {}", when.meaning()));
-            format!("{} {}{when}", of.signal.node, picks(&of.picks))
-        }),
-        "at" => from_pest::places(text, quiet).map(|at| picks(&at)),
-        "one of" | "members" => from_pest::list(text, quiet)
-            .map(|list| list.into_iter().map(|item| item.node).collect::<Vec<_>>().join(", ")),
-        "in" => Unit::parse(&text.text).ok().map(|unit| unit_meaning(&unit)),
+        "over" => from_pest::domain(text, quiet).map(Meaning::Domain),
+        "limit" if kind == "quantity" => from_pest::limit(text, quiet).map(Meaning::Limit),
+        "report" => from_pest::report(text, quiet).map(Meaning::Report),
+        "minimum pairs" => from_pest::minimum(text, quiet).map(Meaning::Minimum),
+        "filter" | "step" | "metric" => from_pest::chain(text, quiet).map(Meaning::Chain),
+        "of" if kind == "verdict" => from_pest::list(text, quiet).map(Meaning::List),
+        "one of" | "members" => from_pest::list(text, quiet).map(Meaning::List),
+        "validated" | "holds" => from_pest::verdict(text, quiet).map(Meaning::Verdict),
+        "of" => from_pest::of_places(text, quiet)
+            .map(|of| Meaning::Places(of.signal.node, picks(&of.picks), of.when)),
+        "at" => from_pest::places(text, quiet)
+            .map(|at| Meaning::Places(String::new(), picks(&at), None)),
+        "in" => unit("", &text.text),
         "axis" | "time" => {
-            let (name, unit) = from_pest::axis(text, quiet)?;
-            Some(format!("{} {}", name.node, unit_meaning(&Unit::parse(&unit.node).ok()?)))
+            let (name, written) = from_pest::axis(text, quiet)?;
+            unit(&name.node, &written.node)
         }
-        "range" => from_pest::range(text, quiet)
-            .map(|(low, high)| format!("{} {}", low.meaning(), high.meaning())),
-        "alias" => from_pest::alias(text, quiet).map(|alias| {
-            let cases: Vec<String> = alias
-                .cases
-                .iter()
-                .map(|(member, condition)| format!("{}?{}", member.node, condition.meaning()))
-                .collect();
-            format!("{} {}", alias.name.node, cases.join(", "))
-        }),
-        _ => from_pest::expression(text, quiet).map(|phrase: Phrase| phrase.meaning()),
+        "range" => from_pest::range(text, quiet).map(|(low, high)| Meaning::Range(low, high)),
+        "alias" => from_pest::alias(text, quiet).map(Meaning::Alias),
+        _ => from_pest::expression(text, quiet).map(Meaning::Expression),
     }
-}
-
-fn unit_meaning(unit: &Unit) -> String {
-    format!("{:e} {}", unit.factor, unit.dimension)
 }
 
 /// Positions such as `at wheelsets 1, 3 and side L`; singular and plural have the same meaning.

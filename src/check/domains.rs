@@ -1,10 +1,9 @@
 //! Checks domains: what spans them, and by what sections are told apart.
 
 use super::Checker;
-use super::names::normalised;
 use super::plan::{Coordinate, DatumKind, Domain, Expr, Kind, OnFault};
 use super::scope::Scope;
-use crate::problem::Problem;
+use crate::problem::error;
 use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
@@ -12,7 +11,8 @@ use crate::syntax::phrase::{At, Phrase};
 use crate::units::Dimension;
 
 impl Checker<'_> {
-    pub(super) fn domain(&mut self, block: &Block) -> Option<Domain> {
+    /// What sections cover: what spans it, and by what words sections are told apart.
+    pub fn domain(&mut self, block: &Block) -> Option<Domain> {
         let field = self.required(block, "over")?;
         let written = from_pest::domain(&field.value, self.problems)?;
         let over: Vec<Option<Coordinate>> = written
@@ -23,7 +23,7 @@ impl Checker<'_> {
         let each: Vec<Option<usize>> = written
             .each
             .iter()
-            .map(|key| self.domain_key(&key.node, &field.value.place(key.range.clone())))
+            .map(|key| self.domain_key(&key.node, &key.place(&field.value)))
             .collect();
         let over = over.into_iter().collect::<Option<Vec<_>>>();
         let mut each = each.into_iter().collect::<Option<Vec<_>>>()?;
@@ -32,19 +32,15 @@ impl Checker<'_> {
             Some(_) => self.on_fault(block, "otherwise", &["note", "not assessable"])?,
             None => OnFault::Note,
         };
-        let text = |key: &str| block.field(key).map(|field| field.value.text.clone());
         Some(Domain {
             name: block.name_text().to_string(),
-            title: block
-                .title
-                .as_ref()
-                .map_or_else(|| block.name_text().replace('_', " "), |title| title.text.clone()),
+            title: block.title_in_words(),
             over: over?,
             each,
             otherwise,
-            clause: text("clause"),
-            source: text("source"),
-            notes: block.fields_named("note").map(|note| note.value.text.clone()).collect(),
+            clause: block.text("clause"),
+            source: block.text("source"),
+            notes: block.notes(),
             span: block.span().clone(),
         })
     }
@@ -57,11 +53,11 @@ impl Checker<'_> {
     ) -> Option<Coordinate> {
         let expr = self.expr(of, &field.value, &mut Scope::section())?;
         let dimension = self.number_type(&expr)?;
-        let words = normalised(&field.value.text[of.range.clone()]);
+        let words = of.words(&field.value);
         self.of_wanted_operation(&expr, &words)?;
         let unit = match unit {
             Some(unit) => {
-                let at = field.value.place(unit.range.clone());
+                let at = unit.place(&field.value);
                 let found = self.unit(&Text {
                     text: unit.node.clone(),
                     span: at.clone(),
@@ -91,23 +87,23 @@ impl Checker<'_> {
         found: Dimension,
         at: &Span,
     ) {
-        let says = format!(
-            "`{words}` is {}, `{}` is a unit of {}",
-            dimension.in_words(),
-            at.text(),
-            found.in_words()
-        );
-        self.problems.push(Problem::error("unit-mismatch", says).at(at));
+        self.problems.push(error(
+            "unit-mismatch",
+            format!(
+                "`{words}` is {}, `{}` is a unit of {}",
+                dimension.in_words(),
+                at.text(),
+                found.in_words()
+            ),
+            at,
+        ));
     }
 
     /// What spans a domain differs from section to section, and is known of operation that nobody
     /// has run yet.
     fn of_wanted_operation(&mut self, expr: &Expr, words: &str) -> Option<()> {
-        let (mut column, mut extent) = (false, false);
-        expr.visit(&mut |part| {
-            column |= matches!(part.kind, Kind::Column(_));
-            extent |= matches!(part.kind, Kind::Start | Kind::End);
-        });
+        let column = expr.any(&|part| matches!(part.kind, Kind::Column(_)));
+        let extent = expr.any(&|part| matches!(part.kind, Kind::Start | Kind::End));
         let says = match (column, extent) {
             (true, false) => return Some(()),
             (_, true) => format!(
@@ -115,40 +111,22 @@ impl Checker<'_> {
             ),
             (false, false) => format!("`{words}` is the same for every section"),
         };
-        self.problems.push(
-            Problem::error("domain-over", says)
-                .at(&expr.span)
+        self.refuse(
+            error("domain-over", says, &expr.span)
                 .help("let it be section data, or an expression of them"),
-        );
-        None
+        )
     }
 
     /// A section column of words.
     fn domain_key(&mut self, name: &str, at: &Span) -> Option<usize> {
-        let found = self.names.columns.iter().position(|datum| datum.name == name);
-        let is_number =
-            |index: usize| matches!(self.names.columns[index].kind, DatumKind::Number(_));
-        match found {
-            Some(index) if is_number(index) => {
-                let says = format!("`{name}` is a number, and groups are told apart by words");
-                self.problems.push(
-                    Problem::error("not-a-word", says)
-                        .at(at)
-                        .help("let it be one of those that span the domain"),
-                );
-                None
-            }
-            Some(index) => Some(index),
-            None => {
-                let known: Vec<String> =
-                    self.names.columns.iter().map(|datum| datum.name.clone()).collect();
-                let problem =
-                    Problem::error("unknown-name", format!("no section column is called `{name}`"))
-                        .at(at);
-                self.problems.push(problem.suggest(name, known.iter().map(String::as_str)));
-                None
-            }
+        let index = self.column_called("column", name, at)?;
+        if matches!(self.names.columns[index].kind, DatumKind::Number(_)) {
+            let says = format!("`{name}` is a number, and groups are told apart by words");
+            return self.refuse(
+                error("not-a-word", says, at).help("let it be one of those that span the domain"),
+            );
         }
+        Some(index)
     }
 }
 

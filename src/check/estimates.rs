@@ -1,16 +1,14 @@
 //! Checks estimates: expressions over the values of a group of rows and over the data of its
 //! sections.
 
-use super::Checker;
-use super::names::normalised;
 use super::plan::{
     DataReducer, Estimate, EstimateKind, Expr, Fit, Kind, OfGroup, Origin, Taking, Type,
 };
-use super::scalars::in_words;
-use super::scope::{Group, Scope};
+use super::scope::Scope;
+use super::{Checker, if_written};
 use crate::catalog::{STATISTICS, Statistic};
 use crate::metrics::rounded;
-use crate::problem::Problem;
+use crate::problem::error;
 use crate::source::Span;
 use crate::syntax::document::{Block, Text};
 use crate::syntax::phrase::{At, Fit as WrittenFit, Node, Phrase};
@@ -36,7 +34,7 @@ const COUNT: &str = "n";
 const WITH_WEIGHTS: [&str; 4] = ["mean", "std", "rms", "median"];
 
 /// Whether values can count by a weight in a statistic.
-pub(super) fn has_weights(statistic: Statistic) -> bool {
+pub fn has_weights(statistic: Statistic) -> bool {
     match statistic {
         Statistic::Each => false,
         Statistic::Percentile(_) => true,
@@ -44,12 +42,13 @@ pub(super) fn has_weights(statistic: Statistic) -> bool {
     }
 }
 
-pub(super) fn is_mean(statistic: Statistic) -> bool {
+/// Whether it is the arithmetic mean.
+pub fn is_mean(statistic: Statistic) -> bool {
     matches!(statistic, Statistic::Named(entry) if entry.name == "mean")
 }
 
 /// The name of a statistic as written: `p95`, `mean`.
-pub(super) fn reducer_name(reducer: &Phrase) -> String {
+pub fn reducer_name(reducer: &Phrase) -> String {
     match &reducer.node {
         Node::Percentile(percent) => format!("p{percent}"),
         Node::Path(path) => path.clone(),
@@ -60,7 +59,7 @@ pub(super) fn reducer_name(reducer: &Phrase) -> String {
 impl Checker<'_> {
     /// The estimate of a limit, in one zone if it is for each. Without a dimension (values that
     /// have an error), only names are checked.
-    pub(super) fn estimate(
+    pub fn estimate(
         &mut self,
         name: &At<String>,
         phrase: &Phrase,
@@ -82,19 +81,14 @@ impl Checker<'_> {
 
     /// An expression over a group with its name, title and unit. `values` is the dimension of the
     /// values, if there are any.
-    pub(super) fn named_estimate(
+    pub fn named_estimate(
         &self,
         name: &str,
         kind: OfGroup,
         values: Option<Dimension>,
     ) -> Option<Estimate> {
-        let title = self
-            .blocks
-            .iter()
-            .find(|block| block.kind.text == "estimate" && block.name_text() == name);
-        let title = title
-            .and_then(|block| block.title.as_ref())
-            .map_or_else(|| self.with_values(name), |title| title.text.clone());
+        let block = self.blocks_of("estimate").find(|block| block.name_text() == name);
+        let title = block.and_then(Block::title_text).unwrap_or_else(|| self.with_values(name));
         let of_scatter = match &kind.taken[..] {
             [Taking::Bound { of, .. }] => of.of_scatter,
             [Taking::Weighted { statistic, .. }] => statistic.of_scatter(),
@@ -147,81 +141,67 @@ impl Checker<'_> {
         dimension: Dimension,
         zone: Option<&str>,
     ) -> Option<OfGroup> {
-        let with = Scope { zone: zone.map(str::to_string), ..Scope::vehicle() };
-        let found = self.of_group(phrase, text, Some(dimension), &with)?;
+        let found = self.of_group(phrase, text, Some(dimension), &Scope::zone(zone))?;
+        let says = "this expression uses no statistic of the values";
+        self.of_something(found, says, "for instance `mean + 3 * std`")
+    }
+
+    /// A number that uses something of a group.
+    pub fn of_something(&mut self, found: OfGroup, says: &str, help: &str) -> Option<OfGroup> {
         if found.taken.is_empty() {
-            self.problems.push(
-                Problem::error(
-                    "estimate-of-nothing",
-                    "this expression uses no statistic of the values",
-                )
-                .at(&found.expr.span)
-                .help("for instance `mean + 3 * std`"),
-            );
-            return None;
+            let at = &found.expr.span;
+            return self.refuse(error("estimate-of-nothing", says, at).help(help));
         }
         self.number_type(&found.expr)?;
         Some(found)
     }
 
     /// An expression over a group; the scope `with` gives the other names it can use.
-    pub(super) fn of_group(
+    pub fn of_group(
         &mut self,
         phrase: &Phrase,
         text: &Text,
         values: Option<Dimension>,
         with: &Scope,
     ) -> Option<OfGroup> {
-        let group = Some(Group { values, taken: Vec::new() });
-        let mut scope = Scope {
-            zone: with.zone.clone(),
-            limits: with.limits.clone(),
-            group,
-            ..Scope::vehicle()
-        };
+        let mut scope = with.of_group(values);
         let expr = self.expr(phrase, text, &mut scope)?;
         Some(OfGroup { expr, taken: scope.group.map_or_else(Vec::new, |group| group.taken) })
     }
 
-    pub(super) fn statistic(&mut self, written: &At<String>, text: &Text) -> Option<Statistic> {
+    /// The statistic of a name; a problem where there is none.
+    pub fn statistic(&mut self, written: &At<String>, text: &Text) -> Option<Statistic> {
         let found = Statistic::named(&written.node);
         if found.is_none() && !self.is_failed(&written.node) {
-            let span = text.place(written.range.clone());
-            let percent: Option<f64> =
-                written.node.strip_prefix('p').and_then(|percent| percent.parse().ok());
-            self.problems.push(match percent {
-                Some(percent) => Problem::error(
-                    "out-of-range",
-                    format!("a percentile must be from 0 to 100, this is {percent}"),
-                )
-                .at(&span),
-                None => {
-                    let estimates: Vec<String> = self.names.estimates.keys().cloned().collect();
-                    let known = STATISTICS
-                        .iter()
-                        .map(|entry| entry.name)
-                        .chain(["each"])
-                        .chain(estimates.iter().map(String::as_str));
-                    Problem::error(
-                        "unknown-statistic",
-                        format!("`{}` is not a statistic", written.node),
-                    )
-                    .at(&span)
-                    .suggest(&written.node, known)
-                }
-            });
+            let (name, span) = (&written.node, written.place(text));
+            if let Some(percent) = name.strip_prefix('p').and_then(|percent| percent.parse().ok()) {
+                self.is_percentage(percent, &span)?;
+            }
+            let known = STATISTICS.iter().map(|entry| entry.name).chain(["each"]);
+            let known = known.chain(self.names.estimates.keys().map(String::as_str));
+            let says = format!("`{name}` is not a statistic");
+            self.problems.push(error("unknown-statistic", says, &span).suggest(name, known));
         }
         found
     }
 
+    /// A statistic of many values. `each` is none: it stands for every single value.
+    fn not_each(&mut self, statistic: Statistic, of: &str, span: &Span) -> Option<Statistic> {
+        if statistic != Statistic::Each {
+            return Some(statistic);
+        }
+        let says = format!("`each` stands for every single value and is not a statistic of a {of}");
+        self.refuse(error("each-value", says, span))
+    }
+
     /// A name with a meaning in a group: a statistic, `n`, an estimate.
-    pub(super) fn group_path(
+    pub fn group_path(
         &mut self,
         path: &str,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Option<Expr>> {
-        let values = scope.group.as_ref()?.values;
+        scope.group.as_ref()?;
         if let Some(written) = self.names.estimates.get(path).cloned() {
             self.used_defines.insert(format!("estimate {path}"));
             self.unconfirmed |= self.names.unconfirmed.contains_key(path);
@@ -230,55 +210,32 @@ impl Checker<'_> {
             });
             return Some(found);
         }
-        let dimension = values?;
-        let ddof = self.ddof;
-        let group = scope.group.as_mut()?;
-        let expr = |kind, dimension| {
-            Some(Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() }))
-        };
+        let dimension = scope.values()?;
         if path == COUNT && !self.names.parameter_blocks.contains_key(path) {
-            let kind = group.take(Taking::Count);
-            return expr(kind, Dimension::ONE);
+            return Some(scope.take(Taking::Count, Dimension::ONE, span));
         }
-        match Statistic::named(path)? {
-            Statistic::Each => {
-                self.problems.push(
-                    Problem::error(
-                        "each-value",
-                        "`each` stands for every single value and is not a statistic of a group",
-                    )
-                    .at(span),
-                );
-                Some(None)
-            }
-            statistic => {
-                let kind = group.take(Taking::Statistic(statistic, ddof));
-                expr(kind, dimension)
-            }
-        }
+        let statistic = Statistic::named(path)?;
+        Some(self.not_each(statistic, "group", span).and_then(|statistic| {
+            scope.take(Taking::Statistic(statistic, self.ddof), dimension, span)
+        }))
     }
 
     /// A percentile of the values of a group, such as `p95`.
-    pub(super) fn group_percentile(
+    pub fn group_percentile(
         &mut self,
         percent: f64,
         span: &Origin,
         scope: &mut Scope,
-    ) -> Option<Option<Expr>> {
-        let group = scope.group.as_mut()?;
-        let Some(dimension) = group.values else { return Some(self.no_values(span)) };
-        if !(0.0..=100.0).contains(&percent) {
-            let says = format!("a percentile must be from 0 to 100, this is {percent}");
-            self.problems.push(Problem::error("out-of-range", says).at(span));
-            return Some(None);
-        }
-        let kind = group.take(Taking::Statistic(Statistic::Percentile(percent), self.ddof));
-        Some(Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() }))
+    ) -> Option<Expr> {
+        let Some(dimension) = scope.values() else { return self.no_values(span) };
+        self.is_percentage(percent, span)?;
+        let taking = Taking::Statistic(Statistic::Percentile(percent), self.ddof);
+        scope.take(taking, dimension, span)
     }
 
     /// A number of the sections of a group: `mean of radius`, `total of length`, `mean of radius
     /// weighted by length`.
-    pub(super) fn group_data(
+    pub fn group_data(
         &mut self,
         reducer: &Phrase,
         of: &Phrase,
@@ -293,15 +250,14 @@ impl Checker<'_> {
             _ => (of, None),
         };
         if let Node::Path(signal) = &of.node
-            && (self.names.channels.contains_key(signal) || self.names.signals.contains_key(signal))
+            && self.is_signal(signal)
         {
             let name = reducer_name(reducer);
             let says = format!(
                 "`{name} of {signal}` needs the records of a section, which are not available here"
             );
             let help = "here only section data can be used: `mean of radius`";
-            self.problems.push(Problem::error("no-records", says).at(span).help(help));
-            return None;
+            return self.refuse(error("no-records", says, span).help(help));
         }
         let by = match (by, found) {
             (None, _) => None,
@@ -313,15 +269,13 @@ impl Checker<'_> {
                     .no_weight(&format!("the {} of section data", reducer_name(reducer)), span);
             }
         };
-        let of =
-            self.expr(of, text, &mut Scope { zone: scope.zone.clone(), ..Scope::section() })?;
+        let of = self.expr(of, text, &mut scope.of_section())?;
         let dimension = self.number_type(&of)?;
-        let kind = scope.group.as_mut()?.take(Taking::Data { reducer: found, of, by });
-        Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() })
+        scope.take(Taking::Data { reducer: found, of, by }, dimension, span)
     }
 
     /// A statistic, or `total`.
-    pub(super) fn group_reducer(
+    pub fn group_reducer(
         &mut self,
         reducer: &Phrase,
         from: &str,
@@ -334,37 +288,38 @@ impl Checker<'_> {
             (_, Some(statistic)) => return Some(DataReducer::Statistic(statistic, self.ddof)),
         }
         let known = STATISTICS.iter().map(|entry| entry.name).chain(["total"]);
-        let says = format!("`{name} of` cannot be computed over {from}");
-        self.problems.push(
-            Problem::error("unknown-statistic", says)
-                .at(&text.place(reducer.range.clone()))
-                .suggest(&name, known),
-        );
-        None
+        self.refuse(
+            error(
+                "unknown-statistic",
+                format!("`{name} of` cannot be computed over {from}"),
+                &reducer.place(text),
+            )
+            .suggest(&name, known),
+        )
     }
 
     /// The quantity `NAME` in `p80 of NAME`, as its index and the index of its block. Only where
     /// the rows of a group are available. A section datum of the same name has priority.
-    pub(super) fn other_quantity(&self, of: &Phrase, scope: &Scope) -> Option<(usize, usize)> {
+    pub fn other_quantity(&self, of: &Phrase, scope: &Scope) -> Option<(usize, usize)> {
         let Node::Path(name) = &of.node else { return None };
         if scope.group.is_none() && scope.value.is_none() || self.names.defines.contains_key(name) {
             return None;
         }
-        let data = [&self.names.columns, &self.names.vehicle];
-        if data.iter().any(|data| data.iter().any(|datum| datum.name == *name))
-            || self.names.parameter_blocks.contains_key(name)
-        {
+        let mut data = self.names.columns.iter().chain(&self.names.vehicle);
+        if data.any(|datum| datum.name == *name) || self.names.parameter_blocks.contains_key(name) {
             return None;
         }
-        let quantities =
-            self.blocks.iter().enumerate().filter(|(_, block)| block.kind.text == "quantity");
-        let mut named = quantities.enumerate().filter(|(_, (_, block))| block.name_text() == name);
+        let blocks = self.blocks.iter().enumerate();
+        let mut named = blocks
+            .filter(|(_, block)| block.kind.text == "quantity")
+            .enumerate()
+            .filter(|(_, (_, block))| block.name_text() == name);
         named.next().map(|(number, (at, _))| (number, at))
     }
 
     /// Whether a limit or an estimate uses a value of the quantity. The quantity then has an effect
     /// without a limit of its own.
-    pub(super) fn is_referred_to(&self, quantity: &str) -> bool {
+    pub fn is_referred_to(&self, quantity: &str) -> bool {
         let refers = |text: &Text| {
             let words: Vec<&str> = text
                 .text
@@ -384,30 +339,16 @@ impl Checker<'_> {
     }
 
     /// In a condition on one value, `p80 of ...` must name another quantity.
-    pub(super) fn no_such_quantity(
-        &mut self,
-        of: &Phrase,
-        text: &Text,
-        span: &Span,
-    ) -> Option<Expr> {
-        let name = text.text.get(of.range.clone()).unwrap_or_default().trim().to_string();
-        let problem = Problem::error(
-            "no-such-quantity",
-            format!("`{name}` is not a quantity that can be used here"),
-        );
-        let quantities: Vec<String> = self
-            .blocks
-            .iter()
-            .filter(|block| block.kind.text == "quantity")
-            .map(|block| block.name_text().to_string())
-            .collect();
-        self.problems.push(problem.at(span).suggest(&name, quantities.iter().map(String::as_str)));
-        None
+    pub fn no_such_quantity(&mut self, of: &Phrase, text: &Text, span: &Span) -> Option<Expr> {
+        let name = of.words(text);
+        let says = format!("`{name}` is not a quantity that can be used here");
+        let quantities = self.blocks_of("quantity").map(Block::name_text);
+        self.refuse(error("no-such-quantity", says, span).suggest(&name, quantities))
     }
 
     /// A statistic of all rows of another quantity: `p80 of misfit_of_repeats`. Estimates of the
     /// other quantity cannot be used, so no two quantities can depend on each other.
-    pub(super) fn of_other(
+    pub fn of_other(
         &mut self,
         reducer: &Phrase,
         of: &Phrase,
@@ -422,21 +363,10 @@ impl Checker<'_> {
                 "`{name}` is an estimate and can only be applied to the values of this quantity"
             );
             let help = "use a statistic of the other quantity: `p80 of ...`, `mean of ...`";
-            self.problems
-                .push(Problem::error("unknown-statistic", says).at(&text.place(range)).help(help));
-            return None;
+            return self.refuse(error("unknown-statistic", says, &text.place(range)).help(help));
         }
         let statistic = self.statistic(&At { node: name, range }, text)?;
-        if statistic == Statistic::Each {
-            self.problems.push(
-                Problem::error(
-                    "each-value",
-                    "`each` stands for every single value and is not a statistic of a quantity",
-                )
-                .at(span),
-            );
-            return None;
-        }
+        let statistic = self.not_each(statistic, "quantity", span)?;
         let block = self.blocks.get(block)?.clone();
         let dimension = self.dimension_of(&block)?;
         let taking = Taking::Other {
@@ -445,19 +375,17 @@ impl Checker<'_> {
             statistic,
             ddof: self.ddof,
         };
-        let kind = match scope.group.as_mut() {
-            Some(group) => group.take(taking),
-            None => {
-                scope.others.push(taking);
-                // Input 0 is the value itself.
-                Kind::Input(scope.others.len())
-            }
-        };
+        if scope.group.is_some() {
+            return scope.take(taking, dimension, span);
+        }
+        scope.others.push(taking);
+        // Input 0 is the value itself.
+        let kind = Kind::Input(scope.others.len());
         Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() })
     }
 
     /// An end of a confidence interval: `upper 95 % of std`.
-    pub(super) fn group_bound(
+    pub fn group_bound(
         &mut self,
         (upper, confidence, bootstrap): (bool, f64, bool),
         of: &Phrase,
@@ -465,41 +393,27 @@ impl Checker<'_> {
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        let Some(dimension) = scope.group.as_ref().and_then(|group| group.values) else {
-            return self.no_values(span);
-        };
+        let Some(dimension) = scope.values() else { return self.no_values(span) };
         self.confidence(confidence, span)?;
         let name = match &of.node {
             Node::Path(path) => path.clone(),
             Node::Percentile(percent) => format!("p{percent}"),
-            _ => bare(&normalised(text.text.get(of.range.clone()).unwrap_or(""))),
+            _ => bare(&of.words(text)),
         };
         let plain = matches!(of.node, Node::Path(_) | Node::Percentile(_))
             && !self.names.estimates.contains_key(&name);
         let estimate = if plain {
             let statistic = self.statistic(&At { node: name, range: of.range.clone() }, text)?;
-            if statistic == Statistic::Each {
-                self.problems.push(
-                    Problem::error(
-                        "each-value",
-                        "`each` stands for every single value and is not a statistic of a group",
-                    )
-                    .at(span),
-                );
-                return None;
-            }
+            let statistic = self.not_each(statistic, "group", span)?;
             self.of_statistic(statistic)
         } else {
             let kind = self.of_values(of, text, dimension, scope.zone.clone().as_deref())?;
             if kind.taken.iter().any(|taking| matches!(taking, Taking::Bound { .. })) {
-                self.problems.push(
-                    Problem::error(
-                        "interval-of-interval",
-                        "the end of a confidence interval has no confidence interval of its own",
-                    )
-                    .at(span),
-                );
-                return None;
+                return self.refuse(error(
+                    "interval-of-interval",
+                    "the end of a confidence interval has no confidence interval of its own",
+                    span,
+                ));
             }
             Estimate {
                 title: name.clone(),
@@ -509,34 +423,31 @@ impl Checker<'_> {
                 unit: None,
             }
         };
-        let of_scatter = estimate.weighted().is_some_and(|(statistic, ..)| statistic.of_scatter());
-        let estimate = Estimate { of_scatter: estimate.of_scatter || of_scatter, ..estimate };
-        let closed = estimate.statistic().is_some_and(|(statistic, ddof)| match statistic {
-            Statistic::Named(entry) => entry.name == "mean" || entry.name == "std" && ddof == 1,
-            _ => false,
-        });
-        let closed =
-            closed || estimate.weighted().is_some_and(|(statistic, ..)| is_mean(statistic));
-        if (bootstrap || !closed) && !(DRAWN.0..=DRAWN.1).contains(&confidence) {
-            let says = "a bootstrap of 2000 draws cannot give a bound outside 0.5 % to 99.5 %";
-            self.problems.push(Problem::error("out-of-range", says).at(span));
-            return None;
-        }
-        let ty = match &estimate.kind {
-            EstimateKind::Of(of) if estimate.statistic().is_none() => of.expr.ty.clone(),
-            _ => Type::Number(dimension),
+        let weighted = estimate.weighted().map(|(statistic, ..)| statistic);
+        let of_scatter = estimate.of_scatter || weighted.is_some_and(Statistic::of_scatter);
+        let closed = match estimate.statistic() {
+            Some((Statistic::Named(entry), ddof)) => {
+                entry.name == "mean" || entry.name == "std" && ddof == 1
+            }
+            _ => weighted.is_some_and(is_mean),
         };
-        let kind = scope.group.as_mut()?.take(Taking::Bound {
-            of: estimate,
-            upper,
-            confidence,
-            bootstrap,
-        });
-        Some(Expr { kind, ty, span: span.clone() })
+        let estimate = Estimate { of_scatter, ..estimate };
+        if (bootstrap || !closed) && !(DRAWN.0..=DRAWN.1).contains(&confidence) {
+            return self.refuse(error(
+                "out-of-range",
+                "a bootstrap of 2000 draws cannot give a bound outside 0.5 % to 99.5 %",
+                span,
+            ));
+        }
+        let dimension = match &estimate.kind {
+            EstimateKind::Of(of) if estimate.statistic().is_none() => of.expr.dimension(),
+            _ => dimension,
+        };
+        scope.take(Taking::Bound { of: estimate, upper, confidence, bootstrap }, dimension, span)
     }
 
     /// A share of the values: `share where value <= 1`.
-    pub(super) fn group_share(
+    pub fn group_share(
         &mut self,
         of_sections: bool,
         condition: &Phrase,
@@ -545,89 +456,60 @@ impl Checker<'_> {
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        let Some(group) = &scope.group else {
-            self.problems.push(
-                Problem::error(
-                    "no-group",
-                    "a share needs the values of a group, which are not available here",
-                )
-                .at(span),
-            );
-            return None;
-        };
-        let value = group.values.filter(|_| !of_sections);
+        if scope.group.is_none() {
+            let says = "a share needs the values of a group, which are not available here";
+            return self.refuse(error("no-group", says, span));
+        }
+        let value = scope.values().filter(|_| !of_sections);
         if value.is_none() && !of_sections {
             return self.no_values(span);
         }
-        let mut of_row = Scope { value, zone: scope.zone.clone(), ..Scope::section() };
-        let condition = self.expr(condition, text, &mut of_row)?;
-        self.flag_type(&condition)?;
-        let by = match by {
-            Some(by) => Some(self.weight(by, text, scope)?),
-            None => None,
-        };
-        let kind = scope.group.as_mut()?.take(Taking::Share {
-            condition,
-            of_sections,
-            others: of_row.others,
-            by,
-        });
-        Some(Expr { kind, ty: Type::Number(Dimension::ONE), span: span.clone() })
+        let mut of_row = Scope { value, ..scope.of_section() };
+        let condition = self.condition(condition, text, &mut of_row)?;
+        let by = if_written(by.map(|by| self.weight(by, text, scope)))?;
+        let taking = Taking::Share { condition, of_sections, others: of_row.others, by };
+        scope.take(taking, Dimension::ONE, span)
     }
 
     /// A regression or prediction: `prediction over cant_deficiency at 143 mm, confidence 99 %`.
-    pub(super) fn group_fit(
+    pub fn group_fit(
         &mut self,
         written: &WrittenFit,
         text: &Text,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        let Some(dimension) = scope.group.as_ref().and_then(|group| group.values) else {
-            return self.no_values(span);
-        };
+        let Some(dimension) = scope.values() else { return self.no_values(span) };
         if written.over.len() > MOST_REGRESSORS {
-            let says = format!(
-                "{} regressors; there can be at most {MOST_REGRESSORS}",
-                written.over.len()
-            );
-            self.problems.push(Problem::error("too-large", says).at(span));
-            return None;
+            return self.refuse(error(
+                "too-large",
+                format!(
+                    "{} regressors; there can be at most {MOST_REGRESSORS}",
+                    written.over.len()
+                ),
+                span,
+            ));
         }
         if written.over.len() != written.at.len() {
-            let says = format!(
+            return self.refuse(error("arguments", format!(
                 "a regression over {} regressors needs as many values after `at`; there are {}",
                 written.over.len(),
                 written.at.len()
-            );
-            self.problems.push(
-                Problem::error("arguments", says)
-                    .at(span)
-                    .help("write for instance `prediction over a, b at 1, 2`"),
-            );
-            return None;
+            ), span)
+                    .help("write for instance `prediction over a, b at 1, 2`"));
         }
-        let confidence =
-            written.confidence.as_ref().map(|share| (share.node, text.place(share.range.clone())));
+        let confidence = written.confidence.as_ref().map(|share| (share.node, share.place(text)));
         if let Some((share, place)) = &confidence {
             self.confidence(*share, place)?;
         }
         if written.prediction && confidence.is_none() {
-            let problem =
-                Problem::error("missing-confidence", "a prediction bound needs a confidence level")
-                    .at(span);
-            self.problems.push(problem.help(
+            return self.refuse(error("missing-confidence", "a prediction bound needs a confidence level", span).help(
                 "add `, confidence 99 %`; the fitted value itself is `regression over ... at ...`",
             ));
-            return None;
         }
         let (mut over, mut at, mut ok) = (Vec::new(), Vec::new(), true);
         for (regressor, target) in written.over.iter().zip(&written.at) {
-            let regressor = self.expr(
-                regressor,
-                text,
-                &mut Scope { zone: scope.zone.clone(), ..Scope::section() },
-            );
+            let regressor = self.expr(regressor, text, &mut scope.of_section());
             let target = self.of_group(target, text, None, scope);
             let (Some(regressor), Some(target)) = (regressor, target) else {
                 ok = false;
@@ -640,15 +522,18 @@ impl Checker<'_> {
                 continue;
             };
             if of != read {
-                let says = format!(
-                    "the regressor is {}, the value after `at` is {}",
-                    of.in_words(),
-                    in_words(&target.expr.ty)
+                self.problems.push(
+                    error(
+                        "unit-mismatch",
+                        format!(
+                            "the regressor is {}, the value after `at` is {}",
+                            of.in_words(),
+                            target.expr.ty.in_words()
+                        ),
+                        &target.expr.span,
+                    )
+                    .also(&regressor.span, of.in_words()),
                 );
-                let problem = Problem::error("unit-mismatch", says)
-                    .at(&target.expr.span)
-                    .also(&regressor.span, of.in_words());
-                self.problems.push(problem);
                 ok = false;
             }
             over.push(regressor);
@@ -665,43 +550,36 @@ impl Checker<'_> {
             one_sided: written.one_sided,
             lower: written.lower,
         };
-        let kind = scope.group.as_mut()?.take(Taking::Fit(Box::new(fit)));
-        Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() })
+        scope.take(Taking::Fit(Box::new(fit)), dimension, span)
     }
 
     fn confidence(&mut self, share: f64, at: &Span) -> Option<()> {
         if (LEAST_CONFIDENCE..1.0).contains(&share) {
             return Some(());
         }
-        let problem = Problem::error(
-            "out-of-range",
-            "a confidence level must be at least 50 % and below 100 %",
+        self.refuse(
+            error("out-of-range", "a confidence level must be at least 50 % and below 100 %", at)
+                .help(if share > 0.0 && share < LEAST_CONFIDENCE {
+                    format!(
+                        "an error probability of {0} % is a confidence of {1} %",
+                        rounded(100.0 * share),
+                        rounded(100.0 * (1.0 - share))
+                    )
+                } else {
+                    "write it as a percentage: `95 %`".into()
+                }),
         )
-        .at(at);
-        self.problems.push(problem.help(if share > 0.0 && share < LEAST_CONFIDENCE {
-            format!(
-                "an error probability of {0} % is a confidence of {1} %",
-                rounded(100.0 * share),
-                rounded(100.0 * (1.0 - share))
-            )
-        } else {
-            "write it as a percentage: `95 %`".into()
-        }));
-        None
     }
 
-    pub(super) fn no_values(&mut self, span: &Span) -> Option<Expr> {
-        self.problems.push(
-            Problem::error("no-group", "this estimate needs values of a group, which are not available here")
-                .at(span)
-                .help("write it in a quantity: `limit (mean + 3 * std) 60 kN`, or `report (mean + 3 * std)`"),
-        );
-        None
+    /// Reports an estimate where there are no values.
+    pub fn no_values(&mut self, span: &Span) -> Option<Expr> {
+        self.refuse(error("no-group", "this estimate needs values of a group, which are not available here", span)
+                .help("write it in a quantity: `limit (mean + 3 * std) 60 kN`, or `report (mean + 3 * std)`"))
     }
 }
 
 /// The words without an outer pair of parentheses.
-pub(super) fn bare(words: &str) -> String {
+pub fn bare(words: &str) -> String {
     let inside = words.strip_prefix('(').and_then(|rest| rest.strip_suffix(')'));
     let whole = |inside: &&str| {
         let mut depth = 0_i32;

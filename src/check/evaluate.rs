@@ -55,6 +55,10 @@ fn exactly(expr: &Expr, values: &dyn Values) -> Result<Scalar, String> {
     }
 }
 
+/// The value of an expression that is a number, SI.
+///
+/// # Errors
+/// As [`evaluate`], or it is no number.
 pub fn number(expr: &Expr, values: &dyn Values) -> Result<f64, String> {
     match evaluate(expr, values)? {
         Scalar::Number(value) => Ok(value),
@@ -62,6 +66,10 @@ pub fn number(expr: &Expr, values: &dyn Values) -> Result<f64, String> {
     }
 }
 
+/// Whether a condition holds.
+///
+/// # Errors
+/// As [`evaluate`], or it is no condition.
 pub fn flag(expr: &Expr, values: &dyn Values) -> Result<bool, String> {
     match evaluate(expr, values)? {
         Scalar::Flag(value) => Ok(value),
@@ -75,28 +83,37 @@ fn binary(
     right: &Expr,
     values: &dyn Values,
 ) -> Result<Scalar, String> {
-    Ok(match operator {
+    let flag = |part: &Expr| flag(part, values);
+    let (a, b) = match operator {
         // If one side decides the result, the other may be missing: `direction is straight or
         // radius > 600 m`.
-        Operator::And => Scalar::Flag(flag(left, values)? && flag(right, values)?),
-        Operator::Or => Scalar::Flag(flag(left, values)? || flag(right, values)?),
-        Operator::Is => Scalar::Flag(evaluate(left, values)? == evaluate(right, values)?),
-        Operator::IsNot => Scalar::Flag(evaluate(left, values)? != evaluate(right, values)?),
-        Operator::Add => Scalar::Number(number(left, values)? + number(right, values)?),
-        Operator::Subtract => Scalar::Number(number(left, values)? - number(right, values)?),
-        Operator::Multiply => Scalar::Number(number(left, values)? * number(right, values)?),
-        Operator::Divide => Scalar::Number(number(left, values)? / number(right, values)?),
-        Operator::Less => Scalar::Flag(number(left, values)? < number(right, values)?),
-        Operator::LessEqual => {
-            let (left, right) = (number(left, values)?, number(right, values)?);
-            Scalar::Flag(left <= right + values.rounding() * right.abs())
+        Operator::And => return Ok(Scalar::Flag(flag(left)? && flag(right)?)),
+        Operator::Or => return Ok(Scalar::Flag(flag(left)? || flag(right)?)),
+        Operator::Is | Operator::IsNot => {
+            let equal = evaluate(left, values)? == evaluate(right, values)?;
+            return Ok(Scalar::Flag(equal == (operator == Operator::Is)));
         }
-        Operator::Greater => Scalar::Flag(number(left, values)? > number(right, values)?),
-        Operator::GreaterEqual => {
-            let (left, right) = (number(left, values)?, number(right, values)?);
-            Scalar::Flag(left >= right - values.rounding() * right.abs())
-        }
+        _ => (number(left, values)?, number(right, values)?),
+    };
+    let room = values.rounding() * b.abs();
+    Ok(match operator {
+        Operator::Less => Scalar::Flag(a < b),
+        Operator::LessEqual => Scalar::Flag(a <= b + room),
+        Operator::Greater => Scalar::Flag(a > b),
+        Operator::GreaterEqual => Scalar::Flag(a >= b - room),
+        _ => Scalar::Number(arithmetic(operator, a, b)),
     })
+}
+
+/// A sum, a difference, a product or a quotient of two numbers; not a number for other operators.
+pub fn arithmetic(operator: Operator, a: f64, b: f64) -> f64 {
+    match operator {
+        Operator::Add => a + b,
+        Operator::Subtract => a - b,
+        Operator::Multiply => a * b,
+        Operator::Divide => a / b,
+        _ => f64::NAN,
+    }
 }
 
 /// The source text of an expression, with normalised blanks.
@@ -107,7 +124,7 @@ pub fn words(expr: &Expr) -> String {
 /// The structure of an expression without its place in the source. Two expressions with the same
 /// structure always have the same value.
 pub fn shape(expr: &Expr) -> String {
-    match &expr.kind {
+    let head = match &expr.kind {
         Kind::Constant(Scalar::Number(value)) => format!("{value:e}"),
         Kind::Constant(Scalar::Word(word)) => format!("'{word}'"),
         Kind::Constant(Scalar::Flag(flag)) => flag.to_string(),
@@ -116,30 +133,19 @@ pub fn shape(expr: &Expr) -> String {
         Kind::Start => "start".into(),
         Kind::End => "end".into(),
         Kind::Input(index) => format!("in{index}"),
-        Kind::Simulated => "simulated".into(),
-        Kind::Measured => "measured".into(),
+        Kind::Side(side) => side.in_words().into(),
         Kind::LimitOf(name) => format!("limit of {name}"),
-        Kind::Negative(inner) => format!("-({})", shape(inner)),
-        Kind::Not(inner) => format!("not({})", shape(inner)),
-        Kind::Power(inner, exponent) => format!("({})^{exponent}", shape(inner)),
-        Kind::Binary(operator, left, right) => {
-            format!("{operator:?}({},{})", shape(left), shape(right))
-        }
-        Kind::Call(function, arguments) => format!(
-            "{}({})",
-            function.name,
-            arguments.iter().map(shape).collect::<Vec<_>>().join(",")
-        ),
-        Kind::Cases(arms, otherwise) => {
-            let arms: Vec<String> = arms
-                .iter()
-                .map(|(value, condition)| format!("{}?{}", shape(value), shape(condition)))
-                .collect();
-            format!(
-                "[{};{}]",
-                arms.join(","),
-                otherwise.as_ref().map_or(String::new(), |value| shape(value))
-            )
-        }
-    }
+        Kind::Channel { column, .. } => format!("channel {column}"),
+        Kind::Negative(_) => "-".into(),
+        Kind::Not(_) => "not".into(),
+        Kind::Power(_, exponent) => format!("^{exponent}"),
+        Kind::Binary(operator, ..) => format!("{operator:?}"),
+        Kind::Call(function, _) => function.name.into(),
+        Kind::Filtered(_, steps) => format!("{steps:?}"),
+        Kind::OverAxis(operation, _) => format!("{operation:?}"),
+        Kind::Level(reducer, _) => format!("{} of", reducer.in_words()),
+        Kind::Cases(arms, _) => format!("cases{}", arms.len()),
+    };
+    let parts: Vec<String> = expr.parts().into_iter().map(shape).collect();
+    if parts.is_empty() { head } else { format!("{head}({})", parts.join(",")) }
 }

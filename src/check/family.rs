@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use super::like;
 use super::overlay::overlay;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, error};
 use crate::source::Source;
 use crate::syntax;
-use crate::syntax::document::{Block, Document, Field};
+use crate::syntax::document::{Block, Document, Field, Text};
 use crate::syntax::families::{self, Known};
+use crate::syntax::phrase::Limit;
 use crate::syntax::{from_pest, keys};
 
 /// Written in `remove` in place of a name: all blocks of the kind.
@@ -40,13 +41,11 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
     while let Some(field) = chain.last().and_then(|document| extends(document).cloned()) {
         let name = field.value.text.trim().trim_matches('"').to_string();
         if chain.len() > DEEPEST {
-            problems.push(
-                Problem::error(
-                    "extends-too-deep",
-                    format!("more than {DEEPEST} protocols extend each other"),
-                )
-                .at(&field.value.span),
-            );
+            problems.push(error(
+                "extends-too-deep",
+                format!("more than {DEEPEST} protocols extend each other"),
+                &field.value.span,
+            ));
             whole = false;
             break;
         }
@@ -59,7 +58,7 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
                     } else {
                         format!("`{name}` extends this protocol again")
                     };
-                    problems.push(Problem::error("extends-loop", says).at(&field.value.span));
+                    problems.push(error("extends-loop", says, &field.value.span));
                     whole = false;
                     break;
                 }
@@ -215,9 +214,7 @@ fn remove(blocks: &mut Vec<Block>, field: &Field, families: &[Known], problems: 
         });
         let here: Vec<&str> = here.map(|family| family.name.as_str()).collect();
         known.extend(here);
-        problems.push(
-            Problem::error("nothing-to-remove", says).at(&field.value.span).suggest(name, known),
-        );
+        problems.push(error("nothing-to-remove", says, &field.value.span).suggest(name, known));
         return;
     }
     match (is_limit, words.as_slice()) {
@@ -230,12 +227,14 @@ fn remove(blocks: &mut Vec<Block>, field: &Field, families: &[Known], problems: 
             problems,
         ),
         _ => {
-            let problem = Problem::error(
-                "remove",
-                format!("`remove` needs the name of one {}", field.key.text),
-            )
-            .at(&field.value.span);
-            problems.push(problem.help("write one name on each line, or `every` for all"));
+            problems.push(
+                error(
+                    "remove",
+                    format!("`remove` needs the name of one {}", field.key.text),
+                    &field.value.span,
+                )
+                .help("write one name on each line, or `every` for all"),
+            );
         }
     }
 }
@@ -248,17 +247,21 @@ fn remove_limits<'a>(
     field: &Field,
     problems: &mut Problems,
 ) {
-    let wanted = |other: &Field| {
-        if words.is_empty() {
-            return true;
-        }
-        // The estimate of a limit may have several words, in parentheses.
-        let wanted = words.join(" ");
-        let limit = from_pest::limit(&other.value, &mut Problems::default());
-        limit.is_some_and(|limit| {
-            let statistic = &limit.statistic.node;
-            *statistic == wanted || format!("{statistic} {}", limit.scope.node.meaning()) == wanted
-        })
+    // The estimate of a limit may have several words, in parentheses; a scope may follow it.
+    let wanted = words.join(" ");
+    let quiet = Problems::default;
+    let written = Text { text: wanted.clone(), span: field.value.span.clone(), exact: false };
+    let written = from_pest::minimum(&written, &mut quiet());
+    let is_wanted = |other: &Field| {
+        let limit = from_pest::limit(&other.value, &mut quiet());
+        let same = |limit: &Limit| {
+            limit.statistic.node == wanted
+                || written.as_ref().is_some_and(|written| {
+                    !written.scope.node.is_all()
+                        && (&written.count, &written.scope) == (&limit.estimate, &limit.scope)
+                })
+        };
+        words.is_empty() || limit.as_ref().is_some_and(same)
     };
     let mut removed = false;
     let mut known: Vec<String> = Vec::new();
@@ -269,7 +272,7 @@ fn remove_limits<'a>(
         };
         known.extend(quantity.fields_named("limit").filter_map(of));
         let before = quantity.fields.len();
-        quantity.fields.retain(|other| other.key.text != "limit" || !wanted(other));
+        quantity.fields.retain(|other| other.key.text != "limit" || !is_wanted(other));
         removed |= quantity.fields.len() < before;
     }
     if removed {
@@ -287,6 +290,7 @@ fn remove_limits<'a>(
         (false, _) => format!("{of} of the `{}`", words.join(" ")),
     };
     known.dedup();
-    let problem = Problem::error("nothing-to-remove", says).at(&field.value.span);
-    problems.push(problem.suggest(&words.join(" "), known.iter().map(String::as_str)));
+    problems.push(
+        error("nothing-to-remove", says, &field.value.span).suggest(&words.join(" "), &known),
+    );
 }

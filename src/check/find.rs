@@ -1,29 +1,27 @@
 //! Checks how sections are found in the runs of a campaign: data, conditions, length; and how many
 //! of them are kept.
 
-use super::Checker;
 use super::names::normalised;
 use super::plan::{
-    AxisOperation, Datum, DatumKind, Expr, Find, FindCondition, FoundDatum, Input, Keep, Kind,
-    OfSignals, SectionRules, Signal, SignalKind, Taken, Type,
+    Datum, DatumKind, Expr, Find, FindCondition, FoundDatum, Input, Keep, Kind, OfSignals,
+    SectionRules, Taken, Type,
 };
-use super::scalars::in_words;
 use super::scope::Scope;
-use crate::problem::Problem;
+use super::{Checker, if_written};
+use crate::problem::{error, warning};
 use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};
-use crate::syntax::from_pest;
 use crate::units::Dimension;
 
 /// What `use` says of sections that are looked for in runs.
-pub(super) const FOUND_SECTIONS: &str = "found sections";
+pub const FOUND_SECTIONS: &str = "found sections";
 /// Where each field `keep` begins, and what stands before its groups.
 const AT_MOST: &str = "at most";
 const FOR_EACH: &str = " for each ";
 
 impl Checker<'_> {
     /// How sections are found, where the protocol says so.
-    pub(super) fn find(
+    pub fn find(
         &mut self,
         block: Option<&Block>,
         rules: &SectionRules,
@@ -37,11 +35,8 @@ impl Checker<'_> {
             .filter(|field| normalised(&field.value.text) == FOUND_SECTIONS);
         let Some(used) = used else {
             if let Some(first) = conditions.first() {
-                let says =
-                    "the protocol has conditions on found sections, and does not look for sections";
-                let problem = Problem::warning("find-unused", says).at(first.span());
                 self.problems.push(
-                    problem.help(format!("write in the block `sections`: `use {FOUND_SECTIONS}`")),
+                    warning("find-unused", "the protocol has conditions on found sections, and does not look for sections", first.span()).help(format!("write in the block `sections`: `use {FOUND_SECTIONS}`")),
                 );
             }
             return None;
@@ -49,24 +44,19 @@ impl Checker<'_> {
         let block = block?;
         let step = match block.field("step") {
             Some(field) => self.along_axis(field, true),
-            None => {
-                let problem = Problem::error(
+            None => self.refuse(
+                error(
                     "missing-field",
                     "`sections` has no `step`: where sections are looked for",
+                    &used.value.span,
                 )
-                .at(&used.value.span);
-                self.problems.push(
-                    problem.help("add the distance between two places that are tried: `step 1 m`"),
-                );
-                None
-            }
+                .help("add the distance between two places that are tried: `step 1 m`"),
+            ),
         };
         let length = block.field("length").map(|field| self.found_length(field));
         if length.is_none() && (rules.zone.is_none() || zones == 0) {
-            let says = "a found section has no length: there is no field `length`, and no zone with a minimum length";
             self.problems.push(
-                Problem::error("missing-field", says)
-                    .at(&used.value.span)
+                error("missing-field", "a found section has no length: there is no field `length`, and no zone with a minimum length", &used.value.span)
                     .help("add `length 100 m`"),
             );
         }
@@ -76,59 +66,54 @@ impl Checker<'_> {
             }) {
                 let says = format!("a found section of zone {} has no length", zone.name_text());
                 let help = "give the zone a `minimum length`, or `sections` a `length`";
-                self.problems
-                    .push(Problem::error("missing-field", says).at(zone.span()).help(help));
+                self.problems.push(error("missing-field", says, zone.span()).help(help));
             }
         }
-        let prefer = match block.field("prefer") {
-            None => None,
-            Some(field) if normalised(&field.value.text) == "first" => None,
-            Some(field) => {
-                Some(self.of_signals(field, &[]).filter(|of| self.number_type(&of.expr).is_some()))
-            }
-        };
+        let prefer = block
+            .field("prefer")
+            .filter(|field| normalised(&field.value.text) != "first")
+            .map(|field| {
+                self.of_signals(field, &[]).filter(|of| self.number_type(&of.expr).is_some())
+            });
         let data = self.found_data(&blocks, rules);
         let conditions: Vec<Option<FindCondition>> =
             conditions.into_iter().map(|block| self.find_condition(block)).collect();
-        let (length, prefer) = (
-            length.map_or(Some(None), |length| length.map(Some)),
-            prefer.map_or(Some(None), |prefer| prefer.map(Some)),
-        );
         Some(Find {
             step: step?,
-            length: length?,
-            prefer: prefer?,
+            length: if_written(length)?,
+            prefer: if_written(prefer)?,
             data: data?,
             conditions: conditions.into_iter().collect::<Option<_>>()?,
         })
     }
 
     fn found_length(&mut self, field: &Field) -> Option<Expr> {
-        let phrase = from_pest::expression(&field.value, self.problems)?;
-        let expr = self.expr(&phrase, &field.value, &mut Scope::section())?;
+        let expr = self.expression(&field.value, &mut Scope::section())?;
         self.length_of_section(expr, field)
     }
 
     /// An expression for the length of a section, if it has the dimension of the axis.
-    pub(super) fn length_of_section(&mut self, expr: Expr, field: &Field) -> Option<Expr> {
+    pub fn length_of_section(&mut self, expr: Expr, field: &Field) -> Option<Expr> {
         let axis = self.axis_dimension();
         let found = self.number_type(&expr)?;
         if found == axis {
             return Some(expr);
         }
-        let says = format!(
-            "the length of a section is {}, this is {}",
-            axis.in_words(),
-            in_words(&expr.ty)
+        let problem = error(
+            "unit-mismatch",
+            format!(
+                "the length of a section is {}, this is {}",
+                axis.in_words(),
+                expr.ty.in_words()
+            ),
+            &field.value.span,
         );
-        let problem = Problem::error("unit-mismatch", says).at(&field.value.span);
-        self.problems.push(match (&self.axis, found) {
+        self.refuse(match (&self.axis, found) {
             (Some(axis), Dimension::ONE) => {
                 problem.help(format!("write its unit, such as {}", axis.unit))
             }
             _ => problem,
-        });
-        None
+        })
     }
 
     fn find_condition(&mut self, block: &Block) -> Option<FindCondition> {
@@ -139,10 +124,7 @@ impl Checker<'_> {
         let (lead, tail) = (reach("lead"), reach("tail"));
         Some(FindCondition {
             name: block.name_text().to_string(),
-            title: block
-                .title
-                .as_ref()
-                .map_or_else(|| block.name_text().replace('_', " "), |title| title.text.clone()),
+            title: block.title_in_words(),
             require: require?,
             lead: lead?,
             tail: tail?,
@@ -152,10 +134,9 @@ impl Checker<'_> {
 
     /// An expression over values of signals. `words` may stand for themselves.
     fn of_signals(&mut self, field: &Field, words: &[String]) -> Option<OfSignals> {
-        let phrase = from_pest::expression(&field.value, self.problems)?;
-        let axis = self.axis_dimension();
-        let mut scope = Scope { words: words.to_vec(), ..Scope::reducing(None, axis) };
-        let expr = self.expr(&phrase, &field.value, &mut scope)?;
+        let of_records = Scope::reducing(None, self.axis_dimension());
+        let mut scope = Scope { words: words.to_vec(), ..of_records };
+        let expr = self.expression(&field.value, &mut scope)?;
         for input in &scope.inputs {
             self.found_before(input)?;
         }
@@ -174,12 +155,11 @@ impl Checker<'_> {
             true => "a value taken from both sides cannot be used to find sections",
             false => "a signal that depends on the section cannot be used to find sections",
         };
-        let problem = Problem::error("find-signal", says).at(&input.span);
-        self.problems.push(match needs {
+        let problem = error("find-signal", says, &input.span);
+        self.refuse(match needs {
             Some(at) => problem.also(&at, "this is known only when the section is found"),
             None => problem,
-        });
-        None
+        })
     }
 
     /// The fields `found` of section data, in an order in which each needs only those before it.
@@ -194,10 +174,8 @@ impl Checker<'_> {
                 continue;
             };
             if rules.zone == Some(column) {
-                let says =
-                    "the zone of a found section follows from the conditions `where` of the zones";
                 self.problems.push(
-                    Problem::error("found-zone", says).at(&field.key.span).help("remove the line"),
+                    error("found-zone", "the zone of a found section follows from the conditions `where` of the zones", &field.key.span).help("remove the line"),
                 );
                 sound = false;
                 continue;
@@ -231,11 +209,13 @@ impl Checker<'_> {
             _ => false,
         };
         if !fits {
-            let says = format!("`{}` is {wanted}, this is {}", datum.name, in_words(&expr.ty));
             self.problems.push(
-                Problem::error("unit-mismatch", says)
-                    .at(&field.value.span)
-                    .also(&datum.span, "declared here"),
+                error(
+                    "unit-mismatch",
+                    format!("`{}` is {wanted}, this is {}", datum.name, expr.ty.in_words()),
+                    &field.value.span,
+                )
+                .also(&datum.span, "declared here"),
             );
         }
         fits
@@ -249,11 +229,7 @@ impl Checker<'_> {
         let mut ordered: Vec<FoundDatum> = Vec::new();
         while !left.is_empty() {
             let waits = |datum: &FoundDatum| {
-                let mut waits = false;
-                datum.of.expr.visit(&mut |part| {
-                    waits |= matches!(part.kind, Kind::Column(of) if left.iter().any(|other| other.column == of));
-                });
-                waits
+                datum.of.expr.any(&|part| matches!(part.kind, Kind::Column(of) if left.iter().any(|other| other.column == of)))
             };
             let Some(at) = left.iter().position(|datum| !waits(datum)) else {
                 let names: Vec<String> = left
@@ -263,33 +239,23 @@ impl Checker<'_> {
                 let says = format!("section data need each other: {}", names.join(", "));
                 let span = left[0].of.expr.span.span.clone();
                 let help = "let one of them follow from signals only: `mean of ...`";
-                self.problems.push(Problem::error("found-loop", says).at(&span).help(help));
-                return None;
+                return self.refuse(error("found-loop", says, &span).help(help));
             };
             ordered.push(left.remove(at));
         }
         for datum in &ordered {
-            let mut of_zone: Option<Span> = None;
-            datum.of.expr.visit(&mut |part| {
-                if matches!(part.kind, Kind::Column(of) if Some(of) == zone) {
-                    of_zone = Some(part.span.span.clone());
-                }
-            });
+            let is_zone = |part: &Expr| matches!(part.kind, Kind::Column(of) if Some(of) == zone);
+            let of_zone = datum.of.expr.find(&is_zone).map(|part| part.span.span.clone());
             if let Some(at) = of_zone {
-                let says = "the zone of a found section follows from its data, so its data cannot depend on the zone";
-                self.problems.push(
-                    Problem::error("found-zone", says)
-                        .at(&at)
-                        .help("use it in a block `find`, where the zone is known"),
-                );
-                return None;
+                return self.refuse(error("found-zone", "the zone of a found section follows from its data, so its data cannot depend on the zone", &at)
+                        .help("use it in a block `find`, where the zone is known"));
             }
         }
         Some(ordered)
     }
 
     /// A constant along the axis: a step, a margin.
-    pub(super) fn along_axis(&mut self, field: &Field, above_zero: bool) -> Option<f64> {
+    pub fn along_axis(&mut self, field: &Field, above_zero: bool) -> Option<f64> {
         let (value, dimension) = self.constant(&field.value)?;
         let axis = self.axis_dimension();
         let says = if dimension != axis {
@@ -304,17 +270,15 @@ impl Checker<'_> {
             return Some(value);
         };
         let code = if dimension == axis { "out-of-range" } else { "unit-mismatch" };
-        self.problems.push(Problem::error(code, says).at(&field.value.span));
-        None
+        self.refuse(error(code, says, &field.value.span))
     }
 
     /// `at most 9 for each zone and country`.
-    pub(super) fn keep(&mut self, field: &Field) -> Option<Keep> {
+    pub fn keep(&mut self, field: &Field) -> Option<Keep> {
         let text = &field.value.text;
         let wrong = |checker: &mut Self, says: String| {
             let help = "for instance: `keep at most 9 for each zone and country`";
-            checker.problems.push(Problem::error("keep", says).at(&field.value.span).help(help));
-            None
+            checker.refuse(error("keep", says, &field.value.span).help(help))
         };
         let Some(rest) =
             text.strip_prefix(AT_MOST).filter(|rest| rest.starts_with(char::is_whitespace))
@@ -342,60 +306,24 @@ impl Checker<'_> {
             .map(str::trim)
         {
             let at = part(name).span;
-            match self.names.columns.iter().position(|datum| datum.name == name) {
-                Some(index) if !matches!(self.names.columns[index].kind, DatumKind::Number(_)) => {
-                    each.push(index)
-                }
-                Some(_) => {
-                    let says =
-                        format!("`{name}` is a number; only a column of words can form groups");
-                    self.problems.push(Problem::error("not-a-word", says).at(&at));
-                    return None;
-                }
-                None => {
-                    let known: Vec<String> =
-                        self.names.columns.iter().map(|datum| datum.name.clone()).collect();
-                    let problem = Problem::error(
-                        "unknown-name",
-                        format!("no section datum is called `{name}`"),
-                    )
-                    .at(&at);
-                    self.problems.push(problem.suggest(name, known.iter().map(String::as_str)));
-                    return None;
-                }
+            let index = self.column_called("datum", name, &at)?;
+            if matches!(self.names.columns[index].kind, DatumKind::Number(_)) {
+                let says = format!("`{name}` is a number; only a column of words can form groups");
+                return self.refuse(error("not-a-word", says, &at));
             }
+            each.push(index);
         }
         Some(Keep { most: most as usize, each, words: normalised(text) })
     }
 }
 
 /// Where a signal needs what is known only of a section: its data, its ends, one of its numbers.
-fn needs_section(signal: &Signal) -> Option<Span> {
-    let of_expr = |expr: &Expr| {
-        let mut found = None;
-        expr.visit(&mut |part| {
-            if matches!(part.kind, Kind::Column(_) | Kind::Start | Kind::End) {
-                found = Some(part.span.span.clone());
-            }
-        });
-        found
+fn needs_section(signal: &Expr) -> Option<Span> {
+    let known_later = |part: &Expr| {
+        matches!(
+            part.kind,
+            Kind::Column(_) | Kind::Start | Kind::End | Kind::Level(..) | Kind::Side(_)
+        )
     };
-    match &signal.kind {
-        SignalKind::Column { .. } => None,
-        SignalKind::Scalar(expr) => of_expr(expr),
-        SignalKind::Binary(_, left, right) => needs_section(left).or_else(|| needs_section(right)),
-        SignalKind::Negative(inner)
-        | SignalKind::Power(inner, _)
-        | SignalKind::Filtered(inner, _) => needs_section(inner),
-        SignalKind::Call(_, arguments) => arguments.iter().find_map(needs_section),
-        SignalKind::OverAxis(AxisOperation::Shifted(distance), inner) => {
-            of_expr(distance).or_else(|| needs_section(inner))
-        }
-        SignalKind::OverAxis(_, inner) => needs_section(inner),
-        SignalKind::Level(..) | SignalKind::Side(_) => Some(signal.span.clone()),
-        SignalKind::Select(arms, otherwise) => arms
-            .iter()
-            .find_map(|(condition, signal)| of_expr(condition).or_else(|| needs_section(signal)))
-            .or_else(|| otherwise.as_deref().and_then(needs_section)),
-    }
+    signal.find(&known_later).map(|part| part.span.span.clone())
 }

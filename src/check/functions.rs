@@ -2,11 +2,12 @@
 
 use crate::catalog::{FUNCTIONS, Function, SIGNAL_FUNCTIONS};
 
-pub(super) fn function(name: &str) -> Option<&'static Function> {
+/// The function of a name.
+pub fn function(name: &str) -> Option<&'static Function> {
     FUNCTIONS.iter().find(|function| function.name == name)
 }
 
 /// Whether it is a function of signals along the axis.
-pub(super) fn is_signal_function(name: &str) -> bool {
+pub fn is_signal_function(name: &str) -> bool {
     SIGNAL_FUNCTIONS.iter().any(|(known, ..)| *known == name)
 }

@@ -1,20 +1,19 @@
 //! Checks which rows a limit, a minimum or a report is of, and by what keys they form groups.
 
 use super::Checker;
-use super::names::normalised;
 use super::plan::{DatumKind, Key, Kind, Scope};
 use super::scope::Scope as Names;
-use crate::problem::Problem;
+use crate::problem::error;
 use crate::source::Span;
 use crate::syntax::document::{Block, Text};
 use crate::syntax::phrase::{At, Scope as Written};
 
 /// Keys of groups that every campaign has.
-const KEYS: [&str; 5] = ["zone", "section", "site", "record", super::scalar_names::CAMPAIGN];
+const KEYS: [&str; 5] = ["zone", "section", "site", "record", super::resolve::CAMPAIGN];
 
 /// What is grouped.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Grouped {
+pub struct Grouped {
     /// In words: "the values of `Y`".
     what: String,
     /// The places of the signals; `None` of sections, which have no place and no record.
@@ -30,6 +29,7 @@ impl Grouped {
         }
     }
 
+    /// The sections used.
     pub fn sections() -> Self {
         Self { what: "the sections".into(), places: None }
     }
@@ -38,7 +38,7 @@ impl Grouped {
 impl Checker<'_> {
     /// A scope by itself, or once for every zone if it says so, with the zone. One that was not
     /// understood is kept, so that what else there is in the rule is looked at.
-    pub(super) fn zone_by_zone(
+    pub fn zone_by_zone(
         &self,
         scope: Option<(Scope, bool)>,
     ) -> Vec<(Option<Scope>, Option<String>)> {
@@ -53,18 +53,16 @@ impl Checker<'_> {
 
     /// The rows that a limit or a minimum applies to, and whether there is one limit for every
     /// zone.
-    pub(super) fn scope_of(&mut self, scope: &At<Written>, text: &Text) -> Option<(Scope, bool)> {
+    pub fn scope_of(&mut self, scope: &At<Written>, text: &Text) -> Option<(Scope, bool)> {
         let written = &scope.node;
         let zones = self.limit_zones(&written.zones, text);
         let (mut each_zone, mut each, mut ok) = (false, Vec::new(), true);
         for key in &written.each {
-            let place = text.place(key.range.clone());
+            let place = key.place(text);
             if matches!(key.node.as_str(), "zone" | "zones") {
                 ok &= !each_zone || self.key_twice(&key.node, &place);
                 if self.zone_names.is_empty() {
-                    self.problems.push(
-                        Problem::error("unknown-zone", "the protocol has no zones").at(&place),
-                    );
+                    self.problems.push(error("unknown-zone", "the protocol has no zones", &place));
                     ok = false;
                 }
                 each_zone = true;
@@ -79,9 +77,8 @@ impl Checker<'_> {
         let condition = match &written.condition {
             None => None,
             Some(condition) => {
-                let words = normalised(&text.text[condition.range.clone()]);
-                let condition = self.expr(condition, text, &mut Names::section());
-                let condition = condition.filter(|condition| self.flag_type(condition).is_some());
+                let words = condition.words(text);
+                let condition = self.condition(condition, text, &mut Names::section());
                 ok &= condition.is_some();
                 condition.map(|condition| (condition, words))
             }
@@ -94,12 +91,11 @@ impl Checker<'_> {
         let mut found: Vec<String> = Vec::new();
         let mut ok = true;
         for zone in zones {
-            let place = text.place(zone.range.clone());
+            let place = zone.place(text);
             if !self.zone_names.contains(&zone.node) {
                 let known = self.zone_names.clone();
                 let problem =
-                    Problem::error("unknown-zone", format!("there is no zone {}", zone.node))
-                        .at(&place);
+                    error("unknown-zone", format!("there is no zone {}", zone.node), &place);
                 self.problems.push(if known.is_empty() {
                     problem.help("the protocol has no zones")
                 } else {
@@ -116,9 +112,11 @@ impl Checker<'_> {
     }
 
     fn key_twice(&mut self, key: &str, at: &Span) -> bool {
-        self.problems.push(
-            Problem::error("duplicate-name", format!("`{key}` is named twice in the scope")).at(at),
-        );
+        self.problems.push(error(
+            "duplicate-name",
+            format!("`{key}` is named twice in the scope"),
+            at,
+        ));
         false
     }
 
@@ -144,42 +142,30 @@ impl Checker<'_> {
                 let says = format!("`{name}` is a number; only a column of words can form groups");
                 let help =
                     "declare the column with `one of ...`, or use it in an estimate: `mean of ...`";
-                self.problems.push(Problem::error("not-a-word", says).at(span).help(help));
-                return None;
+                return self.refuse(error("not-a-word", says, span).help(help));
             }
             return Some(Key::Column(index));
         }
         let words =
             self.names.columns.iter().filter(|datum| !matches!(datum.kind, DatumKind::Number(_)));
-        let columns: Vec<String> = words
-            .map(|datum| datum.name.clone())
-            .filter(|name| !KEYS.contains(&name.as_str()))
-            .collect();
+        let columns = words.map(|datum| datum.name.as_str()).filter(|name| !KEYS.contains(name));
         let of_all = KEYS.into_iter().filter(|key| places.is_some() || *key != "record");
-        let known = of_all
-            .chain(places.iter().flatten().map(String::as_str))
-            .chain(columns.iter().map(String::as_str));
-        self.problems.push(
-            Problem::error("unknown-key", format!("{what} cannot be grouped by `{name}`"))
-                .at(span)
+        let known = of_all.chain(places.iter().flatten().map(String::as_str)).chain(columns);
+        self.refuse(
+            error("unknown-key", format!("{what} cannot be grouped by `{name}`"), span)
                 .suggest(name, known),
-        );
-        None
+        )
     }
 
     /// A key inside an estimate: there the zone is one like others.
-    pub(super) fn group_key(&mut self, key: &At<String>, text: &Text) -> Option<Key> {
-        let place = text.place(key.range.clone());
+    pub fn group_key(&mut self, key: &At<String>, text: &Text) -> Option<Key> {
+        let place = key.place(text);
         if !matches!(key.node.as_str(), "zone" | "zones") {
             return self.key(&key.node, &place);
         }
         match self.zone.as_ref().map(|zone| &zone.kind) {
             Some(Kind::Column(index)) => Some(Key::Column(*index)),
-            _ => {
-                self.problems
-                    .push(Problem::error("unknown-zone", "the protocol has no zones").at(&place));
-                None
-            }
+            _ => self.refuse(error("unknown-zone", "the protocol has no zones", &place)),
         }
     }
 }

@@ -3,12 +3,12 @@
 use super::Checker;
 use super::evaluate::{number, words};
 use super::plan::{
-    Estimate, EstimateKind, Expr, InputSide, Kind, OfGroup, Operator, Scalar, Taking, Valued,
+    Estimate, EstimateKind, Expr, InputSide, Kind, OfGroup, Operator, Scalar, Side, Taking, Valued,
 };
 use super::values::Values;
 use crate::catalog::Statistic;
 use crate::metrics::rounded;
-use crate::problem::Problem;
+use crate::problem::{Problem, error, warning};
 use crate::source::Span;
 use crate::syntax::document::Block;
 
@@ -17,7 +17,7 @@ const OF_MAGNITUDES: [&str; 2] = ["rms", "peak"];
 
 impl Checker<'_> {
     /// A difference that does not depend on the two values, such as `measured - measured`.
-    pub(super) fn depends_on_values(&mut self, difference: &Expr, at: &Span) -> Option<()> {
+    pub fn depends_on_values(&mut self, difference: &Expr, at: &Span) -> Option<()> {
         /// Values of both signs, without a simple ratio.
         const TRIED: [(f64, f64); 3] = [(1.0, -1.7), (2.9, 1.0), (-1.7, 2.9)];
         let mut found = TRIED
@@ -29,13 +29,12 @@ impl Checker<'_> {
         }
         let says = "this difference is the same whatever the two values are";
         let help = "a difference uses `simulated` and `measured`: `simulated - measured`";
-        self.problems.push(Problem::error("constant-difference", says).at(at).help(help));
-        None
+        self.refuse(error("constant-difference", says, at).help(help))
     }
 
     /// Values that are compared although all of them are taken from the same record: `value
     /// measured(p99.85)`.
-    pub(super) fn of_both_records(
+    pub fn of_both_records(
         &mut self,
         values: &[Valued],
         difference: &Expr,
@@ -43,12 +42,10 @@ impl Checker<'_> {
     ) -> Option<()> {
         let mut sides =
             values.iter().flat_map(|value| value.inputs.iter().flatten()).map(|input| input.side);
-        let (mut simulated, mut measured) = (false, false);
-        difference.visit(&mut |part| {
-            simulated |= matches!(part.kind, Kind::Simulated);
-            measured |= matches!(part.kind, Kind::Measured);
-        });
-        let first = sides.next().filter(|side| *side != InputSide::Own && simulated && measured);
+        let uses =
+            |side: Side| difference.any(&|part| matches!(part.kind, Kind::Side(of) if of == side));
+        let first =
+            sides.next().filter(|side| *side != InputSide::Own && Side::ALL.into_iter().all(uses));
         let Some(side) = first.filter(|first| sides.all(|side| side == *first)) else {
             return Some(());
         };
@@ -57,32 +54,30 @@ impl Checker<'_> {
             "this value is taken from the {name} record for both sides, so that the two are always equal"
         );
         let help = format!("write the value without `{name}(...)`: it is taken from each record");
-        self.problems.push(Problem::error("value-of-one-record", says).at(at).help(help));
-        None
+        self.refuse(error("value-of-one-record", says, at).help(help))
     }
 
     /// A share is at most 1: a limit above it always holds, and with `at least` never. Usually `%`
     /// is missing.
-    pub(super) fn share_above_one(&mut self, estimate: &Estimate, bound: &Expr) -> Option<()> {
+    pub fn share_above_one(&mut self, estimate: &Estimate, bound: &Expr) -> Option<()> {
         let Kind::Constant(Scalar::Number(value)) = bound.kind else { return Some(()) };
         if value <= 1.0 || !is_share(estimate) {
             return Some(());
         }
-        let problem = Problem::error(
+        let problem = error(
             "out-of-range",
             format!("a share is at most 1; `{}` is above it", words(bound)),
-        )
-        .at(&bound.span);
-        self.problems.push(if value <= 100.0 {
+            &bound.span,
+        );
+        self.refuse(if value <= 100.0 {
             problem.help(format!("write `{} %`", rounded(value)))
         } else {
             problem
-        });
-        None
+        })
     }
 
     /// The estimate of a whole quantity with a bound from the same values: the two grow together.
-    pub(super) fn of_own_values(&mut self, estimate: &Estimate, bound: &OfGroup, block: &Block) {
+    pub fn of_own_values(&mut self, estimate: &Estimate, bound: &OfGroup, block: &Block) {
         let own =
             |taking: &Taking| matches!(taking, Taking::Other { id, .. } if id == block.name_text());
         if matches!(estimate.kind, EstimateKind::Each) || !bound.taken.iter().any(own) {
@@ -93,12 +88,12 @@ impl Checker<'_> {
             block.name_text()
         );
         let help = "it says nothing about their size; name another quantity, or write a number";
-        self.problems.push(Problem::warning("own-values", says).at(&bound.expr.span).help(help));
+        self.problems.push(warning("own-values", says, &bound.expr.span).help(help));
     }
 
     /// `mean + 3 * std` of differences: its magnitude is small where the mean is negative, so a bad
     /// model can pass.
-    pub(super) fn signed_estimate(&mut self, estimate: &Estimate, at: &Span) {
+    pub fn signed_estimate(&mut self, estimate: &Estimate, at: &Span) {
         let EstimateKind::Of(of) = &estimate.kind else { return };
         let Kind::Binary(Operator::Add, left, right) = &of.expr.kind else { return };
         let (mut signed, mut scatter) = (false, false);
@@ -125,7 +120,7 @@ impl Checker<'_> {
                 problem.code == "signed-estimate" && problem.at.as_ref() == Some(at)
             };
             if !self.problems.0.iter().any(told) {
-                self.problems.push(Problem::warning("signed-estimate", says).at(at).help(help));
+                self.problems.push(warning("signed-estimate", says, at).help(help));
             }
         }
     }
@@ -157,14 +152,8 @@ fn is_share(estimate: &Estimate) -> bool {
 fn outside_magnitudes(expr: &Expr, found: &mut Vec<usize>) {
     match &expr.kind {
         Kind::Input(index) => found.push(*index),
-        Kind::Negative(inner) | Kind::Power(inner, _) => outside_magnitudes(inner, found),
-        Kind::Binary(_, left, right) => {
-            outside_magnitudes(left, found);
-            outside_magnitudes(right, found);
-        }
-        Kind::Call(function, arguments) if function.name != "magnitude" => {
-            arguments.iter().for_each(|argument| outside_magnitudes(argument, found));
-        }
-        _ => {}
+        Kind::Call(function, _) if function.name == "magnitude" => {}
+        Kind::Cases(..) => {}
+        _ => expr.parts().into_iter().for_each(|part| outside_magnitudes(part, found)),
     }
 }

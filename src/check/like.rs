@@ -1,7 +1,7 @@
 //! A quantity that is like another: its fields are those of the other, with its own over them.
 
 use super::overlay::overlay;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problems, error};
 use crate::syntax::document::{Block, Document};
 
 const LIKE: &str = "like";
@@ -45,19 +45,28 @@ fn filled(
             let known = quantities()
                 .map(|(_, block)| block.name_text())
                 .filter(|known| *known != own.name_text());
-            let problem =
-                Problem::error("no-such-quantity", format!("no quantity is called `{name}`"))
-                    .at(&field.value.span);
-            problems.push(problem.suggest(name, known));
+            problems.push(
+                error(
+                    "no-such-quantity",
+                    format!("no quantity is called `{name}`"),
+                    &field.value.span,
+                )
+                .suggest(name, known),
+            );
         }
         return None;
     };
     if passed.contains(&other) {
         // One problem for each of a round, where its own `like` stands.
         if passed[0] == other {
-            let says = format!("`{}` is like itself in the end", own.name_text());
-            let problem = Problem::error("like-loop", says).at(&field.value.span);
-            problems.push(problem.help("let one of them state its own `of`, `value` and limits"));
+            problems.push(
+                error(
+                    "like-loop",
+                    format!("`{}` is like itself in the end", own.name_text()),
+                    &field.value.span,
+                )
+                .help("let one of them state its own `of`, `value` and limits"),
+            );
         }
         return None;
     }

@@ -6,14 +6,13 @@ use super::names::normalised;
 use super::plan::{
     Estimate, EstimateKind, Expr, Kind, Limit, OfGroup, Scalar, Scope as LimitScope, Type,
 };
-use super::scalar_names::LIMITS_NOT_VALUES;
-use super::scalars::in_words;
+use super::resolve::LIMITS_NOT_VALUES;
 use super::scope::Scope;
 use super::values::Values;
 use super::{Checker, overlap};
 use crate::catalog::Best;
 use crate::metrics::rounded;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problems, error};
 use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
@@ -35,17 +34,14 @@ struct Common<'a> {
 impl Checker<'_> {
     /// Behind a number that is not from a checked source: against the standard, if the protocol
     /// names its source.
-    pub(super) fn to_be_confirmed(&self) -> &'static str {
-        let named = self
-            .blocks
-            .iter()
-            .any(|block| block.kind.text == "protocol" && block.field("source").is_some());
+    pub fn to_be_confirmed(&self) -> &'static str {
+        let named = self.blocks_of("protocol").any(|block| block.field("source").is_some());
         if named { ", to be confirmed against the standard" } else { ", to be confirmed" }
     }
 
     /// The limits of a quantity. Where the values have an error (no `unit`), everything but the
     /// dimension is checked.
-    pub(super) fn limits(
+    pub fn limits(
         &mut self,
         block: &Block,
         unit: Option<(&Unit, &Span)>,
@@ -122,8 +118,7 @@ impl Checker<'_> {
             // A limit of every single value may depend on its section; a limit of a statistic has
             // one bound.
             section: matches!(estimate.kind, EstimateKind::Each),
-            zone: zone.clone(),
-            ..Scope::vehicle()
+            ..Scope::zone(zone.as_deref())
         };
         let mut of_bound = scope();
         of_bound.limits = Some((dimension.unwrap_or(Dimension::ONE), names));
@@ -140,7 +135,7 @@ impl Checker<'_> {
             }
             let signed = matches!(common.best, Some((Best::Near(best), _)) if *best == 0.0);
             if signed && !written.at_least {
-                self.signed_estimate(estimate, &text.place(written.statistic.range.clone()));
+                self.signed_estimate(estimate, &written.statistic.place(text));
             }
             let expr = self.suitable_bound(bound.expr, written.at_least, of, common)?;
             self.share_above_one(estimate, &expr)?;
@@ -154,9 +149,7 @@ impl Checker<'_> {
         for (factor, condition) in &written.factors {
             let factor =
                 self.expr(factor, text, &mut scope()).and_then(|factor| self.plain_factor(factor));
-            let condition = self
-                .expr(condition, text, &mut scope())
-                .filter(|condition| self.flag_type(condition).is_some());
+            let condition = self.condition(condition, text, &mut scope());
             match factor.zip(condition) {
                 Some(found) => factors.push(found),
                 None => ok = false,
@@ -165,10 +158,7 @@ impl Checker<'_> {
         let only_when = match &written.only_when {
             None => None,
             Some(condition) => {
-                let vehicle = Scope { zone: zone.clone(), ..Scope::vehicle() };
-                let condition = self
-                    .expr(condition, text, &mut { vehicle })
-                    .filter(|condition| self.flag_type(condition).is_some());
+                let condition = self.condition(condition, text, &mut Scope::zone(zone.as_deref()));
                 ok &= condition.is_some();
                 condition
             }
@@ -190,7 +180,7 @@ impl Checker<'_> {
 
     /// The words of a limit with parameters replaced by their values: `2/3 of std` for `share of
     /// std`.
-    pub(super) fn with_values(&self, words: &str) -> String {
+    pub fn with_values(&self, words: &str) -> String {
         let is_name = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
         let mut out = String::new();
         let mut rest = words;
@@ -242,20 +232,20 @@ impl Checker<'_> {
             } else {
                 format!("write the limit in {unit}")
             };
-            self.problems.push(
-                Problem::error("unit-mismatch", says)
-                    .at(&bound.span)
+            return self.refuse(
+                error("unit-mismatch", says, &bound.span)
                     .label(found.in_words())
                     .also(from, wanted)
                     .help(help),
             );
-            return None;
         }
         match bound.kind {
             Kind::Constant(Scalar::Number(value)) if value <= 0.0 && !at_least => {
-                let says = format!("a limit must be above zero; `{}` is not", words(&bound));
-                self.problems.push(Problem::error("out-of-range", says).at(&bound.span));
-                None
+                self.refuse(error(
+                    "out-of-range",
+                    format!("a limit must be above zero; `{}` is not", words(&bound)),
+                    &bound.span,
+                ))
             }
             _ => Some(bound),
         }
@@ -297,14 +287,16 @@ impl Checker<'_> {
         } else {
             (format!("the values of `{}`", common.block.name_text()), best.in_words())
         };
-        let says = format!("this limit is on the wrong side: for {of}, the best value is {is}");
-        let problem = Problem::error("wrong-side", says)
-            .at(&text.place(written.statistic.range.start..written.bound.range.end));
+        let problem = error(
+            "wrong-side",
+            format!("this limit is on the wrong side: for {of}, the best value is {is}"),
+            &text.place(written.statistic.range.start..written.bound.range.end),
+        );
         let problem = match from {
             Some(from) => problem.also(from, format!("best value {is}")),
             None => problem,
         };
-        self.problems.push(match (best, written.at_least) {
+        self.refuse(match (best, written.at_least) {
             (Best::Greatest(best), true) => {
                 problem.help(format!("no value is above {best}, so the limit must not be either"))
             }
@@ -326,8 +318,7 @@ impl Checker<'_> {
                     "the limit must admit the best value: write a limit {side} {best}"
                 ))
             }
-        });
-        None
+        })
     }
 
     fn plain_factor(&mut self, factor: Expr) -> Option<Expr> {
@@ -335,14 +326,11 @@ impl Checker<'_> {
         if dimension == Dimension::ONE {
             return Some(factor);
         }
-        self.problems.push(
-            Problem::error(
-                "unit-mismatch",
-                format!("a factor must be a plain number, this is {}", in_words(&factor.ty)),
-            )
-            .at(&factor.span),
-        );
-        None
+        self.refuse(error(
+            "unit-mismatch",
+            format!("a factor must be a plain number, this is {}", factor.ty.in_words()),
+            &factor.span,
+        ))
     }
 
     /// A limit that refers to other limits and is a constant must be above zero.
@@ -368,8 +356,7 @@ impl Checker<'_> {
                 "in a limit, `{name}` stands for the limit of the {name}, not for its value"
             );
             self.problems.push(
-                Problem::error("out-of-range", says)
-                    .at(&limit.bound.expr.span)
+                error("out-of-range", says, &limit.bound.expr.span)
                     .also(place, "a limit")
                     .help(help),
             );
@@ -392,11 +379,11 @@ impl Checker<'_> {
         for limit in limits {
             for (name, span) in refers(limit) {
                 if target(limit, &name).is_none() {
-                    let problem = Problem::error(
+                    let problem = error(
                         "no-such-limit",
                         format!("no limit of `{name}` applies to the same sections"),
-                    )
-                    .at(&span);
+                        &span,
+                    );
                     let other = limits.iter().find(|other| other.estimate.name == name);
                     self.problems.push(match other {
                         Some(other) => {
@@ -418,8 +405,7 @@ impl Checker<'_> {
                 continue;
             }
             let others: Vec<&Span> = way.iter().map(|&other| &limits[other].span).collect();
-            let mut problem =
-                Problem::error("limit-loop", "this limit depends on itself").at(&limit.span);
+            let mut problem = error("limit-loop", "this limit depends on itself", &limit.span);
             for other in &others {
                 problem = problem.also(other, "through this one");
             }

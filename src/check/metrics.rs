@@ -4,17 +4,17 @@
 use std::collections::BTreeSet;
 
 use super::Checker;
+use super::expressions::whole;
 use super::names::{Assignment, Written, bare_word, normalised};
 use super::plan::{
-    Axis, Evaluation, Expr, Input, InputSide, Kind, Origin, Pairing, Position, Side, Signal,
-    SignalKind, Step, Taken, Type,
+    Axis, AxisOperation, Evaluation, Expr, Input, InputSide, Kind, Origin, Pairing, Position, Side,
+    Step, Taken,
 };
 use super::quantities::Compared;
-use super::scalar_names::add_input;
 use super::scope::{Reduce, Scope};
 use super::steps::{after, fits, item_phrase, show_number};
 use crate::catalog::{Asked, METRICS, Metric, MetricEntry, Part, Reducer};
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problems, error};
 use crate::source::Span;
 use crate::syntax::document::{Field, Text};
 use crate::syntax::from_pest;
@@ -26,7 +26,8 @@ const LEAST_POINTS: f64 = 2.0;
 const MOST_POINTS: f64 = 10_000.0;
 
 impl Checker<'_> {
-    pub(super) fn by_metric(
+    /// A quantity with a field `metric`: its wording or expression, and the records compared.
+    pub fn by_metric(
         &mut self,
         field: &Field,
         compare: Option<&Field>,
@@ -106,12 +107,12 @@ impl Checker<'_> {
             None => Vec::new(),
             Some(over) => positions
                 .iter()
-                .map(|(_, at)| self.signal_where(&over.phrase, &over.text, at, &over.text.span))
+                .map(|(_, at)| self.signal_where(&over.phrase, &over.text, at, &whole(&over.text)))
                 .collect::<Option<Vec<_>>>()?,
         };
         self.samples_are_kept(Taken::Compared(metric), chain, &field.value.span)?;
         let over_axis = over_name.zip(over.first()).map(|(name, signal)| Axis {
-            unit: self.own_unit(&name, after(chain, signal.dimension)),
+            unit: self.own_unit(&name, after(chain, signal.dimension())),
             column: name,
             span: field.value.span.clone(),
         });
@@ -120,7 +121,7 @@ impl Checker<'_> {
         Some(Compared {
             evaluation: Evaluation::Metric { metric, over, over_axis, pairing: Pairing::SIDES },
             dimension: (metric.0.gives)(
-                after(chain, first.signal.dimension),
+                after(chain, first.signal.dimension()),
                 self.axis_dimension(),
             ),
             processing: words.clone(),
@@ -136,15 +137,14 @@ impl Checker<'_> {
         else {
             return Some(());
         };
-        self.problems.push(
-            Problem::error(
+        self.refuse(
+            error(
                 "metric-of-window",
                 "this metric compares samples and cannot follow a window or resampling",
+                at,
             )
-            .at(at)
             .also(&step.span, "this step"),
-        );
-        None
+        )
     }
 
     /// An expression. Its best value is known only if it is a single metric.
@@ -165,18 +165,17 @@ impl Checker<'_> {
         for input in inputs {
             if let (Taken::Reduced(reducer), InputSide::Own) = (input.taken, input.side) {
                 let words = normalised(input.span.text());
-                let problem = Problem::error(
+                let problem = error(
                     "side",
                     format!("`{words}` does not say which side it is computed from"),
-                )
-                .at(&input.span);
+                    &input.span,
+                );
                 let simple = reducer.in_words() == words;
-                self.problems.push(if simple {
+                return self.refuse(if simple {
                     problem.help(format!("write `{words} of measured` or `{words} of simulated`"))
                 } else {
                     problem.help(format!("write `measured({words})` or `simulated({words})`"))
                 });
-                return None;
             }
             self.samples_are_kept(input.taken, chain, &input.span)?;
         }
@@ -222,7 +221,7 @@ impl Checker<'_> {
     /// A metric and the signal that its wording names, at given positions.
     fn metric(&mut self, text: &Text) -> Option<(Metric, Option<Written>)> {
         let step = from_pest::step_alone(text, self.problems)?;
-        let span = text.place(step.range.clone());
+        let span = step.place(text);
         let step = At {
             node: self.with_choices(step.node, text, METRICS.iter().map(|entry| &entry.form)),
             range: step.range,
@@ -237,18 +236,17 @@ impl Checker<'_> {
             .and_then(|part| part.first())
             .filter(|_| entry.form.numbers.is_empty())
         {
-            self.problems.push(
-                Problem::error("unknown-option", "this metric has no option")
-                    .at(&text.place(extra.range.clone())),
-            );
-            return None;
+            return self.refuse(error(
+                "unknown-option",
+                "this metric has no option",
+                &extra.place(text),
+            ));
         }
         if let Some(condition) = &step.node.when {
-            let problem = Problem::error("unknown-option", "a metric has no condition")
-                .at(&text.place(condition.range.clone()));
-            self.problems
-                .push(problem.help("sections are left out of a quantity by its field `where`"));
-            return None;
+            return self.refuse(
+                error("unknown-option", "a metric has no condition", &condition.place(text))
+                    .help("sections are left out of a quantity by its field `where`"),
+            );
         }
         self.metric_filled(entry, &step.node, text, &span)
     }
@@ -275,11 +273,9 @@ impl Checker<'_> {
         if let Some(points) = points.filter(|points| {
             points.fract() != 0.0 || !(LEAST_POINTS..=MOST_POINTS).contains(points)
         }) {
-            let says = format!(
+            return self.refuse(error("out-of-range", format!(
                 "the number of points must be a whole number from {LEAST_POINTS} to {MOST_POINTS}, this is {points}"
-            );
-            self.problems.push(Problem::error("out-of-range", says).at(span));
-            return None;
+            ), span));
         }
         let mut asked = Asked { points: points.map(|points| points as usize), band: None };
         if let [(low, of_low, at_low), (high, of_high, at_high)] = filled.numbers.as_slice() {
@@ -297,14 +293,11 @@ impl Checker<'_> {
             }
             if low >= high {
                 let (low, high) = (show_number(*low, wanted), show_number(*high, wanted));
-                self.problems.push(
-                    Problem::error(
-                        "out-of-range",
-                        format!("the band from {low} to {high} is empty"),
-                    )
-                    .at(at_high),
-                );
-                return None;
+                return self.refuse(error(
+                    "out-of-range",
+                    format!("the band from {low} to {high} is empty"),
+                    at_high,
+                ));
             }
             asked.band = Some((*low, *high));
         }
@@ -312,14 +305,14 @@ impl Checker<'_> {
     }
 
     /// Whether a call is that of a metric.
-    pub(super) fn metric_called(&self, name: &At<String>, scope: &Scope) -> bool {
+    pub fn metric_called(&self, name: &At<String>, scope: &Scope) -> bool {
         scope.reduce.is_some_and(|reduce| reduce.metrics)
             && MetricEntry::called(&name.node).is_some()
     }
 
     /// A metric in an expression: `coherence(1 Hz, 3 Hz)`, `matching_probability(50)`. The
     /// arguments are the slots of its wording, then its options.
-    pub(super) fn metric_call(
+    pub fn metric_call(
         &mut self,
         name: &At<String>,
         given: &[Phrase],
@@ -348,15 +341,16 @@ impl Checker<'_> {
             .map(|(option, value)| vec![item(value), word(option.name)]);
         let parts = head.map(|head| std::iter::once(head).chain(options).collect::<Vec<_>>());
         let (Some(parts), None) = (parts, rest.next()) else {
-            let says = format!(
-                "`{}` is written `{}`; number of arguments: {}",
-                name.node,
-                entry.call_in_words(),
-                given.len()
-            );
-            self.problems
-                .push(Problem::error("arguments", says).at(&text.place(name.range.clone())));
-            return None;
+            return self.refuse(error(
+                "arguments",
+                format!(
+                    "`{}` is written `{}`; number of arguments: {}",
+                    name.node,
+                    entry.call_in_words(),
+                    given.len()
+                ),
+                &name.place(text),
+            ));
         };
         let (metric, over) =
             self.metric_filled(entry, &WrittenStep { parts, when: None }, text, span)?;
@@ -369,20 +363,17 @@ impl Checker<'_> {
     }
 
     /// A metric without arguments.
-    pub(super) fn metric_named(
+    pub fn metric_named(
         &mut self,
         entry: &'static MetricEntry,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
         if entry.form.head.iter().any(|part| !matches!(part, Part::Word(_))) {
-            let says = format!("`{}` needs arguments", entry.function_name());
-            self.problems.push(
-                Problem::error("arguments", says)
-                    .at(span)
+            return self.refuse(
+                error("arguments", format!("`{}` needs arguments", entry.function_name()), span)
                     .help(format!("write `{}`", entry.call_in_words())),
             );
-            return None;
         }
         self.metric_input(Metric(entry, Asked::default()), None, span, scope)
     }
@@ -390,7 +381,7 @@ impl Checker<'_> {
     fn metric_input(
         &mut self,
         metric: Metric,
-        over: Option<Signal>,
+        over: Option<Expr>,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
@@ -398,26 +389,18 @@ impl Checker<'_> {
             return None;
         };
         if side != InputSide::Own {
-            let problem =
-                Problem::error("side", format!("`{}` takes both sides", span.words)).at(span);
-            self.problems.push(problem.help("leave `measured(...)` or `simulated(...)` out"));
-            return None;
+            return self.refuse(
+                error("side", format!("`{}` takes both sides", span.words), span)
+                    .help("leave `measured(...)` or `simulated(...)` out"),
+            );
         }
-        let taken = Taken::Compared(metric);
-        let input = Input {
-            taken,
-            signal: None,
-            chain: Vec::new(),
-            over,
-            side: InputSide::Own,
-            span: span.span.clone(),
-        };
-        let ty = Type::Number(taken.gives(dimension, axis));
-        Some(Expr { kind: Kind::Input(add_input(scope, input)), ty, span: span.clone() })
+        let input = Input { over, ..Input::own(Taken::Compared(metric), side, span) };
+        let dimension = input.taken.gives(dimension, axis);
+        Some(scope.input(input, dimension, span))
     }
 
     /// The slope of the own signal: `slope over cant_angle`.
-    pub(super) fn slope_over(
+    pub fn slope_over(
         &mut self,
         value: &Phrase,
         over: &Phrase,
@@ -425,59 +408,55 @@ impl Checker<'_> {
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        let place = text.place(value.range.clone());
+        let place = value.place(text);
         let reducer = bare_word(value).and_then(Reducer::named);
         let Some(reducer) = reducer else {
-            let problem = Problem::error(
-                "unknown-reducer",
-                "only a slope can be computed over another signal",
-            )
-            .at(&place);
-            self.problems
-                .push(problem.help("write `slope over SIGNAL` or `slope of SIGNAL over SIGNAL`"));
-            return None;
+            return self.refuse(
+                error(
+                    "unknown-reducer",
+                    "only a slope can be computed over another signal",
+                    &place,
+                )
+                .help("write `slope over SIGNAL` or `slope of SIGNAL over SIGNAL`"),
+            );
         };
         let at = scope.at.clone();
         let over = self.slope_axis(reducer, over, &place, text, &at)?;
         let Some(Reduce { own: Some(dimension), side, .. }) = scope.reduce else {
             return self.own_reducer(reducer, span.clone(), scope);
         };
-        let ty = Type::Number(reducer.gives(dimension, over.dimension * scope.factor));
-        let input = Input {
-            taken: Taken::Reduced(reducer),
-            signal: None,
-            chain: Vec::new(),
-            over: Some(over),
-            side,
-            span: span.span.clone(),
-        };
-        Some(Expr { kind: Kind::Input(add_input(scope, input)), ty, span: span.clone() })
+        let dimension = reducer.gives(dimension, over.dimension() * scope.factor);
+        let input = Input { over: Some(over), ..Input::own(Taken::Reduced(reducer), side, span) };
+        Some(scope.input(input, dimension, span))
     }
 
     /// The signal that a slope is computed over.
-    pub(super) fn slope_axis(
+    pub fn slope_axis(
         &mut self,
         reducer: Reducer,
         over: &Phrase,
         place: &Span,
         text: &Text,
         at: &Assignment,
-    ) -> Option<Signal> {
+    ) -> Option<Expr> {
         if reducer.in_words() != "slope" {
-            let says = format!(
-                "`{}` cannot be computed over another signal; only a slope can",
-                reducer.in_words()
+            return self.refuse(
+                error(
+                    "unknown-reducer",
+                    format!(
+                        "`{}` cannot be computed over another signal; only a slope can",
+                        reducer.in_words()
+                    ),
+                    place,
+                )
+                .help("write `slope over SIGNAL`"),
             );
-            self.problems.push(
-                Problem::error("unknown-reducer", says).at(place).help("write `slope over SIGNAL`"),
-            );
-            return None;
         }
         self.signal(over, text, at)
     }
 
     /// Whether an expression uses the samples of a side: `simulated - measured`.
-    pub(super) fn names_side(&self, phrase: &Phrase, seen: &mut BTreeSet<String>) -> bool {
+    pub fn names_side(&self, phrase: &Phrase, seen: &mut BTreeSet<String>) -> bool {
         let mut any = |phrase: &Phrase| self.names_side(phrase, seen);
         match &phrase.node {
             Node::Path(path) if matches!(path.as_str(), "simulated" | "measured") => {
@@ -504,7 +483,7 @@ impl Checker<'_> {
     }
 
     /// A value taken from the samples of both sides: `rms of (simulated - measured)`.
-    pub(super) fn of_both(
+    pub fn of_both(
         &mut self,
         reducer: Reducer,
         signal: &Phrase,
@@ -514,41 +493,25 @@ impl Checker<'_> {
     ) -> Option<Expr> {
         let Reduce { own, axis, metrics, side } = scope.reduce?;
         if metrics && side != InputSide::Own {
-            let problem =
-                Problem::error("side", format!("`{}` names its sides already", span.words))
-                    .at(span);
-            self.problems
-                .push(problem.help("remove the outer `measured(...)` or `simulated(...)`"));
-            return None;
+            return self.refuse(
+                error("side", format!("`{}` names its sides already", span.words), span)
+                    .help("remove the outer `measured(...)` or `simulated(...)`"),
+            );
         }
-        let at = scope.at.clone();
-        let outer = std::mem::replace(&mut self.own_of_both, own.filter(|_| metrics));
-        let found = self.signal(signal, text, &at);
-        self.own_of_both = outer;
-        let signal = found?;
+        let mut samples = Scope::samples(&scope.at, own.filter(|_| metrics));
+        let signal = self.expr(signal, text, &mut samples)?;
         if let Some(other) = not_of_both(&signal) {
-            let says = "samples of both sides can only be combined with numbers: other signals and filters have other samples";
-            let problem = Problem::error("mixed-records", says).at(&other);
-            self.problems
-                .push(problem.help("write filters in the field `filter`; `shifted` can only be applied to `simulated` and `measured`"));
-            return None;
+            return self.refuse(error("mixed-records", "samples of both sides can only be combined with numbers: other signals and filters have other samples", &other.span).help("write filters in the field `filter`; `shifted` can only be applied to `simulated` and `measured`"));
         }
-        let ty = Type::Number(reducer.gives(signal.dimension, axis));
-        let input = Input {
-            taken: Taken::OfBoth(reducer),
-            signal: Some(signal),
-            chain: Vec::new(),
-            over: None,
-            side: InputSide::Own,
-            span: span.span.clone(),
-        };
-        Some(Expr { kind: Kind::Input(add_input(scope, input)), ty, span: span.clone() })
+        let dimension = reducer.gives(signal.dimension(), axis);
+        let own = Input::own(Taken::OfBoth(reducer), InputSide::Own, span);
+        Some(scope.input(Input { signal: Some(signal), ..own }, dimension, span))
     }
 }
 
 /// `rms of simulated` after a window: the sides have no common points, and none are needed.
 fn of_one_side(input: &mut Input) {
-    let (Taken::OfBoth(reducer), Some(Signal { kind: SignalKind::Side(side), .. })) =
+    let (Taken::OfBoth(reducer), Some(Expr { kind: Kind::Side(side), .. })) =
         (input.taken, &input.signal)
     else {
         return;
@@ -562,33 +525,17 @@ fn of_one_side(input: &mut Input) {
 }
 
 /// The first part of an expression over both sides that is not allowed in it.
-fn not_of_both(signal: &Signal) -> Option<Span> {
-    use super::plan::AxisOperation;
-    match &signal.kind {
-        SignalKind::Side(_) | SignalKind::Scalar(_) => None,
-        SignalKind::Binary(_, left, right) => not_of_both(left).or_else(|| not_of_both(right)),
-        SignalKind::OverAxis(AxisOperation::Shifted(_), inner)
-            if !matches!(inner.kind, SignalKind::Side(_)) =>
-        {
-            Some(signal.span.clone())
+fn not_of_both(expr: &Expr) -> Option<&Expr> {
+    match &expr.kind {
+        Kind::OverAxis(AxisOperation::Shifted(_), inner) => {
+            Some(expr).filter(|_| !matches!(inner.kind, Kind::Side(_)))
         }
-        SignalKind::Negative(inner)
-        | SignalKind::Power(inner, _)
-        | SignalKind::Level(_, inner)
-        | SignalKind::OverAxis(_, inner) => not_of_both(inner),
-        SignalKind::Call(_, arguments) => arguments.iter().find_map(not_of_both),
-        SignalKind::Column { .. } | SignalKind::Filtered(..) | SignalKind::Select(..) => {
-            Some(signal.span.clone())
-        }
+        Kind::Channel { .. } | Kind::Filtered(..) | Kind::Cases(..) => Some(expr),
+        _ => expr.parts().into_iter().find_map(not_of_both),
     }
 }
 
 /// The words of a wording before its first slot: `theil inequality`, `coherence from`.
 fn leading_words(entry: &MetricEntry) -> String {
-    let words = entry
-        .form
-        .head
-        .iter()
-        .map_while(|part| if let Part::Word(word) = part { Some(*word) } else { None });
-    words.collect::<Vec<_>>().join(" ")
+    entry.form.head.iter().map_while(Part::word).collect::<Vec<_>>().join(" ")
 }

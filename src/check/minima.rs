@@ -2,13 +2,12 @@
 
 use super::Checker;
 use super::groups::Grouped;
-use super::names::normalised;
 use super::plan::MinimumOfGroups;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problems, error};
 use crate::source::Span;
 use crate::syntax::document::{Block, Field};
 use crate::syntax::from_pest;
-use crate::syntax::phrase::Phrase;
+use crate::syntax::phrase::{Phrase, Scope};
 use crate::units::Dimension;
 
 /// The largest number that a protocol may require.
@@ -16,36 +15,33 @@ const MOST: f64 = 1e6;
 
 /// The fields `minimum pairs` of a block.
 #[derive(Debug, Default)]
-pub(super) struct Minima {
+pub struct Minima {
     /// The number in all; `None` inside where it was not understood.
     pub all: Option<Option<usize>>,
     /// Fields that say of which groups.
     pub of_groups: Vec<Field>,
 }
 
-/// What of a minimum tells it from others: its groups. Empty where it is one of all values.
-pub(super) fn groups_of(field: &Field) -> Option<String> {
-    from_pest::minimum(&field.value, &mut Problems::default())
-        .map(|minimum| minimum.scope.node.meaning())
-}
-
 impl Checker<'_> {
-    pub(super) fn minima(&mut self, block: &Block) -> Minima {
+    /// The fields `minimum pairs` of a block: the number in all, and those of groups.
+    pub fn minima(&mut self, block: &Block) -> Minima {
         let mut found = Minima::default();
-        let mut seen: Vec<(String, Span)> = Vec::new();
+        let mut seen: Vec<(Scope, Span)> = Vec::new();
         for field in block.fields_named("minimum pairs") {
             let Some(written) = from_pest::minimum(&field.value, self.problems) else {
                 found.all.get_or_insert(None);
                 continue;
             };
-            let groups = written.scope.node.meaning();
+            let groups = written.scope.node.clone();
             if let Some((_, first)) = seen.iter().find(|(known, _)| *known == groups) {
-                let problem = Problem::error(
-                    "duplicate-field",
-                    "there are two `minimum pairs` for the same values",
-                )
-                .at(&field.value.span);
-                self.problems.push(problem.also(first, "the first"));
+                self.problems.push(
+                    error(
+                        "duplicate-field",
+                        "there are two `minimum pairs` for the same values",
+                        &field.value.span,
+                    )
+                    .also(first, "the first"),
+                );
                 continue;
             }
             seen.push((groups, field.value.span.clone()));
@@ -59,7 +55,7 @@ impl Checker<'_> {
     }
 
     /// The minimum counts of groups of a quantity.
-    pub(super) fn minimum_of_groups(
+    pub fn minimum_of_groups(
         &mut self,
         fields: &[Field],
         block: &Block,
@@ -103,7 +99,7 @@ impl Checker<'_> {
         if dimension == Dimension::ONE && value.fract() == 0.0 && (0.0..=MOST).contains(&value) {
             return Some(value as usize);
         }
-        let words = normalised(field.value.text.get(count.range.clone()).unwrap_or_default());
+        let words = count.words(&field.value);
         self.no_count(&field.key.text, &words, (value, dimension), &field.value.span);
         None
     }

@@ -3,6 +3,7 @@
 //!
 //! Checking goes on after an error, so that an author sees all of them in one run.
 
+mod cases;
 mod closed;
 mod conditions;
 pub mod constant;
@@ -11,6 +12,7 @@ pub mod diff;
 mod domains;
 mod estimates;
 pub mod evaluate;
+mod expressions;
 pub mod family;
 mod find;
 mod functions;
@@ -33,9 +35,8 @@ mod printed;
 mod quantities;
 mod records;
 mod reports;
+mod resolve;
 mod rules;
-mod scalar_names;
-mod scalars;
 mod scope;
 mod signals;
 mod slips;
@@ -52,13 +53,15 @@ use std::collections::BTreeSet;
 use indexmap::IndexMap;
 
 use crate::catalog::{Reducer, Statistic};
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, error};
 use crate::source::{Span, Spanned};
 use crate::syntax::document::{Block, Document, Field, Text};
+use crate::syntax::from_pest;
 use crate::units::Dimension;
 use groups::Grouped;
 use names::Names;
 use plan::{Axis, Expr, NamedFilter, Parameter, Plan, SetBy, Step};
+use scope::Scope;
 
 /// A parameter set from outside the protocol.
 #[derive(Clone, Debug)]
@@ -67,6 +70,7 @@ pub struct Override {
     pub set_by: SetBy,
 }
 
+/// Parameters set from outside, by name.
 pub type Overrides = IndexMap<String, Override>;
 
 /// Largest depth of nested expressions, definitions and signals together. The stack is large enough
@@ -101,8 +105,6 @@ struct Checker<'a> {
     unconfirmed: bool,
     /// Whether records have a time.
     has_time: bool,
-    /// Dimension of the own signal, where `simulated` and `measured` stand for its samples.
-    own_of_both: Option<Dimension>,
     /// The present expression is one of several values; each applies only in its own cases.
     partial: bool,
     /// Names of campaigns that conditions ask for.
@@ -116,6 +118,11 @@ struct Checker<'a> {
     minimum_of_groups: Vec<Field>,
     /// What the scopes that are looked at group.
     grouped: Grouped,
+}
+
+/// What is checked only where it is written: nothing if it is not, `None` if it has an error.
+fn if_written<T>(checked: Option<Option<T>>) -> Option<Option<T>> {
+    checked.map_or(Some(None), |checked| checked.map(Some))
 }
 
 /// The plan of a protocol with its parameters set; `None` after a problem of severity error.
@@ -160,7 +167,6 @@ pub fn check(
         in_quantity: false,
         unconfirmed: false,
         has_time: false,
-        own_of_both: None,
         partial: false,
         campaigns: Vec::new(),
         depth: 0,
@@ -281,6 +287,18 @@ fn rule_count(plan: &Plan) -> usize {
 }
 
 impl Checker<'_> {
+    /// Reports a problem; there is no result.
+    fn refuse<T>(&mut self, problem: Problem) -> Option<T> {
+        self.problems.push(problem);
+        None
+    }
+
+    /// The expression in a field.
+    fn expression(&mut self, text: &Text, scope: &mut Scope) -> Option<Expr> {
+        let phrase = from_pest::expression(text, self.problems)?;
+        self.expr(&phrase, text, scope)
+    }
+
     /// Checks one level deeper; `None` after a problem if that is too deep or too much.
     fn deeper<T>(&mut self, at: &Span, look: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         if self.work > MOST_WORK {
@@ -288,21 +306,21 @@ impl Checker<'_> {
         }
         self.work += 1;
         if self.work > MOST_WORK {
-            self.problems.push(
-                Problem::error(
+            return self.refuse(
+                error(
                     "too-large",
                     "definitions and signals use each other too often: the rules become too large",
+                    at,
                 )
-                .at(at)
                 .help("use each part once or twice, not twice at every level"),
             );
-            return None;
         }
         if self.depth >= DEEPEST {
-            self.problems.push(
-                Problem::error("too-deep", "definitions and signals are nested too deeply").at(at),
-            );
-            return None;
+            return self.refuse(error(
+                "too-deep",
+                "definitions and signals are nested too deeply",
+                at,
+            ));
         }
         self.depth += 1;
         let found = look(self);
@@ -340,7 +358,7 @@ impl Checker<'_> {
             } else {
                 format!("{kind} `{name}` is defined by itself")
             };
-            let mut problem = Problem::error(code, says).at(at);
+            let mut problem = error(code, says, at);
             if let Some(block) = self
                 .blocks
                 .iter()
@@ -358,6 +376,11 @@ impl Checker<'_> {
         found
     }
 
+    /// The blocks of a kind, in the order of the text.
+    fn blocks_of<'b>(&'b self, kind: &'b str) -> impl Iterator<Item = &'b Block> + Clone {
+        self.blocks.iter().filter(move |block| block.kind.text == kind)
+    }
+
     fn plan(&mut self, document: &Document) -> Option<Plan> {
         let blocks = self.blocks.clone();
         let of = |kind: &'static str| blocks.iter().filter(move |block| block.kind.text == kind);
@@ -366,17 +389,18 @@ impl Checker<'_> {
             if self.problems.0.iter().any(|problem| problem.code == "yaml-syntax") {
                 return None;
             }
-            self.problems.push(
-                Problem::error("no-protocol", "the text has no `protocol` block")
-                    .at(&document.source.span(0..0))
-                    .help("begin with `protocol name-of-it \"Title\"`"),
+            return self.refuse(
+                error(
+                    "no-protocol",
+                    "the text has no `protocol` block",
+                    &document.source.span(0..0),
+                )
+                .help("begin with `protocol name-of-it \"Title\"`"),
             );
-            return None;
         };
-        self.axis = match self.required(head, "axis") {
-            Some(field) => self.axis_field(field, &[Dimension::LENGTH, Dimension::TIME]),
-            None => None,
-        };
+        self.axis = self
+            .required(head, "axis")
+            .and_then(|field| self.axis_field(field, &[Dimension::LENGTH, Dimension::TIME]));
         let time = head.field("time").and_then(|field| self.axis_field(field, &[Dimension::TIME]));
         self.has_time = time.is_some();
         self.gather_names();
@@ -402,13 +426,11 @@ impl Checker<'_> {
         let quantities: Vec<plan::Quantity> =
             of("quantity").filter_map(|block| self.quantity(block)).collect();
         if of("quantity").next().is_none() {
-            self.problems.push(
-                Problem::error(
-                    "no-quantity",
-                    "the protocol has no quantity, so nothing would be compared",
-                )
-                .at(head.span()),
-            );
+            self.problems.push(error(
+                "no-quantity",
+                "the protocol has no quantity, so nothing would be compared",
+                head.span(),
+            ));
         }
         self.unused_parts();
         let verdicts = self.verdicts(verdict_block, head, &quantities);
@@ -443,17 +465,13 @@ impl Checker<'_> {
             .map(|(name, why)| (name.clone(), why.clone()))
             .chain(others)
             .collect();
-        let text = |key: &str| head.field(key).map(|field| field.value.text.clone());
         Some(Plan {
             name: head.name_text().to_string(),
-            title: head
-                .title
-                .as_ref()
-                .map_or_else(|| head.name_text().to_string(), |title| title.text.clone()),
-            edition: text("edition"),
-            source: text("source"),
-            scope: text("scope"),
-            notes: head.fields_named("note").map(|note| note.value.text.clone()).collect(),
+            title: head.title_text().unwrap_or_else(|| head.name_text().to_string()),
+            edition: head.text("edition"),
+            source: head.text("source"),
+            scope: head.text("scope"),
+            notes: head.notes(),
             axis: self.axis.clone()?,
             time,
             parameters,
@@ -476,7 +494,7 @@ impl Checker<'_> {
 
     fn named_filter(&mut self, block: &Block) -> Option<NamedFilter> {
         let steps = self.filter_named(block.name_text(), block.span())?;
-        let title = block.title.as_ref().map_or_else(String::new, |title| title.text.clone());
+        let title = block.title_text().unwrap_or_default();
         let source = block.field("source").map(|field| field.value.text.clone());
         Some(NamedFilter { name: block.name_text().to_string(), title, steps, source })
     }
@@ -484,19 +502,18 @@ impl Checker<'_> {
     fn unknown_overrides(&mut self, head: &Block) {
         for (name, given) in self.overrides {
             if !self.names.parameter_blocks.contains_key(name) {
-                let known: Vec<String> = self.names.parameter_blocks.keys().cloned().collect();
-                let problem = Problem::error(
+                let problem = error(
                     "unknown-parameter",
                     format!("protocol `{}` has no parameter `{name}`", head.name_text()),
-                )
-                .at(&given.text.span);
+                    &given.text.span,
+                );
                 let datum = self.names.vehicle.iter().find(|datum| datum.name == *name);
                 self.problems.push(match datum {
                     Some(datum) => problem.help(format!(
                         "this is a vehicle datum: write `{}` in the vehicle file",
                         datum.key
                     )),
-                    None => problem.suggest(name, known.iter().map(String::as_str)),
+                    None => problem.suggest(name, self.names.parameter_blocks.keys()),
                 });
             }
         }

@@ -8,11 +8,13 @@ use indexmap::IndexMap;
 use super::Checker;
 use super::plan::{Datum, DeclaredRecord, Scalar, SetBy, Type};
 use crate::catalog::{Reducer, Statistic};
-use crate::problem::Problem;
+use crate::problem::{error, warning};
 use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
 use crate::syntax::phrase::{Alias, Node, Phrase};
+
+pub use crate::syntax::phrase::normalised;
 use crate::units::{SYMBOLS, Unit};
 
 /// A phrase and the field it is written in.
@@ -22,6 +24,7 @@ pub struct Written {
     pub text: Text,
 }
 
+/// A parameter with the value that is used.
 #[derive(Clone, Debug)]
 pub struct ParameterDef {
     pub title: String,
@@ -36,12 +39,14 @@ pub struct ParameterDef {
     pub selects: Option<(String, Vec<String>)>,
 }
 
+/// The positions of a place and their aliases, each with the field it is written in.
 #[derive(Clone, Debug)]
 pub struct Place {
     pub members: Vec<String>,
     pub aliases: Vec<(Alias, Text)>,
 }
 
+/// A channel, with a column of the records for each position.
 #[derive(Clone, Debug)]
 pub struct Channel {
     pub places: Vec<String>,
@@ -51,6 +56,7 @@ pub struct Channel {
     pub span: Span,
 }
 
+/// A signal that is computed from others.
 #[derive(Clone, Debug)]
 pub struct SignalDef {
     pub places: Vec<String>,
@@ -60,6 +66,7 @@ pub struct SignalDef {
     pub span: Span,
 }
 
+/// All names of a protocol.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
     /// Parameters checked so far.
@@ -85,7 +92,8 @@ pub struct Names {
 pub type Assignment = IndexMap<String, String>;
 
 impl Checker<'_> {
-    pub(super) fn gather_names(&mut self) {
+    /// Gathers the names of all blocks.
+    pub fn gather_names(&mut self) {
         let blocks = self.blocks.clone();
         for block in &blocks {
             let name = block.name_text().to_string();
@@ -101,24 +109,16 @@ impl Checker<'_> {
                     Some(place) => drop(self.names.places.insert(name, place)),
                     None => drop(self.names.failed.insert(name)),
                 },
-                "define" => {
+                kind @ ("define" | "estimate") => {
                     match self.required(block, "is").and_then(|field| self.written(field)) {
                         Some(is) => {
-                            if let Some(why) = block.field("unconfirmed") {
-                                self.names.unconfirmed.insert(name.clone(), why.value.text.clone());
-                            }
-                            self.names.defines.insert(name, is);
-                        }
-                        None => drop(self.names.failed.insert(name)),
-                    }
-                }
-                "estimate" => {
-                    match self.required(block, "is").and_then(|field| self.written(field)) {
-                        Some(is) => {
-                            if let Some(why) = block.field("unconfirmed") {
-                                self.names.unconfirmed.insert(name.clone(), why.value.text.clone());
-                            }
-                            self.names.estimates.insert(name, is);
+                            let why = block.text("unconfirmed");
+                            self.names.unconfirmed.extend(why.map(|why| (name.clone(), why)));
+                            let known = match kind {
+                                "define" => &mut self.names.defines,
+                                _ => &mut self.names.estimates,
+                            };
+                            known.insert(name, is);
                         }
                         None => drop(self.names.failed.insert(name)),
                     }
@@ -168,33 +168,6 @@ impl Checker<'_> {
             "define",
             "estimate",
         ];
-        const WORDS: [&str; 25] = [
-            "and",
-            "or",
-            "not",
-            "is",
-            "when",
-            "otherwise",
-            "of",
-            "at",
-            "through",
-            "larger",
-            "smaller",
-            "doubled",
-            "times",
-            "for",
-            "only",
-            "then",
-            "least",
-            "to",
-            "every",
-            "each",
-            "all",
-            "true",
-            "false",
-            "simulated",
-            "measured",
-        ];
         let (kind, name) = (block.kind.text.as_str(), block.name_text());
         if name.is_empty() || !IN_EXPRESSIONS.contains(&kind) {
             return;
@@ -204,7 +177,9 @@ impl Checker<'_> {
             .is_some_and(|rest| !rest.is_empty() && rest.chars().all(|c| c.is_ascii_digit()));
         const OF_GROUPS: [&str; 8] =
             ["n", "value", "share", "total", "upper", "lower", "prediction", "regression"];
-        let taken = if WORDS.contains(&name) || kind == "estimate" && OF_GROUPS.contains(&name) {
+        let taken = if from_pest::is_word_of_language(name)
+            || kind == "estimate" && OF_GROUPS.contains(&name)
+        {
             Some("a word of the language")
         } else if percentile {
             Some("a percentile")
@@ -217,11 +192,11 @@ impl Checker<'_> {
         };
         if let Some(what) = taken {
             self.problems.push(
-                Problem::error(
+                error(
                     "reserved-name",
                     format!("`{name}` is {what}, so this {kind} needs another name"),
+                    block.span(),
                 )
-                .at(block.span())
                 .help(format!("for instance `{name}_1`, or a longer name")),
             );
         } else if let Some(sign) = name
@@ -229,20 +204,17 @@ impl Checker<'_> {
             .find(|c| !c.is_ascii_alphanumeric() && *c != '_')
             .or_else(|| name.chars().next().filter(char::is_ascii_digit))
         {
-            let says = format!(
-                "a {kind} cannot be called `{name}`: in an expression, `{sign}` is not read as part of a name"
-            );
             self.problems.push(
-                Problem::error("bad-name", says)
-                    .at(block.span())
+                error("bad-name", format!(
+                "a {kind} cannot be called `{name}`: in an expression, `{sign}` is not read as part of a name"
+            ), block.span())
                     .help("use letters, digits and `_`, and begin with a letter"),
             );
         } else if let Some(unit) =
             SYMBOLS.iter().find(|unit| unit.symbol == name && kind != "filter" && kind != "place")
         {
             self.problems.push(
-                Problem::warning("unit-name", format!("`{name}` is also a unit ({})", unit.name))
-                    .at(block.span())
+                warning("unit-name", format!("`{name}` is also a unit ({})", unit.name), block.span())
                     .help(format!("after a number, `{name}` is read as the unit, elsewhere as the {kind}; a longer name is clearer")),
             );
         }
@@ -270,8 +242,7 @@ impl Checker<'_> {
                     && !(matches!(a, "vehicle" | "section") && matches!(b, "vehicle" | "section"))
                 {
                     self.problems.push(
-                        Problem::error("name-clash", format!("`{name}` is a {a} and a {b}"))
-                            .at(block.span())
+                        error("name-clash", format!("`{name}` is a {a} and a {b}"), block.span())
                             .also(first.span(), format!("the {a}")),
                     );
                 }
@@ -281,19 +252,20 @@ impl Checker<'_> {
         }
     }
 
-    pub(super) fn written(&mut self, field: &Field) -> Option<Written> {
+    /// The expression in a field.
+    pub fn written(&mut self, field: &Field) -> Option<Written> {
         let phrase = from_pest::expression(&field.value, self.problems)?;
         Some(Written { phrase, text: field.value.clone() })
     }
 
     /// A required field.
-    pub(super) fn required<'b>(&mut self, block: &'b Block, key: &str) -> Option<&'b Field> {
+    pub fn required<'b>(&mut self, block: &'b Block, key: &str) -> Option<&'b Field> {
         self.all_required(block, &[key]);
         block.field(key)
     }
 
     /// Reports all missing required fields in one problem.
-    pub(super) fn all_required(&mut self, block: &Block, keys: &[&str]) {
+    pub fn all_required(&mut self, block: &Block, keys: &[&str]) {
         let missing: Vec<String> = keys
             .iter()
             .filter(|key| block.field(key).is_none())
@@ -317,35 +289,42 @@ impl Checker<'_> {
         };
         let name = format!("{kind} {}", block.name_text());
         self.problems.push(
-            Problem::error("missing-field", format!("`{}` has no {list}", name.trim()))
-                .at(block.span())
+            error("missing-field", format!("`{}` has no {list}", name.trim()), block.span())
                 .help(help.replace("` ...", " ...`")),
         );
     }
 
-    pub(super) fn unit(&mut self, text: &Text) -> Option<Unit> {
+    /// The section column of a name; a problem where there is none.
+    pub fn column_called(&mut self, what: &str, name: &str, at: &Span) -> Option<usize> {
+        let columns = &self.names.columns;
+        let found = columns.iter().position(|datum| datum.name == name);
+        if found.is_none() {
+            let says = format!("no section {what} is called `{name}`");
+            let known = columns.iter().map(|datum| &datum.name);
+            self.problems.push(error("unknown-name", says, at).suggest(name, known));
+        }
+        found
+    }
+
+    /// The unit of a text; a problem if it is not known.
+    pub fn unit(&mut self, text: &Text) -> Option<Unit> {
         match Unit::parse(&text.text) {
             Ok(unit) => Some(unit),
             Err(unknown) => {
-                let problem = Problem::error(
+                let problem = error(
                     "unknown-unit",
                     format!("`{}` is not a known unit", unknown.word),
-                )
-                .at(&text.span);
-                self.problems.push(match unknown.near {
+                    &text.span,
+                );
+                self.refuse(match unknown.near {
                     Some(near) => problem.help(format!("did you mean `{near}`?")),
                     None => problem.help(
                         "units are written like kN, m/s^2, km/h, mrad, `-` for a plain number",
                     ),
-                });
-                None
+                })
             }
         }
     }
-}
-
-pub fn normalised(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// The word, where a phrase is one word only, such as a choice.

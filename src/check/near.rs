@@ -2,18 +2,18 @@
 //! compares.
 
 use super::Checker;
+use super::expressions::{origin, unlike};
 use super::functions::function;
 use super::plan::{Expr, Kind, Operator, Scalar, Type};
-use super::scalars::origin;
 use super::scope::Scope;
-use crate::problem::Problem;
+use crate::problem::error;
 use crate::syntax::document::Text;
 use crate::syntax::phrase::{Node, Phrase};
 use crate::units::Dimension;
 
 /// The two numbers that a condition compares: the value, and its target or bound.
 #[derive(Clone, Debug)]
-pub(super) struct Near {
+pub struct Near {
     pub holds: Expr,
     pub found: Expr,
     pub expected: Expr,
@@ -23,7 +23,7 @@ impl Checker<'_> {
     /// `a near b within c` means `|a - b| <= c`. If `c` is a plain number and `a` is not, `c` is a
     /// share of `|b|`. `a near b within a factor of c` means equal signs and a ratio of magnitudes
     /// from `1/c` to `c`.
-    pub(super) fn near(&mut self, phrase: &Phrase, text: &Text, scope: &mut Scope) -> Option<Near> {
+    pub fn near(&mut self, phrase: &Phrase, text: &Text, scope: &mut Scope) -> Option<Near> {
         let Node::Near { value, target, tolerance, by_factor } = &phrase.node else { return None };
         let (value, target, tolerance) = (
             self.expr(value, text, scope),
@@ -42,16 +42,7 @@ impl Checker<'_> {
             self.number_type(&tolerance)?,
         );
         if a != b {
-            self.problems.push(
-                Problem::error(
-                    "unit-mismatch",
-                    format!("{} and {} cannot be compared", a.in_words(), b.in_words()),
-                )
-                .at(&expected.span)
-                .label(b.in_words())
-                .also(&found.span, a.in_words()),
-            );
-            return None;
+            return self.refuse(unlike("compared", &found, &expected));
         }
         if (*by_factor && c != Dimension::ONE) || (!by_factor && c != a && c != Dimension::ONE) {
             let wanted = if *by_factor {
@@ -59,14 +50,11 @@ impl Checker<'_> {
             } else {
                 format!("{}, or a share such as `10 %`", a.in_words())
             };
-            self.problems.push(
-                Problem::error(
-                    "unit-mismatch",
-                    format!("expected a tolerance that is {wanted}; this is {}", c.in_words()),
-                )
-                .at(&tolerance.span),
-            );
-            return None;
+            return self.refuse(error(
+                "unit-mismatch",
+                format!("expected a tolerance that is {wanted}; this is {}", c.in_words()),
+                &tolerance.span,
+            ));
         }
         let magnitude = function("magnitude")?;
         let number = Type::Number(a);
@@ -75,11 +63,11 @@ impl Checker<'_> {
             if let Kind::Constant(Scalar::Number(factor)) = tolerance.kind
                 && factor < 1.0
             {
-                self.problems.push(
-                    Problem::error("out-of-range", "the factor must be 1 or more")
-                        .at(&tolerance.span),
-                );
-                return None;
+                return self.refuse(error(
+                    "out-of-range",
+                    "the factor must be 1 or more",
+                    &tolerance.span,
+                ));
             }
             let times = |of: &Expr| pair(Operator::Multiply, &tolerance, &size(of), number.clone());
             let zero = make(Kind::Constant(Scalar::Number(0.0)), number.clone());
@@ -105,7 +93,7 @@ impl Checker<'_> {
 
     /// A condition and the comparisons of which it consists: `a near b within c`, `a <= b`, or
     /// several of the latter joined by `and`. Nothing where it has other parts.
-    pub(super) fn compared(
+    pub fn compared(
         &mut self,
         phrase: &Phrase,
         text: &Text,

@@ -2,11 +2,11 @@
 
 use super::conditions::impossible;
 use super::plan::{Expr, Kind, Limit, Operator, Scalar, Scope, Type};
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problems, error};
 use crate::syntax::document::Block;
 
 /// `zone`: the expression of the zone of a section, where there are zones.
-pub(super) fn find(limits: &[Limit], zone: Option<&Expr>, block: &Block, problems: &mut Problems) {
+pub fn find(limits: &[Limit], zone: Option<&Expr>, block: &Block, problems: &mut Problems) {
     let mut said = Vec::new();
     for (index, limit) in limits.iter().enumerate() {
         for other in &limits[..index] {
@@ -32,11 +32,7 @@ pub(super) fn find(limits: &[Limit], zone: Option<&Expr>, block: &Block, problem
             said.push(pair);
             let place = shared(&other.scope, &limit.scope);
             problems.push(
-                Problem::error(
-                    "limits-overlap",
-                    format!("two limits of `{}` apply to `{}`{place}", limit.estimate.name, block.name_text()),
-                )
-                .at(&limit.span)
+                error("limits-overlap", format!("two limits of `{}` apply to `{}`{place}", limit.estimate.name, block.name_text()), &limit.span)
                 .also(&other.span, "also applies")
                 .help(format!(
                     "give them different zones (`for zones ...`) or conditions that exclude each other (`only when ...`); one that a \

@@ -1,10 +1,9 @@
 //! The fields of a variant over those of its parent.
 
-use indexmap::IndexMap;
-
 use crate::problem::Problems;
 use crate::syntax::document::{Block, Field};
 use crate::syntax::from_pest;
+use crate::syntax::phrase::{Limit, Scope};
 
 /// Puts fields of the variant in place of fields of the parent with the same slot; other fields
 /// stay.
@@ -37,36 +36,57 @@ pub fn overlay(parent: &mut Block, variant: &Block) {
         }
         _ => false,
     };
-    let mut new: IndexMap<String, Vec<Field>> = IndexMap::new();
-    for field in &variant.fields {
-        new.entry(slot(field)).or_default().push(field.clone());
-    }
-    let taken: Vec<String> = new.keys().cloned().collect();
+    let slots: Vec<Slot> = variant.fields.iter().map(slot).collect();
+    let mut left: Vec<Option<&Field>> = variant.fields.iter().map(Some).collect();
     let mut fields = Vec::new();
     for field in parent.fields.drain(..) {
-        let slot = slot(&field);
+        let own = slot(&field);
         // The first field of a slot is replaced by all of the variant's, so that the order of the
         // parent is kept.
-        fields.extend(new.shift_remove(&slot).unwrap_or_default());
-        if !taken.contains(&slot) && !replaced(&field) {
+        for (_, new) in slots.iter().zip(&mut left).filter(|(slot, _)| **slot == own) {
+            fields.extend(new.take().cloned());
+        }
+        if !slots.contains(&own) && !replaced(&field) {
             fields.push(field);
         }
     }
-    fields.extend(new.into_values().flatten());
+    fields.extend(left.into_iter().flatten().cloned());
     parent.fields = fields;
 }
 
-/// What identifies a field when it is overridden: its key; for a limit also its statistic and its
-/// scope, for a minimum of which groups.
-pub fn slot(field: &Field) -> String {
-    if field.key.text == "minimum pairs" {
-        return format!("minimum pairs {}", super::minima::groups_of(field).unwrap_or_default());
+/// What identifies a field when it is overridden.
+#[derive(Debug, PartialEq)]
+pub enum Slot {
+    Key(String),
+    /// A limit that was not understood, by its text.
+    Unclear(String),
+    Limit(SlotOfLimit),
+    /// A minimum, by its groups.
+    Minimum(Option<Scope>),
+}
+
+/// A limit, by its statistic, direction and scope.
+#[derive(Debug)]
+pub struct SlotOfLimit(Limit);
+
+impl PartialEq for SlotOfLimit {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.same_slot(&other.0)
     }
-    if field.key.text != "limit" {
-        return field.key.text.clone();
-    }
-    match from_pest::limit(&field.value, &mut Problems::default()) {
-        Some(limit) => format!("limit {} {}", limit.bounds(), limit.scope.node.meaning()),
-        None => format!("limit {}", field.value.text),
+}
+
+/// The slot of a field: its key; for a limit also its statistic and its scope, for a minimum of
+/// which groups.
+pub fn slot(field: &Field) -> Slot {
+    let quiet = &mut Problems::default();
+    match field.key.text.as_str() {
+        "minimum pairs" => {
+            Slot::Minimum(from_pest::minimum(&field.value, quiet).map(|of| of.scope.node))
+        }
+        "limit" => match from_pest::limit(&field.value, quiet) {
+            Some(limit) => Slot::Limit(SlotOfLimit(limit)),
+            None => Slot::Unclear(field.value.text.clone()),
+        },
+        key => Slot::Key(key.to_string()),
     }
 }

@@ -6,7 +6,7 @@ use super::names::{ParameterDef, normalised};
 use super::plan::{Kind, Scalar, SetBy, Type};
 use super::scope::Scope;
 use super::{Checker, Override};
-use crate::problem::Problem;
+use crate::problem::error;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
 use crate::syntax::phrase::Phrase;
@@ -15,11 +15,7 @@ use crate::units::Dimension;
 impl Checker<'_> {
     /// The parameter of a name. It is checked when it is first used, as its default may use
     /// parameters further down.
-    pub(super) fn parameter(
-        &mut self,
-        name: &str,
-        at: &crate::source::Span,
-    ) -> Option<ParameterDef> {
+    pub fn parameter(&mut self, name: &str, at: &crate::source::Span) -> Option<ParameterDef> {
         let known = self.names.parameters.get(name).cloned();
         let found = match known {
             Some(found) => found,
@@ -37,7 +33,7 @@ impl Checker<'_> {
 
     fn parameter_of(&mut self, name: &str, block: &Block) -> Option<ParameterDef> {
         let default = self.required(block, "default")?;
-        let title = block.title.as_ref().map_or(String::new(), |title| title.text.clone());
+        let title = block.title_text().unwrap_or_default();
         let given = self.overrides.get(name).cloned();
         let default_words = normalised(&default.value.text);
         let (source, set_by) = match &given {
@@ -66,12 +62,14 @@ impl Checker<'_> {
         let (value, ty) = match block.field("one of") {
             Some(choices) => {
                 if let Some(range) = block.field("range") {
-                    let problem = Problem::error(
-                        "unknown-field",
-                        format!("`{name}` is a choice of words and cannot have a range"),
-                    )
-                    .at(&range.key.span);
-                    self.problems.push(problem.also(&choices.key.span, "the choice"));
+                    self.problems.push(
+                        error(
+                            "unknown-field",
+                            format!("`{name}` is a choice of words and cannot have a range"),
+                            &range.key.span,
+                        )
+                        .also(&choices.key.span, "the choice"),
+                    );
                 }
                 self.choice(name, choices, &default.value, &source)?
             }
@@ -106,12 +104,12 @@ impl Checker<'_> {
             let word = text.text.trim();
             if !choices.iter().any(|choice| choice == word) {
                 self.problems.push(
-                    Problem::error(
+                    error(
                         "unknown-choice",
                         format!("`{word}` is not one of the choices of `{name}`"),
+                        &text.span,
                     )
-                    .at(&text.span)
-                    .suggest(word, choices.iter().map(String::as_str)),
+                    .suggest(word, &choices),
                 );
                 ok = false;
             }
@@ -129,26 +127,20 @@ impl Checker<'_> {
     ) -> Option<(String, Vec<String>)> {
         let written = normalised(&place.value.text);
         let Some(place_name) = self.place_called(&written) else {
-            let known: Vec<String> = self.names.places.keys().cloned().collect();
-            let problem = Problem::error("unknown-place", format!("`{written}` is not a place"))
-                .at(&place.value.span);
-            self.problems.push(problem.suggest(&written, known.iter().map(String::as_str)));
-            return None;
+            return self.refuse(
+                error("unknown-place", format!("`{written}` is not a place"), &place.value.span)
+                    .suggest(&written, self.names.places.keys()),
+            );
         };
         let members = self.names.places.get(&place_name)?.members.clone();
         let mut positions = |text: &Text| {
             let mut positions: Vec<String> = Vec::new();
             for word in from_pest::list(text, self.problems)? {
                 if !members.contains(&word.node) {
-                    let says = format!(
+                    return self.refuse(error("unknown-place", format!(
                         "`{}` is not a position of `{place_name}`; `{name}` selects such positions",
                         word.node
-                    );
-                    let problem =
-                        Problem::error("unknown-place", says).at(&text.place(word.range.clone()));
-                    self.problems
-                        .push(problem.suggest(&word.node, members.iter().map(String::as_str)));
-                    return None;
+                    ), &word.place(text)).suggest(&word.node, &members));
                 }
                 if !positions.contains(&word.node) {
                     positions.push(word.node);
@@ -179,23 +171,24 @@ impl Checker<'_> {
         let Some((text, set)) = set else { return as_default };
         let (value, found) = set?;
         if found != dimension {
-            let says = format!(
-                "parameter `{name}` is {}, the given value is {}",
-                dimension.in_words(),
-                found.in_words()
-            );
-            let problem = Problem::error("unit-mismatch", says)
-                .at(&text.span)
-                .label(found.in_words())
-                .also(&default.span, "its default");
-            self.problems.push(match found {
+            let problem = error(
+                "unit-mismatch",
+                format!(
+                    "parameter `{name}` is {}, the given value is {}",
+                    dimension.in_words(),
+                    found.in_words()
+                ),
+                &text.span,
+            )
+            .label(found.in_words())
+            .also(&default.span, "its default");
+            return self.refuse(match found {
                 Dimension::ONE => problem.help(format!(
                     "write its unit, as its default does: `{}`",
                     default.text.trim()
                 )),
                 _ => problem,
             });
-            return None;
         }
         match block.field("range") {
             // The rules are checked on with the default: what would follow from a wrong value is
@@ -206,7 +199,7 @@ impl Checker<'_> {
     }
 
     /// Whether a value is inside a range; a problem if it is not, or if the range itself is wrong.
-    pub(super) fn within_range(
+    pub fn within_range(
         &mut self,
         name: &str,
         value: f64,
@@ -220,11 +213,11 @@ impl Checker<'_> {
         let inside = (ends[0]..=ends[1]).contains(&value);
         if !inside {
             self.problems.push(
-                Problem::error(
+                error(
                     "out-of-range",
                     format!("`{}` is outside the range of `{name}`", normalised(&source.text)),
+                    &source.span,
                 )
-                .at(&source.span)
                 .also(&range.value.span, "the range")
                 .help(format!("allowed: {}", normalised(&range.value.text))),
             );
@@ -233,7 +226,7 @@ impl Checker<'_> {
     }
 
     /// Both ends of a range in SI. They must have the dimension of the value that the range is of.
-    pub(super) fn range_ends(
+    pub fn range_ends(
         &mut self,
         name: &str,
         dimension: Dimension,
@@ -247,13 +240,12 @@ impl Checker<'_> {
             if of != dimension {
                 let says =
                     format!("`{name}` is {}, its range is {}", dimension.in_words(), of.in_words());
-                let at = range.value.place(phrase.range.clone());
-                let problem = Problem::error("unit-mismatch", says).at(&at).label(of.in_words());
-                self.problems.push(match of_value {
+                let at = phrase.place(&range.value);
+                let problem = error("unit-mismatch", says, &at).label(of.in_words());
+                return self.refuse(match of_value {
                     Some(source) => problem.also(&source.span, dimension.in_words()),
                     None => problem,
                 });
-                return None;
             }
             *end = found;
         }
@@ -261,26 +253,21 @@ impl Checker<'_> {
     }
 
     /// A number that follows from constants only, with its dimension.
-    pub(super) fn constant(&mut self, text: &Text) -> Option<(f64, Dimension)> {
+    pub fn constant(&mut self, text: &Text) -> Option<(f64, Dimension)> {
         let phrase = from_pest::expression(text, self.problems)?;
         self.constant_phrase(&phrase, text)
     }
 
-    pub(super) fn constant_phrase(
-        &mut self,
-        phrase: &Phrase,
-        text: &Text,
-    ) -> Option<(f64, Dimension)> {
+    /// As [`Self::constant`], for a part of a field.
+    pub fn constant_phrase(&mut self, phrase: &Phrase, text: &Text) -> Option<(f64, Dimension)> {
         let expr = self.expr(phrase, text, &mut Scope::constant())?;
         let dimension = self.number_type(&expr)?;
         if let Kind::Constant(Scalar::Number(value)) = expr.kind {
             return Some((value, dimension));
         }
-        self.problems.push(
-            Problem::error("not-constant", format!("`{}` is not a constant", words(&expr)))
-                .at(&expr.span)
+        self.refuse(
+            error("not-constant", format!("`{}` is not a constant", words(&expr)), &expr.span)
                 .help("write a number with its unit, a parameter or an expression of these"),
-        );
-        None
+        )
     }
 }

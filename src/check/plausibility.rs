@@ -1,15 +1,15 @@
 //! Checks plausibility rules: their condition, positions and records.
 
-use super::Checker;
 use super::names::normalised;
 use super::near::Near;
 use super::plan::{
     Comparison, Distinct, Exchanged, Expr, Input, InputSide, Looks, OnFault, Plausibility,
-    Requirement, Signal, Step, Taken, Test,
+    Requirement, Step, Taken, Test,
 };
 use super::scope::Scope;
 use super::steps::after;
-use crate::problem::Problem;
+use super::{Checker, if_written};
+use crate::problem::error;
 use crate::syntax::document::{Block, Field};
 use crate::syntax::from_pest;
 use crate::units::{Dimension, Unit};
@@ -18,25 +18,24 @@ use crate::units::{Dimension, Unit};
 const AMONG: [&str; 3] = ["channels", "sections", "sides"];
 
 /// Signals with their names, and the unit of values taken from them.
-type Of = (Vec<(String, Signal)>, Option<Unit>);
+type Of = (Vec<(String, Expr)>, Option<Unit>);
 
 impl Checker<'_> {
     /// One rule for each field `of` of the block.
-    pub(super) fn plausibility(&mut self, block: &Block) -> Option<Vec<Plausibility>> {
+    pub fn plausibility(&mut self, block: &Block) -> Option<Vec<Plausibility>> {
         let (require, distinct, exchanged) =
             (block.field("require"), block.field("distinct"), block.field("exchanged"));
         let tests: Vec<&Field> = [require, distinct, exchanged].into_iter().flatten().collect();
         if let [first, second, ..] = tests[..] {
-            self.problems.push(
-                Problem::error(
+            return self.refuse(
+                error(
                     "require-and-distinct",
                     "a plausibility rule has one of `require`, `distinct` and `exchanged`",
+                    &second.key.span,
                 )
-                .at(&second.key.span)
                 .also(&first.key.span, "the first of them")
                 .help("write two rules"),
             );
-            return None;
         }
         if distinct.or(exchanged).is_none() {
             self.required(block, "require")?;
@@ -56,10 +55,7 @@ impl Checker<'_> {
         if block.field("of").is_none() {
             all.push((Vec::new(), None));
         }
-        let unless = match block.field("unless") {
-            Some(field) => Some(self.section_condition(field)?),
-            None => None,
-        };
+        let unless = if_written(block.field("unless").map(|field| self.section_condition(field)))?;
         let otherwise = self.consequence(block);
         let chain = chain.filter(|_| whole)?;
         let mut rules = Vec::new();
@@ -80,22 +76,18 @@ impl Checker<'_> {
                 (&test, chain.iter().find(|step| !step.kind.keeps_samples()))
                 && requirement.inputs.iter().any(|input| input.taken.needs_samples())
             {
-                self.problems.push(
-                    Problem::error(
+                return self.refuse(
+                    error(
                         "metric-of-window",
                         "this metric compares samples and cannot follow a window or resampling",
+                        &requirement.holds.span,
                     )
-                    .at(&requirement.holds.span)
                     .also(&step.span, "this step"),
                 );
-                return None;
             }
             rules.push(Plausibility {
                 name: block.name_text().to_string(),
-                title: block.title.as_ref().map_or_else(
-                    || block.name_text().replace('_', " "),
-                    |title| title.text.clone(),
-                ),
+                title: block.title_in_words(),
                 signals,
                 chain: chain.clone(),
                 test,
@@ -113,20 +105,20 @@ impl Checker<'_> {
         let name = from_pest::of_places(&field.value, self.problems)?.signal.node;
         let unit = signals
             .first()
-            .map(|(_, signal, _)| self.own_unit(&name, after(chain, signal.dimension)));
+            .map(|(_, signal, _)| self.own_unit(&name, after(chain, signal.dimension())));
         Some((signals.into_iter().map(|(name, signal, _)| (name, signal)).collect(), unit))
     }
 
     fn requirement(
         &mut self,
         field: &Field,
-        signals: &[(String, Signal)],
+        signals: &[(String, Expr)],
         chain: &[Step],
         own_unit: Option<&Unit>,
     ) -> Option<Requirement> {
         let phrase = from_pest::expression(&field.value, self.problems)?;
         let axis = self.axis_dimension();
-        let own = signals.first().map(|(_, signal)| after(chain, signal.dimension));
+        let own = signals.first().map(|(_, signal)| after(chain, signal.dimension()));
         let mut scope =
             Scope { factor: after(chain, Dimension::ONE), ..Scope::comparing(own, axis) };
         let (holds, compared) = self.compared(&phrase, &field.value, &mut scope)?;
@@ -179,12 +171,14 @@ impl Checker<'_> {
                 "sections" => distinct.sections = true,
                 "sides" => distinct.sides = true,
                 other => {
-                    self.problems.push(
-                        Problem::error("unknown-choice", format!("`distinct` cannot be `{other}`"))
-                            .at(&field.value.place(word.range.clone()))
-                            .suggest(other, AMONG),
+                    return self.refuse(
+                        error(
+                            "unknown-choice",
+                            format!("`distinct` cannot be `{other}`"),
+                            &word.place(&field.value),
+                        )
+                        .suggest(other, AMONG),
                     );
-                    return None;
                 }
             }
         }
@@ -202,10 +196,8 @@ impl Checker<'_> {
             Some(Exchanged { least: number(least)?, more: number(more)? })
         });
         if found.is_none() {
-            let says = "`exchanged` must be two numbers between 0 and 1: a correlation, and a difference of two";
             self.problems.push(
-                Problem::error("exchanged-numbers", says)
-                    .at(&field.value.span)
+                error("exchanged-numbers", "`exchanged` must be two numbers between 0 and 1: a correlation, and a difference of two", &field.value.span)
                     .help("write `exchanged  from 0.5, by 0.3`"),
             );
         }
@@ -221,7 +213,7 @@ impl Checker<'_> {
 }
 
 fn looks(inputs: &[Input]) -> Looks {
-    let track = |input: &Input| input.signal.as_ref().is_some_and(|signal| signal.track);
+    let track = |input: &Input| input.signal.as_ref().is_some_and(Expr::track);
     let own =
         |input: &Input| input.side == InputSide::Own && matches!(input.taken, Taken::Reduced(_));
     match inputs {

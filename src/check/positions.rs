@@ -5,9 +5,9 @@ use indexmap::IndexMap;
 
 use super::Checker;
 use super::names::{Assignment, Place};
-use super::plan::{Expr, Kind, Operator, Signal, Type};
+use super::plan::{Expr, Kind, Operator, Origin, Type};
 use super::scope::Scope;
-use crate::problem::Problem;
+use crate::problem::{error, warning};
 use crate::source::Span;
 use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase, Pick};
@@ -24,18 +24,18 @@ impl Place {
 
 impl Checker<'_> {
     /// A signal at a position such as `Y at side R`, or at an alias that depends on the section.
-    pub(super) fn placed(
+    pub fn placed(
         &mut self,
         name: &At<String>,
         words: &[At<String>],
         text: &Text,
-        span: &Span,
-        at: &Assignment,
-    ) -> Option<Signal> {
+        span: &Origin,
+        scope: &Scope,
+    ) -> Option<Expr> {
         let bare = At { node: Node::Path(name.node.clone()), range: name.range.clone() };
         // Words alternate: place, member, place, member, ... A place name of several words is
         // joined by `_`.
-        let mut assignment = at.clone();
+        let mut assignment = scope.at.clone();
         let mut from = 0;
         while from < words.len() {
             let named = (from + 1..words.len()).find_map(|end| {
@@ -44,9 +44,12 @@ impl Checker<'_> {
             let Some((place, member_at)) = named else {
                 if let Some(place) = self.place_called(&joined(&words[from..])) {
                     self.problems.push(
-                        Problem::error("open-place", format!("the {place} is not stated"))
-                            .at(&self.span_of(&words[from..], text))
-                            .help(self.members_help(&place)),
+                        error(
+                            "open-place",
+                            format!("the {place} is not stated"),
+                            &self.span_of(&words[from..], text),
+                        )
+                        .help(self.members_help(&place)),
                     );
                 } else {
                     self.unknown_place(&words[from..words.len().max(from + 2) - 1], text);
@@ -63,17 +66,17 @@ impl Checker<'_> {
             from = member_at + 1;
         }
         let found = self.signal_where(&bare, text, &assignment, span)?;
-        Some(Signal { span: span.clone(), ..found })
+        Some(Expr { span: span.clone(), ..found })
     }
 
     /// A signal at positions that may be aliases. The position then depends on the section.
-    pub(super) fn signal_where(
+    pub fn signal_where(
         &mut self,
         phrase: &Phrase,
         text: &Text,
         at: &Assignment,
-        span: &Span,
-    ) -> Option<Signal> {
+        span: &Origin,
+    ) -> Option<Expr> {
         let mut cases: Vec<(Option<Expr>, Assignment)> = vec![(None, at.clone())];
         for (place, member) in at {
             let Some((alias, alias_text)) =
@@ -84,8 +87,7 @@ impl Checker<'_> {
             let mut split = Vec::new();
             let mut conditions = Vec::new();
             for (target, condition) in &alias.cases {
-                let condition = self.expr(condition, &alias_text, &mut Scope::section())?;
-                self.flag_type(&condition)?;
+                let condition = self.condition(condition, &alias_text, &mut Scope::section())?;
                 for (before, assignment) in &cases {
                     let mut assignment = assignment.clone();
                     assignment.insert(place.clone(), target.node.clone());
@@ -101,10 +103,10 @@ impl Checker<'_> {
             let signal = self.signal(phrase, text, &assignment)?;
             match condition {
                 None => return Some(signal),
-                Some(condition) => arms.push((condition, signal)),
+                Some(condition) => arms.push((signal, condition)),
             }
         }
-        self.select(arms, None, span)
+        self.select(arms, None, span, None)
     }
 
     /// In a quantity, sections in which an alias has no position cannot be used. This is a warning
@@ -113,35 +115,27 @@ impl Checker<'_> {
         if !self.in_quantity {
             return;
         }
-        let mut all: Vec<(&Expr, bool)> =
-            self.assumed.iter().map(|condition| (condition, true)).collect();
-        all.extend(conditions.iter().map(|condition| (condition, false)));
-        if !super::conditions::impossible(&all) {
+        if !self.always_one(conditions.iter()) {
             self.problems.push(
-                Problem::warning(
-                    "alias-gap",
-                    format!("in some sections `{alias}` stands for no position of `{place}`; they cannot be used"),
-                )
-                .at(span)
+                warning("alias-gap", format!("in some sections `{alias}` stands for no position of `{place}`; they cannot be used"), span)
                 .help("exclude them from this quantity with `where ...`"),
             );
         }
     }
 
-    pub(super) fn unknown_place(&mut self, words: &[At<String>], text: &Text) {
+    /// Reports words that name no place.
+    pub fn unknown_place(&mut self, words: &[At<String>], text: &Text) {
         let name = joined(words);
         if self.names.failed.contains(&name)
             || self.names.failed.contains(name.strip_suffix('s').unwrap_or(&name))
         {
             return;
         }
-        let names: Vec<String> =
-            self.names.places.keys().map(|place| place.replace('_', " ")).collect();
+        let names = self.names.places.keys().map(|place| place.replace('_', " "));
         let shown = name.replace('_', " ");
         self.problems.push(
-            Problem::error("unknown-place", format!("`{shown}` is not a place"))
-                .at(&self.span_of(words, text))
-                .suggest(&shown, names.iter().map(String::as_str)),
+            error("unknown-place", format!("`{shown}` is not a place"), &self.span_of(words, text))
+                .suggest(&shown, names),
         );
     }
 
@@ -156,12 +150,14 @@ impl Checker<'_> {
         let Some(known) = self.names.places.get(place) else { return };
         let aliases = known.aliases.iter().map(|(alias, _)| alias.name.node.as_str());
         let all: Vec<&str> = known.members.iter().map(String::as_str).chain(aliases).collect();
-        let problem = Problem::error(
-            "unknown-place",
-            format!("`{}` is not a position of `{}`", member.node, place.replace('_', " ")),
-        )
-        .at(&text.place(member.range.clone()));
-        self.problems.push(problem.suggest(&member.node, all));
+        self.problems.push(
+            error(
+                "unknown-place",
+                format!("`{}` is not a position of `{}`", member.node, place.replace('_', " ")),
+                &member.place(text),
+            )
+            .suggest(&member.node, all),
+        );
     }
 
     fn members_help(&self, place: &str) -> String {
@@ -171,7 +167,7 @@ impl Checker<'_> {
     }
 
     /// All positions of a selection, in the order of the signal's places.
-    pub(super) fn positions(
+    pub fn positions(
         &mut self,
         signal: &At<String>,
         picks: &[Pick],
@@ -182,7 +178,7 @@ impl Checker<'_> {
                 (Some(channel), _) => channel.places.clone(),
                 (_, Some(signal)) => signal.places.clone(),
                 _ => {
-                    self.unknown_signal(&signal.node, &text.place(signal.range.clone()));
+                    self.unknown_signal(&signal.node, &signal.place(text));
                     return None;
                 }
             };
@@ -201,12 +197,14 @@ impl Checker<'_> {
                 None => self.names.places.get(place)?.members.clone(),
             };
             if all.len().saturating_mul(members.len()) > MOST_POSITIONS {
-                let says =
-                    format!("`{}` has more than {MOST_POSITIONS} positions here", signal.node);
-                let problem =
-                    Problem::error("too-large", says).at(&text.place(signal.range.clone()));
-                self.problems.push(problem.help("choose positions: `at wheelset 1 and side R`"));
-                return None;
+                return self.refuse(
+                    error(
+                        "too-large",
+                        format!("`{}` has more than {MOST_POSITIONS} positions here", signal.node),
+                        &signal.place(text),
+                    )
+                    .help("choose positions: `at wheelset 1 and side R`"),
+                );
             }
             let with = |before: &Assignment, member: &String| {
                 let mut next = before.clone();
@@ -255,16 +253,17 @@ impl Checker<'_> {
             return None;
         };
         if !places.contains(&place) {
-            let says = format!("`{}` has no place `{}`", signal.node, place.replace('_', " "));
-            let problem =
-                Problem::error("unknown-place", says).at(&self.span_of(&words[..end], text));
+            let problem = error(
+                "unknown-place",
+                format!("`{}` has no place `{}`", signal.node, place.replace('_', " ")),
+                &self.span_of(&words[..end], text),
+            );
             let help = if places.is_empty() {
                 "it has no places".to_string()
             } else {
                 format!("its places: {}", places.join(", ").replace('_', " "))
             };
-            self.problems.push(problem.help(help));
-            return None;
+            return self.refuse(problem.help(help));
         }
         let known = self.names.places.get(&place)?.clone();
         let members: Vec<&At<String>> = words[end..].iter().chain(&pick.more).collect();
@@ -275,9 +274,7 @@ impl Checker<'_> {
         }
         let mut ok = true;
         for member in members {
-            if let Some(selected) =
-                self.selected(&member.node, &place, &text.place(member.range.clone()))
-            {
+            if let Some(selected) = self.selected(&member.node, &place, &member.place(text)) {
                 selected.into_iter().for_each(|member| {
                     if !found.contains(&member) {
                         found.push(member)

@@ -37,7 +37,9 @@ impl Possible {
 
     fn anything(ty: &Type) -> Self {
         match ty {
-            Type::Number(_) => Self::Number(f64::NEG_INFINITY, f64::INFINITY),
+            Type::Number(_) | Type::Samples { .. } => {
+                Self::Number(f64::NEG_INFINITY, f64::INFINITY)
+            }
             Type::Flag => Self::Flag { can_hold: true, can_fail: true },
             Type::Word(words) => Self::Words(Some(words.clone()).filter(|words| !words.is_empty())),
         }

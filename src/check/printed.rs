@@ -2,14 +2,14 @@
 
 use super::Checker;
 use super::plan::{DatumKind, Expr, Kind};
-use crate::problem::Problem;
+use crate::problem::error;
 use crate::syntax::document::{Block, Text};
 use crate::syntax::from_pest;
 use crate::units::{Dimension, Unit};
 
 impl Checker<'_> {
     /// The unit in which values are printed: as stated, else that of the signal, else SI.
-    pub(super) fn quantity_unit(
+    pub fn quantity_unit(
         &mut self,
         block: &Block,
         of: &Text,
@@ -18,19 +18,18 @@ impl Checker<'_> {
         if let Some(field) = block.field("in") {
             let unit = self.unit(&field.value)?;
             if unit.dimension != dimension {
-                self.problems.push(
-                    Problem::error(
+                return self.refuse(
+                    error(
                         "unit-mismatch",
                         format!(
                             "the values are {}; the unit is that of {}",
                             dimension.in_words(),
                             unit.dimension.in_words()
                         ),
+                        &field.value.span,
                     )
-                    .at(&field.value.span)
                     .also(&of.span, dimension.in_words()),
                 );
-                return None;
             }
             return Some(unit);
         }
@@ -40,7 +39,7 @@ impl Checker<'_> {
 
     /// The declared unit of the first section column or vehicle datum in an expression that has
     /// this dimension.
-    pub(super) fn datum_unit(&self, expr: &Expr, dimension: Dimension) -> Option<Unit> {
+    pub fn datum_unit(&self, expr: &Expr, dimension: Dimension) -> Option<Unit> {
         let datum = match &expr.kind {
             Kind::Column(index) => self.names.columns.get(*index)?,
             Kind::Vehicle(index) => self.names.vehicle.get(*index)?,
@@ -64,7 +63,7 @@ impl Checker<'_> {
     }
 
     /// The unit of a channel or signal if its dimension agrees, else the SI unit.
-    pub(super) fn own_unit(&self, name: &str, dimension: Dimension) -> Unit {
+    pub fn own_unit(&self, name: &str, dimension: Dimension) -> Unit {
         let channel = self.names.channels.get(name).map(|channel| channel.unit.clone());
         let own =
             channel.or_else(|| self.names.signals.get(name).and_then(|signal| signal.unit.clone()));

@@ -2,20 +2,21 @@
 
 use std::sync::Arc;
 
-use super::Checker;
 use super::conditions::impossible;
 use super::evaluate::{number, words};
+use super::expressions::whole;
 use super::names::{Assignment, bare_word, normalised};
 use super::plan::{
-    Evaluation, Expr, InputSide, Pairing, Position, Quantity, QuantityWords, Records, Side, Signal,
-    Step, Valued,
+    Evaluation, Expr, InputSide, Pairing, Position, Quantity, QuantityWords, Records, Side, Step,
+    Valued,
 };
 use super::records::Compare;
 use super::scope::Scope;
 use super::steps::after;
 use super::values::Values;
+use super::{Checker, if_written};
 use crate::catalog::{Best, DIFFERENCES, NOT_CHECKED};
-use crate::problem::Problem;
+use crate::problem::{error, warning};
 use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
@@ -23,7 +24,7 @@ use crate::syntax::phrase::{At, Node, Phrase};
 use crate::units::Dimension;
 
 /// The result of checking value and difference, or the metric, of a quantity.
-pub(super) struct Compared {
+pub struct Compared {
     pub evaluation: Evaluation,
     pub dimension: Dimension,
     pub processing: String,
@@ -35,7 +36,8 @@ pub(super) struct Compared {
 }
 
 impl Checker<'_> {
-    pub(super) fn quantity(&mut self, block: &Block) -> Option<Quantity> {
+    /// A quantity with its limits and reports.
+    pub fn quantity(&mut self, block: &Block) -> Option<Quantity> {
         self.in_quantity = true;
         let only = block.field("where").map(|field| self.section_condition(field));
         self.assumed.extend(only.clone().flatten());
@@ -47,7 +49,7 @@ impl Checker<'_> {
 
     /// Dimension of its values, for other quantities. Errors are reported only where the quantity
     /// itself is checked.
-    pub(super) fn dimension_of(&mut self, block: &Block) -> Option<Dimension> {
+    pub fn dimension_of(&mut self, block: &Block) -> Option<Dimension> {
         let problems = self.problems.0.len();
         let (assumed, partial) = (std::mem::take(&mut self.assumed), self.partial);
         if let Some(Some(only)) = block.field("where").map(|field| self.section_condition(field)) {
@@ -92,11 +94,11 @@ impl Checker<'_> {
             (metric, block.field("value").or(block.field("difference")))
         {
             self.problems.push(
-                Problem::error(
+                error(
                     "metric-and-value",
                     "a quantity has either `metric`, or `value` and `difference`",
+                    &other.key.span,
                 )
-                .at(&other.key.span)
                 .also(&metric.key.span, "the metric"),
             );
         }
@@ -104,10 +106,13 @@ impl Checker<'_> {
             (assessed, block.field("difference").or(metric).or(block.field("compare")))
         {
             self.problems.push(
-                Problem::error("from-and-compared", "values of one record cannot be compared")
-                    .at(&other.key.span)
-                    .also(&from.key.span, "the record")
-                    .help(format!("remove `from` or `{}`", other.key.text)),
+                error(
+                    "from-and-compared",
+                    "values of one record cannot be compared",
+                    &other.key.span,
+                )
+                .also(&from.key.span, "the record")
+                .help(format!("remove `from` or `{}`", other.key.text)),
             );
         }
         let chain =
@@ -117,7 +122,7 @@ impl Checker<'_> {
         let dimension = positions
             .as_ref()
             .and_then(|positions| positions.first())
-            .map(|(position, _)| position.signal.dimension);
+            .map(|(position, _)| position.signal.dimension());
         let dimension =
             dimension.map(|dimension| after(chain.as_deref().unwrap_or_default(), dimension));
         let compared = self.compared_of(block, positions.as_deref(), chain.as_deref());
@@ -138,37 +143,43 @@ impl Checker<'_> {
         let reports = self.reports(block, unit.as_ref().map(|unit| unit.dimension), &places);
         let minima = self.minima(block);
         if let (Some(reported), Some(limit)) = (block.field("reported"), block.field("limit")) {
-            let says = "a quantity is either reported without a limit, or has one";
             self.problems.push(
-                Problem::error("reported-and-limit", says)
-                    .at(&reported.key.span)
-                    .also(&limit.key.span, "the limit"),
+                error(
+                    "reported-and-limit",
+                    "a quantity is either reported without a limit, or has one",
+                    &reported.key.span,
+                )
+                .also(&limit.key.span, "the limit"),
             );
         }
         let meant = block.field("reported").or(block.field("report")).is_some()
             || self.is_referred_to(block.name_text());
         if block.field("limit").is_none() && !incomplete && !meant {
             self.problems.push(
-                Problem::warning(
+                warning(
                     "no-limit",
                     format!(
                         "quantity `{}` has no limit: it is reported and has no effect on a verdict",
                         block.name_text()
                     ),
+                    block.span(),
                 )
-                .at(block.span())
                 .help("if that is meant, say why: `reported \"...\"`"),
             );
         }
         if let (Some(only), None, 2..) = (block.field("where"), minima.all, self.minimum_pairs) {
-            let says = format!(
-                "quantity `{}` uses only some of the sections but needs {} pairs",
-                block.name_text(),
-                self.minimum_pairs
+            self.problems.push(
+                warning(
+                    "minimum-inherited",
+                    format!(
+                        "quantity `{}` uses only some of the sections but needs {} pairs",
+                        block.name_text(),
+                        self.minimum_pairs
+                    ),
+                    &only.value.span,
+                )
+                .help("state the number for this quantity: `minimum pairs ...`"),
             );
-            let problem = Problem::warning("minimum-inherited", says).at(&only.value.span);
-            self.problems
-                .push(problem.help("state the number for this quantity: `minimum pairs ...`"));
         }
         let minimum_signals = self.count(block, "minimum signals", self.minimum_signals);
         let minimum_pairs = minima.all.unwrap_or(Some(self.minimum_pairs));
@@ -186,17 +197,14 @@ impl Checker<'_> {
             .fields_named("of")
             .map(|field| self.with_values(&normalised(&field.value.text)))
             .collect();
-        let text = |key: &str| block.field(key).map(|field| field.value.text.clone());
         let filter = if chain.is_empty() {
             "none".into()
         } else {
             chain.iter().map(|step| step.words.as_str()).collect::<Vec<_>>().join(", then ")
         };
         let unverified = compared.evaluation.unverified();
-        let reported = text("reported").map(|why| format!("Reported without a limit. {why}"));
-        let notes = reported
-            .into_iter()
-            .chain(block.fields_named("note").map(|note| note.value.text.clone()));
+        let reported = block.text("reported").map(|why| format!("Reported without a limit. {why}"));
+        let notes = reported.into_iter().chain(block.notes());
         let notes = notes
             .chain(
                 unverified.iter().map(|metric| format!("Unverified: `{metric}` is {NOT_CHECKED}.")),
@@ -209,29 +217,23 @@ impl Checker<'_> {
         };
         Some(Quantity {
             id: block.name_text().to_string(),
-            title: block
-                .title
-                .as_ref()
-                .map_or_else(|| block.name_text().to_string(), |title| title.text.clone()),
-            symbol: text("symbol").unwrap_or_else(|| block.name_text().to_string()),
+            title: block.title_text().unwrap_or_else(|| block.name_text().to_string()),
+            symbol: block.text("symbol").unwrap_or_else(|| block.name_text().to_string()),
             words: QuantityWords {
                 of: all.join("; "),
                 filter,
                 processing: compared.processing,
                 comparison,
             },
-            clause: text("clause"),
-            source: text("source"),
+            clause: block.text("clause"),
+            source: block.text("source"),
             notes,
             unit,
             signal_unit,
             positions: positions.into_iter().map(|(position, _)| position).collect(),
             chain,
             evaluation: Arc::new(compared.evaluation),
-            only: match only {
-                Some(only) => Some(only?),
-                None => None,
-            },
+            only: if_written(only)?,
             limits: limits?.into_iter().map(Arc::new).collect(),
             reports: reports?.into_iter().map(Arc::new).collect(),
             minimum_signals: minimum_signals?,
@@ -248,13 +250,9 @@ impl Checker<'_> {
         for field in block.fields_named("of") {
             let written = from_pest::of_places(&field.value, self.problems);
             let when = written.and_then(|written| written.when);
-            let only = match &when {
-                None => Some(None),
-                Some(when) => {
-                    let condition = self.expr(when, &field.value, &mut Scope::section());
-                    condition.filter(|condition| self.flag_type(condition).is_some()).map(Some)
-                }
-            };
+            let only =
+                when.as_ref().map(|when| self.condition(when, &field.value, &mut Scope::section()));
+            let only = if_written(only);
             let known = self.assumed.len();
             self.assumed.extend(only.clone().flatten());
             let signals = self.signals_of(&field.value);
@@ -265,30 +263,28 @@ impl Checker<'_> {
             };
             for (name, signal, at) in signals {
                 if let Some((first, _)) = found.first()
-                    && first.signal.dimension != signal.dimension
+                    && first.signal.dimension() != signal.dimension()
                 {
-                    let says = format!(
+                    return self.refuse(error("unit-mismatch", format!(
                         "the signals of one quantity must have the same dimension: another is {}",
-                        first.signal.dimension.in_words()
-                    );
-                    self.problems.push(
-                        Problem::error("unit-mismatch", says)
-                            .at(&field.value.span)
-                            .label(signal.dimension.in_words()),
-                    );
-                    return None;
+                        first.signal.dimension().in_words()
+                    ), &field.value.span)
+                            .label(signal.dimension().in_words()));
                 }
                 let again = found
                     .iter()
                     .find(|(known, _)| known.name == name && both_apply(&known.only, &only));
                 if again.is_some() {
-                    let says =
-                        format!("`{name}` is evaluated twice, so its values would count twice");
-                    let problem = Problem::error("position-twice", says).at(&field.value.span);
-                    self.problems.push(problem.help(
-                        "add conditions that exclude each other to the fields `of`: `when ...`",
-                    ));
-                    return None;
+                    return self.refuse(
+                        error(
+                            "position-twice",
+                            format!("`{name}` is evaluated twice, so its values would count twice"),
+                            &field.value.span,
+                        )
+                        .help(
+                            "add conditions that exclude each other to the fields `of`: `when ...`",
+                        ),
+                    );
                 }
                 let places =
                     at.iter().map(|(place, member)| (place.clone(), member.clone())).collect();
@@ -299,7 +295,7 @@ impl Checker<'_> {
     }
 
     /// Every position with its name, signal and assignment.
-    pub(super) fn signals_of(&mut self, of: &Text) -> Option<Vec<(String, Signal, Assignment)>> {
+    pub fn signals_of(&mut self, of: &Text) -> Option<Vec<(String, Expr, Assignment)>> {
         let written = from_pest::of_places(of, self.problems)?;
         let positions = self.positions(&written.signal, &written.picks, of)?;
         let name = &written.signal.node;
@@ -314,23 +310,20 @@ impl Checker<'_> {
                 _ => return None,
             };
         let phrase = At { node: Node::Path(name.clone()), range: written.signal.range.clone() };
-        let used = of.place(written.signal.range.clone());
-        let mut found: Vec<(String, Signal, Assignment)> = Vec::new();
+        let used = written.signal.place(of);
+        let mut found: Vec<(String, Expr, Assignment)> = Vec::new();
         for position in positions {
             let filled = self.fill(name, &pattern, &places, &span, &used, &position)?;
             if found.iter().any(|(known, _, _)| *known == filled) {
                 continue;
             }
-            let signal = self.signal_where(&phrase, of, &position, &of.span)?;
-            if signal.track {
-                self.problems.push(
-                    Problem::error(
-                        "track-quantity",
-                        "the track record has no simulated and measured side to compare",
-                    )
-                    .at(&used),
-                );
-                return None;
+            let signal = self.signal_where(&phrase, of, &position, &whole(of))?;
+            if signal.track() {
+                return self.refuse(error(
+                    "track-quantity",
+                    "the track record has no simulated and measured side to compare",
+                    &used,
+                ));
             }
             found.push((filled, signal, position));
         }
@@ -345,7 +338,7 @@ impl Checker<'_> {
         chain: &[Step],
     ) -> Option<Compared> {
         let first = positions.and_then(|positions| positions.first());
-        let dimension = first.map(|(position, _)| after(chain, position.signal.dimension));
+        let dimension = first.map(|(position, _)| after(chain, position.signal.dimension()));
         let fields: Vec<&Field> = block.fields_named("value").collect();
         self.partial = fields.len() > 1;
         let values: Vec<Option<(Valued, Dimension)>> =
@@ -357,16 +350,11 @@ impl Checker<'_> {
         {
             if Some(*other) != result {
                 let wanted = result.map_or_else(String::new, Dimension::in_words);
-                let says = format!(
+                return self.refuse(error("unit-mismatch", format!(
                     "the values of one quantity must have the same dimension: the first is {wanted}, this is {}",
                     other.in_words()
-                );
-                self.problems.push(
-                    Problem::error("unit-mismatch", says)
-                        .at(&field.value.span)
-                        .also(&fields[0].value.span, wanted),
-                );
-                return None;
+                ), &field.value.span)
+                        .also(&fields[0].value.span, wanted));
             }
         }
         for (at, field) in fields.iter().enumerate() {
@@ -374,13 +362,14 @@ impl Checker<'_> {
                 .iter()
                 .find(|first| normalised(&first.value.text) == normalised(&field.value.text))
             {
-                let problem = Problem::error(
-                    "value-twice",
-                    "this value is written twice and would count twice",
-                )
-                .at(&field.value.span);
-                self.problems.push(problem.also(&first.value.span, "the same value"));
-                return None;
+                return self.refuse(
+                    error(
+                        "value-twice",
+                        "this value is written twice and would count twice",
+                        &field.value.span,
+                    )
+                    .also(&first.value.span, "the same value"),
+                );
             }
         }
         let from = block.field("from").map(|field| self.from(field));
@@ -410,10 +399,11 @@ impl Checker<'_> {
                 .flat_map(|value| value.inputs.iter().flatten())
                 .find(|input| input.side == other)
             {
-                let says =
-                    format!("the values are {}; the other record is not read", side.in_words());
-                self.problems.push(Problem::error("record-not-read", says).at(&input.span));
-                return None;
+                return self.refuse(error(
+                    "record-not-read",
+                    format!("the values are {}; the other record is not read", side.in_words()),
+                    &input.span,
+                ));
             }
             let from = field_of("value").filter(|_| Some(result) != dimension);
             let evaluation = Evaluation::Values { values, records: Records::Of(of) };
@@ -478,7 +468,7 @@ impl Checker<'_> {
     }
 
     /// An expression of values taken from the own signal and from named signals, at every position.
-    pub(super) fn valued(
+    pub fn valued(
         &mut self,
         phrase: &Phrase,
         field: &Field,
@@ -488,7 +478,7 @@ impl Checker<'_> {
     ) -> Option<(Valued, Dimension)> {
         let axis = self.axis_dimension();
         let (first, at) = positions.first()?;
-        let dimension = after(chain, first.signal.dimension);
+        let dimension = after(chain, first.signal.dimension());
         let factor = after(chain, Dimension::ONE);
         let scope_at =
             |at: &Assignment| Scope { at: at.clone(), factor, ..scope(Some(dimension), axis) };
@@ -496,12 +486,14 @@ impl Checker<'_> {
         let expr = self.value_at(phrase, field, &first.only, &mut scope)?;
         let result = self.number_type(&expr)?;
         if scope.inputs.is_empty() {
-            self.problems.push(
-                Problem::error("value-of-nothing", "this expression uses no value of the signal")
-                    .at(&field.value.span)
-                    .help("for instance `median`, `rms`, `|p99.85|`"),
+            return self.refuse(
+                error(
+                    "value-of-nothing",
+                    "this expression uses no value of the signal",
+                    &field.value.span,
+                )
+                .help("for instance `median`, `rms`, `|p99.85|`"),
             );
-            return None;
         }
         self.can_vary(&field.key.text, &expr, &scope.inputs, &field.value.span)?;
         let mut inputs = vec![scope.inputs];
@@ -556,13 +548,14 @@ impl Checker<'_> {
                     || self.is_failed(word))
             {
                 let differences = DIFFERENCES.iter().map(|(name, _)| *name);
-                let problem = Problem::error(
-                    "unknown-difference",
-                    format!("`{choice}` is not a difference of two values"),
-                )
-                .at(&field.value.span);
-                self.problems.push(problem.suggest(&choice, differences));
-                return None;
+                return self.refuse(
+                    error(
+                        "unknown-difference",
+                        format!("`{choice}` is not a difference of two values"),
+                        &field.value.span,
+                    )
+                    .suggest(&choice, differences),
+                );
             }
         }
         let expr = self.expr(&phrase, &text, &mut Scope::pair(dimension?))?;
@@ -570,15 +563,15 @@ impl Checker<'_> {
         Some((expr, dimension))
     }
 
-    pub(super) fn section_condition(&mut self, field: &Field) -> Option<Expr> {
-        let phrase = from_pest::expression(&field.value, self.problems)?;
-        let expr = self.expr(&phrase, &field.value, &mut Scope::section())?;
-        self.flag_type(&expr)?;
-        Some(expr)
+    /// A field with a condition on the section.
+    pub fn section_condition(&mut self, field: &Field) -> Option<Expr> {
+        let condition = self.expression(&field.value, &mut Scope::section())?;
+        self.flag_type(&condition)?;
+        Some(condition)
     }
 
     /// A whole number that follows from constants.
-    pub(super) fn count(&mut self, block: &Block, key: &str, default: usize) -> Option<usize> {
+    pub fn count(&mut self, block: &Block, key: &str, default: usize) -> Option<usize> {
         let Some(field) = block.field(key) else { return Some(default) };
         let (value, dimension) = self.constant(&field.value)?;
         if dimension != Dimension::ONE || value.fract() != 0.0 || !(0.0..=1e6).contains(&value) {
@@ -594,7 +587,7 @@ impl Checker<'_> {
     }
 
     /// `words` are no whole number: their value is told.
-    pub(super) fn no_count(
+    pub fn no_count(
         &mut self,
         key: &str,
         words: &str,
@@ -603,8 +596,11 @@ impl Checker<'_> {
     ) {
         let evident = dimension != Dimension::ONE || words.parse() == Ok(value);
         let value = if evident { String::new() } else { format!(" = {value}") };
-        let says = format!("`{key}` must be a whole number, this is {words}{value}");
-        self.problems.push(Problem::error("not-a-count", says).at(at));
+        self.problems.push(error(
+            "not-a-count",
+            format!("`{key}` must be a whole number, this is {words}{value}"),
+            at,
+        ));
     }
 }
 
@@ -635,6 +631,7 @@ impl Values for Alike {
 }
 
 impl InputSide {
+    /// The side of the input, where the expression is evaluated for the side `own`.
     pub fn resolve(self, own: Self) -> Self {
         if self == Self::Own { own } else { self }
     }

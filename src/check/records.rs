@@ -3,13 +3,13 @@
 use super::Checker;
 use super::names::normalised;
 use super::plan::{Center, Chosen, DeclaredRecord, Pairing, Side};
-use crate::problem::Problem;
+use crate::problem::{Problem, error};
 use crate::source::{Span, Spanned};
 use crate::syntax::document::{Block, Field, Text};
 
 /// Which records are compared.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Compare {
+pub enum Compare {
     Pairs(Pairing),
     /// Each record with what is central of several.
     With(Chosen, Chosen, Center),
@@ -20,23 +20,25 @@ const WAYS: &str = "write `simulated with measured`, `simulated with mean of sim
 
 impl Checker<'_> {
     /// `is simulated simpack, vampire`
-    pub(super) fn declared_record(&mut self, name: &str, block: &Block) -> Option<DeclaredRecord> {
+    pub fn declared_record(&mut self, name: &str, block: &Block) -> Option<DeclaredRecord> {
         let field = self.required(block, "is")?;
         if ["repeats", "originals"].contains(&name) {
-            let says =
-                format!("`{name}` is a word of the language and cannot be the name of this record");
-            self.problems.push(
-                Problem::error("reserved-name", says)
-                    .at(block.span())
-                    .help(format!("for instance `{name}_1`")),
+            return self.refuse(
+                error(
+                    "reserved-name",
+                    format!(
+                        "`{name}` is a word of the language and cannot be the name of this record"
+                    ),
+                    block.span(),
+                )
+                .help(format!("for instance `{name}_1`")),
             );
-            return None;
         }
         let text = &field.value.text;
         let start = text.len() - text.trim_start().len();
         let end = text[start..].find(char::is_whitespace).map_or(text.len(), |at| start + at);
         let word = &text[start..end];
-        let Some(side) = Side::ALL.into_iter().find(|side| side.in_words() == word) else {
+        let Some(side) = Side::named(word) else {
             let problem = Problem::error(
                 "unknown-record",
                 format!("a record is simulated or measured, and not `{word}`"),
@@ -44,11 +46,10 @@ impl Checker<'_> {
             let problem = problem
                 .at(&field.value.place(start..end))
                 .suggest(word, Side::ALL.map(Side::in_words));
-            self.problems.push(match problem.help {
+            return self.refuse(match problem.help {
                 Some(_) => problem,
                 None => problem.help("`is simulated simpack, vampire`: the side, and the names that the campaign gives to its records"),
             });
-            return None;
         };
         let mut members: Vec<Spanned<String>> = Vec::new();
         let mut at = end;
@@ -60,24 +61,25 @@ impl Checker<'_> {
                 if text[end..].trim().is_empty() {
                     break;
                 }
-                let problem =
-                    Problem::error("syntax", "between commas, the name of a record is missing")
-                        .at(&field.value.span);
-                self.problems.push(problem.help("`is simulated simpack, vampire`"));
-                return None;
+                return self.refuse(
+                    error(
+                        "syntax",
+                        "between commas, the name of a record is missing",
+                        &field.value.span,
+                    )
+                    .help("`is simulated simpack, vampire`"),
+                );
             }
             let place = field.value.place(range);
             if let Some(first) = members.iter().find(|known| known.value == member) {
-                let problem =
-                    Problem::error("duplicate-name", format!("`{member}` is named twice"))
-                        .at(&place);
-                self.problems.push(problem.also(&first.span, "the first"));
-                return None;
+                return self.refuse(
+                    error("duplicate-name", format!("`{member}` is named twice"), &place)
+                        .also(&first.span, "the first"),
+                );
             }
             members.push(Spanned::new(member.to_string(), place));
         }
-        let title =
-            block.title.as_ref().map_or_else(|| name.replace('_', " "), |title| title.text.clone());
+        let title = block.title_in_words();
         Some(DeclaredRecord {
             name: name.to_string(),
             title,
@@ -89,7 +91,7 @@ impl Checker<'_> {
 
     /// `simulated`, `measured`, or the name of a record.
     fn chosen_named(&self, word: &str) -> Option<Chosen> {
-        if let Some(side) = Side::ALL.into_iter().find(|side| side.in_words() == word) {
+        if let Some(side) = Side::named(word) {
             return Some(Chosen { side, record: None });
         }
         let index = self.names.records.iter().position(|record| record.name == word)?;
@@ -100,15 +102,10 @@ impl Checker<'_> {
     fn chosen(&mut self, word: &str, at: &Span) -> Option<Chosen> {
         let found = self.chosen_named(word);
         if found.is_none() && !self.is_failed(word) {
-            let declared: Vec<String> =
-                self.names.records.iter().map(|record| record.name.clone()).collect();
-            let known = Side::ALL
-                .map(Side::in_words)
-                .into_iter()
-                .chain(declared.iter().map(String::as_str));
+            let declared = self.names.records.iter().map(|record| record.name.as_str());
+            let known = Side::ALL.map(Side::in_words).into_iter().chain(declared);
             let problem =
-                Problem::error("unknown-record", format!("`{word}` is not a record of a campaign"))
-                    .at(at)
+                error("unknown-record", format!("`{word}` is not a record of a campaign"), at)
                     .suggest(word, known);
             self.problems.push(match problem.help {
                 Some(_) => problem,
@@ -119,18 +116,18 @@ impl Checker<'_> {
     }
 
     /// What it is called in words: its name, or its side.
-    pub(super) fn chosen_in_words(&self, chosen: Chosen) -> &str {
+    pub fn chosen_in_words(&self, chosen: Chosen) -> &str {
         chosen.record.map_or(chosen.side.in_words(), |index| &self.names.records[index].name)
     }
 
     /// `from measured`, `from codes`
-    pub(super) fn from(&mut self, field: &Field) -> Option<Chosen> {
+    pub fn from(&mut self, field: &Field) -> Option<Chosen> {
         let word = self.choice_field(field)?;
         self.chosen(&word, &field.value.span)
     }
 
     /// Which records a metric takes its two signals of.
-    pub(super) fn of_metric(&mut self, field: &Field, metric: &Span) -> Option<Pairing> {
+    pub fn of_metric(&mut self, field: &Field, metric: &Span) -> Option<Pairing> {
         match self.compare(field)? {
             Compare::Pairs(pairing) => Some(pairing),
             Compare::With(..) => {
@@ -139,16 +136,14 @@ impl Checker<'_> {
                     "a metric compares two signals; a mean of several signals is not available",
                 );
                 let help = "use `value` and `difference`, or compare `simulated with measured` or `repeats with originals`";
-                self.problems
-                    .push(problem.at(&field.value.span).also(metric, "the metric").help(help));
-                None
+                self.refuse(problem.at(&field.value.span).also(metric, "the metric").help(help))
             }
         }
     }
 
     /// `simulated with measured`, `codes with reference`, `codes with mean of simulated`, `runs
     /// with each other`, `repeats with originals`.
-    pub(super) fn compare(&mut self, field: &Field) -> Option<Compare> {
+    pub fn compare(&mut self, field: &Field) -> Option<Compare> {
         let words = normalised(&field.value.text);
         let all: Vec<&str> = words.split(' ').collect();
         match all.as_slice() {
@@ -163,11 +158,14 @@ impl Checker<'_> {
                 let (of, among) = (of?, self.chosen(among, &part(&field.value, among))?);
                 self.several(among, &field.value.span)?;
                 if of.side != among.side {
-                    let says = "records are compared with the mean or median of their own side";
-                    self.problems.push(
-                        Problem::error("unknown-comparison", says).at(&field.value.span).help(WAYS),
+                    return self.refuse(
+                        error(
+                            "unknown-comparison",
+                            "records are compared with the mean or median of their own side",
+                            &field.value.span,
+                        )
+                        .help(WAYS),
                     );
-                    return None;
                 }
                 Some(Compare::With(
                     of,
@@ -179,37 +177,37 @@ impl Checker<'_> {
                 let one = self.chosen(first, &part(&field.value, first));
                 let (one, other) = (one?, self.chosen(second, &part(&field.value, second))?);
                 if (one.side, other.side) == (Side::Measured, Side::Simulated) {
-                    let problem = Problem::error(
-                        "unknown-comparison",
-                        "simulated records are compared with measured ones",
-                    )
-                    .at(&field.value.span);
-                    self.problems.push(
-                        problem.help(format!("the other way round: `{second} with {first}`")),
+                    return self.refuse(
+                        error(
+                            "unknown-comparison",
+                            "simulated records are compared with measured ones",
+                            &field.value.span,
+                        )
+                        .help(format!("the other way round: `{second} with {first}`")),
                     );
-                    return None;
                 }
                 if one == other {
-                    let problem = Problem::error(
-                        "unknown-comparison",
-                        format!("`{words}` compares records with themselves"),
+                    return self.refuse(
+                        error(
+                            "unknown-comparison",
+                            format!("`{words}` compares records with themselves"),
+                            &field.value.span,
+                        )
+                        .help(format!(
+                            "`{first} with each other`, or `{first} with mean of {first}`"
+                        )),
                     );
-                    self.problems.push(problem.at(&field.value.span).help(format!(
-                        "`{first} with each other`, or `{first} with mean of {first}`"
-                    )));
-                    return None;
                 }
                 Some(Compare::Pairs(Pairing::Each(one, other)))
             }
-            _ => {
-                let problem = Problem::error(
+            _ => self.refuse(
+                error(
                     "unknown-comparison",
                     format!("`{words}` does not say which records are compared"),
+                    &field.value.span,
                 )
-                .at(&field.value.span);
-                self.problems.push(problem.help(WAYS));
-                None
-            }
+                .help(WAYS),
+            ),
         }
     }
 
@@ -222,14 +220,18 @@ impl Checker<'_> {
         else {
             return Some(());
         };
-        let says = format!("`{}` is one record, and several are compared", record.name);
-        let problem = Problem::error("one-record", says).at(at).also(&record.span, "declared here");
-        self.problems.push(problem);
-        None
+        self.refuse(
+            error(
+                "one-record",
+                format!("`{}` is one record, and several are compared", record.name),
+                at,
+            )
+            .also(&record.span, "declared here"),
+        )
     }
 
     /// The words of a comparison with what stands in a row in place of `simulated` and `measured`.
-    pub(super) fn paired_words(&self, pairing: Pairing, comparison: &str) -> String {
+    pub fn paired_words(&self, pairing: Pairing, comparison: &str) -> String {
         let (first, second) = match pairing {
             Pairing::Repeats => ("repeat", "original"),
             Pairing::EachOther(_) => ("one", "other"),

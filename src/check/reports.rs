@@ -8,11 +8,11 @@ use super::names::normalised;
 use super::plan::{Estimate, Report};
 use super::scope::Scope;
 use crate::catalog::Statistic;
-use crate::problem::Problem;
+use crate::problem::error;
 use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
-use crate::syntax::phrase::{At, Node, Phrase};
+use crate::syntax::phrase::{At, Node, Phrase, Report as Written};
 use crate::units::{Dimension, Unit};
 
 /// What the reports of a block are of.
@@ -27,7 +27,7 @@ enum Of {
 impl Checker<'_> {
     /// The reports of a quantity. Where its values have an error (no dimension), all else is
     /// checked.
-    pub(super) fn reports(
+    pub fn reports(
         &mut self,
         block: &Block,
         dimension: Option<Dimension>,
@@ -38,7 +38,7 @@ impl Checker<'_> {
     }
 
     /// The reports of the sections.
-    pub(super) fn reports_of_sections(&mut self, block: Option<&Block>) -> Vec<Report> {
+    pub fn reports_of_sections(&mut self, block: Option<&Block>) -> Vec<Report> {
         self.grouped = Grouped::sections();
         block.and_then(|block| self.reports_of(block, Of::Sections)).unwrap_or_default()
     }
@@ -46,20 +46,20 @@ impl Checker<'_> {
     fn reports_of(&mut self, block: &Block, of: Of) -> Option<Vec<Report>> {
         let unconfirmed = block.field("unconfirmed").is_some();
         let mut reports: Vec<Report> = Vec::new();
-        let mut seen: Vec<(String, Span)> = Vec::new();
+        let mut seen: Vec<(Written, Span)> = Vec::new();
         let mut ok = true;
         for field in block.fields_named("report") {
-            let meaning = from_pest::report(&field.value, &mut Default::default())
-                .map(|report| report.meaning());
-            if let Some((_, first)) = seen.iter().find(|(known, _)| Some(known) == meaning.as_ref())
+            let written = from_pest::report(&field.value, &mut Default::default());
+            if let Some((_, first)) = seen.iter().find(|(known, _)| Some(known) == written.as_ref())
             {
-                let problem = Problem::error("duplicate-field", "the same is reported twice")
-                    .at(&field.value.span);
-                self.problems.push(problem.also(first, "the first"));
+                let says = "the same is reported twice";
+                self.problems.push(
+                    error("duplicate-field", says, &field.value.span).also(first, "the first"),
+                );
                 ok = false;
                 continue;
             }
-            seen.extend(meaning.map(|meaning| (meaning, field.value.span.clone())));
+            seen.extend(written.map(|written| (written, field.value.span.clone())));
             match self.report(field, of, unconfirmed) {
                 Some(found) => reports.extend(found),
                 None => ok = false,
@@ -72,10 +72,7 @@ impl Checker<'_> {
     fn report(&mut self, field: &Field, of: Of, unconfirmed: bool) -> Option<Vec<Report>> {
         let text = &field.value;
         let written = from_pest::report(text, self.problems)?;
-        let name = At {
-            node: normalised(text.text.get(written.of.range.clone()).unwrap_or_default()),
-            range: written.of.range.clone(),
-        };
+        let name = At { node: written.of.words(text), range: written.of.range.clone() };
         let (name, phrase) = self.with_statistic(name, written.of, text);
         let scope = self.scope_of(&written.scope, text);
         let mut reports = Vec::new();
@@ -89,14 +86,7 @@ impl Checker<'_> {
             };
             let (mut estimate, scope) = (estimate?, scope?);
             if matches!(estimate.kind, super::plan::EstimateKind::Each) {
-                let problem = Problem::error(
-                    "each-value",
-                    "`each` stands for every single value, and all values are in the report anyway",
-                );
-                self.problems.push(
-                    problem.at(&text.place(name.range)).help("name a statistic: `report maximum`"),
-                );
-                return None;
+                return self.refuse(error("each-value", "`each` stands for every single value, and all values are in the report anyway", &text.place(name.range)).help("name a statistic: `report maximum`"));
             }
             if let Some(unit) = &written.unit {
                 let values = if let Of::Values(dimension) = of { dimension } else { None };
@@ -123,22 +113,10 @@ impl Checker<'_> {
         text: &Text,
         zone: Option<&str>,
     ) -> Option<Estimate> {
-        let found = self.of_group(
-            phrase,
-            text,
-            None,
-            &Scope { zone: zone.map(str::to_string), ..Scope::vehicle() },
-        )?;
-        if found.taken.is_empty() {
-            let problem = Problem::error(
-                "estimate-of-nothing",
-                "this expression uses no data of the sections",
-            )
-            .at(&found.expr.span);
-            self.problems.push(problem.help("for instance `total of length`, `mean of radius`, `share of sections where radius < 300 m`"));
-            return None;
-        }
-        self.number_type(&found.expr)?;
+        let found = self.of_group(phrase, text, None, &Scope::zone(zone))?;
+        let says = "this expression uses no data of the sections";
+        let help = "for instance `total of length`, `mean of radius`, `share of sections where radius < 300 m`";
+        let found = self.of_something(found, says, help)?;
         self.named_estimate(&bare(&name.node), found, None)
     }
 
@@ -150,25 +128,27 @@ impl Checker<'_> {
         values: Option<Dimension>,
         text: &Text,
     ) -> Option<Unit> {
-        let place = text.place(unit.range.clone());
+        let place = unit.place(text);
         let found =
             self.unit(&Text { text: unit.node.clone(), span: place.clone(), exact: text.exact })?;
         let dimension = estimate.unit.as_ref().map(|unit| unit.dimension).or(values)?;
         if found.dimension == dimension {
             return Some(found);
         }
-        let says = format!(
-            "this estimate is {}, `{}` is a unit of {}",
-            dimension.in_words(),
-            unit.node,
-            found.dimension.in_words()
-        );
-        self.problems.push(Problem::error("unit-mismatch", says).at(&place));
-        None
+        self.refuse(error(
+            "unit-mismatch",
+            format!(
+                "this estimate is {}, `{}` is a unit of {}",
+                dimension.in_words(),
+                unit.node,
+                found.dimension.in_words()
+            ),
+            &place,
+        ))
     }
 
     /// A choice parameter in place of an estimate stands for the statistic that it names.
-    pub(super) fn with_statistic(
+    pub fn with_statistic(
         &mut self,
         mut name: At<String>,
         mut estimate: Phrase,
@@ -178,7 +158,7 @@ impl Checker<'_> {
         let named = Statistic::named(&word).is_some() || self.names.estimates.contains_key(&word);
         let parameter = self.names.parameter_blocks.contains_key(&word);
         if let (false, true, Node::Path(_)) = (named, parameter, &estimate.node)
-            && let Some(choice) = self.choice_word(&word, &text.place(name.range.clone()))
+            && let Some(choice) = self.choice_word(&word, &name.place(text))
         {
             estimate.node = match Statistic::named(&choice) {
                 Some(Statistic::Percentile(percent)) => Node::Percentile(percent),

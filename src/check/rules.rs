@@ -1,7 +1,6 @@
 //! Checks the rules that belong to no quantity: axis, zones, section checks, treatment of sections,
 //! independent units.
 
-use super::Checker;
 use super::find::FOUND_SECTIONS;
 use super::names::normalised;
 use super::plan::{
@@ -9,35 +8,37 @@ use super::plan::{
     Zone,
 };
 use super::scope::Scope;
+use super::{Checker, if_written};
 use crate::metrics::percentile::Method;
-use crate::problem::Problem;
+use crate::problem::error;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
 use crate::units::Dimension;
 
 impl Checker<'_> {
-    pub(super) fn axis_field(&mut self, field: &Field, allowed: &[Dimension]) -> Option<Axis> {
+    /// An axis such as `distance in m`, of one of the allowed dimensions.
+    pub fn axis_field(&mut self, field: &Field, allowed: &[Dimension]) -> Option<Axis> {
         let (name, unit) = from_pest::axis(&field.value, self.problems)?;
         let text =
             Text { text: unit.node, span: field.value.place(unit.range), exact: field.value.exact };
         let unit = self.unit(&text)?;
         if !allowed.contains(&unit.dimension) {
-            self.problems.push(
-                Problem::error(
+            return self.refuse(
+                error(
                     "unit-mismatch",
                     format!("`{}` cannot be {}", field.key.text, unit.dimension.in_words()),
+                    &text.span,
                 )
-                .at(&text.span)
                 .help(
                     "write for instance `axis distance in m` or `axis time in s`; `time time in s`",
                 ),
             );
-            return None;
         }
         Some(Axis { column: name.node, unit, span: field.value.span.clone() })
     }
 
-    pub(super) fn zone(&mut self, block: &Block) -> Option<Zone> {
+    /// A zone with its condition and minima.
+    pub fn zone(&mut self, block: &Block) -> Option<Zone> {
         let (condition, condition_words) = match block.field("where") {
             Some(field) => {
                 let unconfirmed =
@@ -49,11 +50,10 @@ impl Checker<'_> {
         let minimum_length = match block.field("minimum length") {
             None => None,
             Some(field) => {
-                let phrase = from_pest::expression(&field.value, self.problems)?;
                 self.assumed.extend(condition.clone());
                 let mut scope =
                     Scope { zone: Some(block.name_text().to_string()), ..Scope::section() };
-                let expr = self.expr(&phrase, &field.value, &mut scope);
+                let expr = self.expression(&field.value, &mut scope);
                 self.assumed.clear();
                 let expr = expr?;
                 Some(self.length_of_section(expr, field)?)
@@ -62,7 +62,7 @@ impl Checker<'_> {
         let minimum_sections = self.count(block, "minimum sections", 0)?;
         Some(Zone {
             name: block.name_text().to_string(),
-            title: block.title.as_ref().map_or_else(String::new, |title| title.text.clone()),
+            title: block.title_text().unwrap_or_default(),
             condition,
             condition_words,
             minimum_sections,
@@ -73,29 +73,22 @@ impl Checker<'_> {
 
     /// The dimension of the axis; that of the usual one if the protocol has none, which is reported
     /// elsewhere.
-    pub(super) fn axis_dimension(&self) -> Dimension {
+    pub fn axis_dimension(&self) -> Dimension {
         self.axis.as_ref().map_or(Dimension::LENGTH, |axis| axis.unit.dimension)
     }
 
-    pub(super) fn section_check(&mut self, block: &Block) -> Option<Check> {
+    /// A requirement on every section.
+    pub fn section_check(&mut self, block: &Block) -> Option<Check> {
         let field = self.required(block, "require")?;
-        let phrase = from_pest::expression(&field.value, self.problems)?;
-        let axis = self.axis_dimension();
-        let mut scope = Scope::reducing(None, axis);
-        let require = self.expr(&phrase, &field.value, &mut scope)?;
+        let mut scope = Scope::reducing(None, self.axis_dimension());
+        let require = self.expression(&field.value, &mut scope)?;
         self.flag_type(&require)?;
         self.inputs_of_one_record(&scope.inputs)?;
-        let unless = match block.field("unless") {
-            Some(field) => Some(self.section_condition(field)?),
-            None => None,
-        };
+        let unless = if_written(block.field("unless").map(|field| self.section_condition(field)))?;
         let otherwise = self.on_fault(block, "otherwise", &["not used", "stop", "note"])?;
         Some(Check {
             name: block.name_text().to_string(),
-            title: block
-                .title
-                .as_ref()
-                .map_or_else(|| block.name_text().replace('_', " "), |title| title.text.clone()),
+            title: block.title_in_words(),
             require,
             inputs: scope.inputs,
             unless,
@@ -107,32 +100,26 @@ impl Checker<'_> {
 
     /// The track record has samples of its own: a check cannot combine it with simulation or
     /// measurement.
-    pub(super) fn inputs_of_one_record(&mut self, inputs: &[Input]) -> Option<()> {
-        let track = |input: &Input| input.signal.as_ref().is_some_and(|signal| signal.track);
+    pub fn inputs_of_one_record(&mut self, inputs: &[Input]) -> Option<()> {
+        let track = |input: &Input| input.signal.as_ref().is_some_and(Expr::track);
         let Some(first) = inputs.first() else { return Some(()) };
         let Some(other) = inputs.iter().find(|input| track(input) != track(first)) else {
             return Some(());
         };
-        self.problems.push(
-            Problem::error(
+        self.refuse(
+            error(
                 "mixed-records",
                 "a check uses either the track record or the records of simulation and measurement",
+                &other.span,
             )
-            .at(&other.span)
             .also(&first.span, "the other record")
             .help("write two checks"),
-        );
-        None
+        )
     }
 
     /// What is done with a fault: one of the treatments that the field allows; by default the
     /// section is not used.
-    pub(super) fn on_fault(
-        &mut self,
-        block: &Block,
-        key: &str,
-        treatments: &[&str],
-    ) -> Option<OnFault> {
+    pub fn on_fault(&mut self, block: &Block, key: &str, treatments: &[&str]) -> Option<OnFault> {
         let Some(field) = block.field(key) else { return Some(OnFault::NotUsed) };
         let word = self.choice_field(field)?;
         match word.as_str() {
@@ -142,15 +129,18 @@ impl Checker<'_> {
             "not assessable" => return Some(OnFault::NotAssessable),
             _ => return Some(OnFault::Stop),
         }
-        self.problems.push(
-            Problem::error("unknown-choice", format!("`{word}` is not a treatment of faults"))
-                .at(&field.value.span)
-                .suggest(&word, treatments.iter().copied()),
-        );
-        None
+        self.refuse(
+            error(
+                "unknown-choice",
+                format!("`{word}` is not a treatment of faults"),
+                &field.value.span,
+            )
+            .suggest(&word, treatments.iter().copied()),
+        )
     }
 
-    pub(super) fn section_rules(&mut self, block: Option<&Block>) -> SectionRules {
+    /// The block `sections`, but for found sections and reports.
+    pub fn section_rules(&mut self, block: Option<&Block>) -> SectionRules {
         let mut rules = SectionRules {
             whole_records: false,
             find: None,
@@ -171,26 +161,20 @@ impl Checker<'_> {
                 "sections" | FOUND_SECTIONS => {}
                 "whole records" => rules.whole_records = true,
                 other => {
-                    let problem =
-                        Problem::error("unknown-choice", format!("`use` cannot be `{other}`"))
-                            .at(&field.value.span);
                     self.problems.push(
-                        problem.suggest(other, ["sections", FOUND_SECTIONS, "whole records"]),
+                        error(
+                            "unknown-choice",
+                            format!("`use` cannot be `{other}`"),
+                            &field.value.span,
+                        )
+                        .suggest(other, ["sections", FOUND_SECTIONS, "whole records"]),
                     );
                 }
             }
         }
         if let Some(field) = block.field("zone") {
             let name = normalised(&field.value.text);
-            rules.zone = self.names.columns.iter().position(|datum| datum.name == name);
-            if rules.zone.is_none() {
-                let known: Vec<String> =
-                    self.names.columns.iter().map(|datum| datum.name.clone()).collect();
-                let problem =
-                    Problem::error("unknown-name", format!("no section column is called `{name}`"))
-                        .at(&field.value.span);
-                self.problems.push(problem.suggest(&name, known.iter().map(String::as_str)));
-            }
+            rules.zone = self.column_called("column", &name, &field.value.span);
         }
         if let Some(field) = block.field("where") {
             rules.only = self.section_condition(field);
@@ -210,13 +194,13 @@ impl Checker<'_> {
             match Method::from_name(&word) {
                 Some(method) => rules.percentiles = method,
                 None => {
-                    let problem = Problem::error(
-                        "unknown-choice",
-                        format!("`{word}` is not a percentile rule"),
-                    )
-                    .at(&field.value.span);
                     self.problems.push(
-                        problem.suggest(&word, Method::ALL.iter().map(|method| method.name())),
+                        error(
+                            "unknown-choice",
+                            format!("`{word}` is not a percentile rule"),
+                            &field.value.span,
+                        )
+                        .suggest(&word, Method::ALL.iter().map(|method| method.name())),
                     );
                 }
             }
@@ -225,11 +209,12 @@ impl Checker<'_> {
     }
 
     /// A word, or the value of the choice parameter of this name.
-    pub(super) fn choice_field(&mut self, field: &Field) -> Option<String> {
+    pub fn choice_field(&mut self, field: &Field) -> Option<String> {
         self.choice_word(&normalised(&field.value.text), &field.value.span)
     }
 
-    pub(super) fn divisor(&mut self, block: Option<&Block>) -> usize {
+    /// What is subtracted from n in the divisor of the variance.
+    pub fn divisor(&mut self, block: Option<&Block>) -> usize {
         let Some(field) = block.and_then(|block| block.field("standard deviation")) else {
             return 1;
         };
@@ -237,19 +222,21 @@ impl Checker<'_> {
             "n-1" => 1,
             "n" => 0,
             other => {
-                let problem = Problem::error(
-                    "unknown-choice",
-                    format!("`{other}` is not a divisor of the variance"),
-                )
-                .at(&field.value.span);
-                self.problems.push(problem.help("write `n-1` or `n`"));
+                self.problems.push(
+                    error(
+                        "unknown-choice",
+                        format!("`{other}` is not a divisor of the variance"),
+                        &field.value.span,
+                    )
+                    .help("write `n-1` or `n`"),
+                );
                 1
             }
         }
     }
 
     /// What counts as an independent unit, for n and for confidence intervals.
-    pub(super) fn independent(&mut self, block: Option<&Block>) -> Independent {
+    pub fn independent(&mut self, block: Option<&Block>) -> Independent {
         let Some(field) = block.and_then(|block| block.field("independent")) else {
             return Independent::Site;
         };
@@ -260,15 +247,11 @@ impl Checker<'_> {
             ("section", _) => Independent::Section,
             (_, Some(index)) => Independent::Column(index),
             _ => {
-                let known: Vec<String> =
-                    self.names.columns.iter().map(|datum| datum.name.clone()).collect();
+                let known = self.names.columns.iter().map(|datum| datum.name.as_str());
                 let says = format!("`{word}` is neither `site`, `section` nor a section column");
-                let known = known.iter().map(String::as_str).chain(["site", "section", "campaign"]);
-                self.problems.push(
-                    Problem::error("unknown-name", says)
-                        .at(&field.value.span)
-                        .suggest(&word, known),
-                );
+                let known = known.chain(["site", "section", "campaign"]);
+                self.problems
+                    .push(error("unknown-name", says, &field.value.span).suggest(&word, known));
                 Independent::Site
             }
         }
@@ -276,25 +259,25 @@ impl Checker<'_> {
 
     /// The zones of the protocol and the words of the zone column must agree; otherwise some
     /// sections would have no zone.
-    pub(super) fn zones_match(&mut self, rules: &SectionRules) {
+    pub fn zones_match(&mut self, rules: &SectionRules) {
         let Some(index) = rules.zone else {
             if let Some(block) = self.blocks.iter().find(|block| block.kind.text == "zone") {
-                let problem = Problem::error(
-                    "no-zone-column",
-                    "there are zones, but no section column states the zone of a section",
-                )
-                .at(block.span());
-                self.problems.push(problem.help("add to `sections`: `zone zone`"));
+                self.problems.push(
+                    error(
+                        "no-zone-column",
+                        "there are zones, but no section column states the zone of a section",
+                        block.span(),
+                    )
+                    .help("add to `sections`: `zone zone`"),
+                );
             }
             return;
         };
         let datum = self.names.columns[index].clone();
         let DatumKind::Words(words) = &datum.kind else {
-            let problem =
-                Problem::error("zone-column", "the zone column must be a choice of words")
-                    .at(&datum.span);
             self.problems.push(
-                problem.help("write `one of zones`, which stands for the names of the zone blocks"),
+                error("zone-column", "the zone column must be a choice of words", &datum.span)
+                    .help("write `one of zones`, which stands for the names of the zone blocks"),
             );
             return;
         };
@@ -304,30 +287,25 @@ impl Checker<'_> {
             span: Origin { span: datum.span.clone(), words: datum.name.as_str().into() },
         });
         for word in words.iter().filter(|word| !self.zone_names.contains(word)) {
-            let problem = Problem::error(
-                "unknown-zone",
-                format!("sections may be of zone {word}, which has no block"),
-            )
-            .at(&datum.span);
-            self.problems.push(problem.help(format!(
-                "add a block `zone {word}`, or declare the column with `one of zones`"
-            )));
-        }
-        let strangers: Vec<Block> = self
-            .blocks
-            .iter()
-            .filter(|block| {
-                block.kind.text == "zone" && !words.iter().any(|word| word == block.name_text())
-            })
-            .cloned()
-            .collect();
-        for block in strangers {
             self.problems.push(
-                Problem::error(
+                error(
+                    "unknown-zone",
+                    format!("sections may be of zone {word}, which has no block"),
+                    &datum.span,
+                )
+                .help(format!(
+                    "add a block `zone {word}`, or declare the column with `one of zones`"
+                )),
+            );
+        }
+        let strange = |block: &&Block| !words.iter().any(|word| word == block.name_text());
+        for block in self.blocks.iter().filter(|block| block.kind.text == "zone").filter(strange) {
+            self.problems.push(
+                error(
                     "unknown-zone",
                     format!("no section can be of zone {}", block.name_text()),
+                    block.span(),
                 )
-                .at(block.span())
                 .also(&datum.span, "its words are those of the zone column")
                 .help("declare the column with `one of zones`"),
             );

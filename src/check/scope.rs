@@ -1,14 +1,19 @@
 //! The names that an expression can use, by where it stands.
 
 use super::names::Assignment;
-use super::plan::{Input, InputSide, Kind, Taking};
+use super::plan::{Expr, Input, InputSide, Kind, Origin, Taken, Taking, Type};
+use crate::source::Span;
 use crate::units::Dimension;
 
 /// The names that an expression can use, and the values taken from signals that it contains.
 #[derive(Debug)]
-pub(super) struct Scope {
+pub struct Scope {
     pub vehicle: bool,
     pub section: bool,
+    /// Whether it is an expression over the samples of records.
+    pub samples: bool,
+    /// Dimension of the own signal, where `simulated` and `measured` stand for its samples.
+    pub own_of_both: Option<Dimension>,
     /// Whether, and from what, values of signals can be taken.
     pub reduce: Option<Reduce>,
     /// Dimension of `simulated` and `measured`, where they can be used.
@@ -32,8 +37,9 @@ pub(super) struct Scope {
     pub words: Vec<String>,
 }
 
+/// From what values of signals are taken.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Reduce {
+pub struct Reduce {
     /// Dimension of the own processed signal of the quantity; `None` where there is no such signal.
     pub own: Option<Dimension>,
     pub axis: Dimension,
@@ -47,6 +53,8 @@ impl Scope {
         Self {
             vehicle,
             section,
+            samples: false,
+            own_of_both: None,
             reduce: None,
             pair: None,
             limits: None,
@@ -66,14 +74,39 @@ impl Scope {
         Self::new(false, false)
     }
 
+    /// Parameters and the data of the vehicle.
     pub fn vehicle() -> Self {
         Self::new(true, false)
     }
 
+    /// As [`Self::vehicle`], in one zone where it is for each.
+    pub fn zone(zone: Option<&str>) -> Self {
+        Self { zone: zone.map(str::to_string), ..Self::vehicle() }
+    }
+
+    /// As [`Self::vehicle`], with the data of a section.
     pub fn section() -> Self {
         Self::new(true, true)
     }
 
+    /// Samples at these positions; `own_of_both` where those of both sides can be used.
+    pub fn samples(at: &Assignment, own_of_both: Option<Dimension>) -> Self {
+        Self { samples: true, own_of_both, at: at.clone(), ..Self::section() }
+    }
+
+    /// The data of a section, in the same zone as this scope.
+    pub fn of_section(&self) -> Self {
+        Self { zone: self.zone.clone(), ..Self::section() }
+    }
+
+    /// The rows of a group, in the same zone as this scope. `values` is the dimension of the values;
+    /// `None` where only data of the sections are available.
+    pub fn of_group(&self, values: Option<Dimension>) -> Self {
+        let group = Some(Group { values, taken: Vec::new() });
+        Self { zone: self.zone.clone(), limits: self.limits.clone(), group, ..Self::vehicle() }
+    }
+
+    /// As [`Self::section`], with values of signals; `own` is the dimension of the own signal.
     pub fn reducing(own: Option<Dimension>, axis: Dimension) -> Self {
         Self {
             reduce: Some(Reduce { own, axis, side: InputSide::Own, metrics: false }),
@@ -89,8 +122,27 @@ impl Scope {
         }
     }
 
+    /// As [`Self::section`], with the two compared values of this dimension.
     pub fn pair(dimension: Dimension) -> Self {
         Self { pair: Some(dimension), ..Self::new(true, true) }
+    }
+
+    /// Dimension of the values of a group, where there are any.
+    pub fn values(&self) -> Option<Dimension> {
+        self.group.as_ref()?.values
+    }
+
+    /// Asks for a number that is taken from signals.
+    pub fn input(&mut self, input: Input, dimension: Dimension, span: &Origin) -> Expr {
+        self.inputs.push(input);
+        number(self.inputs.len() - 1, dimension, span)
+    }
+
+    /// Asks for a number that is taken from the rows of a group.
+    pub fn take(&mut self, taking: Taking, dimension: Dimension, span: &Origin) -> Option<Expr> {
+        let taken = &mut self.group.as_mut()?.taken;
+        taken.push(taking);
+        Some(number(taken.len() - 1, dimension, span))
     }
 
     /// How much is asked of the records and of the group so far.
@@ -109,15 +161,19 @@ impl Scope {
 
 /// What an expression over a group can use.
 #[derive(Clone, Debug)]
-pub(super) struct Group {
+pub struct Group {
     /// Dimension of the values; `None` where only data of the sections are available.
     pub values: Option<Dimension>,
     pub taken: Vec<Taking>,
 }
 
-impl Group {
-    pub fn take(&mut self, taking: Taking) -> Kind {
-        self.taken.push(taking);
-        Kind::Input(self.taken.len() - 1)
+fn number(index: usize, dimension: Dimension, span: &Origin) -> Expr {
+    Expr { kind: Kind::Input(index), ty: Type::Number(dimension), span: span.clone() }
+}
+
+impl Input {
+    /// A number that is taken from the own signal.
+    pub fn own(taken: Taken, side: InputSide, span: &Span) -> Self {
+        Self { taken, signal: None, chain: Vec::new(), over: None, side, span: span.clone() }
     }
 }

@@ -3,7 +3,7 @@
 
 use super::Checker;
 use super::family::Family;
-use crate::problem::Problem;
+use crate::problem::warning;
 
 /// Names shorter than this differ by one character without a slip: `live`, `alive`.
 const SHORTEST: usize = 8;
@@ -13,7 +13,7 @@ const SYMBOLS: [&str; 3] = ["quantity", "signal", "channel"];
 impl Checker<'_> {
     /// A new block of the variant whose name differs from that of a block of the parent by one
     /// character, other than a digit.
-    pub(super) fn slips(&mut self, family: &Family) {
+    pub fn slips(&mut self, family: &Family) {
         let Some(own) = family.sources.first() else { return };
         for block in
             family.merged.blocks.iter().filter(|block| block.span().source.name == own.name)
@@ -39,11 +39,9 @@ impl Checker<'_> {
                     && without_digits(name) != without_digits(known)
             };
             let Some(near) = siblings().find(slip).map(str::to_string) else { continue };
-            let says = format!(
+            self.problems.push(warning("near-name", format!(
                 "the parent has no {kind} `{name}`: this adds one, and `{near}` of the parent stays as it is"
-            );
-            let problem = Problem::warning("near-name", says).at(block.span());
-            self.problems.push(problem.help(format!("to override `{near}`, use that name")));
+            ), block.span()).help(format!("to override `{near}`, use that name")));
         }
     }
 }

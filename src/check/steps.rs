@@ -6,7 +6,7 @@ use super::scope::Scope;
 use crate::catalog::{Form, METRICS, Part, STEPS, StepEntry, StepKind};
 use crate::metrics::filter::{Band, Cutoff, Phase};
 use crate::metrics::window::Ends;
-use crate::problem::{Problem, nearest};
+use crate::problem::{Problem, error, nearest};
 use crate::source::Span;
 use crate::syntax::document::Text;
 use crate::syntax::from_pest;
@@ -25,7 +25,7 @@ const FINEST_TIME: f64 = 1e-5;
 
 /// The values of the slots and options of a wording.
 #[derive(Debug, Default)]
-pub(super) struct Filled {
+pub struct Filled {
     pub numbers: Vec<(f64, Dimension, Span)>,
     /// In the order of the wording; `None` where an option is not stated and has no default.
     pub options: Vec<Option<(f64, Dimension)>>,
@@ -37,8 +37,7 @@ pub(super) struct Filled {
 impl Filled {
     fn option_said(&mut self, name: &'static str, place: &Span) -> Result<(), Problem> {
         if let Some((_, first)) = self.said.iter().find(|(said, _)| *said == name) {
-            return Err(Problem::error("duplicate-option", format!("`{name}` is stated twice"))
-                .at(place)
+            return Err(error("duplicate-option", format!("`{name}` is stated twice"), place)
                 .also(first, "the first"));
         }
         self.said.push((name, place.clone()));
@@ -64,7 +63,7 @@ impl StepSpec {
 
 impl Checker<'_> {
     /// The chain of a `filter` field, with the order of its steps checked.
-    pub(super) fn chain(&mut self, text: &Text) -> Option<Vec<Step>> {
+    pub fn chain(&mut self, text: &Text) -> Option<Vec<Step>> {
         let steps = self.steps(text)?;
         self.step_order(&steps, false)?;
         Some(steps)
@@ -77,7 +76,7 @@ impl Checker<'_> {
         for step in &steps {
             match self.step(step, text) {
                 Some(steps) => {
-                    self.few_steps(all.len() + steps.len(), &text.place(step.range.clone()))?;
+                    self.few_steps(all.len() + steps.len(), &step.place(text))?;
                     all.extend(steps);
                 }
                 None => ok = false,
@@ -90,37 +89,29 @@ impl Checker<'_> {
         if count <= MOST_STEPS {
             return Some(());
         }
-        let says = format!("the filter has {count} steps; there can be at most {MOST_STEPS}");
-        self.problems.push(
-            Problem::error("too-large", says)
-                .at(at)
-                .help("filters that use each other twice double at every level"),
-        );
-        None
+        self.refuse(
+            error(
+                "too-large",
+                format!("the filter has {count} steps; there can be at most {MOST_STEPS}"),
+                at,
+            )
+            .help("filters that use each other twice double at every level"),
+        )
     }
 
-    pub(super) fn filter_named(&mut self, name: &str, span: &Span) -> Option<Vec<Step>> {
+    /// The steps of a declared filter.
+    pub fn filter_named(&mut self, name: &str, span: &Span) -> Option<Vec<Step>> {
         if let Some(steps) = self.filter_steps.get(name) {
             return steps.clone();
         }
         let Some(block) = self.names.filters.get(name).cloned() else {
-            let names: Vec<&str> = self.names.filters.keys().map(String::as_str).collect();
-            let steps = STEPS.iter().filter_map(|entry| {
-                if let Some(Part::Word(word)) = entry.form.head.first() {
-                    Some(*word)
-                } else {
-                    None
-                }
-            });
-            let mut known = names;
-            known.extend(steps);
+            let steps = STEPS.iter().filter_map(|entry| entry.form.first_word());
+            let mut known: Vec<&str> =
+                self.names.filters.keys().map(String::as_str).chain(steps).collect();
             known.dedup();
-            self.problems.push(
-                Problem::error("unknown-filter", format!("no filter is called `{name}`"))
-                    .at(span)
-                    .suggest(name, known),
-            );
-            return None;
+            let problem = error("unknown-filter", format!("no filter is called `{name}`"), span)
+                .suggest(name, known);
+            return self.refuse(problem);
         };
         let result = self.inside("filter", name, span, |checker| {
             let mut steps = Vec::new();
@@ -143,23 +134,22 @@ impl Checker<'_> {
     /// Checks the order of steps. After a window, the samples of the whole record are no longer
     /// available for a filter. After resampling over a length, frequencies are in cycles per
     /// length. A named filter (`part`) may be used after a resampling elsewhere.
-    pub(super) fn step_order(&mut self, steps: &[Step], part: bool) -> Option<()> {
+    pub fn step_order(&mut self, steps: &[Step], part: bool) -> Option<()> {
         let mut window: Option<&Step> = None;
         let mut resampled: Option<&Step> = None;
         for step in steps {
             let whole_record =
                 step.kind.is_filter() || matches!(step.kind, StepSpec::Resample { .. });
             if let Some(before) = window.filter(|_| whole_record) {
-                self.problems.push(
-                    Problem::error(
+                return self.refuse(
+                    error(
                         "step-order",
                         "a filter over the whole record cannot follow a window inside the section",
+                        &step.span,
                     )
-                    .at(&step.span)
                     .also(&before.span, "the window")
                     .help("put the filter before the window"),
                 );
-                return None;
             }
             match &step.kind {
                 StepSpec::Window { .. } | StepSpec::RemoveMean => window = Some(step),
@@ -170,28 +160,14 @@ impl Checker<'_> {
                     });
                     match over_length {
                         Some(before) if !step.per_length => {
-                            let problem = Problem::error(
-                                "step-order",
-                                "after resampling over a length there are no frequencies in time",
-                            )
-                            .at(&step.span);
-                            self.problems.push(
-                                problem
+                            return self.refuse(error("step-order", "after resampling over a length there are no frequencies in time", &step.span)
                                     .also(&before.span, "resampled here")
-                                    .help("write cycles per length: `0.33 1/m`"),
-                            );
-                            return None;
+                                    .help("write cycles per length: `0.33 1/m`"));
                         }
                         None if step.per_length && !(part && resampled.is_none()) => {
-                            let problem = Problem::error(
-                                "step-order",
-                                "cycles per length need a record with equal steps of length",
-                            )
-                            .at(&step.span);
-                            self.problems.push(problem.help(
+                            return self.refuse(error("step-order", "cycles per length need a record with equal steps of length", &step.span).help(
                                 "put `resample every 0.25 m` before it, or write a frequency in Hz",
                             ));
-                            return None;
                         }
                         _ => {}
                     }
@@ -203,7 +179,7 @@ impl Checker<'_> {
     }
 
     fn step(&mut self, step: &At<Written_>, text: &Text) -> Option<Vec<Step>> {
-        let span = text.place(step.range.clone());
+        let span = step.place(text);
         let mut written = step.node.clone();
         if let Some(condition) = written.when.take() {
             let condition = self.expr(&condition, text, &mut Scope::constant())?;
@@ -212,14 +188,11 @@ impl Checker<'_> {
                 Kind::Constant(Scalar::Flag(false)) => return Some(Vec::new()),
                 Kind::Constant(_) => {}
                 _ => {
-                    self.problems.push(
-                        Problem::error(
-                            "not-constant",
-                            "the condition of a step can only depend on parameters",
-                        )
-                        .at(&condition.span),
-                    );
-                    return None;
+                    return self.refuse(error(
+                        "not-constant",
+                        "the condition of a step can only depend on parameters",
+                        &condition.span,
+                    ));
                 }
             }
         }
@@ -240,7 +213,7 @@ impl Checker<'_> {
     }
 
     /// Where no wording fits, words that are choice parameters are replaced by their values.
-    pub(super) fn with_choices<'f>(
+    pub fn with_choices<'f>(
         &mut self,
         mut step: Written_,
         text: &Text,
@@ -252,7 +225,7 @@ impl Checker<'_> {
         }
         for item in items {
             if let Item::Word(word) = &item.node
-                && let Some(choice) = self.choice_word(word, &text.place(item.range.clone()))
+                && let Some(choice) = self.choice_word(word, &item.place(text))
             {
                 item.node = Item::Word(choice);
             }
@@ -261,7 +234,7 @@ impl Checker<'_> {
     }
 
     /// The wording that fits the words.
-    pub(super) fn find_form<'f>(
+    pub fn find_form<'f>(
         &mut self,
         step: &Written_,
         span: &Span,
@@ -273,18 +246,8 @@ impl Checker<'_> {
         if let Some(index) = forms.clone().position(|form| fits(form, items)) {
             return Some(index);
         }
-        let said: Vec<&str> = items
-            .iter()
-            .filter_map(
-                |item| if let Item::Word(word) = &item.node { Some(word.as_str()) } else { None },
-            )
-            .collect();
-        let heads: Vec<&str> = forms
-            .clone()
-            .filter_map(|form| {
-                if let Some(Part::Word(word)) = form.head.first() { Some(*word) } else { None }
-            })
-            .collect();
+        let said: Vec<&str> = items.iter().filter_map(|item| item.node.word()).collect();
+        let heads: Vec<&str> = forms.clone().filter_map(Form::first_word).collect();
         // `low pass` for `low-pass`.
         let joined = said.iter().take(2).copied().collect::<Vec<_>>().join("-");
         let first = if heads.contains(&joined.as_str()) {
@@ -293,24 +256,26 @@ impl Checker<'_> {
             said.first().copied().unwrap_or("")
         };
         let wordings: Vec<String> = forms
-            .filter(|form| matches!(form.head.first(), Some(Part::Word(word)) if *word == first || nearest(first, heads.iter().copied()) == Some(*word)))
+            .filter(|form| {
+                let near = || nearest(first, heads.iter().copied());
+                form.first_word().is_some_and(|word| word == first || near() == Some(word))
+            })
             .map(|form| format!("`{}`", form.in_words()))
             .collect();
-        let filters: Vec<String> = self.names.filters.keys().cloned().collect();
         let code = if what == "metric" { "unknown-metric" } else { "unknown-step" };
-        let problem = Problem::error(code, format!("these words are not a known {what}")).at(span);
-        self.problems.push(if wordings.is_empty() {
-            let wordings: Vec<String> = all.map(Form::in_words).collect();
-            let filters = filters.iter().map(String::as_str).filter(|_| what == "step");
-            let known: Vec<&str> = wordings.iter().map(String::as_str).chain(filters).collect();
-            problem.help(format!("known here: {}", known.join(", ")))
+        let problem = error(code, format!("these words are not a known {what}"), span);
+        let help = if wordings.is_empty() {
+            let filters = self.names.filters.keys().filter(|_| what == "step").cloned();
+            let known: Vec<String> = all.map(Form::in_words).chain(filters).collect();
+            format!("known here: {}", known.join(", "))
         } else {
-            problem.help(format!("the wording is {}", wordings.join(" or ")))
-        });
-        None
+            format!("the wording is {}", wordings.join(" or "))
+        };
+        self.refuse(problem.help(help))
     }
 
-    pub(super) fn fill_form(
+    /// The values of the slots and options of a wording; a problem where one does not suit.
+    pub fn fill_form(
         &mut self,
         form: &Form,
         step: &Written_,
@@ -328,51 +293,38 @@ impl Checker<'_> {
         };
         let items = step.parts.first()?;
         for (part, item) in form.head.iter().zip(items) {
-            let place = text.place(item.range.clone());
+            if matches!(part, Part::Word(_) | Part::Signal(_)) {
+                continue;
+            }
+            let place = item.place(text);
+            let (value, found) = self.constant_phrase(&item_phrase(item), text)?;
             match part {
-                Part::Word(_) => {}
-                Part::Signal(_) => {}
+                Part::Word(_) | Part::Signal(_) => {}
                 Part::Number(name, dimension) => {
-                    let (value, found) = self.constant_phrase(&item_phrase(item), text)?;
                     self.suits(name, found == *dimension, &dimension.in_words(), found, &place)?;
-                    filled.numbers.push((value, found, place));
                 }
                 Part::Extent(name) => {
-                    let (value, found) = self.constant_phrase(&item_phrase(item), text)?;
-                    self.suits(
-                        name,
-                        matches!(found, Dimension::LENGTH | Dimension::TIME),
-                        "a length or a time",
-                        found,
-                        &place,
-                    )?;
+                    let extent = matches!(found, Dimension::LENGTH | Dimension::TIME);
+                    self.suits(name, extent, "a length or a time", found, &place)?;
                     self.positive(name, value, &place)?;
                     if value < SMALLEST_EXTENT {
                         let unit = if found == Dimension::TIME { "µs" } else { "µm" };
                         let says = format!(
                             "the {name} is below 1 {unit}, finer than the samples of a record"
                         );
-                        self.problems.push(Problem::error("out-of-range", says).at(&place));
-                        return None;
+                        return self.refuse(error("out-of-range", says, &place));
                     }
-                    filled.numbers.push((value, found, place));
                 }
                 Part::Frequency(name) | Part::FrequencyOrZero(name) => {
-                    let (value, found) = self.constant_phrase(&item_phrase(item), text)?;
                     let per_length = Dimension::ONE / Dimension::LENGTH;
-                    self.suits(
-                        name,
-                        found == Dimension::FREQUENCY || found == per_length,
-                        "a frequency",
-                        found,
-                        &place,
-                    )?;
+                    let frequency = found == Dimension::FREQUENCY || found == per_length;
+                    self.suits(name, frequency, "a frequency", found, &place)?;
                     if !matches!(part, Part::FrequencyOrZero(_)) || value != 0.0 {
                         self.positive(name, value, &place)?;
                     }
-                    filled.numbers.push((value, found, place));
                 }
             }
+            filled.numbers.push((value, found, place));
         }
         for part in &step.parts[1..] {
             self.option(form, part, text, span, &mut filled)?;
@@ -380,7 +332,8 @@ impl Checker<'_> {
         Some(filled)
     }
 
-    pub(super) fn suits(
+    /// Whether a value has the dimension that is needed; a problem if not.
+    pub fn suits(
         &mut self,
         name: &str,
         ok: bool,
@@ -391,24 +344,19 @@ impl Checker<'_> {
         if ok {
             return Some(());
         }
-        self.problems.push(
-            Problem::error(
-                "unit-mismatch",
-                format!("{name}: expected {needed}, this is {}", found.in_words()),
-            )
-            .at(place),
-        );
-        None
+        self.refuse(error(
+            "unit-mismatch",
+            format!("{name}: expected {needed}, this is {}", found.in_words()),
+            place,
+        ))
     }
 
-    pub(super) fn positive(&mut self, name: &str, value: f64, place: &Span) -> Option<()> {
+    /// Whether a number is above zero; a problem if not.
+    pub fn positive(&mut self, name: &str, value: f64, place: &Span) -> Option<()> {
         if value > 0.0 && value.is_finite() {
             return Some(());
         }
-        self.problems.push(
-            Problem::error("out-of-range", format!("the {name} must be above zero")).at(place),
-        );
-        None
+        self.refuse(error("out-of-range", format!("the {name} must be above zero"), place))
     }
 
     /// An option: `order 4`, `50 points`, `zero-phase`, or the name of a choice parameter.
@@ -464,14 +412,12 @@ impl Checker<'_> {
             "step"
         };
         let problem =
-            Problem::error("unknown-option", format!("this is not an option of the {what}"))
-                .at(&place);
-        self.problems.push(match nearest(&said, known.iter().map(String::as_str)) {
+            error("unknown-option", format!("this is not an option of the {what}"), &place);
+        self.refuse(match nearest(&said, known.iter().map(String::as_str)) {
             Some(near) => problem.help(format!("did you mean `{near}`?")),
             None if known.is_empty() => problem.help("it has no option"),
             None => problem.help(format!("its options: {}", known.join(", "))),
-        });
-        None
+        })
     }
 
     fn note(&mut self, result: Result<(), Problem>) -> Option<()> {
@@ -485,13 +431,10 @@ impl Checker<'_> {
             return Some(());
         }
         let (finest, step) = (show_number(finest, *dimension), show_number(*step, *dimension));
-        let problem =
-            Problem::error("out-of-range", format!("the step of {step} is finer than {finest}"))
-                .at(place);
-        self.problems.push(
-            problem.help("a step far below the sample distance adds points but no information"),
-        );
-        None
+        self.refuse(
+            error("out-of-range", format!("the step of {step} is finer than {finest}"), place)
+                .help("a step far below the sample distance adds points but no information"),
+        )
     }
 
     fn spec(&mut self, entry: &StepEntry, filled: &Filled, span: &Span) -> Option<Step> {
@@ -522,28 +465,20 @@ impl Checker<'_> {
                 {
                     self.suits("upper frequency", a == b, &a.in_words(), *b, place)?;
                     if low >= high {
-                        self.problems.push(
-                            Problem::error(
-                                "out-of-range",
-                                "the lower frequency is not below the upper one",
-                            )
-                            .at(span),
-                        );
-                        return None;
+                        return self.refuse(error(
+                            "out-of-range",
+                            "the lower frequency is not below the upper one",
+                            span,
+                        ));
                     }
                 }
                 let (order, _) = filled.options.first().copied().flatten()?;
                 if order.fract() != 0.0 || !(1.0..=20.0).contains(&order) {
-                    self.problems.push(
-                        Problem::error(
-                            "out-of-range",
-                            format!(
-                                "the order must be a whole number from 1 to 20, this is {order}"
-                            ),
-                        )
-                        .at(span),
-                    );
-                    return None;
+                    return self.refuse(error(
+                        "out-of-range",
+                        format!("the order must be a whole number from 1 to 20, this is {order}"),
+                        span,
+                    ));
                 }
                 words
                     .push(format!(", order {order}, {}, {}", filled.choices[0], filled.choices[1]));
@@ -611,7 +546,8 @@ impl Checker<'_> {
     }
 }
 
-pub(super) fn phase(word: &str) -> Phase {
+/// The phase that a word of the wording stands for.
+pub fn phase(word: &str) -> Phase {
     match word {
         "causal" => Phase::Causal,
         "causal-from-rest" => Phase::CausalFromRest,
@@ -620,12 +556,12 @@ pub(super) fn phase(word: &str) -> Phase {
 }
 
 /// Dimension of a signal after the steps.
-pub(super) fn after(steps: &[Step], dimension: Dimension) -> Dimension {
+pub fn after(steps: &[Step], dimension: Dimension) -> Dimension {
     steps.iter().fold(dimension, |dimension, step| dimension * step.factor)
 }
 
 /// Whether the items agree with the words and slots of the wording.
-pub(super) fn fits(form: &Form, items: &[At<Item>]) -> bool {
+pub fn fits(form: &Form, items: &[At<Item>]) -> bool {
     form.head.len() == items.len()
         && form.head.iter().zip(items).all(|(part, item)| match (part, &item.node) {
             (Part::Word(word), Item::Word(found)) => word == found,
@@ -634,7 +570,8 @@ pub(super) fn fits(form: &Form, items: &[At<Item>]) -> bool {
         })
 }
 
-pub(super) fn item_phrase(item: &At<Item>) -> Phrase {
+/// A word or a value of a step as an expression.
+pub fn item_phrase(item: &At<Item>) -> Phrase {
     match &item.node {
         Item::Value(phrase) => phrase.clone(),
         Item::Word(word) => At { node: Node::Path(word.clone()), range: item.range.clone() },
@@ -642,7 +579,7 @@ pub(super) fn item_phrase(item: &At<Item>) -> Phrase {
 }
 
 /// A number in an engineering unit.
-pub(super) fn show_number(value: f64, dimension: Dimension) -> String {
+pub fn show_number(value: f64, dimension: Dimension) -> String {
     let unit = match dimension {
         Dimension::FREQUENCY => " Hz",
         Dimension::LENGTH => " m",

@@ -5,13 +5,13 @@ use super::plan::StepSpec;
 use super::steps::{Filled, phase};
 use crate::catalog::{Part, StepEntry};
 use crate::metrics::filter::{Roots, TransferFunction, Warping};
-use crate::problem::Problem;
+use crate::problem::error;
 use crate::source::Span;
 
 impl Checker<'_> {
     /// A transfer function: `transfer function poles 12.5 Hz quality 0.63 zero 12.5 Hz, gain 2`.
     /// Each frequency may be followed by its quality factor.
-    pub(super) fn transfer(
+    pub fn transfer(
         &mut self,
         entry: &StepEntry,
         filled: &Filled,
@@ -48,9 +48,7 @@ impl Checker<'_> {
         let [Some(poles), zeros] = found else { return None };
         let (gain, _) = filled.options.first().copied().flatten()?;
         if !(gain > 0.0 && gain.is_finite()) {
-            self.problems
-                .push(Problem::error("out-of-range", "the gain must be above zero").at(span));
-            return None;
+            return self.refuse(error("out-of-range", "the gain must be above zero", span));
         }
         let warping =
             if filled.choices[1] == "plain" { Warping::Plain } else { Warping::PreWarped };

@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use super::plan::{Kind, Scalar};
+use super::plan::{Kind, Scalar, Side};
 
 /// Values of the names in an expression. Each method may return an error that states why the value
 /// is missing; by default it is missing.
@@ -48,6 +48,7 @@ pub struct Watched<'a, V: Values> {
 }
 
 impl<'a, V: Values> Watched<'a, V> {
+    /// Nothing is used yet.
     pub fn new(values: &'a V) -> Self {
         Self { values, columns: RefCell::default() }
     }
@@ -98,14 +99,11 @@ pub fn leaf(kind: &Kind, values: &dyn Values) -> Result<Scalar, String> {
         Kind::Start => values.extent().map(|(start, _)| Scalar::Number(start)),
         Kind::End => values.extent().map(|(_, end)| Scalar::Number(end)),
         Kind::Input(index) => values.input(*index).map(Scalar::Number),
-        Kind::Simulated => values.sides().map(|(simulated, _)| Scalar::Number(simulated)),
-        Kind::Measured => values.sides().map(|(_, measured)| Scalar::Number(measured)),
+        Kind::Side(side) => values.sides().map(|(simulated, measured)| {
+            Scalar::Number(if *side == Side::Simulated { simulated } else { measured })
+        }),
         Kind::LimitOf(statistic) => values.limit_of(statistic).map(Scalar::Number),
-        Kind::Negative(_)
-        | Kind::Not(_)
-        | Kind::Power(..)
-        | Kind::Binary(..)
-        | Kind::Call(..)
-        | Kind::Cases(..) => Err("an expression of several parts is no name".into()),
+        Kind::Channel { column, .. } => Err(format!("{column} has a number for each sample")),
+        _ => Err("an expression of several parts is no name".into()),
     }
 }

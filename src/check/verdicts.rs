@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::Checker;
 use super::names::normalised;
 use super::plan::{Decision, Evaluation, Over, Quantity, Records, Rule, Side, VerdictRule};
-use crate::problem::Problem;
+use crate::problem::{error, warning};
 use crate::source::Span;
 use crate::syntax::document::{Block, Field};
 use crate::syntax::from_pest;
@@ -30,18 +30,14 @@ struct Names {
 
 impl Checker<'_> {
     /// All verdicts of the protocol, the overall one first.
-    pub(super) fn verdicts(
+    pub fn verdicts(
         &mut self,
         unnamed: Option<&Block>,
         head: &Block,
         quantities: &[Quantity],
     ) -> Vec<VerdictRule> {
-        let blocks: Vec<Block> = self
-            .blocks
-            .iter()
-            .filter(|block| block.kind.text == "verdict" && block.name.is_some())
-            .cloned()
-            .collect();
+        let blocks: Vec<Block> =
+            self.blocks_of("verdict").filter(|block| block.name.is_some()).cloned().collect();
         let first = usize::from(unnamed.is_some() || blocks.is_empty());
         let names = Names {
             names: blocks.iter().map(|block| block.name_text().to_string()).collect(),
@@ -83,14 +79,14 @@ impl Checker<'_> {
         };
         VerdictRule {
             name: None,
-            title: block.and_then(title).unwrap_or_else(|| "Verdict".into()),
+            title: block.and_then(Block::title_text).unwrap_or_else(|| "Verdict".into()),
             criterion: format!("{} {rule}", words[0]),
             decision,
             words,
             own_words,
             clause: None,
             source: None,
-            notes: block.map_or_else(Vec::new, notes),
+            notes: block.map_or_else(Vec::new, Block::notes),
             span: block.map_or_else(|| head.span().clone(), |block| block.span().clone()),
         }
     }
@@ -124,22 +120,23 @@ impl Checker<'_> {
                         format!("verdict `{}` has both `holds` and `judged by`", block.name_text())
                     }
                 };
-                let problem = Problem::error("verdict-rule", says).at(block.span());
-                self.problems.push(problem.help("write one of `holds` and `judged by`"));
+                self.problems.push(
+                    error("verdict-rule", says, block.span())
+                        .help("write one of `holds` and `judged by`"),
+                );
                 Decision::Limits { rule: Rule::EveryLimit, quantities: about }
             }
         };
-        let text = |key: &str| block.field(key).map(|field| field.value.text.clone());
         VerdictRule {
             name: Some(block.name_text().to_string()),
-            title: title(block).unwrap_or_else(|| block.name_text().replace('_', " ")),
+            title: block.title_in_words(),
             decision,
             words,
             own_words,
             criterion,
-            clause: text("clause"),
-            source: text("source"),
-            notes: notes(block),
+            clause: block.text("clause"),
+            source: block.text("source"),
+            notes: block.notes(),
             span: block.span().clone(),
         }
     }
@@ -164,9 +161,8 @@ impl Checker<'_> {
             _ => Some(format!("a verdict has two words, here {} {}", if parts.len() == 1 { "is" } else { "are" }, parts.len())),
         };
         if let Some(says) = wrong {
-            let problem = Problem::error("verdict-words", says).at(&field.value.span);
             self.problems.push(
-                problem.help("write the word if it holds and the word if it does not, separated by a comma: `accepted, not accepted`"),
+                error("verdict-words", says, &field.value.span).help("write the word if it holds and the word if it does not, separated by a comma: `accepted, not accepted`"),
             );
             return (default.map(String::from), false);
         }
@@ -179,16 +175,12 @@ impl Checker<'_> {
         let all = || (0..quantities.len()).collect();
         let Some(field) = of else { return all() };
         let Some(items) = from_pest::list(&field.value, self.problems) else { return all() };
-        let known: Vec<String> = self
-            .blocks
-            .iter()
-            .filter(|block| block.kind.text == "quantity")
-            .map(|block| block.name_text().to_string())
-            .collect();
+        let known: Vec<String> =
+            self.blocks_of("quantity").map(|block| block.name_text().to_string()).collect();
         let mut found = BTreeSet::new();
         for item in &items {
             let name = item.node.as_str();
-            let at = field.value.place(item.range.clone());
+            let at = item.place(&field.value);
             if known.iter().any(|known| known == name) {
                 // A quantity that is not in the plan has an error that is reported elsewhere.
                 found.extend(quantities.iter().position(|quantity| quantity.id == name));
@@ -196,20 +188,17 @@ impl Checker<'_> {
                 let before = found.len();
                 found.extend((0..quantities.len()).filter(|&at| kind(&quantities[at]) == name));
                 if found.len() == before && !self.problems.any_error() {
-                    self.problems.push(
-                        Problem::error(
-                            "unknown-quantity",
-                            format!("no quantity is {}", of_kind(name)),
-                        )
-                        .at(&at),
-                    );
+                    self.problems.push(error(
+                        "unknown-quantity",
+                        format!("no quantity is {}", of_kind(name)),
+                        &at,
+                    ));
                 }
             } else {
-                let problem =
-                    Problem::error("unknown-quantity", format!("there is no quantity `{name}`"))
-                        .at(&at);
-                self.problems
-                    .push(problem.suggest(name, known.iter().map(String::as_str).chain(KINDS)));
+                self.problems.push(
+                    error("unknown-quantity", format!("there is no quantity `{name}`"), &at)
+                        .suggest(name, known.iter().map(String::as_str).chain(KINDS)),
+                );
             }
         }
         found.into_iter().collect()
@@ -218,12 +207,14 @@ impl Checker<'_> {
     /// Reports a field `of` where no limits count.
     fn needs_limits(&mut self, of: Option<&Field>, why: &str) {
         if let Some(field) = of {
-            let problem = Problem::error(
-                "verdict-of",
-                format!("`of` names quantities whose limits count, but {why}"),
-            )
-            .at(&field.key.span);
-            self.problems.push(problem.help("remove `of`"));
+            self.problems.push(
+                error(
+                    "verdict-of",
+                    format!("`of` names quantities whose limits count, but {why}"),
+                    &field.key.span,
+                )
+                .help("remove `of`"),
+            );
         }
     }
 
@@ -251,10 +242,7 @@ impl Checker<'_> {
                 (about.iter().map(|&at| quantities[at].limits.len()).sum::<usize>(), "limits")
             }
             (false, Some(_)) => (about.len(), "quantities"),
-            (false, None) => (
-                self.blocks.iter().filter(|block| block.kind.text == "quantity").count(),
-                "quantities",
-            ),
+            (false, None) => (self.blocks_of("quantity").count(), "quantities"),
         };
         match self.how_many(&count, field, there, what) {
             Some(wanted) if of_limits => {
@@ -275,23 +263,18 @@ impl Checker<'_> {
         there: usize,
         what: &str,
     ) -> Option<usize> {
-        let place = field.value.place(count.range.clone());
+        let place = count.place(&field.value);
         let (wanted, dimension) = self.constant_phrase(count, &field.value)?;
         if dimension != Dimension::ONE || wanted < 1.0 || wanted.fract() != 0.0 {
-            self.problems.push(
-                Problem::error("not-a-count", "expected a whole number above zero").at(&place),
-            );
-            return None;
+            return self.refuse(error("not-a-count", "expected a whole number above zero", &place));
         }
         let wanted = wanted as usize;
         if wanted > there && !self.problems.any_error() {
-            self.problems.push(
-                Problem::error(
-                    "out-of-range",
-                    format!("the rule needs {wanted} {what}, there are {there}"),
-                )
-                .at(&place),
-            );
+            self.problems.push(error(
+                "out-of-range",
+                format!("the rule needs {wanted} {what}, there are {there}"),
+                &place,
+            ));
         }
         Some(wanted)
     }
@@ -329,11 +312,11 @@ impl Checker<'_> {
     fn verdict_named(&mut self, name: &At<String>, field: &Field, names: &Names) -> Option<usize> {
         let found = names.names.iter().position(|known| *known == name.node);
         if found.is_none() {
-            let at = field.value.place(name.range.clone());
-            let problem =
-                Problem::error("unknown-verdict", format!("there is no verdict `{}`", name.node))
-                    .at(&at);
-            self.problems.push(problem.suggest(&name.node, names.names.iter().map(String::as_str)));
+            let at = name.place(&field.value);
+            self.problems.push(
+                error("unknown-verdict", format!("there is no verdict `{}`", name.node), &at)
+                    .suggest(&name.node, &names.names),
+            );
         }
         Some(found? + names.first)
     }
@@ -373,23 +356,17 @@ impl Checker<'_> {
             quantities.iter().enumerate().filter(|(_, quantity)| !quantity.limits.is_empty())
         {
             if !about(at) {
-                let says = format!(
-                    "no verdict uses quantity `{}`: its limits have no effect",
-                    quantity.id
-                );
-                self.problems
-                    .push(Problem::warning("quantity-without-verdict", says).at(&quantity.span));
+                self.problems.push(warning(
+                    "quantity-without-verdict",
+                    format!(
+                        "no verdict uses quantity `{}`: its limits have no effect",
+                        quantity.id
+                    ),
+                    &quantity.span,
+                ));
             }
         }
     }
-}
-
-fn title(block: &Block) -> Option<String> {
-    block.title.as_ref().map(|title| title.text.clone())
-}
-
-fn notes(block: &Block) -> Vec<String> {
-    block.fields_named("note").map(|note| note.value.text.clone()).collect()
 }
 
 /// The word of [`KINDS`] for a quantity.

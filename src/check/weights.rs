@@ -3,16 +3,16 @@
 
 use super::Checker;
 use super::estimates::{has_weights, reducer_name};
-use super::plan::{Expr, Kind, Origin, Scalar, Taking, Type};
-use super::scope::{Group, Scope};
-use crate::problem::Problem;
+use super::plan::{Expr, Kind, Origin, Scalar, Taking};
+use super::scope::Scope;
+use crate::problem::error;
 use crate::source::Span;
 use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase};
 
 impl Checker<'_> {
     /// `mean weighted by length`, `share weighted by length where value <= 60 kN`.
-    pub(super) fn weighted(
+    pub fn weighted(
         &mut self,
         of: &Phrase,
         by: &Phrase,
@@ -27,8 +27,7 @@ impl Checker<'_> {
             } else {
                 "weights are used in a limit or an estimate: `limit mean weighted by length 9 kN`"
             };
-            self.problems.push(Problem::error("no-group", says).at(span).help(help));
-            return None;
+            return self.refuse(error("no-group", says, span).help(help));
         }
         let name = match &of.node {
             Node::Share { of_sections, condition } => {
@@ -41,52 +40,43 @@ impl Checker<'_> {
             let says =
                 format!("`{name}` is an estimate; only the statistics in it can be weighted");
             let help = "write them there: `mean weighted by length + 3 * std weighted by length`";
-            self.problems.push(Problem::error("no-weight", says).at(span).help(help));
-            return None;
+            return self.refuse(error("no-weight", says, span).help(help));
         }
         if name == "n" {
             return self.no_weight("`n`", span);
         }
-        let Some(dimension) = scope.group.as_ref().and_then(|group| group.values) else {
-            return self.no_values(span);
-        };
+        let Some(dimension) = scope.values() else { return self.no_values(span) };
         let statistic = self.statistic(&At { node: name, range: of.range.clone() }, text)?;
         if !has_weights(statistic) {
             return self.no_weight(&format!("`{}`", statistic.name()), span);
         }
         let by = self.weight(by, text, scope)?;
         let ddof = self.ddof;
-        let kind = scope.group.as_mut()?.take(Taking::Weighted { statistic, ddof, by });
-        Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() })
+        scope.take(Taking::Weighted { statistic, ddof, by }, dimension, span)
     }
 
     /// A number from the data of a section.
-    pub(super) fn weight(&mut self, by: &Phrase, text: &Text, scope: &Scope) -> Option<Expr> {
-        let by =
-            self.expr(by, text, &mut Scope { zone: scope.zone.clone(), ..Scope::section() })?;
+    pub fn weight(&mut self, by: &Phrase, text: &Text, scope: &Scope) -> Option<Expr> {
+        let by = self.expr(by, text, &mut scope.of_section())?;
         self.number_type(&by)?;
         match by.kind {
             Kind::Constant(Scalar::Number(weight)) if weight <= 0.0 => {
-                self.problems.push(
-                    Problem::error("out-of-range", "a weight must be above zero").at(&by.span),
-                );
-                None
+                self.refuse(error("out-of-range", "a weight must be above zero", &by.span))
             }
             _ => Some(by),
         }
     }
 
-    pub(super) fn no_weight(&mut self, what: &str, span: &Span) -> Option<Expr> {
-        let problem =
-            Problem::error("no-weight", format!("{what} does not depend on weights")).at(span);
-        self.problems.push(
-            problem.help("`mean`, `std`, `rms`, `median`, `p80` and `share` can be weighted"),
-        );
-        None
+    /// Reports what does not depend on weights.
+    pub fn no_weight(&mut self, what: &str, span: &Span) -> Option<Expr> {
+        self.refuse(
+            error("no-weight", format!("{what} does not depend on weights"), span)
+                .help("`mean`, `std`, `rms`, `median`, `p80` and `share` can be weighted"),
+        )
     }
 
     /// `mean of (mean for each zone)`: of one number for each group of the rows.
-    pub(super) fn of_each_group(
+    pub fn of_each_group(
         &mut self,
         reducer: &Phrase,
         one: &Phrase,
@@ -95,40 +85,27 @@ impl Checker<'_> {
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        let Some(group) = &scope.group else {
+        if scope.group.is_none() {
             let says = "groups need the values of a quantity, which are not available here";
             let help = "they are used in a limit or an estimate: `limit (mean of (mean for each zone)) 9 kN`";
-            self.problems.push(Problem::error("no-group", says).at(span).help(help));
-            return None;
-        };
-        let Some(values) = group.values else { return self.no_values(span) };
+            return self.refuse(error("no-group", says, span).help(help));
+        }
+        let values = scope.values();
+        if values.is_none() {
+            return self.no_values(span);
+        }
         let reducer = self.group_reducer(reducer, "numbers of groups", text);
         let keys: Option<Vec<_>> = keys.iter().map(|key| self.group_key(key, text)).collect();
-        let mut inside = Scope {
-            zone: scope.zone.clone(),
-            group: Some(Group { values: Some(values), taken: Vec::new() }),
-            ..Scope::vehicle()
-        };
-        let expr = self.expr(one, text, &mut inside)?;
-        let dimension = self.number_type(&expr)?;
-        let taken = inside.group.map_or_else(Vec::new, |group| group.taken);
-        if taken.is_empty() {
-            let problem = Problem::error(
-                "estimate-of-nothing",
-                "this expression uses no statistic of the values",
-            )
-            .at(&expr.span);
-            self.problems.push(problem.help("for instance `mean of (mean for each zone)`"));
-            return None;
-        }
-        let of = Box::new(super::plan::OfGroup { expr, taken });
-        let kind =
-            scope.group.as_mut()?.take(Taking::EachGroup { reducer: reducer?, keys: keys?, of });
-        Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() })
+        let of = self.of_group(one, text, values, scope)?;
+        let says = "this expression uses no statistic of the values";
+        let of = self.of_something(of, says, "for instance `mean of (mean for each zone)`")?;
+        let dimension = of.expr.dimension();
+        let taking = Taking::EachGroup { reducer: reducer?, keys: keys?, of: Box::new(of) };
+        scope.take(taking, dimension, span)
     }
 
     /// `(mean for each zone)` where one number is needed.
-    pub(super) fn many_numbers(
+    pub fn many_numbers(
         &mut self,
         keys: &[At<String>],
         text: &Text,
@@ -137,14 +114,8 @@ impl Checker<'_> {
         let keys: Vec<&str> =
             keys.iter().filter_map(|key| text.text.get(key.range.clone())).collect();
         let keys = keys.join(" and ");
-        let problem = Problem::error(
-            "many-numbers",
-            format!("this gives a number for each {keys}, but one number is needed"),
-        )
-        .at(span);
-        self.problems.push(problem.help(format!(
+        self.refuse(error("many-numbers", format!("this gives a number for each {keys}, but one number is needed"), span).help(format!(
             "take one number of them: `mean of (... for each {keys})`; a limit for each group has `for each {keys}` at its end"
-        )));
-        None
+        )))
     }
 }

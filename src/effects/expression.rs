@@ -190,10 +190,7 @@ impl Checker<'_> {
     fn tree(&mut self, phrase: &Phrase) -> Option<(Tree, Dimension)> {
         let span = self.text.place(phrase.range.clone());
         match &phrase.node {
-            Node::Number { value, unit } => Some((
-                Tree::Number(*value),
-                unit.as_ref().map_or(Dimension::ONE, |unit| unit.dimension),
-            )),
+            Node::Number(number) => Some((Tree::Number(number.value), number.dimension())),
             Node::Path(name) => self.named(name, &span),
             Node::Negative(inner) => self
                 .tree(inner)

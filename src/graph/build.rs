@@ -11,8 +11,7 @@ use super::{
 use crate::check::evaluate::{shape, words};
 use crate::check::plan::{
     AxisOperation, Decision, Evaluation, Expr, Input, Key, Kind, Limit, OfSignals, Operator, Plan,
-    Plausibility, Position, Quantity, Report, Scope, Signal, SignalKind, Step, StepSpec, Taken,
-    Test, Valued,
+    Plausibility, Position, Quantity, Report, Scope, Step, StepSpec, Taken, Test, Valued,
 };
 use crate::source::Span;
 use crate::units::Dimension;
@@ -131,11 +130,12 @@ impl Builder {
         self.nodes.len() - 1
     }
 
-    fn signal(&mut self, signal: &Signal) -> NodeId {
-        let (dimension, from) = (signal.dimension, &signal.span);
+    /// The node of a signal, or of a number that is constant along the record.
+    fn signal(&mut self, signal: &Expr) -> NodeId {
+        let (dimension, from) = (signal.dimension(), &signal.span);
         match &signal.kind {
-            SignalKind::Column { column, channel, .. } => {
-                let record = if signal.track { "track" } else { "record" };
+            Kind::Channel { column, channel, .. } => {
+                let record = if signal.track() { "track" } else { "record" };
                 self.add(
                     Operation::Read { column: column.clone() },
                     Vec::new(),
@@ -145,8 +145,7 @@ impl Builder {
                     format!("{record} {channel}"),
                 )
             }
-            SignalKind::Scalar(expr) => self.constant(expr, dimension),
-            SignalKind::Binary(operator, left, right) => {
+            Kind::Binary(operator, left, right) => {
                 let inputs = vec![self.signal(left), self.signal(right)];
                 let label = self.arithmetic_label(*operator, inputs[0], inputs[1]);
                 self.add(
@@ -158,7 +157,7 @@ impl Builder {
                     format!("{operator:?}"),
                 )
             }
-            SignalKind::Negative(inner) => {
+            Kind::Negative(inner) => {
                 let inner = self.signal(inner);
                 let label = format!("-{}", self.grouped(inner));
                 self.add(
@@ -170,7 +169,7 @@ impl Builder {
                     "negative".into(),
                 )
             }
-            SignalKind::Power(inner, exponent) => {
+            Kind::Power(inner, exponent) => {
                 let inner = self.signal(inner);
                 let label = format!("{}^{exponent}", self.grouped(inner));
                 self.add(
@@ -182,7 +181,7 @@ impl Builder {
                     format!("power {exponent}"),
                 )
             }
-            SignalKind::Call(function, arguments) => {
+            Kind::Call(function, arguments) => {
                 let inputs: Vec<NodeId> =
                     arguments.iter().map(|argument| self.signal(argument)).collect();
                 let label = format!("{}({})", function.name, self.joined(&inputs, ", "));
@@ -195,12 +194,12 @@ impl Builder {
                     format!("apply {}", function.name),
                 )
             }
-            SignalKind::Filtered(inner, steps) => {
+            Kind::Filtered(inner, steps) => {
                 let inner = self.signal(inner);
                 steps.iter().fold(inner, |node, step| self.step(node, step))
             }
-            SignalKind::OverAxis(operation, inner) => self.over_axis(operation, inner, signal),
-            SignalKind::Level(reducer, inner) => {
+            Kind::OverAxis(operation, inner) => self.over_axis(operation, inner, signal),
+            Kind::Level(reducer, inner) => {
                 let (_, cut) = self.processed(inner, &[], from);
                 let label = format!("{} of {}", reducer.in_words(), self.origin(cut));
                 let kind = format!("reduce {}", reducer.in_words());
@@ -214,23 +213,14 @@ impl Builder {
                 );
                 self.add(Operation::Level, vec![number], dimension, from, label, "level".into())
             }
-            // Not reached: the checker allows sides only in values taken from both sides.
-            SignalKind::Side(_) => self.add(
-                Operation::Cut,
-                Vec::new(),
-                dimension,
-                from,
-                String::new(),
-                "nothing".into(),
-            ),
-            SignalKind::Select(arms, otherwise) => {
+            Kind::Cases(arms, otherwise) => {
                 let mut inputs: Vec<NodeId> =
-                    arms.iter().map(|(_, signal)| self.signal(signal)).collect();
+                    arms.iter().map(|(signal, _)| self.signal(signal)).collect();
                 if let Some(otherwise) = otherwise {
                     inputs.push(self.signal(otherwise));
                 }
                 let conditions: Vec<Expr> =
-                    arms.iter().map(|(condition, _)| condition.clone()).collect();
+                    arms.iter().map(|(_, condition)| condition.clone()).collect();
                 let kind = format!(
                     "select {}",
                     conditions.iter().map(shape).collect::<Vec<_>>().join(";")
@@ -238,10 +228,16 @@ impl Builder {
                 let label = format!("one of {}", self.joined(&inputs, ", "));
                 self.add(Operation::Select(conditions), inputs, dimension, from, label, kind)
             }
+            // The checker allows sides only in values taken from both sides, which have no node.
+            _ => {
+                let kind = format!("constant {}", shape(signal));
+                let operation = Operation::Constant(signal.clone());
+                self.add(operation, Vec::new(), dimension, from, words(signal), kind)
+            }
         }
     }
 
-    fn over_axis(&mut self, operation: &AxisOperation, inner: &Signal, signal: &Signal) -> NodeId {
+    fn over_axis(&mut self, operation: &AxisOperation, inner: &Expr, signal: &Expr) -> NodeId {
         let inner = self.signal(inner);
         let of_time = |over_time: bool| if over_time { ", time" } else { "" };
         let (name, more, kind) = match operation {
@@ -260,22 +256,10 @@ impl Builder {
         self.add(
             operation,
             vec![inner],
-            signal.dimension,
+            signal.dimension(),
             &signal.span,
             label,
             format!("{name} {kind}"),
-        )
-    }
-
-    fn constant(&mut self, expr: &Expr, dimension: Dimension) -> NodeId {
-        let kind = format!("constant {}", shape(expr));
-        self.add(
-            Operation::Constant(expr.clone()),
-            Vec::new(),
-            dimension,
-            &expr.span,
-            words(expr),
-            kind,
         )
     }
 
@@ -334,7 +318,7 @@ impl Builder {
     }
 
     /// The filtered signal of the record and the processed signal of the section.
-    fn processed(&mut self, signal: &Signal, chain: &[Step], from: &Span) -> (NodeId, NodeId) {
+    fn processed(&mut self, signal: &Expr, chain: &[Step], from: &Span) -> (NodeId, NodeId) {
         let mut node = self.signal(signal);
         let inside = chain
             .iter()
@@ -453,7 +437,7 @@ impl Builder {
         let own: Vec<Option<Own<'_>>> = if rule.signals.is_empty() {
             vec![None]
         } else {
-            let own = |(_, signal): &(String, Signal)| {
+            let own = |(_, signal): &(String, Expr)| {
                 let (filtered, processed) = self.processed(signal, &rule.chain, &rule.span);
                 Some(Own { filtered, processed, chain: &rule.chain })
             };

@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 use crate::catalog::{Function, Metric, Reducer};
 use crate::check::plan::{
-    AxisOperation, Decision, Evaluation, Expr, InputSide, Limit, Operator, Report, Signal, StepSpec,
+    AxisOperation, Decision, Evaluation, Expr, InputSide, Limit, Operator, Report, StepSpec,
 };
 use crate::source::Span;
 use crate::units::Dimension;
@@ -257,5 +257,5 @@ pub enum Joint {
         over: Option<NodeId>,
     },
     /// From an expression over the samples of both sides.
-    Samples { reducer: Reducer, signal: Arc<Signal> },
+    Samples { reducer: Reducer, signal: Arc<Expr> },
 }

@@ -4,7 +4,7 @@
 use super::case::Case;
 use crate::metrics::moments::{Moment, Summed};
 use crate::result::study::Reduction;
-use crate::run::limit::reduction;
+use crate::run::keep::reduction;
 
 /// The case with at most `most` sections in each stratum, and the change of the scatter.
 pub fn reduced(case: &Case, most: usize) -> (Case, Reduction) {

@@ -103,6 +103,26 @@ impl Block {
         self.fields.iter().filter(move |field| field.key.text == key)
     }
 
+    /// The text of a field, if the block has it.
+    pub fn text(&self, key: &str) -> Option<String> {
+        self.field(key).map(|field| field.value.text.clone())
+    }
+
+    /// The texts of the notes of the block.
+    pub fn notes(&self) -> Vec<String> {
+        self.fields_named("note").map(|note| note.value.text.clone()).collect()
+    }
+
+    /// The title, if the block has one.
+    pub fn title_text(&self) -> Option<String> {
+        self.title.as_ref().map(|title| title.text.clone())
+    }
+
+    /// The title, or the words of the name.
+    pub fn title_in_words(&self) -> String {
+        self.title_text().unwrap_or_else(|| self.name_text().replace('_', " "))
+    }
+
     /// The name, or an empty text for a block without a name.
     pub fn name_text(&self) -> &str {
         self.name.as_ref().map_or("", |name| name.text.as_str())

@@ -5,13 +5,39 @@
 
 use std::ops::Range;
 
-use crate::units::Unit;
+use super::document::Text;
+use crate::source::Span;
+use crate::units::{Dimension, Unit};
 
 /// A node and its bytes in the field's text.
 #[derive(Clone, Debug)]
 pub struct At<T> {
     pub node: T,
     pub range: Range<usize>,
+}
+
+impl Item {
+    /// The word, where it is one.
+    pub fn word(&self) -> Option<&str> {
+        if let Self::Word(word) = self { Some(word) } else { None }
+    }
+}
+
+impl<T> At<T> {
+    /// The place in the file, as exact as possible.
+    pub fn place(&self, text: &Text) -> Span {
+        text.place(self.range.clone())
+    }
+
+    /// The words as written, with single blanks between them.
+    pub fn words(&self, text: &Text) -> String {
+        text.text.get(self.range.clone()).map_or_else(String::new, normalised)
+    }
+}
+
+/// A text with single blanks between its words.
+pub fn normalised(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// Nodes are compared without their places.
@@ -39,13 +65,33 @@ pub enum Operator {
     IsNot,
 }
 
+/// A number with its unit; the value is in SI.
+#[derive(Clone, Debug)]
+pub struct Number {
+    pub value: f64,
+    pub unit: Option<Unit>,
+}
+
+impl Number {
+    /// The dimension of its unit.
+    pub fn dimension(&self) -> Dimension {
+        self.unit.as_ref().map_or(Dimension::ONE, |unit| unit.dimension)
+    }
+}
+
+/// Numbers are equal in whatever units they are written: `0.40 m/s^2` and `400 mm/s²`. They are
+/// compared with twelve digits, so that rounding of a conversion makes no difference.
+impl PartialEq for Number {
+    fn eq(&self, other: &Self) -> bool {
+        let digits = |number: &Self| format!("{:.11e}", number.value);
+        self.dimension() == other.dimension() && digits(self) == digits(other)
+    }
+}
+
+/// A node of an expression. Nodes are equal if they mean the same, however they are spelt.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Node {
-    /// A number with its unit; the value is in SI.
-    Number {
-        value: f64,
-        unit: Option<Unit>,
-    },
+    Number(Number),
     /// `p99.85`: the value below which 99.85 % of the samples lie.
     Percentile(f64),
     /// `vehicle.category`, `Y`, `LP20`.
@@ -148,7 +194,7 @@ pub enum Item {
     Value(Phrase),
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Limit {
     /// The estimate as written: `std`, `p95`, `(mean + 3 * std)`.
     pub statistic: At<String>,
@@ -168,13 +214,6 @@ pub struct Minimum {
     pub scope: At<Scope>,
 }
 
-impl Minimum {
-    /// As [`Phrase::meaning`].
-    pub fn meaning(&self) -> String {
-        format!("{} {}", self.count.meaning(), self.scope.node.meaning())
-    }
-}
-
 /// `mean for each zone`, `total of length in km`: an estimate without a limit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
@@ -184,16 +223,8 @@ pub struct Report {
     pub scope: At<Scope>,
 }
 
-impl Report {
-    /// As [`Phrase::meaning`].
-    pub fn meaning(&self) -> String {
-        let unit = self.unit.as_ref().map_or(String::new(), |unit| format!(" in {}", unit.node));
-        format!("{}{unit} {}", self.of.meaning(), self.scope.node.meaning())
-    }
-}
-
 /// The values that a limit applies to, and their groups. By default, all values form one group.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Scope {
     pub zones: Vec<At<String>>,
     /// `for each zone and wheelset`.
@@ -232,209 +263,40 @@ pub enum OverVerdicts {
     Any(Vec<OverVerdicts>),
 }
 
-impl Phrase {
-    /// The phrase without places and spelling variants: equal for `0.40 m/s^2`, `0.4 m/s²` and `400
-    /// mm/s^2`.
-    pub fn meaning(&self) -> String {
-        match &self.node {
-            Node::Number { value, unit } => number(*value, unit.as_ref()),
-            Node::Percentile(percent) => format!("p{percent}"),
-            Node::Path(path) => path.clone(),
-            Node::Quoted(name) => format!("\"{name}\""),
-            Node::Binary(operator, left, right) => {
-                format!("({operator:?} {} {})", left.meaning(), right.meaning())
-            }
-            Node::Negative(inner) => format!("(neg {})", inner.meaning()),
-            Node::Not(inner) => format!("(not {})", inner.meaning()),
-            Node::Magnitude(inner) => format!("|{}|", inner.meaning()),
-            Node::Power(inner, exponent) => format!("{}^{exponent}", inner.meaning()),
-            Node::Call(name, arguments) => {
-                format!("{}({})", name.node, joined(arguments, " ", Phrase::meaning))
-            }
-            Node::Near { value, target, tolerance, by_factor } => {
-                format!(
-                    "{} near {} within {by_factor} {}",
-                    value.meaning(),
-                    target.meaning(),
-                    tolerance.meaning()
-                )
-            }
-            Node::Reduced(reducer, signal) => {
-                format!("{} of {}", reducer.meaning(), signal.meaning())
-            }
-            Node::PlaceOf(signal, words) => {
-                format!("{}@{}", signal.node, joined(words, ".", |word| word.node.clone()))
-            }
-            Node::Over(value, signal) => format!("{} over {}", value.meaning(), signal.meaning()),
-            Node::Through(inner, filter) => format!("{}>{}", inner.meaning(), filter.node),
-            Node::Bound { upper, confidence, of, bootstrap } => {
-                let (end, by) = (
-                    if *upper { "upper" } else { "lower" },
-                    if *bootstrap { " by bootstrap" } else { "" },
-                );
-                format!("{end} {confidence} of {}{by}", of.meaning())
-            }
-            Node::Share { of_sections, condition } => {
-                format!(
-                    "share{} where {}",
-                    if *of_sections { " of sections" } else { "" },
-                    condition.meaning()
-                )
-            }
-            Node::Fit(fit) => fit.meaning(),
-            Node::Weighted(of, by) => format!("{} weighted {}", of.meaning(), by.meaning()),
-            Node::ForEach(of, keys) => format!("({} for each {})", of.meaning(), sorted(keys)),
-            Node::Cases(arms, otherwise) => {
-                let arms = joined(arms, ", ", |(value, condition)| {
-                    format!("{}?{}", value.meaning(), condition.meaning())
-                });
-                format!(
-                    "[{arms}; {}]",
-                    otherwise.as_ref().map_or(String::new(), |value| value.meaning())
-                )
-            }
-        }
-    }
-}
-
-impl Limit {
-    /// As [`Phrase::meaning`]; conditions and factors can be in any order.
-    pub fn meaning(&self) -> String {
-        let mut factors: Vec<String> = self
-            .factors
-            .iter()
-            .map(|(factor, condition)| format!("{}?{}", factor.meaning(), condition.meaning()))
-            .collect();
-        factors.sort();
-        let only = self.only_when.as_ref().map_or(String::new(), Phrase::meaning);
-        format!(
-            "{} {} * [{}] only {only} {}",
-            self.bounds(),
-            self.bound.meaning(),
-            factors.join(", "),
-            self.scope.node.meaning()
-        )
-    }
-
-    /// The estimate and the direction of the limit: `std`, `p95 at least`.
-    pub fn bounds(&self) -> String {
-        format!("{}{}", self.estimate.meaning(), if self.at_least { " at least" } else { "" })
-    }
-}
-
-impl Domain {
-    /// As [`Phrase::meaning`].
-    pub fn meaning(&self) -> String {
-        let unit = |unit: &Option<At<String>>| {
-            unit.as_ref().map_or(String::new(), |unit| format!(" in {}", unit.node))
-        };
-        let over =
-            joined(&self.over, ", ", |(of, written)| format!("{}{}", of.meaning(), unit(written)));
-        format!("{over} each {}", joined(&self.each, ", ", |key| key.node.clone()))
-    }
-}
-
-impl Verdict {
-    /// As [`Phrase::meaning`].
-    pub fn meaning(&self) -> String {
-        match self {
-            Self::EveryLimit => "every limit".into(),
-            Self::AtLeast { count, of_limits } => {
-                format!(
-                    "at least {} {}",
-                    count.meaning(),
-                    if *of_limits { "limits" } else { "quantities" }
-                )
-            }
-            Self::Over(over) => over.meaning(),
-        }
-    }
-}
-
-impl OverVerdicts {
-    fn meaning(&self) -> String {
-        match self {
-            Self::Holds(name) => name.node.clone(),
-            Self::Same(a, b) => format!("({} is {})", a.node, b.node),
-            Self::AtLeast { count, of } => format!(
-                "(at least {} of {})",
-                count.meaning(),
-                joined(of, ", ", |name| name.node.clone())
-            ),
-            Self::Not(inner) => format!("(not {})", inner.meaning()),
-            Self::All(all) => format!("({})", joined(all, " and ", Self::meaning)),
-            Self::Any(any) => format!("({})", joined(any, " or ", Self::meaning)),
-        }
-    }
-}
-
 impl Scope {
     pub fn is_all(&self) -> bool {
         *self == Self::default()
     }
+}
 
-    /// As [`Phrase::meaning`]: `for zones 2, 3 and each wheelset where ...`.
-    pub fn meaning(&self) -> String {
-        let mut parts = Vec::new();
-        if !self.zones.is_empty() {
-            parts.push(format!("zones {}", sorted(&self.zones)));
-        }
-        if !self.each.is_empty() {
-            parts.push(format!("each {}", sorted(&self.each)));
-        }
-        let mut words = parts.join(" and ");
-        if let Some(condition) = &self.condition {
-            let sections = if words.is_empty() { "sections " } else { " " };
-            words = format!("{words}{sections}where {}", condition.meaning());
-        }
-        if words.is_empty() { words } else { format!("for {words}") }
+/// Zones and keys can be in any order.
+impl PartialEq for Scope {
+    fn eq(&self, other: &Self) -> bool {
+        self.condition == other.condition
+            && same_set(&self.zones, &other.zones)
+            && same_set(&self.each, &other.each)
     }
 }
 
-impl Fit {
-    fn meaning(&self) -> String {
-        let all = |phrases: &[Phrase]| joined(phrases, ", ", Phrase::meaning);
-        let kind = if self.prediction { "prediction" } else { "regression" };
-        let confidence = self
-            .confidence
-            .as_ref()
-            .map_or(String::new(), |share| format!(" confidence {}", share.node));
-        let (tails, end) = (
-            if self.one_sided { "one" } else { "two" },
-            if self.lower { "lower" } else { "upper" },
-        );
-        format!("{kind} over {} at {}{confidence} {tails} {end}", all(&self.over), all(&self.at))
+impl Limit {
+    /// Whether both are of the same estimate, in the same direction and for the same values.
+    pub fn same_slot(&self, other: &Self) -> bool {
+        self.estimate == other.estimate
+            && self.at_least == other.at_least
+            && self.scope == other.scope
     }
 }
 
-impl Step {
-    pub fn meaning(&self) -> String {
-        let item = |item: &At<Item>| match &item.node {
-            Item::Word(word) => word.clone(),
-            Item::Value(value) => value.meaning(),
-        };
-        let parts = joined(&self.parts, ", ", |part| joined(part, " ", item));
-        format!("{parts} when {}", self.when.as_ref().map_or(String::new(), Phrase::meaning))
+/// Factors can be in any order.
+impl PartialEq for Limit {
+    fn eq(&self, other: &Self) -> bool {
+        self.same_slot(other)
+            && self.bound == other.bound
+            && self.only_when == other.only_when
+            && same_set(&self.factors, &other.factors)
     }
 }
 
-fn joined<T>(items: &[T], between: &str, one: impl Fn(&T) -> String) -> String {
-    items.iter().map(one).collect::<Vec<_>>().join(between)
-}
-
-fn sorted(names: &[At<String>]) -> String {
-    let mut names: Vec<&str> = names.iter().map(|name| name.node.as_str()).collect();
-    names.sort_unstable();
-    names.join(", ")
-}
-
-/// With twelve digits, so that rounding of a conversion makes no difference.
-fn number(value: f64, unit: Option<&Unit>) -> String {
-    let rounded: f64 = format!("{value:.11e}").parse().unwrap_or(value);
-    match unit {
-        Some(unit) if unit.dimension != crate::units::Dimension::ONE => {
-            format!("{rounded}{{{}}}", unit.dimension)
-        }
-        _ => rounded.to_string(),
-    }
+fn same_set<T: PartialEq>(a: &[T], b: &[T]) -> bool {
+    a.len() == b.len() && a.iter().all(|item| b.contains(item))
 }

@@ -9,7 +9,7 @@ use super::keys::{Key, Kind, Sort};
 use super::lines::{self, Fault};
 use super::rules::{self, Form, Reader};
 use super::split::{Item, RawBlock, split};
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problems, error};
 use crate::source::Source;
 
 /// Reads the text form. Unknown or duplicate blocks and fields are left out after a problem. One
@@ -115,13 +115,11 @@ fn read_field(
     let mut value = head.end;
     value += blanks(&text[value..]);
     if text[value..].starts_with([':', '=']) {
-        reader.problems.push(
-            Problem::error(
-                "unexpected-text",
-                format!("`{}` must be followed directly by its value", &text[head.clone()]),
-            )
-            .at(&source.span(start + value..start + value + 1)),
-        );
+        reader.problems.push(error(
+            "unexpected-text",
+            format!("`{}` must be followed directly by its value", &text[head.clone()]),
+            &source.span(start + value..start + value + 1),
+        ));
         value += 1;
         value += blanks(&text[value..]);
     }
@@ -169,8 +167,7 @@ fn read_prose(
             )
         };
         reader.problems.push(
-            Problem::error("missing-quotes", format!("the text of `{}` has no quotes", key.word))
-                .at(&at)
+            error("missing-quotes", format!("the text of `{}` has no quotes", key.word), &at)
                 .help(lines::slip(rest).unwrap_or_else(help)),
         );
         return bare(rest);
@@ -220,11 +217,11 @@ fn unquote(
                     let c = other.map(|(_, c)| c);
                     let from = start + inner.start + at;
                     reader.problems.push(
-                        Problem::error(
+                        error(
                             "unknown-escape",
                             "in quotes, a backslash must be followed by `\"`, `\\` or `n`",
+                            &source.span(from..from + 1 + c.map_or(0, char::len_utf8)),
                         )
-                        .at(&source.span(from..from + 1 + c.map_or(0, char::len_utf8)))
                         .help("write a backslash as \\\\"),
                     );
                     out.push('\\');
@@ -244,8 +241,11 @@ fn unquote(
 }
 
 fn report(reader: &mut Reader<'_>, source: &Arc<Source>, offset: usize, fault: Fault) {
-    let mut problem = Problem::error("unexpected-text", fault.says)
-        .at(&source.span(offset + fault.at.start..offset + fault.at.end));
+    let mut problem = error(
+        "unexpected-text",
+        fault.says,
+        &source.span(offset + fault.at.start..offset + fault.at.end),
+    );
     problem.help = fault.help;
     reader.problems.push(problem);
 }

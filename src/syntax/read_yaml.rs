@@ -8,7 +8,7 @@ use super::layout::Quotes;
 use super::nesting;
 use super::remarks::Remarks;
 use super::rules::{self, Form, Reader};
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problems, error};
 use crate::source::{Source, Span};
 use crate::yaml::{self, Node, Value};
 
@@ -57,10 +57,14 @@ impl YamlReader<'_> {
             let margin = nesting::block_at_margin(&key.text, node)
                 .filter(|_| rules::meant_kind(Form::Yaml, &key.text).is_none());
             if let Some(help) = margin {
-                let says = format!("`{}` is not a block of a protocol", key.text);
-                self.reader
-                    .problems
-                    .push(Problem::error("unknown-block", says).at(&key.span).help(help));
+                self.reader.problems.push(
+                    error(
+                        "unknown-block",
+                        format!("`{}` is not a block of a protocol", key.text),
+                        &key.span,
+                    )
+                    .help(help),
+                );
                 self.remarks.pass(end);
                 continue;
             }
@@ -193,11 +197,13 @@ impl YamlReader<'_> {
             comments.before.extend(comments.beside.replace(beside));
         }
         if let Some(first) = first {
-            let says = format!("a block can have only one `{}`", key.text);
             self.reader.problems.push(
-                Problem::error("duplicate-field", says)
-                    .at(&key.span)
-                    .also(&first.span, "the first"),
+                error(
+                    "duplicate-field",
+                    format!("a block can have only one `{}`", key.text),
+                    &key.span,
+                )
+                .also(&first.span, "the first"),
             );
         } else if node.is_scalar() {
             return Some(text(node));
@@ -219,10 +225,14 @@ impl YamlReader<'_> {
             let nested = nesting::too_deep(&key.text, node)
                 .or_else(|| nesting::block_among_fields(kind, &key.text, node, beside));
             if let Some(help) = nested {
-                let says = format!("a `{}` has no field `{}`", kind.word, key.text);
-                self.reader
-                    .problems
-                    .push(Problem::error("unknown-field", says).at(&key.span).help(help));
+                self.reader.problems.push(
+                    error(
+                        "unknown-field",
+                        format!("a `{}` has no field `{}`", kind.word, key.text),
+                        &key.span,
+                    )
+                    .help(help),
+                );
                 return;
             }
         }
@@ -299,10 +309,11 @@ impl YamlReader<'_> {
     /// would begin a comment.
     fn check_phrase(&mut self, phrase: &Text) {
         if phrase.text.starts_with([':', '=']) {
-            self.reader.problems.push(
-                Problem::error("unexpected-text", "a phrase cannot begin with this sign")
-                    .at(&phrase.place(0..1)),
-            );
+            self.reader.problems.push(error(
+                "unexpected-text",
+                "a phrase cannot begin with this sign",
+                &phrase.place(0..1),
+            ));
         }
         let mut quotes = Quotes::default();
         let mut opened = 0;
@@ -314,9 +325,12 @@ impl YamlReader<'_> {
             }
             if c == '#' && !inside {
                 self.reader.problems.push(
-                    Problem::error("unexpected-text", "`#` is not allowed outside quotes")
-                        .at(&phrase.place(at..at + 1))
-                        .help("in the text form it begins a comment"),
+                    error(
+                        "unexpected-text",
+                        "`#` is not allowed outside quotes",
+                        &phrase.place(at..at + 1),
+                    )
+                    .help("in the text form it begins a comment"),
                 );
             }
         }
@@ -336,7 +350,7 @@ impl YamlReader<'_> {
     }
 
     fn wrong_shape(&mut self, at: &Span, says: String, help: &str) {
-        let mut problem = Problem::error("wrong-shape", says).at(at);
+        let mut problem = error("wrong-shape", says, at);
         problem.help = Some(help.to_owned()).filter(|help| !help.is_empty());
         self.reader.problems.push(problem);
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::document::{Block, Field, Text};
 use super::keys::{KINDS, Key, Kind};
 use super::lines;
-use crate::problem::{Problem, Problems, nearest};
+use crate::problem::{Problem, Problems, error, nearest};
 use crate::source::Span;
 
 /// Largest number of words of a key.
@@ -63,9 +63,7 @@ impl<'a> Reader<'a> {
             return Some(kind);
         }
         let owners = owners(&[word]);
-        let problem =
-            Problem::error("unknown-block", format!("`{word}` is not a block of a protocol"))
-                .at(at);
+        let problem = error("unknown-block", format!("`{word}` is not a block of a protocol"), at);
         self.problems.push(match (near, owners.is_empty()) {
             (Some(near), _) => problem.help(format!("did you mean `{}`?", spelt(near))),
             (None, false) if self.form == Form::Lines => problem.help(format!(
@@ -131,8 +129,7 @@ impl<'a> Reader<'a> {
             (Some(_), true) => format!("`{}` with a name", kind.word),
             (Some(_), false) => format!("`{}` without a name", kind.word),
         };
-        let problem =
-            Problem::error("unknown-field", format!("a {block} has no field `{written}`")).at(at);
+        let problem = error("unknown-field", format!("a {block} has no field `{written}`"), at);
         if of_twin.is_some() {
             self.problems.push(problem.help(match (kind.named, self.form) {
                 (true, Form::Lines) => {
@@ -173,8 +170,7 @@ impl<'a> Reader<'a> {
                 _ => key.example.to_owned(),
             };
             self.problems.push(
-                Problem::error("missing-value", format!("`{}` has no value", key.word))
-                    .at(&field.key.span)
+                error("missing-value", format!("`{}` has no value", key.word), &field.key.span)
                     .help(format!(
                         "for example: {}{} {example}",
                         key.word,
@@ -185,11 +181,11 @@ impl<'a> Reader<'a> {
         }
         if let Some(first) = block.field(key.word).filter(|_| !key.many) {
             self.problems.push(
-                Problem::error(
+                error(
                     "duplicate-field",
                     format!("a `{}` can have only one `{}`", kind.word, key.word),
+                    &field.key.span,
                 )
-                .at(&field.key.span)
                 .also(&first.key.span, "the first"),
             );
             return;
@@ -201,20 +197,26 @@ impl<'a> Reader<'a> {
     pub fn block(&mut self, kind: &'static Kind, block: Block) {
         match &block.name {
             None if kind.named => self.problems.push(
-                Problem::error("missing-name", format!("this `{}` has no name", kind.word))
-                    .at(&block.kind.span)
-                    .help(match self.form {
-                        Form::Lines => {
-                            format!("write a name after the word: {} some_name", kind.word)
-                        }
-                        Form::Yaml if kind.single => "add an entry `name`".to_owned(),
-                        Form::Yaml => "write its name as the key above its fields".to_owned(),
-                    }),
+                error(
+                    "missing-name",
+                    format!("this `{}` has no name", kind.word),
+                    &block.kind.span,
+                )
+                .help(match self.form {
+                    Form::Lines => {
+                        format!("write a name after the word: {} some_name", kind.word)
+                    }
+                    Form::Yaml if kind.single => "add an entry `name`".to_owned(),
+                    Form::Yaml => "write its name as the key above its fields".to_owned(),
+                }),
             ),
             Some(name) if !kind.named => self.problems.push(
-                Problem::error("unexpected-name", format!("a `{}` block has no name", kind.word))
-                    .at(&name.span)
-                    .help(format!("there is one `{}` block in a protocol", kind.word)),
+                error(
+                    "unexpected-name",
+                    format!("a `{}` block has no name", kind.word),
+                    &name.span,
+                )
+                .help(format!("there is one `{}` block in a protocol", kind.word)),
             ),
             Some(name) if kind.has_families() && lines::is_family_name(&name.text) => {}
             Some(name) if !lines::is_name(&name.text) => {
@@ -229,8 +231,7 @@ impl<'a> Reader<'a> {
             _ => {}
         }
         if let Some(title) = block.title.as_ref().filter(|title| title.text.trim().is_empty()) {
-            self.problems
-                .push(Problem::error("missing-value", "the title is empty").at(&title.span));
+            self.problems.push(error("missing-value", "the title is empty", &title.span));
         }
         // A block without its required name is not compared with others.
         if !kind.named || kind.single || block.name.is_some() {
@@ -242,8 +243,7 @@ impl<'a> Reader<'a> {
                     format!("there are two blocks `{} {name}`", kind.word)
                 };
                 let code = if kind.single { "duplicate-block" } else { "duplicate-name" };
-                self.problems
-                    .push(Problem::error(code, says).at(block.span()).also(first, "the first"));
+                self.problems.push(error(code, says, block.span()).also(first, "the first"));
                 return;
             }
             self.seen.insert((kind.word, name), block.span().clone());
@@ -253,8 +253,7 @@ impl<'a> Reader<'a> {
 }
 
 pub fn unterminated(at: &Span) -> Problem {
-    Problem::error("unterminated-quote", "a quote is not closed on its line")
-        .at(at)
+    error("unterminated-quote", "a quote is not closed on its line", at)
         .help("write a quote inside a text as \\\"")
 }
 
@@ -265,7 +264,7 @@ pub fn bad_name(name: &str, at: &Span) -> Problem {
         "use letters a to z, digits, `_`, `-` and `.`"
     };
     let help = lines::slip(name).unwrap_or_else(|| made_of.to_owned());
-    Problem::error("bad-name", format!("`{name}` cannot be a name")).at(at).help(help)
+    error("bad-name", format!("`{name}` cannot be a name"), at).help(help)
 }
 
 /// The longest key that the first words form, and its number of words.

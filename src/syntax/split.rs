@@ -8,7 +8,7 @@ use super::document::Comments;
 use super::keys::{self, Kind};
 use super::lines;
 use super::rules::{self, Form};
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problems, error};
 use crate::source::Source;
 
 /// A header or a field with its continuation lines.
@@ -207,7 +207,7 @@ impl Splitter<'_> {
     }
 
     fn problem(&mut self, code: &'static str, says: &str, at: Range<usize>, help: &str) {
-        self.problems.push(Problem::error(code, says).at(&self.source.span(at)).help(help));
+        self.problems.push(error(code, says, &self.source.span(at)).help(help));
     }
 
     fn finish(mut self) -> Parts {

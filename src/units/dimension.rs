@@ -13,39 +13,39 @@ pub struct Dimension(pub [i8; 6]);
 
 const BASE: [&str; 6] = ["m", "kg", "s", "K", "A", "degC"];
 
-/// Dimensions with a name.
-const WORDS: [(Dimension, &str); 31] = [
-    (Dimension::ONE, "a plain number"),
-    (Dimension([1, 0, 0, 0, 0, 0]), "a length"),
-    (Dimension([2, 0, 0, 0, 0, 0]), "an area"),
-    (Dimension([-1, 0, 0, 0, 0, 0]), "a curvature"),
-    (Dimension([0, 1, 0, 0, 0, 0]), "a mass"),
-    (Dimension([0, 0, 1, 0, 0, 0]), "a time"),
-    (Dimension([0, 0, -1, 0, 0, 0]), "a frequency"),
-    (Dimension([1, 0, -1, 0, 0, 0]), "a speed"),
-    (Dimension([1, 0, -2, 0, 0, 0]), "an acceleration"),
-    (Dimension([1, 0, -3, 0, 0, 0]), "a jerk"),
-    (Dimension([1, 1, -2, 0, 0, 0]), "a force"),
-    (Dimension([2, 1, -2, 0, 0, 0]), "a moment or an energy"),
-    (Dimension([2, 1, -3, 0, 0, 0]), "a power"),
-    (Dimension([-1, 1, -2, 0, 0, 0]), "a pressure"),
-    (Dimension([0, 1, -2, 0, 0, 0]), "a stiffness"),
-    (Dimension([0, 1, -1, 0, 0, 0]), "a damping constant"),
-    (Dimension([2, 1, 0, 0, 0, 0]), "a moment of inertia"),
-    (Dimension([0, 0, 0, 1, 0, 0]), "a temperature"),
-    (Dimension([0, 0, 0, 0, 1, 0]), "an electric current"),
-    (Dimension([2, 1, -3, 0, -1, 0]), "a voltage"),
-    (Dimension([0, 0, 0, 0, 0, 1]), "a temperature in degrees Celsius"),
-    (Dimension([3, 0, 0, 0, 0, 0]), "a volume"),
-    (Dimension([2, 1, -3, 0, -2, 0]), "an electric resistance"),
-    (Dimension([-2, -1, 3, 0, 2, 0]), "an electric conductance"),
-    (Dimension([0, 0, 1, 0, 1, 0]), "an electric charge"),
-    (Dimension([-2, -1, 4, 0, 2, 0]), "a capacitance"),
-    (Dimension([2, 1, -2, 0, -2, 0]), "an inductance"),
-    (Dimension([2, 1, -2, 0, -1, 0]), "a magnetic flux"),
-    (Dimension([0, 1, -2, 0, -1, 0]), "a magnetic flux density"),
-    (Dimension([0, 0, -2, 0, 0, 0]), "an angular acceleration"),
-    (Dimension([2, 1, -1, 0, 0, 0]), "a rotational damping constant"),
+/// Dimensions with a name, in base units.
+const WORDS: [(&str, &str); 31] = [
+    ("-", "a plain number"),
+    ("m", "a length"),
+    ("m^2", "an area"),
+    ("m^-1", "a curvature"),
+    ("kg", "a mass"),
+    ("s", "a time"),
+    ("s^-1", "a frequency"),
+    ("m s^-1", "a speed"),
+    ("m s^-2", "an acceleration"),
+    ("m s^-3", "a jerk"),
+    ("m kg s^-2", "a force"),
+    ("m^2 kg s^-2", "a moment or an energy"),
+    ("m^2 kg s^-3", "a power"),
+    ("m^-1 kg s^-2", "a pressure"),
+    ("kg s^-2", "a stiffness"),
+    ("kg s^-1", "a damping constant"),
+    ("m^2 kg", "a moment of inertia"),
+    ("K", "a temperature"),
+    ("A", "an electric current"),
+    ("m^2 kg s^-3 A^-1", "a voltage"),
+    ("degC", "a temperature in degrees Celsius"),
+    ("m^3", "a volume"),
+    ("m^2 kg s^-3 A^-2", "an electric resistance"),
+    ("m^-2 kg^-1 s^3 A^2", "an electric conductance"),
+    ("s A", "an electric charge"),
+    ("m^-2 kg^-1 s^4 A^2", "a capacitance"),
+    ("m^2 kg s^-2 A^-2", "an inductance"),
+    ("m^2 kg s^-2 A^-1", "a magnetic flux"),
+    ("kg s^-2 A^-1", "a magnetic flux density"),
+    ("s^-2", "an angular acceleration"),
+    ("m^2 kg s^-1", "a rotational damping constant"),
 ];
 
 impl Dimension {
@@ -56,6 +56,19 @@ impl Dimension {
     pub const SPEED: Self = Self([1, 0, -1, 0, 0, 0]);
     pub const ACCELERATION: Self = Self([1, 0, -2, 0, 0, 0]);
     pub const FORCE: Self = Self([1, 1, -2, 0, 0, 0]);
+
+    /// The dimension of a product of base units, as it is printed: `kg m s^-2`.
+    pub(super) fn in_base_units(text: &str) -> Self {
+        let mut exponents = [0; 6];
+        for unit in text.split(' ') {
+            let (base, exponent) = unit.split_once('^').unwrap_or((unit, "1"));
+            let at = BASE.iter().position(|known| *known == base);
+            if let (Some(at), Ok(exponent)) = (at, exponent.parse()) {
+                exponents[at] = exponent;
+            }
+        }
+        Self(exponents)
+    }
 
     /// `self` to an integer power; `None` if an exponent exceeds the range.
     pub fn power(self, exponent: i8) -> Option<Self> {
@@ -76,10 +89,9 @@ impl Dimension {
 
     /// "a force", "an acceleration", or the base units.
     pub fn in_words(self) -> String {
-        WORDS
-            .iter()
-            .find(|(dimension, _)| *dimension == self)
-            .map_or_else(|| format!("a quantity in {self}"), |(_, word)| (*word).to_string())
+        let units = self.to_string();
+        let named = WORDS.iter().find(|(dimension, _)| *dimension == units);
+        named.map_or_else(|| format!("a quantity in {units}"), |(_, word)| (*word).to_string())
     }
 }
 

@@ -10,6 +10,7 @@ mod parse;
 mod table;
 
 pub use dimension::Dimension;
+pub use number::number_end;
 pub use table::{SYMBOLS, Symbol};
 
 use std::fmt;

@@ -88,7 +88,7 @@ fn weight(number: f64, unit: &Unit, expected: &Unit) -> Option<String> {
 }
 
 /// End of the number at the start of a text: sign, digits with one point, exponent.
-fn number_end(text: &str) -> usize {
+pub fn number_end(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits =
         |from: usize| bytes[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();

@@ -9,7 +9,7 @@ pub(super) fn unit(text: &str) -> Result<Unit, UnknownUnit> {
     let mut below = false;
     let mut expects_symbol = true;
     let mut rest = text.trim();
-    let unknown = |word: &str| UnknownUnit { word: word.to_string(), near: crate_near(word) };
+    let unknown = |word: &str| UnknownUnit { word: word.to_string(), near: near(word) };
     if rest.is_empty() {
         return Err(unknown(text));
     }
@@ -48,16 +48,12 @@ pub(super) fn unit(text: &str) -> Result<Unit, UnknownUnit> {
     Ok(Unit { text: text.to_string(), factor, dimension })
 }
 
-fn crate_near(word: &str) -> Option<&'static str> {
-    let same = SYMBOLS
-        .iter()
-        .find(|known| known.symbol.eq_ignore_ascii_case(word))
-        .map(|known| known.symbol);
+/// The symbol that a word most likely stands for.
+fn near(word: &str) -> Option<&'static str> {
+    let symbols = || SYMBOLS.iter().map(|known| known.symbol);
+    let same = symbols().find(|symbol| symbol.eq_ignore_ascii_case(word));
     same.or_else(|| {
-        SYMBOLS
-            .iter()
-            .map(|known| known.symbol)
-            .find(|known| known.len() > 1 && strsim::levenshtein(known, word) == 1)
+        symbols().find(|symbol| symbol.len() > 1 && strsim::levenshtein(symbol, word) == 1)
     })
 }
 

@@ -5,6 +5,7 @@ use crate::catalog::Statistic;
 use crate::source::Span;
 use crate::units::Unit;
 
+/// A limit of an estimate, for the rows of its scope.
 #[derive(Clone, Debug)]
 pub struct Limit {
     pub estimate: Estimate,
@@ -47,6 +48,7 @@ pub struct Estimate {
     pub unit: Option<Unit>,
 }
 
+/// How an estimate is taken from the rows of a group.
 #[derive(Clone, Debug)]
 pub enum EstimateKind {
     /// Every value separately; the worst decides.
@@ -163,6 +165,7 @@ pub enum Taking {
     Fit(Box<Fit>),
 }
 
+/// How one number is taken from many.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DataReducer {
     Total,
@@ -193,6 +196,7 @@ pub struct Scope {
 }
 
 impl Scope {
+    /// Whether all rows form one group.
     pub fn is_all(&self) -> bool {
         self.zones.is_empty() && self.each.is_empty() && self.condition.is_none()
     }

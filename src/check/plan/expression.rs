@@ -1,12 +1,14 @@
-//! Checked expressions.
+//! Checked expressions: over numbers, words and conditions, and over the samples of records.
 
 use std::ops::Deref;
 use std::sync::Arc;
 
-use super::Scalar;
-use crate::catalog::Function;
+use super::{Scalar, Side, Step};
+use crate::catalog::{Function, Reducer};
 use crate::source::Span;
-use crate::units::Dimension;
+use crate::units::{Dimension, Unit};
+
+pub use crate::syntax::phrase::Operator;
 
 /// Where an expression is written, and its words. In YAML, the place of a part of a field is not
 /// always known, but its words are.
@@ -23,7 +25,8 @@ impl Deref for Origin {
     }
 }
 
-/// A typed expression over numbers, words and conditions.
+/// A typed expression. One over samples states how the signal of one position is computed from
+/// channels.
 #[derive(Clone, Debug)]
 pub struct Expr {
     pub kind: Kind,
@@ -31,14 +34,22 @@ pub struct Expr {
     pub span: Origin,
 }
 
+/// What an expression gives.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Type {
     Number(Dimension),
     /// One of these words; empty for a word by itself.
     Word(Vec<String>),
     Flag,
+    /// A number for each sample of a record.
+    Samples {
+        dimension: Dimension,
+        /// Whether the samples are those of the track record.
+        track: bool,
+    },
 }
 
+/// How an expression is computed.
 #[derive(Clone, Debug)]
 pub enum Kind {
     Constant(Scalar),
@@ -46,47 +57,99 @@ pub enum Kind {
     Vehicle(usize),
     /// Index into [`Plan::columns`](super::Plan::columns).
     Column(usize),
-    /// Start, end or length of the section on the axis.
+    /// Start or end of the section on the axis.
     Start,
     End,
     /// A value taken from a signal or from a group: index into the list stored with the expression.
     Input(usize),
-    Simulated,
-    Measured,
+    /// The value of this side. Over samples, the own processed signal of this side, at the points
+    /// where both sides have one; only in values taken from both sides.
+    Side(Side),
     /// The limit of another statistic of the same quantity and scope.
     LimitOf(String),
+    /// A column of the records, with the channel it belongs to.
+    Channel {
+        column: String,
+        channel: String,
+        /// The unit that the protocol declares.
+        unit: Unit,
+    },
     Negative(Box<Expr>),
     Not(Box<Expr>),
     Power(Box<Expr>, i8),
     Binary(Operator, Box<Expr>, Box<Expr>),
     Call(&'static Function, Vec<Expr>),
+    Filtered(Box<Expr>, Vec<Step>),
+    OverAxis(AxisOperation, Box<Expr>),
+    /// The number of a section that is taken from a signal, the same all along: `Y - mean of Y`.
+    Level(Reducer, Box<Expr>),
     /// The value of the first condition that holds, else the last value.
     Cases(Vec<(Expr, Expr)>, Option<Box<Expr>>),
 }
 
-impl Expr {
-    /// Visits every part, the whole expression first.
-    pub fn visit(&self, see: &mut impl FnMut(&Expr)) {
-        see(self);
-        match &self.kind {
-            Kind::Negative(inner) | Kind::Not(inner) | Kind::Power(inner, _) => inner.visit(see),
-            Kind::Binary(_, left, right) => {
-                left.visit(see);
-                right.visit(see);
-            }
-            Kind::Call(_, arguments) => arguments.iter().for_each(|argument| argument.visit(see)),
-            Kind::Cases(arms, otherwise) => {
-                for (value, condition) in arms {
-                    value.visit(see);
-                    condition.visit(see);
-                }
-                if let Some(value) = otherwise {
-                    value.visit(see);
-                }
-            }
-            _ => {}
-        }
-    }
+/// An operation on a signal along its axis.
+#[derive(Clone, Debug)]
+pub enum AxisOperation {
+    /// Shifted forward by this distance.
+    Shifted(Box<Expr>),
+    Derivative {
+        over_time: bool,
+    },
+    Integral {
+        over_time: bool,
+    },
 }
 
-pub use crate::syntax::phrase::Operator;
+impl Expr {
+    /// The dimension of a number or of samples; that of a plain number for words and conditions.
+    pub fn dimension(&self) -> Dimension {
+        match self.ty {
+            Type::Number(dimension) | Type::Samples { dimension, .. } => dimension,
+            Type::Word(_) | Type::Flag => Dimension::ONE,
+        }
+    }
+
+    /// Whether its samples are those of the track record.
+    pub fn track(&self) -> bool {
+        matches!(self.ty, Type::Samples { track: true, .. })
+    }
+
+    /// The parts that it is directly made of.
+    pub fn parts(&self) -> Vec<&Expr> {
+        match &self.kind {
+            Kind::Negative(inner)
+            | Kind::Not(inner)
+            | Kind::Power(inner, _)
+            | Kind::Filtered(inner, _)
+            | Kind::Level(_, inner) => vec![inner],
+            Kind::OverAxis(AxisOperation::Shifted(distance), inner) => vec![distance, inner],
+            Kind::OverAxis(_, inner) => vec![inner],
+            Kind::Binary(_, left, right) => vec![left, right],
+            Kind::Call(_, arguments) => arguments.iter().collect(),
+            Kind::Cases(arms, otherwise) => {
+                let arms = arms.iter().flat_map(|(value, condition)| [value, condition]);
+                arms.chain(otherwise.as_deref()).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Visits every part, the whole expression first.
+    pub fn visit(&self, see: &mut dyn FnMut(&Expr)) {
+        see(self);
+        self.parts().into_iter().for_each(|part| part.visit(see));
+    }
+
+    /// The first part that satisfies a test, the whole expression included.
+    pub fn find(&self, test: &dyn Fn(&Expr) -> bool) -> Option<&Expr> {
+        if test(self) {
+            return Some(self);
+        }
+        self.parts().into_iter().find_map(|part| part.find(test))
+    }
+
+    /// Whether a part, or the whole, satisfies a test.
+    pub fn any(&self, test: &dyn Fn(&Expr) -> bool) -> bool {
+        self.find(test).is_some()
+    }
+}

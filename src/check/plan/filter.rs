@@ -5,6 +5,7 @@ use crate::metrics::window::Ends;
 use crate::source::Span;
 use crate::units::Dimension;
 
+/// A filter that the protocol declares.
 #[derive(Clone, Debug)]
 pub struct NamedFilter {
     pub name: String,
@@ -13,6 +14,7 @@ pub struct NamedFilter {
     pub source: Option<String>,
 }
 
+/// A step of a filter chain.
 #[derive(Clone, Debug)]
 pub struct Step {
     pub kind: StepSpec,

@@ -6,7 +6,6 @@ mod filter;
 mod find;
 mod quantity;
 mod section;
-mod signal;
 mod verdict;
 
 use serde::{Deserialize, Serialize};
@@ -21,9 +20,9 @@ pub use filter::*;
 pub use find::*;
 pub use quantity::*;
 pub use section::*;
-pub use signal::*;
 pub use verdict::*;
 
+/// A checked protocol.
 #[derive(Clone, Debug)]
 pub struct Plan {
     pub name: String,
@@ -99,6 +98,7 @@ pub struct Axis {
     pub span: Span,
 }
 
+/// A parameter and what it is set to, as printed.
 #[derive(Clone, Debug)]
 pub struct Parameter {
     pub name: String,
@@ -112,6 +112,7 @@ pub struct Parameter {
     pub choices: Vec<String>,
 }
 
+/// Who sets a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SetBy {
     Default,
@@ -148,6 +149,7 @@ pub struct DatumRange {
     pub span: Span,
 }
 
+/// What values a datum has.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DatumKind {
     Number(Unit),

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Axis, Expr, Limit, Report, Scope, Signal, Step};
+use super::{Axis, Expr, Limit, Report, Scope, Step};
 use crate::catalog::{Metric, Reducer};
 use crate::result;
 use crate::source::{Span, Spanned};
@@ -13,15 +13,16 @@ use crate::units::{Dimension, Unit};
 pub struct Input {
     pub taken: Taken,
     /// `None`: the quantity's own processed signal.
-    pub signal: Option<Signal>,
+    pub signal: Option<Expr>,
     /// Filters and windows that a named signal passes.
     pub chain: Vec<Step>,
     /// The signal that a slope or a metric uses in place of the axis.
-    pub over: Option<Signal>,
+    pub over: Option<Expr>,
     pub side: InputSide,
     pub span: Span,
 }
 
+/// How a number is taken from signals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Taken {
     /// From the signal of one side.
@@ -43,6 +44,7 @@ impl Taken {
         }
     }
 
+    /// The dimension of the number, from those of the signal and of the axis.
     pub fn gives(self, signal: Dimension, axis: Dimension) -> Dimension {
         match self {
             Self::Reduced(reducer) | Self::OfBoth(reducer) => reducer.gives(signal, axis),
@@ -51,6 +53,7 @@ impl Taken {
     }
 }
 
+/// The side of a number that is taken from a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InputSide {
     /// The side that the expression is evaluated for.
@@ -59,6 +62,7 @@ pub enum InputSide {
     Measured,
 }
 
+/// What is assessed or compared: signals, their processing, limits.
 #[derive(Clone, Debug)]
 pub struct Quantity {
     pub id: String,
@@ -113,7 +117,7 @@ pub struct QuantityWords {
 pub struct Position {
     /// As printed: `Y_1R`.
     pub name: String,
-    pub signal: Signal,
+    pub signal: Expr,
     /// Each place with its member, such as `wheelset` and `1`.
     pub places: Vec<(String, String)>,
     /// The condition on the sections in which it is evaluated; `None` for all.
@@ -127,7 +131,7 @@ pub enum Evaluation {
     Values { values: Vec<Valued>, records: Records },
     /// One number of the two signals; `over` is the other signal its wording names, one for each
     /// position, with its name and unit.
-    Metric { metric: Metric, over: Vec<Signal>, over_axis: Option<Axis>, pairing: Pairing },
+    Metric { metric: Metric, over: Vec<Expr>, over_axis: Option<Axis>, pairing: Pairing },
     /// One number of metrics, of numbers of one side, and of numbers of both sides' samples.
     Combined { of: Valued, pairing: Pairing },
 }
@@ -207,6 +211,7 @@ impl Pairing {
     }
 }
 
+/// The two kinds of records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     Simulated,
@@ -214,8 +219,15 @@ pub enum Side {
 }
 
 impl Side {
+    /// Both sides, the simulated one first.
     pub const ALL: [Self; 2] = [Self::Simulated, Self::Measured];
 
+    /// The side that `simulated` or `measured` stands for.
+    pub fn named(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|side| side.in_words() == word)
+    }
+
+    /// As written in protocols.
     pub fn in_words(self) -> &'static str {
         match self {
             Self::Simulated => "simulated",
@@ -224,6 +236,7 @@ impl Side {
     }
 }
 
+/// What is central of several records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Center {
     Mean,
@@ -231,6 +244,7 @@ pub enum Center {
 }
 
 impl Center {
+    /// As written in protocols.
     pub fn in_words(self) -> &'static str {
         match self {
             Self::Mean => "mean",

@@ -1,10 +1,11 @@
 //! Zones, checks, plausibility rules, the rules of sections, domains.
 
-use super::{Expr, Find, Input, Keep, Report, Signal, Step};
+use super::{Expr, Find, Input, Keep, Report, Step};
 use crate::metrics::percentile::Method;
 use crate::source::Span;
 use crate::units::Unit;
 
+/// A test zone.
 #[derive(Clone, Debug)]
 pub struct Zone {
     pub name: String,
@@ -16,6 +17,7 @@ pub struct Zone {
     pub span: Span,
 }
 
+/// A requirement on every section.
 #[derive(Clone, Debug)]
 pub struct Check {
     pub name: String,
@@ -28,6 +30,7 @@ pub struct Check {
     pub span: Span,
 }
 
+/// What is done with a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OnFault {
     NotUsed,
@@ -47,7 +50,7 @@ pub struct Plausibility {
     pub title: String,
     /// Each position with the name of its signal; empty where the rule uses only data or named
     /// signals.
-    pub signals: Vec<(String, Signal)>,
+    pub signals: Vec<(String, Expr)>,
     pub chain: Vec<Step>,
     pub test: Test,
     pub unless: Option<Expr>,
@@ -56,6 +59,7 @@ pub struct Plausibility {
     pub span: Span,
 }
 
+/// What a plausibility rule tests.
 #[derive(Clone, Debug)]
 pub enum Test {
     Require(Box<Requirement>),
@@ -119,6 +123,7 @@ pub struct Exchanged {
     pub more: f64,
 }
 
+/// How sections are treated.
 #[derive(Clone, Debug)]
 pub struct SectionRules {
     pub whole_records: bool,

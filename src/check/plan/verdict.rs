@@ -38,6 +38,7 @@ impl VerdictRule {
     }
 }
 
+/// By what a verdict is decided.
 #[derive(Clone, Debug)]
 pub enum Decision {
     /// By the limits of quantities, given by index.
@@ -81,6 +82,7 @@ impl Over {
     }
 }
 
+/// How many limits must hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
     EveryLimit,

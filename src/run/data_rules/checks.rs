@@ -131,7 +131,7 @@ fn found_values(work: &Work<'_>, check: &Check, inputs: &[Result<f64, String>]) 
     let one = |(input, value): (&Input, &Result<f64, String>)| {
         let value: f64 = format!("{:.3e}", value.as_ref().ok()?).parse().ok()?;
         let signal = input.signal.as_ref()?;
-        let dimension = input.taken.gives(signal.dimension, work.plan.axis.unit.dimension);
+        let dimension = input.taken.gives(signal.dimension(), work.plan.axis.unit.dimension);
         let unit =
             if dimension == Dimension::ONE { String::new() } else { format!(" {dimension}") };
         let words = input.span.text().split_whitespace().collect::<Vec<_>>().join(" ");

@@ -1,8 +1,8 @@
 //! The parts of rules: what expressions and signals each of them holds.
 
 use crate::check::plan::{
-    AxisOperation, Estimate, EstimateKind, Evaluation, Expr, Input, Key, Limit, OfGroup, OfSignals,
-    Quantity, Records, Report, Scope, Signal, SignalKind, Taking, Valued,
+    Estimate, EstimateKind, Evaluation, Expr, Input, Key, Kind, Limit, OfGroup, OfSignals,
+    Quantity, Records, Report, Scope, Taking, Valued,
 };
 use crate::units::Unit;
 
@@ -51,35 +51,13 @@ pub(super) fn input(input: &Input, see: &mut dyn See) {
     input.signal.iter().chain(&input.over).for_each(|part| signal(part, see));
 }
 
-pub(super) fn signal(of: &Signal, see: &mut dyn See) {
-    match &of.kind {
-        SignalKind::Column { column, channel, unit } => {
-            see.channel(column, channel, unit, of.track)
+pub(super) fn signal(of: &Expr, see: &mut dyn See) {
+    of.visit(&mut |part| {
+        if let Kind::Channel { column, channel, unit } = &part.kind {
+            see.channel(column, channel, unit, part.track());
         }
-        SignalKind::Scalar(expr) => see.expr(expr),
-        SignalKind::Binary(_, left, right) => {
-            [left, right].into_iter().for_each(|part| signal(part, see))
-        }
-        SignalKind::Negative(inner)
-        | SignalKind::Power(inner, _)
-        | SignalKind::Filtered(inner, _)
-        | SignalKind::Level(_, inner) => signal(inner, see),
-        SignalKind::Call(_, parts) => parts.iter().for_each(|part| signal(part, see)),
-        SignalKind::OverAxis(operation, inner) => {
-            if let AxisOperation::Shifted(by) = operation {
-                see.expr(by);
-            }
-            signal(inner, see);
-        }
-        SignalKind::Side(_) => {}
-        SignalKind::Select(cases, otherwise) => {
-            for (condition, part) in cases {
-                see.expr(condition);
-                signal(part, see);
-            }
-            otherwise.iter().for_each(|part| signal(part, see));
-        }
-    }
+    });
+    see.expr(of);
 }
 
 fn limit(limit: &Limit, see: &mut dyn See) {

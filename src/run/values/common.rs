@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::catalog::Reducer;
 use crate::check::evaluate::number;
-use crate::check::plan::{self, AxisOperation, Side, SignalKind};
+use crate::check::plan::{AxisOperation, Expr, Kind, Side};
 use crate::metrics::percentile::Method;
 use crate::metrics::resample::{self, Located};
 use crate::run::record::{Along, Samples, Signal, apply, arithmetic, each};
@@ -212,35 +212,34 @@ impl Both<'_> {
         &self,
         reducer: Reducer,
         method: Method,
-        of: &plan::Signal,
+        of: &Expr,
     ) -> Result<(f64, usize), String> {
         let common = Common::of(self)?;
         let samples = common.filled(self.signal(of, &common, method)?);
         Ok((number_of(reducer, &samples, method)?, samples.values.len()))
     }
 
-    fn signal(&self, of: &plan::Signal, common: &Common, method: Method) -> Result<Signal, String> {
-        let inner = |signal: &plan::Signal| self.signal(signal, common, method);
+    fn signal(&self, of: &Expr, common: &Common, method: Method) -> Result<Signal, String> {
+        let inner = |signal: &Expr| self.signal(signal, common, method);
         match &of.kind {
-            SignalKind::Side(Side::Simulated) => {
+            Kind::Side(Side::Simulated) => {
                 Ok(Signal::Samples(common.measured.with(common.simulated.clone())))
             }
-            SignalKind::Side(Side::Measured) => Ok(Signal::Samples(common.measured.clone())),
-            SignalKind::Scalar(expr) => Ok(Signal::Constant(number(expr, self.known)?)),
-            SignalKind::Binary(operator, left, right) => {
+            Kind::Side(Side::Measured) => Ok(Signal::Samples(common.measured.clone())),
+            Kind::Binary(operator, left, right) => {
                 arithmetic(*operator, &inner(left)?, &inner(right)?)
             }
-            SignalKind::Negative(signal) => each(&inner(signal)?, |value| -value),
-            SignalKind::Power(signal, exponent) => {
+            Kind::Negative(signal) => each(&inner(signal)?, |value| -value),
+            Kind::Power(signal, exponent) => {
                 each(&inner(signal)?, |value| value.powi(i32::from(*exponent)))
             }
-            SignalKind::Call(function, arguments) => {
+            Kind::Call(function, arguments) => {
                 let arguments = arguments.iter().map(inner).collect::<Result<Vec<_>, _>>()?;
                 apply(&arguments.iter().collect::<Vec<_>>(), function.run)
             }
-            SignalKind::OverAxis(AxisOperation::Shifted(distance), signal) => {
+            Kind::OverAxis(AxisOperation::Shifted(distance), signal) => {
                 let (of_record, moved) = match signal.kind {
-                    SignalKind::Side(Side::Simulated) => (self.simulated, self.shift),
+                    Kind::Side(Side::Simulated) => (self.simulated, self.shift),
                     _ => (self.measured, 0.0),
                 };
                 let distance = number(distance, self.known)?;
@@ -255,7 +254,7 @@ impl Both<'_> {
                         })?;
                 Ok(Signal::Samples(common.measured.with(moved)))
             }
-            SignalKind::OverAxis(operation, signal) => match inner(signal)? {
+            Kind::OverAxis(operation, signal) => match inner(signal)? {
                 Signal::Samples(samples) => {
                     let axis = &samples.along.axis;
                     let extent =
@@ -266,13 +265,14 @@ impl Both<'_> {
                     Err("a constant number has no samples along the axis".into())
                 }
             },
-            SignalKind::Level(reducer, signal) => {
+            Kind::Level(reducer, signal) => {
                 Ok(Signal::Constant(number_of(*reducer, &common.filled(inner(signal)?), method)?))
             }
             // The checker does not allow these here.
-            SignalKind::Column { .. } | SignalKind::Filtered(..) | SignalKind::Select(..) => {
+            Kind::Channel { .. } | Kind::Filtered(..) | Kind::Cases(..) => {
                 Err("this signal has other samples".into())
             }
+            _ => Ok(Signal::Constant(number(of, self.known)?)),
         }
     }
 }

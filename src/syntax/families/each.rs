@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::{Places, place_called};
-use crate::problem::{Problem, Problems, nearest};
+use crate::problem::{Problems, error, nearest};
 use crate::source::Spanned;
 use crate::syntax::document::Text;
 use crate::syntax::keys::EACH;
@@ -34,10 +34,7 @@ pub fn read(text: &Text, places: &Places, problems: &mut Problems) -> Option<Vec
         heads.push(head);
     }
     if heads.first().is_none_or(|head| head.at != first(&text.text)) {
-        let problem =
-            Problem::error("syntax", format!("`{EACH}` needs a variable, `in` and members"))
-                .at(&text.span);
-        problems.push(problem.help(format!(
+        problems.push(error("syntax", format!("`{EACH}` needs a variable, `in` and members"), &text.span).help(format!(
             "write `{EACH}  part in magnitude, phase`, and `{{part}}` where a member is inserted"
         )));
         return None;
@@ -133,19 +130,17 @@ fn group(
     if let [only] = items.as_slice()
         && only.is_empty()
     {
-        let problem =
-            Problem::error("no-members", format!("`{}` has no members", variables[0].value))
-                .at(&at);
-        problems.push(problem.help("write members after `in`, separated by commas, or the name of a place for all its members"));
+        problems.push(error("no-members", format!("`{}` has no members", variables[0].value), &at).help("write members after `in`, separated by commas, or the name of a place for all its members"));
         return None;
     }
     let mut rows = Vec::new();
     for item in &items {
         if item.is_empty() {
             let place = text.place(item.start.saturating_sub(1)..item.start);
-            let problem =
-                Problem::error("no-members", "a member is missing at this comma").at(&place);
-            problems.push(problem.help("remove the comma or write the member"));
+            problems.push(
+                error("no-members", "a member is missing at this comma", &place)
+                    .help("remove the comma or write the member"),
+            );
             return None;
         }
         rows.push(match variables.len() {
@@ -210,10 +205,13 @@ fn row(
         } else {
             format!("are {} words", words.len())
         };
-        let says = format!("{count} variables belong together, but here {here}");
-        let problem = Problem::error("member-count", says).at(&text.place(item));
         problems.push(
-            problem.help("write words that belong together in parentheses: `(Y, kN), (az, m/s^2)`"),
+            error(
+                "member-count",
+                format!("{count} variables belong together, but here {here}"),
+                &text.place(item),
+            )
+            .help("write words that belong together in parentheses: `(Y, kN), (az, m/s^2)`"),
         );
         return None;
     }
@@ -228,18 +226,22 @@ fn word(text: &Text, range: Range<usize>, alone: bool, problems: &mut Problems) 
     if let Some(inside) = written.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')) {
         let value = unescaped(inside);
         if value.trim().is_empty() {
-            let problem = Problem::error("no-members", "the quotes are empty").at(&place);
-            problems.push(problem.help("write the member inside the quotes"));
+            problems.push(
+                error("no-members", "the quotes are empty", &place)
+                    .help("write the member inside the quotes"),
+            );
             return None;
         }
         return Some(Arc::new(Spanned::new(value, place)));
     }
     if let Some(at) = joined(written).filter(|_| alone) {
-        let problem = Problem::error("syntax", "`and` must be followed by a variable and `in`")
-            .at(&text.place(range.start + at..range.start + at + 3));
         problems.push(
-            problem
-                .help("separate members by commas; write a member that contains `and` in quotes"),
+            error(
+                "syntax",
+                "`and` must be followed by a variable and `in`",
+                &text.place(range.start + at..range.start + at + 3),
+            )
+            .help("separate members by commas; write a member that contains `and` in quotes"),
         );
         return None;
     }
@@ -280,12 +282,12 @@ fn of_place(word: &Word, places: &Places, problems: &mut Problems) -> Option<Vec
     }
     // A word similar to the name of a place is probably a misspelling of it.
     if let Some(near) = nearest(&name, known()) {
-        let problem =
-            Problem::error("unknown-place", format!("no place is called `{}`", word.value))
-                .at(&word.span);
-        problems.push(problem.help(format!(
-            "did you mean `{near}`? Write a single member that is not a place in quotes"
-        )));
+        problems.push(
+            error("unknown-place", format!("no place is called `{}`", word.value), &word.span)
+                .help(format!(
+                    "did you mean `{near}`? Write a single member that is not a place in quotes"
+                )),
+        );
         return None;
     }
     Some(vec![vec![Arc::clone(word)]])

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::each::Word;
-use crate::problem::{Problem, Problems, nearest};
+use crate::problem::{Problem, Problems, error, nearest};
 use crate::source::{Filled, Member, Piece, Span, Spanned};
 use crate::syntax::document::Text;
 
@@ -145,14 +145,12 @@ fn in_name(word: &str) -> String {
 
 fn stands_for_nothing(inside: Option<&str>, variables: &[Spanned<String>], at: &Span) -> Problem {
     let Some(inside) = inside else {
-        return Problem::error("unknown-variable", "this brace has no partner")
-            .at(at)
+        return error("unknown-variable", "this brace has no partner", at)
             .help("write the name of a variable in braces: `{part}`");
     };
     let names = || variables.iter().map(|variable| variable.value.as_str());
     let word = inside.trim();
-    let problem =
-        Problem::error("unknown-variable", format!("`{{{inside}}}` is not a variable")).at(at);
+    let problem = error("unknown-variable", format!("`{{{inside}}}` is not a variable"), at);
     match names().find(|name| *name == word).or_else(|| nearest(word, names())) {
         Some(near) => problem.help(format!("did you mean `{{{near}}}`?")),
         None => problem.help(format!(

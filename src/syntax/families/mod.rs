@@ -16,7 +16,7 @@ use super::from_pest;
 use super::keys::{self, EACH, Kind, Sort};
 use super::layout::Quotes;
 use super::lines;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, error};
 use crate::source::{Filled, Member, Span, Spanned};
 use each::{Group, Word};
 use fill::{Template, Use};
@@ -135,9 +135,11 @@ impl Writer<'_> {
             return self.family(kind, block, &family.each, Some(&left));
         }
         self.sound = false;
-        let says =
-            format!("`{name}` has braces like the name of a family, but the block has no `{EACH}`");
-        let problem = Problem::error("unknown-variable", says).at(block.span());
+        let problem = error(
+            "unknown-variable",
+            format!("`{name}` has braces like the name of a family, but the block has no `{EACH}`"),
+            block.span(),
+        );
         let families: Vec<&str> = self
             .known
             .iter()
@@ -173,11 +175,16 @@ impl Writer<'_> {
             });
             let Some((at, _)) = brace else { continue };
             let end = text[at..].find('}').map_or(at + 1, |end| at + end + 1);
-            let says = format!("`{}` is not a variable: the block has no `{EACH}`", &text[at..end]);
-            let problem = Problem::error("unknown-variable", says).at(&field.value.place(at..end));
-            self.problems.push(problem.help(format!(
-                "add a line `{EACH}  variable in one, another`, and `{{variable}}` to the name"
-            )));
+            self.problems.push(
+                error(
+                    "unknown-variable",
+                    format!("`{}` is not a variable: the block has no `{EACH}`", &text[at..end]),
+                    &field.value.place(at..end),
+                )
+                .help(format!(
+                    "add a line `{EACH}  variable in one, another`, and `{{variable}}` to the name"
+                )),
+            );
             self.sound = false;
         }
     }
@@ -188,10 +195,7 @@ impl Writer<'_> {
         if let Some((first, other)) = self.seen.get(&key)
             && (of_family || *other)
         {
-            let says = format!("there are two blocks `{} {}`", key.0, key.1);
-            let problem =
-                Problem::error("duplicate-name", says).at(block.span()).also(first, "the first");
-            self.problems.push(problem.help(
+            self.problems.push(error("duplicate-name", format!("there are two blocks `{} {}`", key.0, key.1), block.span()).also(first, "the first").help(
                 "write what differs between members with a variable, or override it in a variant",
             ));
             return;
@@ -216,12 +220,17 @@ impl Writer<'_> {
             for (_, variable) in
                 variables.iter().enumerate().filter(|(index, _)| !parts.uses(*index))
             {
-                let says = format!("the variable `{}` is not used", variable.value);
-                let problem = Problem::error("unused-variable", says).at(&variable.span);
-                self.problems.push(problem.help(format!(
-                    "write `{{{}}}` where its members are inserted, or remove the variable",
-                    variable.value
-                )));
+                self.problems.push(
+                    error(
+                        "unused-variable",
+                        format!("the variable `{}` is not used", variable.value),
+                        &variable.span,
+                    )
+                    .help(format!(
+                        "write `{{{}}}` where its members are inserted, or remove the variable",
+                        variable.value
+                    )),
+                );
             }
         }
         let mut names: IndexMap<String, Vec<Word>> = IndexMap::new();
@@ -231,8 +240,7 @@ impl Writer<'_> {
                 continue;
             }
             if let Some(first) = names.get(&name) {
-                let problem = same_name(block, &name, first, &words, &variables, &parts.name);
-                self.problems.push(problem);
+                self.problems.push(same_name(block, &name, first, &words, &variables, &parts.name));
                 break;
             }
             self.count += 1;
@@ -249,8 +257,7 @@ impl Writer<'_> {
                     )
                 };
                 self.problems.push(
-                    Problem::error("too-large", says)
-                        .at(block.span())
+                    error("too-large", says, block.span())
                         .help("use fewer members or shorter texts"),
                 );
                 self.sound = false;
@@ -262,20 +269,25 @@ impl Writer<'_> {
             if !lines::is_name(&name)
                 && let Some(text) = &filled.name
             {
-                let problem =
-                    Problem::error("bad-name", format!("`{name}` cannot be a name")).at(&text.span);
-                self.problems.push(problem.help("use letters a to z, digits, `_`, `-` and `.`"));
+                self.problems.push(
+                    error("bad-name", format!("`{name}` cannot be a name"), &text.span)
+                        .help("use letters a to z, digits, `_`, `-` and `.`"),
+                );
             }
             self.add(filled, true);
             names.insert(name, words);
         }
         if names.is_empty() {
-            let says =
-                format!("no member of the family `{}` of the parent is left", block.name_text());
             self.problems.push(
-                Problem::error("no-members", says)
-                    .at(block.span())
-                    .help(format!("give it members with `{EACH}`")),
+                error(
+                    "no-members",
+                    format!(
+                        "no member of the family `{}` of the parent is left",
+                        block.name_text()
+                    ),
+                    block.span(),
+                )
+                .help(format!("give it members with `{EACH}`")),
             );
         }
         let members: Vec<String> = names.into_keys().collect();
@@ -314,21 +326,23 @@ impl Writer<'_> {
         for variable in groups.iter().flat_map(|group| &group.variables) {
             let name = &variable.value;
             if let Some(first) = seen.iter().find(|known| known.value == *name) {
-                let says = format!("`{name}` is declared twice as a variable of this family");
                 self.problems.push(
-                    Problem::error("duplicate-name", says)
-                        .at(&variable.span)
-                        .also(&first.span, "the first"),
+                    error(
+                        "duplicate-name",
+                        format!("`{name}` is declared twice as a variable of this family"),
+                        &variable.span,
+                    )
+                    .also(&first.span, "the first"),
                 );
                 sound = false;
             } else if self.places.contains_key(name) {
-                let problem = Problem::error(
-                    "name-clash",
-                    format!("`{name}` is both a place and a variable"),
-                )
-                .at(&variable.span);
                 self.problems.push(
-                    problem.help(format!("give the variable another name: `{EACH}  x in {name}`")),
+                    error(
+                        "name-clash",
+                        format!("`{name}` is both a place and a variable"),
+                        &variable.span,
+                    )
+                    .help(format!("give the variable another name: `{EACH}  x in {name}`")),
                 );
                 sound = false;
             }
@@ -342,9 +356,7 @@ impl Writer<'_> {
                 block.name_text()
             );
             let at = each.first().map_or(block.span(), |field| &field.value.span);
-            self.problems.push(
-                Problem::error("too-large", says).at(at).help("split it or use fewer members"),
-            );
+            self.problems.push(error("too-large", says, at).help("split it or use fewer members"));
             sound = false;
         }
         sound.then_some(groups)
@@ -457,15 +469,18 @@ fn same_name(
         .enumerate()
         .find(|(index, _)| first[*index].span != second[*index].span && !differs.contains(index));
     if let Some((index, _)) = repeated.filter(|_| differs.is_empty()) {
-        let problem = Problem::error(
+        return error(
             "duplicate-name",
             format!("the member `{}` is given twice", second[index].value),
-        );
-        return problem.at(&second[index].span).also(&first[index].span, "the first");
+            &second[index].span,
+        )
+        .also(&first[index].span, "the first");
     }
-    let problem =
-        Problem::error("duplicate-name", format!("two members of the family are called `{name}`"))
-            .at(block.span());
+    let problem = error(
+        "duplicate-name",
+        format!("two members of the family are called `{name}`"),
+        block.span(),
+    );
     match differs.iter().find(|index| !written.uses(**index)) {
         Some(index) => problem.help(format!("write `{{{}}}` in the name", variables[*index].value)),
         None => problem.help(

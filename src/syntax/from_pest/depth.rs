@@ -1,6 +1,6 @@
 //! Refuses texts that could overflow the stack of the parser, before they are parsed.
 
-use crate::problem::Problem;
+use crate::problem::{Problem, error};
 use crate::syntax::document::Text;
 
 /// Largest nesting of parentheses, magnitudes, `not`, signs and `of`. Rules in use are far below
@@ -138,8 +138,7 @@ pub(super) fn too_deep(text: &Text) -> Option<Problem> {
     };
     let end = text.text.char_indices().map(|(at, _)| at).nth(40).unwrap_or(text.text.len());
     Some(
-        Problem::error("too-deep", says)
-            .at(&text.place(0..end))
+        error("too-deep", says, &text.place(0..end))
             .help("give names to parts of it with `define`"),
     )
 }

@@ -4,19 +4,18 @@ use std::ops::Range;
 
 use pest::error::{Error, ErrorVariant, InputLocation};
 
-use super::Rule;
-use crate::problem::Problem;
+use super::{Rule, is_keyword};
+use crate::problem::{Problem, error};
 use crate::syntax::document::Text;
 use crate::units::Unit;
 
 pub(super) fn twice(what: &str, text: &Text, range: Range<usize>) -> Problem {
-    Problem::error("syntax", format!("a limit can have only one `{what}`"))
-        .at(&text.place(range))
+    error("syntax", format!("a limit can have only one `{what}`"), &text.place(range))
         .help("write two limits, or join the conditions with `and`")
 }
 
-pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
-    let at = match error.location {
+pub(super) fn syntax(rule: Rule, failed: &Error<Rule>, text: &Text) -> Problem {
+    let at = match failed.location {
         InputLocation::Pos(at) | InputLocation::Span((at, _)) => at,
     };
     let (before, rest) = text.text.split_at(at.min(text.text.len()));
@@ -39,7 +38,7 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
         format!("`{found}` is not allowed here in {}", in_words(rule))
     };
     let mut expected: Vec<&str> = Vec::new();
-    if let ErrorVariant::ParsingError { positives, .. } = &error.variant {
+    if let ErrorVariant::ParsingError { positives, .. } = &failed.variant {
         for positive in positives {
             let word = in_words(*positive);
             if !word.is_empty() && !expected.contains(&word) {
@@ -64,7 +63,7 @@ pub(super) fn syntax(rule: Rule, error: &Error<Rule>, text: &Text) -> Problem {
     let end = text.text.trim_end().len();
     let last = text.text[..end].rfind(char::is_whitespace).map_or(0, |at| at + 1);
     let range = if found.is_empty() { last..end } else { at..at + found.len() };
-    let problem = Problem::error("syntax", says).at(&text.place(range));
+    let problem = error("syntax", says, &text.place(range));
     if odd_blank.is_some() {
         return problem.help("write an ordinary space");
     }
@@ -106,50 +105,33 @@ fn decimal_comma(at: usize, text: &Text) -> Option<Problem> {
     let start = (0..comma).rev().take_while(|&at| digit(at)).last()?;
     let end = (comma + 1..bytes.len()).take_while(|&at| digit(at)).last()? + 1;
     let number = &text.text[start..end];
-    let problem = Problem::error("decimal-comma", format!("`{number}` has a decimal comma"))
-        .at(&text.place(start..end));
-    Some(problem.help(format!("write numbers with a point: `{}`", number.replace(',', "."))))
+    Some(
+        error("decimal-comma", format!("`{number}` has a decimal comma"), &text.place(start..end))
+            .help(format!("write numbers with a point: `{}`", number.replace(',', "."))),
+    )
 }
 
 /// An unknown unit, such as `4 kn`: a word after a number that is not a word of the language.
 fn unknown_unit(before: &str, found: &str, at: usize, text: &Text) -> Option<Problem> {
-    const FOLLOW: [&str; 21] = [
-        "and",
-        "or",
-        "not",
-        "is",
-        "when",
-        "otherwise",
-        "of",
-        "at",
-        "through",
-        "doubled",
-        "times",
-        "for",
-        "only",
-        "then",
-        "to",
-        "every",
-        "quantities",
-        "where",
-        "each",
-        "hold",
-        "holds",
-    ];
+    const FOLLOW: [&str; 7] = ["to", "every", "quantities", "where", "each", "hold", "holds"];
     let last = before
         .trim_end()
         .rsplit(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.')))
         .next()
         .unwrap_or("");
     if last.parse::<f64>().is_err()
+        || is_keyword(found)
         || FOLLOW.contains(&found)
         || !found.starts_with(char::is_alphabetic)
     {
         return None;
     }
     let unknown = Unit::parse(found).err()?;
-    let problem = Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word))
-        .at(&text.place(at..at + found.len()));
+    let problem = error(
+        "unknown-unit",
+        format!("`{}` is not a known unit", unknown.word),
+        &text.place(at..at + found.len()),
+    );
     Some(match unknown.near.filter(|_| !is_name(found)) {
         Some(near) => problem.meant(near),
         None => {
@@ -223,39 +205,39 @@ fn one_of(words: &[&str]) -> String {
 }
 
 /// Words that hold a phrase together and have no value.
-pub(super) fn is_keyword(rule: Rule) -> bool {
+pub(super) fn joins(rule: Rule) -> bool {
+    use Rule::*;
     matches!(
         rule,
-        Rule::EOI
-            | Rule::kw_and
-            | Rule::kw_or
-            | Rule::kw_when
-            | Rule::kw_otherwise
-            | Rule::kw_at
-            | Rule::kw_through
-            | Rule::kw_doubled
-            | Rule::kw_times
-            | Rule::kw_only
-            | Rule::kw_for
-            | Rule::kw_zones
-            | Rule::kw_each
-            | Rule::kw_sections
-            | Rule::kw_where
-            | Rule::kw_to
-            | Rule::kw_in
-            | Rule::kw_every
-            | Rule::kw_near
-            | Rule::kw_within
-            | Rule::kw_over
-            | Rule::kw_confidence
-            | Rule::kw_share
-            | Rule::kw_weighted
-            | Rule::kw_by
-            | Rule::kw_holds
-            | Rule::then
-            | Rule::comma
-            | Rule::close_bar
-            | Rule::close_paren
+        EOI | kw_and
+            | kw_or
+            | kw_when
+            | kw_otherwise
+            | kw_at
+            | kw_through
+            | kw_doubled
+            | kw_times
+            | kw_only
+            | kw_for
+            | kw_zones
+            | kw_each
+            | kw_sections
+            | kw_where
+            | kw_to
+            | kw_in
+            | kw_every
+            | kw_near
+            | kw_within
+            | kw_over
+            | kw_confidence
+            | kw_share
+            | kw_weighted
+            | kw_by
+            | kw_holds
+            | then
+            | comma
+            | close_bar
+            | close_paren
     )
 }
 
@@ -263,109 +245,92 @@ const OPERATOR: &str = "an operator";
 
 /// Name of a grammar rule in messages; empty where it would not help.
 fn in_words(rule: Rule) -> &'static str {
+    use Rule::*;
     match rule {
-        Rule::expression
-        | Rule::cases
-        | Rule::either
-        | Rule::both
-        | Rule::negation
-        | Rule::comparison => "an expression",
-        Rule::sum | Rule::product | Rule::signed | Rule::raised | Rule::primary => "a value",
-        Rule::of_places => "a signal and its places",
-        Rule::pick | Rule::places => "a selection of places",
-        Rule::place_of => "a signal at a place",
-        Rule::place_word => "a place",
-        Rule::list => "a list",
-        Rule::item => "a word",
-        Rule::alias => "an alias (`outer is L when ..., R when ...`)",
-        Rule::axis => "an axis (`distance in m`)",
-        Rule::range => "a range (`a to b`)",
-        Rule::domain | Rule::coordinate => "what spans a domain (`a, b for each c`)",
-        Rule::chain => "a filter chain",
-        Rule::step | Rule::steps | Rule::part => "a step",
-        Rule::step_when | Rule::of_when | Rule::kw_when => "`when`",
-        Rule::part_item | Rule::phrase_word => "a word or a number",
-        Rule::then => "`then`",
-        Rule::limit => "a limit",
-        Rule::statistic => "a statistic such as `mean` or `std`, or an estimate in parentheses",
-        Rule::at_least => "`at least`",
-        Rule::limit_part => "`doubled when`, `times`, `only when` or `for zones`",
-        Rule::doubled | Rule::kw_doubled => "`doubled when`",
-        Rule::times | Rule::kw_times => "`times ... when`",
-        Rule::only | Rule::kw_only => "`only when`",
-        Rule::scope | Rule::each_group | Rule::zones_only | Rule::sections_only | Rule::kw_for => {
+        expression | cases | either | both | negation | comparison => "an expression",
+        sum | product | signed | raised | primary => "a value",
+        of_places => "a signal and its places",
+        pick | places => "a selection of places",
+        place_of => "a signal at a place",
+        place_word => "a place",
+        list => "a list",
+        item => "a word",
+        alias => "an alias (`outer is L when ..., R when ...`)",
+        axis => "an axis (`distance in m`)",
+        range => "a range (`a to b`)",
+        domain | coordinate => "what spans a domain (`a, b for each c`)",
+        chain => "a filter chain",
+        step | steps | part => "a step",
+        step_when | of_when | kw_when => "`when`",
+        part_item | phrase_word => "a word or a number",
+        then => "`then`",
+        limit => "a limit",
+        statistic => "a statistic such as `mean` or `std`, or an estimate in parentheses",
+        at_least => "`at least`",
+        limit_part => "`doubled when`, `times`, `only when` or `for zones`",
+        doubled | kw_doubled => "`doubled when`",
+        times | kw_times => "`times ... when`",
+        only | kw_only => "`only when`",
+        scope | each_group | zones_only | sections_only | kw_for => {
             "`for zones`, `for each zone` or `for sections where`"
         }
-        Rule::each_keys => "`each` and a key such as `zone` or `wheelset`",
-        Rule::key | Rule::key_word => "a key such as `zone` or `wheelset`",
-        Rule::fit | Rule::fit_kind => "`prediction over ... at ...`",
-        Rule::regressor => "section data, or an expression of them in parentheses",
-        Rule::fit_option | Rule::tails => "`one-sided` or `two-sided`",
-        Rule::confidence | Rule::kw_confidence => "`confidence` and a share",
-        Rule::bound_of | Rule::end => "`upper 95 % of ...`",
-        Rule::by_bootstrap => "`by bootstrap`",
-        Rule::weighted | Rule::kw_weighted => "`weighted by ...`",
-        Rule::kw_by => "`by`",
-        Rule::weight => "a weight: section data, or an expression of them in parentheses",
-        Rule::for_groups => "`for each ...`",
-        Rule::minimum => "a minimum",
-        Rule::report => "an estimate such as `mean` or `total of length`",
-        Rule::share | Rule::kw_share => "`share where ...`",
-        Rule::in_quotes => "a name in quotes",
-        Rule::over | Rule::kw_over => "`over`",
-        Rule::over_what => "a signal",
-        Rule::verdict => "the rule of a verdict",
-        Rule::every_limit => "`every limit holds`",
-        Rule::at_least_n => "`at least N quantities hold`",
-        Rule::some_verdict | Rule::all_verdicts | Rule::one_verdict | Rule::named_verdict => {
-            "`some_verdict holds`"
-        }
-        Rule::enough_verdicts => "`at least N of a, b, c hold`",
-        Rule::verdict_name => "the name of a verdict",
-        Rule::does_not_hold => "`does not hold`",
-        Rule::of_quantities | Rule::of_limits => "`quantities` or `limits`",
-        Rule::otherwise | Rule::kw_otherwise => "`otherwise`",
-        Rule::not => "`not`",
-        Rule::compare
-        | Rule::is
-        | Rule::is_not
-        | Rule::add
-        | Rule::multiply
-        | Rule::of
-        | Rule::exponent
-        | Rule::power
-        | Rule::kw_and
-        | Rule::kw_or => OPERATOR,
-        Rule::near | Rule::kw_near => "`near ... within ...`",
-        Rule::kw_within => "`within` and a tolerance",
-        Rule::a_factor_of => "`a factor of`",
-        Rule::minus => "`-`",
-        Rule::magnitude => "`|...|`",
-        Rule::parens => "`(`",
-        Rule::extreme | Rule::which => "`larger of`",
-        Rule::call => "a function",
-        Rule::reduced => "`... of signal`",
-        Rule::through | Rule::kw_through => "`through` and a filter",
-        Rule::quantity | Rule::number => "a number",
-        Rule::percentile => "a percentile such as `p99.85`",
-        Rule::name | Rule::path | Rule::label | Rule::plain => "a name",
-        Rule::unit | Rule::factor | Rule::symbol | Rule::any_unit | Rule::coordinate_unit => {
-            "a unit"
-        }
-        Rule::zone => "a zone",
-        Rule::kw_at => "`at`",
-        Rule::kw_zones => "`zones`",
-        Rule::kw_each => "`each`",
-        Rule::kw_sections => "`sections`",
-        Rule::kw_where | Rule::scope_where => "`where`",
-        Rule::kw_to => "`to`",
-        Rule::kw_in => "`in`",
-        Rule::kw_every => "`every`",
-        Rule::kw_holds => "`hold`",
-        Rule::comma => "`,`",
-        Rule::close_bar => "`|`",
-        Rule::close_paren => "`)`",
-        Rule::EOI => "the end",
-        Rule::keyword | Rule::modifier | Rule::WHITESPACE | Rule::word_char | Rule::letter => "",
+        each_keys => "`each` and a key such as `zone` or `wheelset`",
+        key | key_word => "a key such as `zone` or `wheelset`",
+        fit | fit_kind => "`prediction over ... at ...`",
+        regressor => "section data, or an expression of them in parentheses",
+        fit_option | tails => "`one-sided` or `two-sided`",
+        confidence | kw_confidence => "`confidence` and a share",
+        bound_of | end => "`upper 95 % of ...`",
+        by_bootstrap => "`by bootstrap`",
+        weighted | kw_weighted => "`weighted by ...`",
+        kw_by => "`by`",
+        weight => "a weight: section data, or an expression of them in parentheses",
+        for_groups => "`for each ...`",
+        minimum => "a minimum",
+        report => "an estimate such as `mean` or `total of length`",
+        share | kw_share => "`share where ...`",
+        in_quotes => "a name in quotes",
+        over | kw_over => "`over`",
+        over_what => "a signal",
+        verdict => "the rule of a verdict",
+        every_limit => "`every limit holds`",
+        at_least_n => "`at least N quantities hold`",
+        some_verdict | all_verdicts | one_verdict | named_verdict => "`some_verdict holds`",
+        enough_verdicts => "`at least N of a, b, c hold`",
+        verdict_name => "the name of a verdict",
+        does_not_hold => "`does not hold`",
+        of_quantities | of_limits => "`quantities` or `limits`",
+        otherwise | kw_otherwise => "`otherwise`",
+        not => "`not`",
+        compare | is | is_not | add | multiply | of | exponent | kw_and | kw_or => OPERATOR,
+        near | kw_near => "`near ... within ...`",
+        kw_within => "`within` and a tolerance",
+        a_factor_of => "`a factor of`",
+        minus => "`-`",
+        magnitude => "`|...|`",
+        parens => "`(`",
+        extreme | which => "`larger of`",
+        call => "a function",
+        reduced => "`... of signal`",
+        through | kw_through => "`through` and a filter",
+        quantity | number => "a number",
+        percentile => "a percentile such as `p99.85`",
+        name | path | label | plain => "a name",
+        unit | any_unit | coordinate_unit => "a unit",
+        zone => "a zone",
+        kw_at => "`at`",
+        kw_zones => "`zones`",
+        kw_each => "`each`",
+        kw_sections => "`sections`",
+        kw_where | scope_where => "`where`",
+        kw_to => "`to`",
+        kw_in => "`in`",
+        kw_every => "`every`",
+        kw_holds => "`hold`",
+        comma => "`,`",
+        close_bar => "`|`",
+        close_paren => "`)`",
+        EOI => "the end",
+        keyword | modifier | WHITESPACE | word_char | letter | any_char | mark => "",
     }
 }

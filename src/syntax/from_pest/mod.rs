@@ -4,6 +4,7 @@
 mod depth;
 mod explain;
 mod tree;
+mod units;
 
 use std::ops::Range;
 
@@ -12,8 +13,8 @@ use pest::iterators::Pair;
 
 use super::document::Text;
 use super::phrase::{
-    Alias, At, Domain, Limit, Minimum, Node, OfPlaces, OverVerdicts, Phrase, Pick, Report, Scope,
-    Step, Verdict,
+    Alias, At, Domain, Limit, Minimum, Node, Number, OfPlaces, OverVerdicts, Phrase, Pick, Report,
+    Scope, Step, Verdict,
 };
 use crate::problem::Problems;
 use tree::{cases, either, estimate, pick, step, sum};
@@ -28,11 +29,11 @@ pub fn expression(text: &Text, problems: &mut Problems) -> Option<Phrase> {
 
 pub fn of_places(text: &Text, problems: &mut Problems) -> Option<OfPlaces> {
     let mut inner = parts(parse(Rule::of_places, text, problems)?);
-    let mut found = OfPlaces { signal: named(&inner.next()?), picks: Vec::new(), when: None };
-    for pair in inner {
-        match pair.as_rule() {
-            Rule::of_when => found.when = Some(either(parts(pair).next()?)?),
-            _ => found.picks.push(pick(pair)),
+    let mut found = OfPlaces { signal: inner.next()?.named(), picks: Vec::new(), when: None };
+    for part in inner {
+        match part.rule {
+            Rule::of_when => found.when = Some(either(parts(part).next()?)?),
+            _ => found.picks.push(pick(part)),
         }
     }
     Some(found)
@@ -43,16 +44,15 @@ pub fn places(text: &Text, problems: &mut Problems) -> Option<Vec<Pick>> {
 }
 
 pub fn list(text: &Text, problems: &mut Problems) -> Option<Vec<At<String>>> {
-    Some(parts(parse(Rule::list, text, problems)?).map(|pair| named(&pair)).collect())
+    Some(parts(parse(Rule::list, text, problems)?).map(|part| part.named()).collect())
 }
 
 pub fn alias(text: &Text, problems: &mut Problems) -> Option<Alias> {
-    let mut inner =
-        parts(parse(Rule::alias, text, problems)?).filter(|pair| pair.as_rule() != Rule::is);
-    let name = named(&inner.next()?);
+    let mut inner = parts(parse(Rule::alias, text, problems)?).filter(|part| part.rule != Rule::is);
+    let name = inner.next()?.named();
     let mut cases = Vec::new();
     while let (Some(member), Some(condition)) = (inner.next(), inner.next()) {
-        cases.push((named(&member), either(condition)?));
+        cases.push((member.named(), either(condition)?));
     }
     Some(Alias { name, cases })
 }
@@ -60,7 +60,7 @@ pub fn alias(text: &Text, problems: &mut Problems) -> Option<Alias> {
 /// Name and unit of an axis such as `distance in m`.
 pub fn axis(text: &Text, problems: &mut Problems) -> Option<(At<String>, At<String>)> {
     let mut inner = parts(parse(Rule::axis, text, problems)?);
-    Some((named(&inner.next()?), named(&inner.next()?)))
+    Some((inner.next()?.named(), inner.next()?.named()))
 }
 
 pub fn range(text: &Text, problems: &mut Problems) -> Option<(Phrase, Phrase)> {
@@ -71,13 +71,13 @@ pub fn range(text: &Text, problems: &mut Problems) -> Option<(Phrase, Phrase)> {
 pub fn domain(text: &Text, problems: &mut Problems) -> Option<Domain> {
     let mut domain = Domain { over: Vec::new(), each: Vec::new() };
     for part in parts(parse(Rule::domain, text, problems)?) {
-        if part.as_rule() == Rule::each_keys {
-            domain.each = parts(part).map(|key| named(&key)).collect();
+        if part.rule == Rule::each_keys {
+            domain.each = parts(part).map(|key| key.named()).collect();
             continue;
         }
         let mut inner = parts(part);
         let of = sum(inner.next()?)?;
-        domain.over.push((of, inner.next().map(|unit| named(&unit))));
+        domain.over.push((of, inner.next().map(|unit| unit.named())));
     }
     Some(domain)
 }
@@ -93,11 +93,11 @@ pub fn step_alone(text: &Text, problems: &mut Problems) -> Option<At<Step>> {
 pub fn limit(text: &Text, problems: &mut Problems) -> Option<Limit> {
     let mut inner = parts(parse(Rule::limit, text, problems)?).peekable();
     let first = inner.next()?;
-    let statistic = named(&first);
+    let statistic = first.named();
     let statistic =
         At { node: statistic.node.split_whitespace().collect::<Vec<_>>().join(" "), ..statistic };
     let estimate = estimate(first)?;
-    let at_least = inner.next_if(|pair| pair.as_rule() == Rule::at_least).is_some();
+    let at_least = inner.next_if(|part| part.rule == Rule::at_least).is_some();
     let bound = cases(inner.next()?)?;
     let everywhere = At { node: Scope::default(), range: 0..0 };
     let mut limit = Limit {
@@ -111,12 +111,12 @@ pub fn limit(text: &Text, problems: &mut Problems) -> Option<Limit> {
     };
     for part in inner {
         let part = parts(part).next()?;
-        let range = bytes(&part);
-        let rule = part.as_rule();
+        let range = part.range.clone();
+        let rule = part.rule;
         let mut inner = parts(part);
         match rule {
             Rule::doubled => {
-                let two = At { node: Node::Number { value: 2.0, unit: None }, range };
+                let two = At { node: Node::Number(Number { value: 2.0, unit: None }), range };
                 limit.factors.push((two, either(inner.next()?)?));
             }
             Rule::times => limit.factors.push((sum(inner.next()?)?, either(inner.next()?)?)),
@@ -151,22 +151,21 @@ pub fn minimum(text: &Text, problems: &mut Problems) -> Option<Minimum> {
 pub fn report(text: &Text, problems: &mut Problems) -> Option<Report> {
     let mut inner = parts(parse(Rule::report, text, problems)?).peekable();
     let of = cases(inner.next()?)?;
-    let unit =
-        inner.next_if(|pair| pair.as_rule() == Rule::coordinate_unit).map(|unit| named(&unit));
+    let unit = inner.next_if(|part| part.rule == Rule::coordinate_unit).map(|unit| unit.named());
     Some(Report { of, unit, scope: scope_or_all(inner.next())? })
 }
 
-fn scope_or_all(pair: Option<Pair<'_, Rule>>) -> Option<At<Scope>> {
-    let Some(pair) = pair else { return Some(At { node: Scope::default(), range: 0..0 }) };
-    let range = bytes(&pair);
-    Some(At { node: scope(parts(pair).next()?)?, range })
+fn scope_or_all(part: Option<Part<'_>>) -> Option<At<Scope>> {
+    let Some(part) = part else { return Some(At { node: Scope::default(), range: 0..0 }) };
+    let range = part.range.clone();
+    Some(At { node: scope(parts(part).next()?)?, range })
 }
 
-fn scope(pair: Pair<'_, Rule>) -> Option<Scope> {
+fn scope(part: Part<'_>) -> Option<Scope> {
     let mut scope = Scope::default();
-    for part in parts(pair) {
-        match part.as_rule() {
-            Rule::zone => scope.zones.push(named(&part)),
+    for part in parts(part) {
+        match part.rule {
+            Rule::zone => scope.zones.push(part.named()),
             Rule::each_keys => scope.each = keys(part),
             Rule::scope_where => scope.condition = Some(either(parts(part).next()?)?),
             _ => scope.condition = Some(either(part)?),
@@ -177,19 +176,19 @@ fn scope(pair: Pair<'_, Rule>) -> Option<Scope> {
 
 pub fn verdict(text: &Text, problems: &mut Problems) -> Option<Verdict> {
     let inner = parts(parse(Rule::verdict, text, problems)?).next()?;
-    match inner.as_rule() {
+    match inner.rule {
         Rule::every_limit => return Some(Verdict::EveryLimit),
         Rule::some_verdict => return Some(Verdict::Over(over_verdicts(inner)?)),
         _ => {}
     }
-    let mut inner = parts(inner).filter(|pair| pair.as_rule() != Rule::at_least);
+    let mut inner = parts(inner).filter(|part| part.rule != Rule::at_least);
     let count = sum(inner.next()?)?;
-    Some(Verdict::AtLeast { count, of_limits: inner.next()?.as_rule() == Rule::of_limits })
+    Some(Verdict::AtLeast { count, of_limits: inner.next()?.rule == Rule::of_limits })
 }
 
-fn over_verdicts(pair: Pair<'_, Rule>) -> Option<OverVerdicts> {
-    let rule = pair.as_rule();
-    let mut inner = parts(pair).peekable();
+fn over_verdicts(part: Part<'_>) -> Option<OverVerdicts> {
+    let rule = part.rule;
+    let mut inner = parts(part).peekable();
     match rule {
         Rule::some_verdict | Rule::all_verdicts => {
             let mut all = inner.map(over_verdicts).collect::<Option<Vec<_>>>()?;
@@ -200,46 +199,57 @@ fn over_verdicts(pair: Pair<'_, Rule>) -> Option<OverVerdicts> {
             }
         }
         Rule::one_verdict => {
-            let not = inner.next_if(|pair| pair.as_rule() == Rule::not).is_some();
+            let not = inner.next_if(|part| part.rule == Rule::not).is_some();
             let over = over_verdicts(inner.next()?)?;
             Some(if not { OverVerdicts::Not(Box::new(over)) } else { over })
         }
         Rule::enough_verdicts => {
-            let mut inner =
-                inner.filter(|pair| !matches!(pair.as_rule(), Rule::at_least | Rule::of));
+            let mut inner = inner.filter(|part| !matches!(part.rule, Rule::at_least | Rule::of));
             let count = inner.next()?;
-            let range = bytes(&count);
-            let node = match count.as_rule() {
+            let range = count.range.clone();
+            let node = match count.rule {
                 Rule::number => {
-                    Node::Number { value: count.as_str().trim().parse().ok()?, unit: None }
+                    Node::Number(Number { value: count.text.parse().ok()?, unit: None })
                 }
-                _ => Node::Path(count.as_str().trim().to_string()),
+                _ => Node::Path(count.text.to_string()),
             };
             Some(OverVerdicts::AtLeast {
                 count: At { node, range },
-                of: inner.map(|name| named(&name)).collect(),
+                of: inner.map(|name| name.named()).collect(),
             })
         }
         _ => {
-            let name = named(&inner.next()?);
+            let name = inner.next()?.named();
             let Some(next) = inner.next() else { return Some(OverVerdicts::Holds(name)) };
             let over = match inner.next() {
-                Some(other) => OverVerdicts::Same(name, named(&other)),
+                Some(other) => OverVerdicts::Same(name, other.named()),
                 None => OverVerdicts::Holds(name),
             };
-            Some(if next.as_rule() == Rule::is { over } else { OverVerdicts::Not(Box::new(over)) })
+            Some(if next.rule == Rule::is { over } else { OverVerdicts::Not(Box::new(over)) })
         }
     }
 }
 
+/// Whether a word is one of the language, so that no part of a protocol can be called by it.
+pub fn is_word_of_language(word: &str) -> bool {
+    const VALUES: [&str; 8] =
+        ["to", "every", "each", "all", "true", "false", "simulated", "measured"];
+    is_keyword(word) || VALUES.contains(&word)
+}
+
+/// Whether a word holds phrases together, and so is never a name in them.
+fn is_keyword(word: &str) -> bool {
+    Grammar::parse(Rule::keyword, word).is_ok()
+}
+
 /// Parses a field with one rule. A syntax error becomes a problem at its word.
-fn parse<'t>(rule: Rule, text: &'t Text, problems: &mut Problems) -> Option<Pair<'t, Rule>> {
+fn parse<'t>(rule: Rule, text: &'t Text, problems: &mut Problems) -> Option<Part<'t>> {
     if let Some(problem) = depth::too_deep(text) {
         problems.push(problem);
         return None;
     }
-    match Grammar::parse(rule, &text.text) {
-        Ok(mut pairs) => pairs.next(),
+    match Grammar::parse(rule, &units::marked(&text.text)) {
+        Ok(mut pairs) => Some(Part::new(pairs.next()?, &text.text)),
         Err(error) => {
             problems.push(explain::syntax(rule, &error, text));
             None
@@ -249,26 +259,42 @@ fn parse<'t>(rule: Rule, text: &'t Text, problems: &mut Problems) -> Option<Pair
 
 /// `each zone and running gear`: a name of several words has `_` between them, as where it is
 /// declared.
-fn keys(pair: Pair<'_, Rule>) -> Vec<At<String>> {
-    let key = |pair: Pair<'_, Rule>| {
-        let At { node, range } = named(&pair);
+fn keys(part: Part<'_>) -> Vec<At<String>> {
+    let key = |part: Part<'_>| {
+        let At { node, range } = part.named();
         At { node: node.split_whitespace().collect::<Vec<_>>().join("_"), range }
     };
-    parts(pair).map(key).collect()
+    parts(part).map(key).collect()
 }
 
-/// The inner pairs, without keywords.
-fn parts(pair: Pair<'_, Rule>) -> impl Iterator<Item = Pair<'_, Rule>> {
-    pair.into_inner().filter(|pair| !explain::is_keyword(pair.as_rule()))
+/// A part of a parsed phrase with its bytes in the field's text, without the keywords in it.
+struct Part<'t> {
+    rule: Rule,
+    text: &'t str,
+    range: Range<usize>,
+    inner: Vec<Part<'t>>,
 }
 
-fn bytes(pair: &Pair<'_, Rule>) -> Range<usize> {
-    let start = pair.as_span().start();
-    start..start + pair.as_str().trim_end().len()
+impl<'t> Part<'t> {
+    fn new(pair: Pair<'_, Rule>, text: &'t str) -> Self {
+        let (rule, start) = (pair.as_rule(), pair.as_span().start());
+        let written = text[start..pair.as_span().end()].trim_end();
+        let inner = pair.into_inner().filter(|pair| !explain::joins(pair.as_rule()));
+        Part {
+            rule,
+            text: written,
+            range: start..start + written.len(),
+            inner: inner.map(|pair| Part::new(pair, text)).collect(),
+        }
+    }
+
+    fn named(&self) -> At<String> {
+        At { node: self.text.to_string(), range: self.range.clone() }
+    }
 }
 
-fn named(pair: &Pair<'_, Rule>) -> At<String> {
-    At { node: pair.as_str().trim().to_string(), range: bytes(pair) }
+fn parts(part: Part<'_>) -> std::vec::IntoIter<Part<'_>> {
+    part.inner.into_iter()
 }
 
 #[cfg(test)]
@@ -302,17 +328,52 @@ mod tests {
         }
     }
 
-    /// The numbers only, which are in SI.
-    fn without_units(meaning: &str) -> String {
-        meaning
-            .split('{')
-            .enumerate()
-            .map(
-                |(at, part)| {
-                    if at == 0 { part } else { part.split_once('}').map_or(part, |(_, rest)| rest) }
-                },
-            )
-            .collect()
+    /// A phrase with the parts of each operator in parentheses; numbers in SI.
+    fn shown(phrase: &Phrase) -> String {
+        let all = |phrases: &[Phrase]| phrases.iter().map(shown).collect::<Vec<_>>().join(" ");
+        match &phrase.node {
+            Node::Number(Number { value, .. }) => {
+                format!("{value:.11e}").parse::<f64>().expect("a number").to_string()
+            }
+            Node::Percentile(percent) => format!("p{percent}"),
+            Node::Path(path) => path.clone(),
+            Node::Binary(operator, left, right) => {
+                format!("({operator:?} {} {})", shown(left), shown(right))
+            }
+            Node::Negative(inner) => format!("(neg {})", shown(inner)),
+            Node::Not(inner) => format!("(not {})", shown(inner)),
+            Node::Magnitude(inner) => format!("|{}|", shown(inner)),
+            Node::Power(inner, exponent) => format!("{}^{exponent}", shown(inner)),
+            Node::Call(name, arguments) => format!("{}({})", name.node, all(arguments)),
+            Node::Reduced(reducer, signal) => format!("{} of {}", shown(reducer), shown(signal)),
+            Node::PlaceOf(signal, words) => {
+                let words: Vec<&str> = words.iter().map(|word| word.node.as_str()).collect();
+                format!("{}@{}", signal.node, words.join("."))
+            }
+            Node::Through(inner, filter) => format!("{}>{}", shown(inner), filter.node),
+            Node::Cases(arms, otherwise) => {
+                let arms: Vec<String> = arms
+                    .iter()
+                    .map(|(value, condition)| format!("{}?{}", shown(value), shown(condition)))
+                    .collect();
+                let otherwise = otherwise.as_deref().map_or(String::new(), shown);
+                format!("[{}; {otherwise}]", arms.join(", "))
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn phrases_that_mean_the_same_are_equal() {
+        let limit = |words: &str| limit(&text(words), &mut Problems::default()).expect("a limit");
+        let first = limit("std 0.40 m/s^2, doubled when soft, for zones 3, 4 and each wheelset");
+        let spelt = "std 400 mm/s², times 2 when soft, for zones 4, 3 and each wheelset";
+        assert!(first == limit(spelt));
+        assert!(first != limit(&spelt.replace("400", "401")));
+        assert!(first != limit(&spelt.replace("4, 3", "4")));
+        assert!(first.same_slot(&limit("std 9 m/s^2 for zones 3, 4 and each wheelset")));
+        let phrase = |words: &str| expression(&text(words), &mut Problems::default());
+        assert!(phrase("5 % * |mean of Y|") == phrase("0.05*| mean  of Y |"));
     }
 
     #[test]
@@ -344,7 +405,7 @@ mod tests {
             let mut problems = Problems::default();
             let phrase = expression(&text(words), &mut problems)
                 .unwrap_or_else(|| panic!("{}", problems.render(false)));
-            assert_eq!(without_units(&phrase.meaning()), want, "{words}");
+            assert_eq!(shown(&phrase), want, "{words}");
         }
     }
 
@@ -395,7 +456,11 @@ mod tests {
             let mut problems = Problems::default();
             let phrase = expression(&text(&format!("1 {}", symbol.symbol)), &mut problems)
                 .unwrap_or_else(|| panic!("{}", symbol.symbol));
-            assert!(matches!(phrase.node, Node::Number { unit: Some(_), .. }), "{}", symbol.symbol);
+            assert!(
+                matches!(phrase.node, Node::Number(Number { unit: Some(_), .. })),
+                "{}",
+                symbol.symbol
+            );
         }
     }
 

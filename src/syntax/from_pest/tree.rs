@@ -1,25 +1,23 @@
 //! From the pairs of pest to the tree of a phrase.
 
-use pest::iterators::Pair;
-
-use super::{Rule, bytes, keys, named, parts};
-use crate::syntax::phrase::{At, Fit, Item, Node, Operator, Phrase, Pick, Step};
+use super::{Part, Rule, keys, parts};
+use crate::syntax::phrase::{At, Fit, Item, Node, Number, Operator, Phrase, Pick, Step};
 use crate::units::Unit;
 
-pub(super) fn pick(pair: Pair<'_, Rule>) -> Pick {
-    let text = pair.as_str();
-    let start = pair.as_span().start();
+pub(super) fn pick(part: Part<'_>) -> Pick {
+    let text = part.text;
+    let start = part.range.start;
     let comma = text.find(',').map_or(usize::MAX, |at| start + at);
     let (words, more) =
-        parts(pair).map(|word| named(&word)).partition(|word| word.range.start < comma);
+        parts(part).map(|word| word.named()).partition(|word| word.range.start < comma);
     Pick { words, more }
 }
 
-pub(super) fn step(pair: Pair<'_, Rule>) -> Option<At<Step>> {
-    let range = bytes(&pair);
+pub(super) fn step(part: Part<'_>) -> Option<At<Step>> {
+    let range = part.range.clone();
     let mut step = Step { parts: Vec::new(), when: None };
-    for part in parts(pair) {
-        match part.as_rule() {
+    for part in parts(part) {
+        match part.rule {
             Rule::part => step.parts.push(parts(part).map(item).collect::<Option<Vec<_>>>()?),
             _ => step.when = Some(either(parts(part).next()?)?),
         }
@@ -27,36 +25,48 @@ pub(super) fn step(pair: Pair<'_, Rule>) -> Option<At<Step>> {
     Some(At { node: step, range })
 }
 
-fn item(pair: Pair<'_, Rule>) -> Option<At<Item>> {
-    let range = bytes(&pair);
-    let inner = parts(pair).next()?;
-    let node = match inner.as_rule() {
-        Rule::phrase_word => Item::Word(inner.as_str().trim().to_string()),
-        Rule::parens => Item::Value(At { range: range.clone(), node: in_parens(inner)? }),
-        _ => Item::Value(At { range: range.clone(), node: quantity(inner)? }),
+fn item(part: Part<'_>) -> Option<At<Item>> {
+    let range = part.range.clone();
+    let inner = parts(part).next()?;
+    let node = match inner.rule {
+        Rule::phrase_word => Item::Word(inner.text.to_string()),
+        _ => Item::Value(value(inner)?),
     };
     Some(At { node, range })
 }
 
-fn quantity(pair: Pair<'_, Rule>) -> Option<Node> {
-    let mut inner = parts(pair);
-    let number: f64 = inner.next()?.as_str().parse().ok()?;
-    let unit = match inner.next() {
-        Some(text) => Some(Unit::parse(text.as_str()).ok()?),
-        None => None,
-    };
-    Some(Node::Number { value: unit.as_ref().map_or(number, |unit| unit.to_si(number)), unit })
+fn number(part: Part<'_>) -> Option<Number> {
+    let mut inner = parts(part);
+    let number: f64 = inner.next()?.text.parse().ok()?;
+    let Some(unit) = inner.next() else { return Some(Number { value: number, unit: None }) };
+    let unit = Unit::parse(unit.text).ok()?;
+    Some(Number { value: unit.to_si(number), unit: Some(unit) })
 }
 
-pub(super) fn cases(pair: Pair<'_, Rule>) -> Option<Phrase> {
-    let range = bytes(&pair);
-    let mut inner = parts(pair);
+/// What is read without its neighbours: parentheses, a magnitude, a number, an end of a confidence
+/// interval, a percentile or a path.
+fn value(part: Part<'_>) -> Option<Phrase> {
+    let range = part.range.clone();
+    let node = match part.rule {
+        Rule::parens => in_parens(part)?,
+        Rule::magnitude => Node::Magnitude(Box::new(sum(parts(part).next()?)?)),
+        Rule::quantity => Node::Number(number(part)?),
+        Rule::bound_of => bound_of(part)?,
+        Rule::percentile => Node::Percentile(part.text.trim_start_matches('p').parse().ok()?),
+        _ => Node::Path(part.text.to_string()),
+    };
+    Some(At { node, range })
+}
+
+pub(super) fn cases(part: Part<'_>) -> Option<Phrase> {
+    let range = part.range.clone();
+    let mut inner = parts(part);
     let first = either(inner.next()?)?;
     let Some(condition) = inner.next() else { return Some(first) };
     let mut arms = vec![(first, either(condition)?)];
     let mut otherwise = None;
     while let Some(next) = inner.next() {
-        if next.as_rule() == Rule::otherwise {
+        if next.rule == Rule::otherwise {
             otherwise = Some(Box::new(either(parts(next).next()?)?));
         } else {
             arms.push((either(next)?, either(inner.next()?)?));
@@ -67,15 +77,15 @@ pub(super) fn cases(pair: Pair<'_, Rule>) -> Option<Phrase> {
 
 /// Folds `a op b op c` from the left.
 fn fold(
-    pair: Pair<'_, Rule>,
-    one: fn(Pair<'_, Rule>) -> Option<Phrase>,
+    part: Part<'_>,
+    one: fn(Part<'_>) -> Option<Phrase>,
     operator: fn(&str) -> Operator,
 ) -> Option<Phrase> {
-    let mut inner = parts(pair);
+    let mut inner = parts(part);
     let mut left = one(inner.next()?)?;
     while let Some(next) = inner.next() {
-        let (op, right) = match next.as_rule() {
-            Rule::add | Rule::multiply => (operator(next.as_str().trim()), inner.next()?),
+        let (op, right) = match next.rule {
+            Rule::add | Rule::multiply => (operator(next.text), inner.next()?),
             _ => (operator(""), next),
         };
         let right = one(right)?;
@@ -85,40 +95,40 @@ fn fold(
     Some(left)
 }
 
-pub(super) fn either(pair: Pair<'_, Rule>) -> Option<Phrase> {
-    fold(pair, both, |_| Operator::Or)
+pub(super) fn either(part: Part<'_>) -> Option<Phrase> {
+    fold(part, both, |_| Operator::Or)
 }
 
-fn both(pair: Pair<'_, Rule>) -> Option<Phrase> {
-    fold(pair, negation, |_| Operator::And)
+fn both(part: Part<'_>) -> Option<Phrase> {
+    fold(part, negation, |_| Operator::And)
 }
 
-fn negation(pair: Pair<'_, Rule>) -> Option<Phrase> {
-    let range = bytes(&pair);
-    let mut inner = parts(pair);
+fn negation(part: Part<'_>) -> Option<Phrase> {
+    let range = part.range.clone();
+    let mut inner = parts(part);
     let first = inner.next()?;
-    if first.as_rule() == Rule::not {
+    if first.rule == Rule::not {
         return Some(At { node: Node::Not(Box::new(negation(inner.next()?)?)), range });
     }
     comparison(first)
 }
 
 /// `a <= b`, and `a <= b <= c` as `a <= b and b <= c`.
-fn comparison(pair: Pair<'_, Rule>) -> Option<Phrase> {
-    let mut inner = parts(pair).peekable();
+fn comparison(part: Part<'_>) -> Option<Phrase> {
+    let mut inner = parts(part).peekable();
     let mut left = sum(inner.next()?)?;
-    if inner.peek().is_some_and(|next| next.as_rule() == Rule::near) {
+    if inner.peek().is_some_and(|next| next.rule == Rule::near) {
         return near(left, inner.next()?);
     }
     let mut all: Option<Phrase> = None;
     while let (Some(op), Some(right)) = (inner.next(), inner.next()) {
-        let right = if right.as_rule() == Rule::in_quotes {
-            let range = bytes(&right);
-            At { node: Node::Quoted(right.as_str().trim_matches('"').to_string()), range }
+        let right = if right.rule == Rule::in_quotes {
+            let range = right.range.clone();
+            At { node: Node::Quoted(right.text.trim_matches('"').to_string()), range }
         } else {
             sum(right)?
         };
-        let words: String = op.as_str().split_whitespace().collect();
+        let words: String = op.text.split_whitespace().collect();
         let operator = match words.as_str() {
             "<=" | "≤" => Operator::LessEqual,
             ">=" | "≥" => Operator::GreaterEqual,
@@ -143,35 +153,35 @@ fn comparison(pair: Pair<'_, Rule>) -> Option<Phrase> {
 }
 
 /// The condition `near b within c` after a value.
-fn near(value: Phrase, pair: Pair<'_, Rule>) -> Option<Phrase> {
-    let range = value.range.start..bytes(&pair).end;
-    let mut inner = parts(pair);
+fn near(value: Phrase, part: Part<'_>) -> Option<Phrase> {
+    let range = value.range.start..part.range.clone().end;
+    let mut inner = parts(part);
     let target = Box::new(sum(inner.next()?)?);
     let next = inner.next()?;
-    let by_factor = next.as_rule() == Rule::a_factor_of;
+    let by_factor = next.rule == Rule::a_factor_of;
     let tolerance = Box::new(sum(if by_factor { inner.next()? } else { next })?);
     Some(At { node: Node::Near { value: Box::new(value), target, tolerance, by_factor }, range })
 }
 
-pub(super) fn sum(pair: Pair<'_, Rule>) -> Option<Phrase> {
-    fold(pair, product, |text| if text == "+" { Operator::Add } else { Operator::Subtract })
+pub(super) fn sum(part: Part<'_>) -> Option<Phrase> {
+    fold(part, product, |text| if text == "+" { Operator::Add } else { Operator::Subtract })
 }
 
-fn product(pair: Pair<'_, Rule>) -> Option<Phrase> {
-    fold(pair, signed, |text| if text == "/" { Operator::Divide } else { Operator::Multiply })
+fn product(part: Part<'_>) -> Option<Phrase> {
+    fold(part, signed, |text| if text == "/" { Operator::Divide } else { Operator::Multiply })
 }
 
-fn signed(pair: Pair<'_, Rule>) -> Option<Phrase> {
-    let range = bytes(&pair);
-    let mut inner = parts(pair);
+fn signed(part: Part<'_>) -> Option<Phrase> {
+    let range = part.range.clone();
+    let mut inner = parts(part);
     let first = inner.next()?;
-    if first.as_rule() == Rule::minus {
+    if first.rule == Rule::minus {
         return Some(At { node: Node::Negative(Box::new(signed(inner.next()?)?)), range });
     }
     let mut raised = parts(first);
     let base = primary(raised.next()?)?;
     let Some(exponent) = raised.next() else { return Some(base) };
-    let exponent = match exponent.as_str().trim() {
+    let exponent = match exponent.text {
         "²" => 2,
         "³" => 3,
         text => text.trim_start_matches('^').parse().ok()?,
@@ -179,81 +189,78 @@ fn signed(pair: Pair<'_, Rule>) -> Option<Phrase> {
     Some(At { node: Node::Power(Box::new(base), exponent), range })
 }
 
-fn primary(pair: Pair<'_, Rule>) -> Option<Phrase> {
-    let whole = bytes(&pair);
-    let mut inner = parts(pair);
-    let first = inner.next()?;
-    let range = bytes(&first);
-    let node = match first.as_rule() {
-        Rule::magnitude => Node::Magnitude(Box::new(sum(parts(first).next()?)?)),
-        Rule::parens => in_parens(first)?,
-        Rule::extreme => {
-            let mut inner = parts(first).filter(|pair| pair.as_rule() != Rule::of);
-            let which = named(&inner.next()?);
-            Node::Call(which, vec![sum(inner.next()?)?, sum(inner.next()?)?])
-        }
-        Rule::quantity => quantity(first)?,
-        Rule::call => {
-            let mut inner = parts(first);
-            let name = named(&inner.next()?);
-            Node::Call(name, inner.map(either).collect::<Option<Vec<_>>>()?)
-        }
-        Rule::reduced => {
-            let mut inner = parts(first).filter(|pair| pair.as_rule() != Rule::of);
-            let reducer = inner.next()?;
-            let reducer = At { range: bytes(&reducer), node: word(&reducer)? };
-            Node::Reduced(Box::new(reducer), Box::new(signed(inner.next()?)?))
-        }
-        Rule::bound_of => bound_of(first)?,
-        Rule::share => {
-            let all: Vec<Pair<'_, Rule>> = parts(first).collect();
-            let of_sections = all.iter().any(|pair| pair.as_rule() == Rule::of);
-            let condition = all.iter().find(|pair| pair.as_rule() == Rule::either)?;
-            let share =
-                Node::Share { of_sections, condition: Box::new(either(condition.clone())?) };
-            match all.into_iter().find(|pair| pair.as_rule() == Rule::weighted) {
-                Some(by) => weighted(At { node: share, range: range.clone() }, by)?.node,
-                None => share,
-            }
-        }
-        Rule::fit => Node::Fit(Box::new(fit(first)?)),
-        Rule::place_of => {
-            let mut inner = parts(first);
-            let signal = named(&inner.next()?);
-            Node::PlaceOf(signal, inner.map(|word| named(&word)).collect())
-        }
-        _ => word(&first)?,
-    };
-    let mut phrase = At { node, range };
+fn primary(part: Part<'_>) -> Option<Phrase> {
+    let start = part.range.start;
+    let mut inner = parts(part);
+    let mut phrase = without_suffix(inner.next()?)?;
     for after in inner {
-        let range = whole.start..bytes(&after).end;
-        let rule = after.as_rule();
-        if rule == Rule::weighted {
+        if after.rule == Rule::weighted {
             phrase = weighted(phrase, after)?;
             continue;
         }
+        let (range, rule) = (start..after.range.end, after.rule);
         let what = parts(after).next()?;
         let node = match rule {
             Rule::over => Node::Over(Box::new(phrase), Box::new(primary(what)?)),
-            _ => Node::Through(Box::new(phrase), named(&what)),
+            _ => Node::Through(Box::new(phrase), what.named()),
         };
         phrase = At { node, range };
     }
     Some(phrase)
 }
 
+/// A primary without `through`, `over` and `weighted` behind it.
+fn without_suffix(part: Part<'_>) -> Option<Phrase> {
+    let range = part.range.clone();
+    let rule = part.rule;
+    let without_of = |part| parts(part).filter(|part| part.rule != Rule::of);
+    let node = match rule {
+        Rule::extreme => {
+            let mut inner = without_of(part);
+            let which = inner.next()?.named();
+            Node::Call(which, vec![sum(inner.next()?)?, sum(inner.next()?)?])
+        }
+        Rule::call => {
+            let mut inner = parts(part);
+            let name = inner.next()?.named();
+            Node::Call(name, inner.map(either).collect::<Option<Vec<_>>>()?)
+        }
+        Rule::reduced => {
+            let mut inner = without_of(part);
+            let reducer = value(inner.next()?)?;
+            Node::Reduced(Box::new(reducer), Box::new(signed(inner.next()?)?))
+        }
+        Rule::share => {
+            let (mut of_sections, mut condition, mut by) = (false, None, None);
+            for part in parts(part) {
+                match part.rule {
+                    Rule::of => of_sections = true,
+                    Rule::weighted => by = Some(part),
+                    _ => condition = Some(Box::new(either(part)?)),
+                }
+            }
+            let share = At { node: Node::Share { of_sections, condition: condition? }, range };
+            return match by {
+                Some(by) => weighted(share, by),
+                None => Some(share),
+            };
+        }
+        Rule::fit => Node::Fit(Box::new(fit(part)?)),
+        Rule::place_of => {
+            let mut inner = parts(part);
+            let signal = inner.next()?.named();
+            Node::PlaceOf(signal, inner.map(|word| word.named()).collect())
+        }
+        _ => return value(part),
+    };
+    Some(At { node, range })
+}
+
 /// The estimate of a limit: the name of a statistic or estimate, a percentile, the end of an
 /// interval, or an expression in parentheses.
-pub(super) fn estimate(pair: Pair<'_, Rule>) -> Option<Phrase> {
-    let mut inner = parts(pair);
-    let first = inner.next()?;
-    let range = bytes(&first);
-    let node = match first.as_rule() {
-        Rule::bound_of => bound_of(first)?,
-        Rule::parens => in_parens(first)?,
-        _ => word(&first)?,
-    };
-    let found = At { node, range };
+pub(super) fn estimate(part: Part<'_>) -> Option<Phrase> {
+    let mut inner = parts(part);
+    let found = value(inner.next()?)?;
     match inner.next() {
         Some(by) => weighted(found, by),
         None => Some(found),
@@ -261,8 +268,8 @@ pub(super) fn estimate(pair: Pair<'_, Rule>) -> Option<Phrase> {
 }
 
 /// What parentheses hold: an expression, or one number of it for each group.
-fn in_parens(pair: Pair<'_, Rule>) -> Option<Node> {
-    let mut inner = parts(pair);
+fn in_parens(part: Part<'_>) -> Option<Node> {
+    let mut inner = parts(part);
     let found = cases(inner.next()?)?;
     match inner.next() {
         Some(groups) => Some(Node::ForEach(Box::new(found), keys(parts(groups).next()?))),
@@ -271,30 +278,20 @@ fn in_parens(pair: Pair<'_, Rule>) -> Option<Node> {
 }
 
 /// `weighted by length` after what it is a weight of.
-fn weighted(of: Phrase, pair: Pair<'_, Rule>) -> Option<Phrase> {
-    let range = of.range.start..bytes(&pair).end.max(of.range.end);
-    let by = parts(pair).next()?;
-    let at = bytes(&by);
-    let inner = parts(by).next()?;
-    let node = match inner.as_rule() {
-        Rule::parens => in_parens(inner)?,
-        Rule::magnitude => Node::Magnitude(Box::new(sum(parts(inner).next()?)?)),
-        _ => word(&inner)?,
-    };
-    Some(At { node: Node::Weighted(Box::new(of), Box::new(At { node, range: at })), range })
+fn weighted(of: Phrase, part: Part<'_>) -> Option<Phrase> {
+    let range = of.range.start..part.range.end.max(of.range.end);
+    let by = value(parts(parts(part).next()?).next()?)?;
+    Some(At { node: Node::Weighted(Box::new(of), Box::new(by)), range })
 }
 
 /// The end of a confidence interval: `upper 95 % of std by bootstrap`.
-fn bound_of(pair: Pair<'_, Rule>) -> Option<Node> {
-    let mut inner = parts(pair).filter(|pair| pair.as_rule() != Rule::of);
-    let upper = inner.next()?.as_str().trim() == "upper";
-    let Node::Number { value: confidence, .. } = quantity(inner.next()?)? else { return None };
-    let of = inner.next()?;
-    let range = bytes(&of);
-    let node = if of.as_rule() == Rule::parens { in_parens(of)? } else { word(&of)? };
-    let (mut of, mut bootstrap) = (At { node, range }, false);
+fn bound_of(part: Part<'_>) -> Option<Node> {
+    let mut inner = parts(part).filter(|part| part.rule != Rule::of);
+    let upper = inner.next()?.text == "upper";
+    let confidence = number(inner.next()?)?.value;
+    let (mut of, mut bootstrap) = (value(inner.next()?)?, false);
     for part in inner {
-        match part.as_rule() {
+        match part.rule {
             Rule::weighted => of = weighted(of, part)?,
             _ => bootstrap = true,
         }
@@ -303,9 +300,9 @@ fn bound_of(pair: Pair<'_, Rule>) -> Option<Node> {
 }
 
 /// A regression: `prediction over radius, speed at 300 m, 80 km/h, confidence 99 %`.
-fn fit(pair: Pair<'_, Rule>) -> Option<Fit> {
-    let mut inner = parts(pair);
-    let prediction = inner.next()?.as_str().trim() == "prediction";
+fn fit(part: Part<'_>) -> Option<Fit> {
+    let mut inner = parts(part);
+    let prediction = inner.next()?.text == "prediction";
     let mut fit = Fit {
         prediction,
         over: Vec::new(),
@@ -315,41 +312,22 @@ fn fit(pair: Pair<'_, Rule>) -> Option<Fit> {
         lower: false,
     };
     for part in inner {
-        match part.as_rule() {
-            Rule::regressor => {
-                let range = bytes(&part);
-                let of = parts(part).next()?;
-                let node = match of.as_rule() {
-                    Rule::parens => in_parens(of)?,
-                    Rule::magnitude => Node::Magnitude(Box::new(sum(parts(of).next()?)?)),
-                    _ => word(&of)?,
-                };
-                fit.over.push(At { node, range });
-            }
+        match part.rule {
+            Rule::regressor => fit.over.push(value(parts(part).next()?)?),
             Rule::sum => fit.at.push(sum(part)?),
             _ => {
                 let option = parts(part).next()?;
-                match option.as_rule() {
+                match option.rule {
                     Rule::confidence => {
                         let written = parts(option).next()?;
-                        let range = bytes(&written);
-                        let Node::Number { value, .. } = quantity(written)? else { return None };
-                        fit.confidence = Some(At { node: value, range });
+                        let range = written.range.clone();
+                        fit.confidence = Some(At { node: number(written)?.value, range });
                     }
-                    Rule::tails => fit.one_sided = option.as_str().starts_with("one"),
-                    _ => fit.lower = option.as_str().trim() == "lower",
+                    Rule::tails => fit.one_sided = option.text.starts_with("one"),
+                    _ => fit.lower = option.text == "lower",
                 }
             }
         }
     }
     Some(fit)
-}
-
-/// A percentile or a path.
-fn word(pair: &Pair<'_, Rule>) -> Option<Node> {
-    let text = pair.as_str().trim();
-    if pair.as_rule() == Rule::percentile {
-        return text.trim_start_matches('p').parse().ok().map(Node::Percentile);
-    }
-    Some(Node::Path(text.to_string()))
 }

@@ -1,93 +1,104 @@
 //! The table of blocks and fields.
 
-use super::Kind;
 use super::fields::{
     CLAUSE, FOR_EACH, NOTE, SOURCE, UNCONFIRMED, WORDS, many, pattern, phrase, text,
 };
+use super::{Key, Kind};
+
+/// A kind of block with a name, of which a protocol has any number.
+const fn block(
+    word: &'static str,
+    group: &'static str,
+    about: &'static str,
+    keys: &'static [Key],
+) -> Kind {
+    Kind { word, group, named: true, single: false, about, keys }
+}
 
 /// Every kind of block, in the order of the canonical text.
 pub const KINDS: &[Kind] = &[
     Kind {
-        word: "protocol",
-        group: "protocol",
-        named: true,
         single: true,
-        about: "The identification of the protocol. Other protocols extend it by its name.",
-        keys: &[
-            phrase(
-                "extends",
-                "The parent protocol. Its rules apply unless overridden by name. Write the name of a shipped protocol, or a path relative to this file in quotes.",
-                "en14363-2016-annex-t",
-            ),
-            text("edition", "The standard and its edition.", "EN 14363:2016, Annex T"),
-            SOURCE,
-            text("author", "The author of the protocol.", "Working group 10"),
-            text(
-                "scope",
-                "The purpose, in one or two sentences.",
-                "Models for on-track tests of vehicles with bogies.",
-            ),
-            phrase(
-                "axis",
-                "The channel that sections are cut along and plots are drawn over.",
-                "distance in m",
-            ),
-            phrase(
-                "time",
-                "The channel with the time of the samples. Filters need it.",
-                "time in s",
-            ),
-            NOTE,
-        ],
+        ..block(
+            "protocol",
+            "protocol",
+            "The identification of the protocol. Other protocols extend it by its name.",
+            &[
+                phrase(
+                    "extends",
+                    "The parent protocol. Its rules apply unless overridden by name. Write the name of a shipped protocol, or a path relative to this file in quotes.",
+                    "en14363-2016-annex-t",
+                ),
+                text("edition", "The standard and its edition.", "EN 14363:2016, Annex T"),
+                SOURCE,
+                text("author", "The author of the protocol.", "Working group 10"),
+                text(
+                    "scope",
+                    "The purpose, in one or two sentences.",
+                    "Models for on-track tests of vehicles with bogies.",
+                ),
+                phrase(
+                    "axis",
+                    "The channel that sections are cut along and plots are drawn over.",
+                    "distance in m",
+                ),
+                phrase(
+                    "time",
+                    "The channel with the time of the samples. Filters need it.",
+                    "time in s",
+                ),
+                NOTE,
+            ],
+        )
     },
     Kind {
-        word: "remove",
-        group: "remove",
+        single: true,
         named: false,
-        single: true,
-        about: "In a variant: rules of the parent that do not apply.",
-        keys: &[
-            many(phrase(
-                "quantity",
-                "A quantity of the parent, a family as written there, or `every` for all.",
-                "az_max",
-            )),
-            many(phrase("zone", "A zone of the parent, a family, or `every` for all.", "4")),
-            many(phrase(
-                "check",
-                "A section check of the parent, a family, or `every` for all.",
-                "full_curve",
-            )),
-            many(phrase(
-                "plausibility",
-                "A plausibility rule of the parent, a family, or `every` for all.",
-                "wheel_load",
-            )),
-            many(phrase(
-                "find",
-                "A condition on found sections of the parent, a family, or `every` for all.",
-                "steady_speed",
-            )),
-            many(phrase("domain", "A domain of the parent, or `every` one.", "application")),
-            many(phrase(
-                "verdict",
-                "A named verdict of the parent, a family, or `every` for all.",
-                "inspection",
-            )),
-            many(phrase(
-                "limit",
-                "Limits of a quantity of the parent, of a family or of `every` quantity: write the quantity, then the statistic, or no statistic for all limits.",
-                "az_max mean",
-            )),
-        ],
+        ..block(
+            "remove",
+            "remove",
+            "In a variant: rules of the parent that do not apply.",
+            &[
+                many(phrase(
+                    "quantity",
+                    "A quantity of the parent, a family as written there, or `every` for all.",
+                    "az_max",
+                )),
+                many(phrase("zone", "A zone of the parent, a family, or `every` for all.", "4")),
+                many(phrase(
+                    "check",
+                    "A section check of the parent, a family, or `every` for all.",
+                    "full_curve",
+                )),
+                many(phrase(
+                    "plausibility",
+                    "A plausibility rule of the parent, a family, or `every` for all.",
+                    "wheel_load",
+                )),
+                many(phrase(
+                    "find",
+                    "A condition on found sections of the parent, a family, or `every` for all.",
+                    "steady_speed",
+                )),
+                many(phrase("domain", "A domain of the parent, or `every` one.", "application")),
+                many(phrase(
+                    "verdict",
+                    "A named verdict of the parent, a family, or `every` for all.",
+                    "inspection",
+                )),
+                many(phrase(
+                    "limit",
+                    "Limits of a quantity of the parent, of a family or of `every` quantity: write the quantity, then the statistic, or no statistic for all limits.",
+                    "az_max mean",
+                )),
+            ],
+        )
     },
-    Kind {
-        word: "parameter",
-        group: "parameters",
-        named: true,
-        single: false,
-        about: "A number or a choice that a campaign, a variant or the command line can set.",
-        keys: &[
+    block(
+        "parameter",
+        "parameters",
+        "A number or a choice that a campaign, a variant or the command line can set.",
+        &[
             FOR_EACH,
             phrase(
                 "default",
@@ -106,14 +117,12 @@ pub const KINDS: &[Kind] = &[
             SOURCE,
             NOTE,
         ],
-    },
-    Kind {
-        word: "place",
-        group: "places",
-        named: true,
-        single: false,
-        about: "A set of positions on the vehicle at which channels are measured.",
-        keys: &[
+    ),
+    block(
+        "place",
+        "places",
+        "A set of positions on the vehicle at which channels are measured.",
+        &[
             phrase("members", "The positions, as they appear in channel names.", "R, L"),
             many(phrase(
                 "alias",
@@ -122,14 +131,12 @@ pub const KINDS: &[Kind] = &[
             )),
             NOTE,
         ],
-    },
-    Kind {
-        word: "vehicle",
-        group: "vehicle data",
-        named: true,
-        single: false,
-        about: "A value of the vehicle file. Rules use it as `vehicle.<name>`.",
-        keys: &[
+    ),
+    block(
+        "vehicle",
+        "vehicle data",
+        "A value of the vehicle file. Rules use it as `vehicle.<name>`.",
+        &[
             FOR_EACH,
             phrase("in", "The unit of a number.", "kN"),
             phrase("one of", "The possible words of a choice.", "passenger, locomotive, freight"),
@@ -150,14 +157,12 @@ pub const KINDS: &[Kind] = &[
             ),
             NOTE,
         ],
-    },
-    Kind {
-        word: "section",
-        group: "section data",
-        named: true,
-        single: false,
-        about: "A column of the table of sections. Rules use it by its name.",
-        keys: &[
+    ),
+    block(
+        "section",
+        "section data",
+        "A column of the table of sections. Rules use it by its name.",
+        &[
             FOR_EACH,
             phrase("in", "The unit of a number.", "m"),
             phrase(
@@ -182,14 +187,12 @@ pub const KINDS: &[Kind] = &[
             ),
             NOTE,
         ],
-    },
-    Kind {
-        word: "record",
-        group: "records",
-        named: true,
-        single: false,
-        about: "A name for records of which a campaign has several: some of its simulations or measured runs.",
-        keys: &[
+    ),
+    block(
+        "record",
+        "records",
+        "A name for records of which a campaign has several: some of its simulations or measured runs.",
+        &[
             phrase(
                 "is",
                 "`simulated` or `measured`, and the names that the campaign gives to these records; all of the side without names.",
@@ -197,14 +200,12 @@ pub const KINDS: &[Kind] = &[
             ),
             NOTE,
         ],
-    },
-    Kind {
-        word: "channel",
-        group: "channels",
-        named: true,
-        single: false,
-        about: "A measured and simulated signal, with one column of the records for each position.",
-        keys: &[
+    ),
+    block(
+        "channel",
+        "channels",
+        "A measured and simulated signal, with one column of the records for each position.",
+        &[
             FOR_EACH,
             phrase(
                 "in",
@@ -224,14 +225,12 @@ pub const KINDS: &[Kind] = &[
             ),
             NOTE,
         ],
-    },
-    Kind {
-        word: "signal",
-        group: "signals",
-        named: true,
-        single: false,
-        about: "A signal computed from channels and other signals, sample by sample.",
-        keys: &[
+    ),
+    block(
+        "signal",
+        "signals",
+        "A signal computed from channels and other signals, sample by sample.",
+        &[
             FOR_EACH,
             phrase("is", "The expression.", "Y at side R + Y at side L"),
             phrase(
@@ -249,14 +248,12 @@ pub const KINDS: &[Kind] = &[
             SOURCE,
             NOTE,
         ],
-    },
-    Kind {
-        word: "filter",
-        group: "filters",
-        named: true,
-        single: false,
-        about: "A chain of filter steps with a name.",
-        keys: &[
+    ),
+    block(
+        "filter",
+        "filters",
+        "A chain of filter steps with a name.",
+        &[
             FOR_EACH,
             many(phrase(
                 "step",
@@ -267,14 +264,12 @@ pub const KINDS: &[Kind] = &[
             SOURCE,
             NOTE,
         ],
-    },
-    Kind {
-        word: "define",
-        group: "definitions",
-        named: true,
-        single: false,
-        about: "A name for an expression: a condition, a factor, a table by zone or speed.",
-        keys: &[
+    ),
+    block(
+        "define",
+        "definitions",
+        "A name for an expression: a condition, a factor, a table by zone or speed.",
+        &[
             FOR_EACH,
             phrase(
                 "is",
@@ -286,14 +281,12 @@ pub const KINDS: &[Kind] = &[
             SOURCE,
             NOTE,
         ],
-    },
-    Kind {
-        word: "zone",
-        group: "zones",
-        named: true,
-        single: false,
-        about: "A test zone: a class of sections.",
-        keys: &[
+    ),
+    block(
+        "zone",
+        "zones",
+        "A test zone: a class of sections.",
+        &[
             FOR_EACH,
             phrase(
                 "where",
@@ -311,14 +304,12 @@ pub const KINDS: &[Kind] = &[
             SOURCE,
             NOTE,
         ],
-    },
-    Kind {
-        word: "check",
-        group: "checks",
-        named: true,
-        single: false,
-        about: "A requirement on every section. A section that does not meet it is not used.",
-        keys: &[
+    ),
+    block(
+        "check",
+        "checks",
+        "A requirement on every section. A section that does not meet it is not used.",
+        &[
             FOR_EACH,
             phrase(
                 "require",
@@ -335,14 +326,12 @@ pub const KINDS: &[Kind] = &[
             SOURCE,
             NOTE,
         ],
-    },
-    Kind {
-        word: "plausibility",
-        group: "plausibility",
-        named: true,
-        single: false,
-        about: "A condition that sound data satisfy. A violation is reported as a finding, with the value and the expected value.",
-        keys: &[
+    ),
+    block(
+        "plausibility",
+        "plausibility",
+        "A condition that sound data satisfy. A violation is reported as a finding, with the value and the expected value.",
+        &[
             FOR_EACH,
             many(phrase(
                 "of",
@@ -380,76 +369,80 @@ pub const KINDS: &[Kind] = &[
             SOURCE,
             NOTE,
         ],
-    },
+    ),
     Kind {
-        word: "sections",
-        group: "sections",
-        named: false,
         single: true,
-        about: "The treatment of sections.",
-        keys: &[
-            phrase(
-                "use",
-                "`sections` (cut from the records by the table of sections), `found sections` (looked for in the runs of the campaign) or `whole records` (no sections).",
-                "sections",
-            ),
-            phrase("zone", "The section column with the zone, if there are zones.", "zone"),
-            phrase(
-                "where",
-                "Only sections that satisfy this condition are used.",
-                "speed >= 60 km/h",
-            ),
-            phrase(
-                "faulty",
-                "The consequence of a faulty record: `not used` (the section, with the reason) or `stop`.",
-                "not used",
-            ),
-            phrase("minimum", "The total number of used sections that the campaign needs.", "12"),
-            phrase(
-                "step",
-                "Of found sections: the distance between two places that are tried.",
-                "1 m",
-            ),
-            phrase(
-                "length",
-                "Of found sections: their length. Without this field, the minimum length of the zone.",
-                "250 m when speed > 140 km/h, otherwise 100 m",
-            ),
-            phrase(
-                "prefer",
-                "Of found sections that would overlap: `first` (the default), or the one with the highest value of an expression.",
-                "std of ay at running_gear I",
-            ),
-            phrase(
-                "margin",
-                "Of found sections: the record that there must be on each side. The default is the length of the section.",
-                "30 m",
-            ),
-            phrase(
-                "keep",
-                "Reduces the sections: at most this number for each zone or word of section data, so that the highest standard deviation stays almost the same.",
-                "at most 9 for each zone and country",
-            ),
-            many(phrase(
-                "report",
-                "A number of the data of the sections used, of all or of each group: it is printed and decides nothing.",
-                "total of length in km for each zone",
-            )),
-            phrase(
-                "percentiles",
-                "The interpolation rule of percentiles, by the name of Hyndman & Fan.",
-                "linear",
-            ),
-            NOTE,
-        ],
+        named: false,
+        ..block(
+            "sections",
+            "sections",
+            "The treatment of sections.",
+            &[
+                phrase(
+                    "use",
+                    "`sections` (cut from the records by the table of sections), `found sections` (looked for in the runs of the campaign) or `whole records` (no sections).",
+                    "sections",
+                ),
+                phrase("zone", "The section column with the zone, if there are zones.", "zone"),
+                phrase(
+                    "where",
+                    "Only sections that satisfy this condition are used.",
+                    "speed >= 60 km/h",
+                ),
+                phrase(
+                    "faulty",
+                    "The consequence of a faulty record: `not used` (the section, with the reason) or `stop`.",
+                    "not used",
+                ),
+                phrase(
+                    "minimum",
+                    "The total number of used sections that the campaign needs.",
+                    "12",
+                ),
+                phrase(
+                    "step",
+                    "Of found sections: the distance between two places that are tried.",
+                    "1 m",
+                ),
+                phrase(
+                    "length",
+                    "Of found sections: their length. Without this field, the minimum length of the zone.",
+                    "250 m when speed > 140 km/h, otherwise 100 m",
+                ),
+                phrase(
+                    "prefer",
+                    "Of found sections that would overlap: `first` (the default), or the one with the highest value of an expression.",
+                    "std of ay at running_gear I",
+                ),
+                phrase(
+                    "margin",
+                    "Of found sections: the record that there must be on each side. The default is the length of the section.",
+                    "30 m",
+                ),
+                phrase(
+                    "keep",
+                    "Reduces the sections: at most this number for each zone or word of section data, so that the highest standard deviation stays almost the same.",
+                    "at most 9 for each zone and country",
+                ),
+                many(phrase(
+                    "report",
+                    "A number of the data of the sections used, of all or of each group: it is printed and decides nothing.",
+                    "total of length in km for each zone",
+                )),
+                phrase(
+                    "percentiles",
+                    "The interpolation rule of percentiles, by the name of Hyndman & Fan.",
+                    "linear",
+                ),
+                NOTE,
+            ],
+        )
     },
-    Kind {
-        word: "find",
-        group: "find",
-        named: true,
-        single: false,
-        about: "A condition on every section that is found in a run. The conditions are tried in the order of the text.",
-        keys: &[
+    block(
+        "find",
+        "find",
+        "A condition on every section that is found in a run. The conditions are tried in the order of the text.",
+        &[
             FOR_EACH,
             phrase(
                 "require",
@@ -462,14 +455,12 @@ pub const KINDS: &[Kind] = &[
             SOURCE,
             NOTE,
         ],
-    },
-    Kind {
-        word: "domain",
-        group: "domains",
-        named: true,
-        single: false,
-        about: "Which wanted operation lies inside what the sections cover: the convex hull of section data.",
-        keys: &[
+    ),
+    block(
+        "domain",
+        "domains",
+        "Which wanted operation lies inside what the sections cover: the convex hull of section data.",
+        &[
             phrase(
                 "over",
                 "What spans it: section data or expressions of them, each `in` the unit it is printed in; `for each` word of the table a hull of its own.",
@@ -484,14 +475,12 @@ pub const KINDS: &[Kind] = &[
             SOURCE,
             NOTE,
         ],
-    },
-    Kind {
-        word: "quantity",
-        group: "quantities",
-        named: true,
-        single: false,
-        about: "A validation quantity: its signals, their processing, the comparison and the limits.",
-        keys: &[
+    ),
+    block(
+        "quantity",
+        "quantities",
+        "A validation quantity: its signals, their processing, the comparison and the limits.",
+        &[
             FOR_EACH,
             phrase(
                 "like",
@@ -562,14 +551,12 @@ pub const KINDS: &[Kind] = &[
             SOURCE,
             NOTE,
         ],
-    },
-    Kind {
-        word: "estimate",
-        group: "estimates",
-        named: true,
-        single: false,
-        about: "A name for an estimate from the values of a group: an expression of statistics, regressions and shares.",
-        keys: &[
+    ),
+    block(
+        "estimate",
+        "estimates",
+        "A name for an estimate from the values of a group: an expression of statistics, regressions and shares.",
+        &[
             FOR_EACH,
             phrase("is", "The expression.", "mean + 3 * std"),
             UNCONFIRMED,
@@ -577,46 +564,46 @@ pub const KINDS: &[Kind] = &[
             SOURCE,
             NOTE,
         ],
-    },
+    ),
     Kind {
-        word: "verdict",
-        group: "verdict",
-        named: false,
         single: true,
-        about: "The rule of the overall verdict, and how quantities are counted.",
-        keys: &[
-            phrase(
-                "validated",
-                "`when every limit holds` (the default), `when at least N quantities hold`, or a rule over named verdicts.",
-                "when every limit holds",
-            ),
-            WORDS,
-            phrase(
-                "minimum signals",
-                "The number of signals that a quantity needs, unless the quantity states it.",
-                "2",
-            ),
-            many(phrase(
-                "minimum pairs",
-                "The number of section x signal pairs that a quantity needs, in all or in each group, unless the quantity states it.",
-                "24",
-            )),
-            phrase("standard deviation", "Divisor of the variance: `n-1` or `n`.", "n-1"),
-            phrase(
-                "independent",
-                "The independent unit: `site` (the default), `section`, `campaign`, or a section column. It is used for counts, for n and for confidence intervals.",
-                "site",
-            ),
-            NOTE,
-        ],
+        named: false,
+        ..block(
+            "verdict",
+            "verdict",
+            "The rule of the overall verdict, and how quantities are counted.",
+            &[
+                phrase(
+                    "validated",
+                    "`when every limit holds` (the default), `when at least N quantities hold`, or a rule over named verdicts.",
+                    "when every limit holds",
+                ),
+                WORDS,
+                phrase(
+                    "minimum signals",
+                    "The number of signals that a quantity needs, unless the quantity states it.",
+                    "2",
+                ),
+                many(phrase(
+                    "minimum pairs",
+                    "The number of section x signal pairs that a quantity needs, in all or in each group, unless the quantity states it.",
+                    "24",
+                )),
+                phrase("standard deviation", "Divisor of the variance: `n-1` or `n`.", "n-1"),
+                phrase(
+                    "independent",
+                    "The independent unit: `site` (the default), `section`, `campaign`, or a section column. It is used for counts, for n and for confidence intervals.",
+                    "site",
+                ),
+                NOTE,
+            ],
+        )
     },
-    Kind {
-        word: "verdict",
-        group: "verdicts",
-        named: true,
-        single: false,
-        about: "A verdict with a name: from limits of quantities, from other verdicts, or by a person.",
-        keys: &[
+    block(
+        "verdict",
+        "verdicts",
+        "A verdict with a name: from limits of quantities, from other verdicts, or by a person.",
+        &[
             FOR_EACH,
             phrase(
                 "of",
@@ -638,5 +625,5 @@ pub const KINDS: &[Kind] = &[
             SOURCE,
             NOTE,
         ],
-    },
+    ),
 ];

@@ -173,7 +173,7 @@ fn registry(kind: &str) -> String {
 /// Units that measure the same in one row.
 fn units() -> String {
     let mut dimensions: Vec<Dimension> = Vec::new();
-    for symbol in SYMBOLS {
+    for symbol in SYMBOLS.iter() {
         if !dimensions.contains(&symbol.dimension) {
             dimensions.push(symbol.dimension);
         }

@@ -1,16 +1,18 @@
-//! Resolves names in expressions over numbers, words and conditions.
+//! Resolves the names in expressions by scope: parameters, data, definitions, statistics, values of
+//! signals, and signals themselves.
 
 use std::collections::BTreeSet;
 
 use super::Checker;
 use super::names::bare_word;
 use super::plan::{
-    Datum, DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Step, Taken, Type,
+    Datum, DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Side, Step, Taken,
+    Type,
 };
 use super::scope::{Reduce, Scope};
 use super::steps::after;
 use crate::catalog::{METRICS, MetricEntry, REDUCERS, Reducer, STATISTICS, Statistic};
-use crate::problem::Problem;
+use crate::problem::error;
 use crate::source::Span;
 use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase};
@@ -18,18 +20,18 @@ use crate::units::Unit;
 
 /// The meaning of a statistic's name in the bound of a limit, and how to limit an expression of
 /// values instead.
-pub(super) const LIMITS_NOT_VALUES: &str = "in a limit, the name of a statistic stands for the limit of that statistic, not for its \
+pub const LIMITS_NOT_VALUES: &str = "in a limit, the name of a statistic stands for the limit of that statistic, not for its \
     value; an expression of values stands before the limit: `limit (mean + 3 * std) 60 kN`";
 
 /// Where a section is on the axis.
 const EXTENT: [&str; 3] = ["start", "end", "length"];
 
 /// What says to which campaign of several a section belongs.
-pub(super) const CAMPAIGN: &str = "campaign";
+pub const CAMPAIGN: &str = "campaign";
 
 impl Checker<'_> {
     /// A value taken from the own signal of the quantity.
-    pub(super) fn own_reducer(
+    pub fn own_reducer(
         &mut self,
         reducer: Reducer,
         span: Origin,
@@ -38,16 +40,11 @@ impl Checker<'_> {
         self.percentile_range(reducer, &span)?;
         let Some(Reduce { own: Some(dimension), axis, side, .. }) = scope.reduce else {
             let what = reducer.in_words();
-            let problem = Problem::error(
-                "no-signal",
-                format!("`{what}` needs a signal, and there is none here"),
-            )
-            .at(&span);
-            let of_sections = scope
-                .group
-                .as_ref()
-                .is_some_and(|group| group.values.is_none() && scope.limits.is_none());
-            self.problems.push(if of_sections {
+            let says = format!("`{what}` needs a signal, and there is none here");
+            let problem = error("no-signal", says, &span);
+            let of_sections =
+                scope.group.is_some() && scope.values().is_none() && scope.limits.is_none();
+            return self.refuse(if of_sections {
                 problem.help(format!(
                     "of the sections there are only data: `{what} of speed`, `{what} of length`"
                 ))
@@ -56,47 +53,28 @@ impl Checker<'_> {
             } else {
                 problem
             });
-            return None;
         };
-        let ty = Type::Number(reducer.gives(dimension, axis));
-        let kind = Kind::Input(add_input(
-            scope,
-            Input {
-                taken: Taken::Reduced(reducer),
-                signal: None,
-                chain: Vec::new(),
-                over: None,
-                side,
-                span: span.span.clone(),
-            },
-        ));
-        Some(Expr { kind, ty, span })
+        let input = Input::own(Taken::Reduced(reducer), side, &span);
+        Some(scope.input(input, reducer.gives(dimension, axis), &span))
     }
 
     fn percentile_range(&mut self, reducer: Reducer, span: &Span) -> Option<()> {
-        match reducer {
-            Reducer::Percentile(percent) if !(0.0..=100.0).contains(&percent) => {
-                self.problems.push(
-                    Problem::error(
-                        "out-of-range",
-                        format!("a percentile must be from 0 to 100, this is {percent}"),
-                    )
-                    .at(span),
-                );
-                None
-            }
-            _ => Some(()),
+        let Reducer::Percentile(percent) = reducer else { return Some(()) };
+        self.is_percentage(percent, span)
+    }
+
+    /// Whether a percentile is one from 0 to 100.
+    pub fn is_percentage(&mut self, percent: f64, span: &Span) -> Option<()> {
+        if (0.0..=100.0).contains(&percent) {
+            return Some(());
         }
+        let says = format!("a percentile must be from 0 to 100, this is {percent}");
+        self.refuse(error("out-of-range", says, span))
     }
 
     /// The reducer of `NAME of signal`.
-    pub(super) fn reducer(
-        &mut self,
-        reducer: &Phrase,
-        text: &Text,
-        of_records: bool,
-    ) -> Option<Reducer> {
-        let place = text.place(reducer.range.clone());
+    pub fn reducer(&mut self, reducer: &Phrase, text: &Text, of_records: bool) -> Option<Reducer> {
+        let place = reducer.place(text);
         let found = match &reducer.node {
             Node::Percentile(percent) => Some(Reducer::Percentile(*percent)),
             Node::Path(name) => Reducer::named(name),
@@ -105,19 +83,12 @@ impl Checker<'_> {
         let Some(found) = found else {
             let word = if let Node::Path(path) = &reducer.node { path.as_str() } else { "" };
             if !self.is_failed(word) {
-                let numbers = self
-                    .names
-                    .parameter_blocks
-                    .keys()
-                    .chain(self.names.defines.keys())
-                    .cloned()
-                    .collect::<Vec<_>>();
+                let numbers = self.names.parameter_blocks.keys().chain(self.names.defines.keys());
                 let reducers = REDUCERS.iter().map(|entry| entry.name).filter(|_| of_records);
-                let known: Vec<&str> = reducers.chain(numbers.iter().map(String::as_str)).collect();
+                let known = reducers.chain(numbers.map(String::as_str));
                 let says =
                     format!("`{word} of` is neither a value of a signal nor a share of a number");
-                self.problems
-                    .push(Problem::error("unknown-reducer", says).at(&place).suggest(word, known));
+                self.problems.push(error("unknown-reducer", says, &place).suggest(word, known));
             }
             return None;
         };
@@ -126,7 +97,7 @@ impl Checker<'_> {
     }
 
     /// `range of curvature`: a value taken from a named signal.
-    pub(super) fn reduced(
+    pub fn reduced(
         &mut self,
         reducer: &Phrase,
         signal: &Phrase,
@@ -134,20 +105,17 @@ impl Checker<'_> {
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        let place = text.place(reducer.range.clone());
+        let place = reducer.place(text);
         let found = self.reducer(reducer, text, scope.reduce.is_some())?;
         let Some(Reduce { axis, side, .. }) = scope.reduce else {
-            self.problems.push(
-                Problem::error(
-                    "no-records",
-                    format!(
-                        "`{} of ...` needs the records of a section, which are not available here",
-                        found.in_words()
-                    ),
-                )
-                .at(span),
-            );
-            return None;
+            return self.refuse(error(
+                "no-records",
+                format!(
+                    "`{} of ...` needs the records of a section, which are not available here",
+                    found.in_words()
+                ),
+                span,
+            ));
         };
         if self.names_side(signal, &mut BTreeSet::new()) {
             return self.of_both(found, signal, text, span, scope);
@@ -170,29 +138,23 @@ impl Checker<'_> {
             Some(over) => Some(self.slope_axis(found, over, &place, text, &at)?),
         };
         let signal = signal?;
-        let axis = over.as_ref().map_or(axis, |over| over.dimension);
-        let ty = Type::Number(found.gives(after(&chain, signal.dimension), axis));
-        let input = Input {
-            taken: Taken::Reduced(found),
-            signal: Some(signal),
-            chain,
-            over,
-            side,
-            span: span.span.clone(),
-        };
-        Some(Expr { kind: Kind::Input(add_input(scope, input)), ty, span: span.clone() })
+        let axis = over.as_ref().map_or(axis, Expr::dimension);
+        let dimension = found.gives(after(&chain, signal.dimension()), axis);
+        let own = Input::own(Taken::Reduced(found), side, span);
+        let input = Input { signal: Some(signal), chain, over, ..own };
+        Some(scope.input(input, dimension, span))
     }
 
     /// The steps of a filter that stands last before a number is taken: there, windows may be among
     /// them.
     fn window_of(&mut self, filter: &At<String>, text: &Text) -> Option<Vec<Step>> {
-        let steps = self.filter_named(&filter.node, &text.place(filter.range.clone()))?;
+        let steps = self.filter_named(&filter.node, &filter.place(text))?;
         self.step_order(&steps, false)?;
         Some(steps)
     }
 
     /// The value of a fixed side, such as `measured(p99.85)`, whichever side is evaluated.
-    pub(super) fn on_side(
+    pub fn on_side(
         &mut self,
         name: &At<String>,
         arguments: &[Phrase],
@@ -201,12 +163,10 @@ impl Checker<'_> {
         scope: &mut Scope,
     ) -> Option<Expr> {
         let (Some(reduce), [argument]) = (scope.reduce, arguments) else {
-            let says = format!(
+            return self.refuse(error("side", format!(
                 "`{}(...)` must contain one value of a signal; it can be used in the value of a quantity or in a check",
                 name.node
-            );
-            self.problems.push(Problem::error("side", says).at(span));
-            return None;
+            ), span));
         };
         let side = if name.node == "measured" { InputSide::Measured } else { InputSide::Simulated };
         scope.reduce = Some(Reduce { side, ..reduce });
@@ -215,7 +175,8 @@ impl Checker<'_> {
         found
     }
 
-    pub(super) fn path(&mut self, path: &str, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+    /// What a name stands for in an expression of numbers, words and conditions.
+    pub fn path(&mut self, path: &str, span: &Origin, scope: &mut Scope) -> Option<Expr> {
         let expr = |kind, ty| Some(Expr { kind, ty, span: span.clone() });
         if scope.words.iter().any(|word| word == path) {
             return expr(
@@ -223,12 +184,8 @@ impl Checker<'_> {
                 Type::Word(scope.words.clone()),
             );
         }
-        if let Some(pair) = scope.pair {
-            match path {
-                "simulated" => return expr(Kind::Simulated, Type::Number(pair)),
-                "measured" => return expr(Kind::Measured, Type::Number(pair)),
-                _ => {}
-            }
+        if let (Some(pair), Some(side)) = (scope.pair, Side::named(path)) {
+            return expr(Kind::Side(side), Type::Number(pair));
         }
         if let (Some(dimension), "value") = (scope.value, path) {
             return expr(Kind::Input(0), Type::Number(dimension));
@@ -242,13 +199,17 @@ impl Checker<'_> {
             return expr(Kind::LimitOf(path.to_string()), Type::Number(*dimension));
         }
         if let Some(statistic) = Statistic::named(path).filter(|_| scope.limits.is_some()) {
-            let says = format!(
-                "there is no other limit of the {} that this could refer to",
-                statistic.title(self.ddof)
+            return self.refuse(
+                error(
+                    "no-such-limit",
+                    format!(
+                        "there is no other limit of the {} that this could refer to",
+                        statistic.title(self.ddof)
+                    ),
+                    span,
+                )
+                .help(LIMITS_NOT_VALUES),
             );
-            self.problems
-                .push(Problem::error("no-such-limit", says).at(span).help(LIMITS_NOT_VALUES));
-            return None;
         }
         if let Some(reducer) = Reducer::named(path) {
             return self.own_reducer(reducer, span.clone(), scope);
@@ -262,12 +223,9 @@ impl Checker<'_> {
             let parameter = self.parameter(path, span)?;
             return expr(Kind::Constant(parameter.value), parameter.ty);
         }
-        if let Some(define) = self.names.defines.get(path).cloned() {
-            self.used_defines.insert(path.to_string());
+        if self.names.defines.contains_key(path) {
             self.unconfirmed |= self.names.unconfirmed.contains_key(path);
-            return self.inside("define", path, span, |checker| {
-                checker.expr(&define.phrase, &define.text, scope)
-            });
+            return self.defined(path, span, scope);
         }
         if matches!(path, "true" | "false") {
             return expr(Kind::Constant(Scalar::Flag(path == "true")), Type::Flag);
@@ -284,6 +242,43 @@ impl Checker<'_> {
         }
         self.unknown_name(path, span, scope);
         None
+    }
+
+    /// What a definition stands for.
+    fn defined(&mut self, name: &str, span: &Span, scope: &mut Scope) -> Option<Expr> {
+        let define = self.names.defines.get(name)?.clone();
+        self.used_defines.insert(name.to_string());
+        self.inside("define", name, span, |checker| {
+            checker.expr(&define.phrase, &define.text, scope)
+        })
+    }
+
+    /// A name among samples: a side, a channel, a signal, or a number.
+    pub fn samples_named(&mut self, name: &str, span: &Origin, scope: &mut Scope) -> Option<Expr> {
+        if let Some(side) = Side::named(name).filter(|_| !self.is_signal(name)) {
+            return self.side_of_own(side, span, scope);
+        }
+        if let Some(channel) = self.names.channels.get(name).cloned() {
+            return self.channel_at(name, &channel, span, &scope.at);
+        }
+        if let Some(signal) = self.names.signals.get(name).cloned() {
+            return self.signal_at(name, &signal, span, scope);
+        }
+        if self.names.defines.contains_key(name) {
+            return self.defined(name, span, scope);
+        }
+        let data = self.names.columns.iter().chain(&self.names.vehicle);
+        let known = self.names.parameter_blocks.contains_key(name)
+            || name.contains('.')
+            || data.into_iter().any(|datum| datum.name == name)
+            || Unit::parse(name).is_ok();
+        if !known {
+            self.unknown_signal(name, span);
+            return None;
+        }
+        let number = self.path(name, span, &mut Scope::section())?;
+        self.number_type(&number)?;
+        Some(number)
     }
 
     /// `start`, `end` and `length` of the section on the axis, unless the protocol has columns of
@@ -306,12 +301,9 @@ impl Checker<'_> {
     /// A datum: `vehicle.category`, `section.radius`, or the name without prefix.
     fn datum_path(&mut self, path: &str, span: &Origin, scope: &Scope) -> Option<Option<Expr>> {
         let (role, name) = path.split_once('.').map_or(("", path), |(role, name)| (role, name));
-        let of = |data: &[super::plan::Datum], wanted: &str| {
-            if role.is_empty() || role == wanted {
-                data.iter().position(|datum| datum.name == name)
-            } else {
-                None
-            }
+        let of = |data: &[Datum], wanted: &str| {
+            let asked = role.is_empty() || role == wanted;
+            data.iter().position(|datum| asked && datum.name == name)
         };
         let vehicle = of(&self.names.vehicle, "vehicle");
         let column = of(&self.names.columns, "section").or_else(|| {
@@ -319,64 +311,53 @@ impl Checker<'_> {
             if asked { self.campaign_column(name, span) } else { None }
         });
         if column.is_some() && vehicle.is_some() {
-            self.problems.push(
-                Problem::error(
-                    "ambiguous",
-                    format!("`{name}` is both a vehicle datum and a section column"),
-                )
-                .at(span)
-                .help(format!("write `vehicle.{name}` or `section.{name}`")),
+            let says = format!("`{name}` is both a vehicle datum and a section column");
+            return Some(
+                self.refuse(
+                    error("ambiguous", says, span)
+                        .help(format!("write `vehicle.{name}` or `section.{name}`")),
+                ),
             );
-            return Some(None);
         }
         if let Some(index) = column {
             let is_zone = matches!(self.zone.as_ref().map(|zone| &zone.kind), Some(Kind::Column(zone)) if *zone == index);
-            let ty = datum_type(&self.names.columns[index].kind);
-            if let Some(zone) = scope.zone.clone().filter(|_| is_zone) {
-                return Some(Some(Expr {
-                    kind: Kind::Constant(Scalar::Word(zone)),
-                    ty,
-                    span: span.clone(),
-                }));
-            }
-            if scope.section {
-                return Some(Some(Expr { kind: Kind::Column(index), ty, span: span.clone() }));
+            let zone = scope.zone.clone().filter(|_| is_zone);
+            let kind = match zone.map(|zone| Kind::Constant(Scalar::Word(zone))) {
+                None if scope.section => Some(Kind::Column(index)),
+                of_zone => of_zone,
+            };
+            if let Some(kind) = kind {
+                let ty = datum_type(&self.names.columns[index].kind);
+                return Some(Some(Expr { kind, ty, span: span.clone() }));
             }
             let says = format!(
                 "`{path}` differs between sections, but this expression has one value for all sections"
             );
-            let problem = Problem::error("no-section", says).at(span);
+            let problem = error("no-section", says, span);
             // Only the scope of limits has the vehicle but no section.
-            self.problems.push(match (scope.vehicle, is_zone) {
+            return Some(self.refuse(match (scope.vehicle, is_zone) {
                 (true, true) => problem.help("a limit that depends on the zone ends with `for each zone`"),
                 (true, false) => problem
                     .help("a bound can use a mean, such as `mean of radius`; a limit for some sections ends with `for sections where ...`; a limit of `each` value can depend on its section"),
                 (false, _) => problem,
-            });
-            return Some(None);
+            }));
         }
         let index = vehicle?;
         if scope.vehicle {
             let ty = datum_type(&self.names.vehicle[index].kind);
             return Some(Some(Expr { kind: Kind::Vehicle(index), ty, span: span.clone() }));
         }
-        self.problems.push(
-            Problem::error(
-                "no-vehicle",
-                format!(
-                    "`{path}` depends on the vehicle; expected a number that the protocol fixes"
-                ),
-            )
-            .at(span)
-            .help("make it a `parameter`, which a campaign can set"),
-        );
-        Some(None)
+        let says =
+            format!("`{path}` depends on the vehicle; expected a number that the protocol fixes");
+        Some(self.refuse(
+            error("no-vehicle", says, span).help("make it a `parameter`, which a campaign can set"),
+        ))
     }
 
     /// The column that says to which campaign a section belongs: it need not be declared, and is
     /// there once something asks for it. A column that the protocol declares by this name goes
     /// before it.
-    pub(super) fn campaign_column(&mut self, name: &str, span: &Span) -> Option<usize> {
+    pub fn campaign_column(&mut self, name: &str, span: &Span) -> Option<usize> {
         if let Some(known) = self.names.columns.iter().position(|datum| datum.name == name) {
             return Some(known);
         }
@@ -396,22 +377,21 @@ impl Checker<'_> {
     }
 
     /// Whether `word of ...` is a product, because a parameter, definition or datum has this name.
-    pub(super) fn is_number_name(&self, phrase: &Phrase) -> bool {
+    pub fn is_number_name(&self, phrase: &Phrase) -> bool {
         let Node::Path(path) = &phrase.node else { return false };
-        let datum = |role: &str, data: &[super::plan::Datum], name: &str| {
-            data.iter().any(|datum| {
-                datum.name == name || path.strip_prefix(role).is_some_and(|rest| rest == datum.name)
-            })
+        let datum = |role: &str, data: &[Datum]| {
+            let name = path.strip_prefix(role).unwrap_or(path);
+            data.iter().any(|datum| datum.name == *path || datum.name == name)
         };
         Reducer::named(path).is_none()
             && (self.names.parameter_blocks.contains_key(path)
                 || self.names.defines.contains_key(path)
-                || datum("section.", &self.names.columns, path)
-                || datum("vehicle.", &self.names.vehicle, path))
+                || datum("section.", &self.names.columns)
+                || datum("vehicle.", &self.names.vehicle))
     }
 
     /// Whether the block of a name has an error that was already reported.
-    pub(super) fn is_failed(&self, path: &str) -> bool {
+    pub fn is_failed(&self, path: &str) -> bool {
         let name = path.split_once('.').map_or(path, |(_, name)| name);
         self.names.failed.contains(name)
     }
@@ -421,42 +401,30 @@ impl Checker<'_> {
             return;
         }
         if self.is_signal(path) {
-            self.problems.push(
-                Problem::error(
-                    "signal-not-number",
-                    format!("expected a number, `{path}` is a signal"),
-                )
-                .at(span)
-                .help(format!("take a number from it: `mean of {path}`")),
-            );
+            let says = format!("expected a number, `{path}` is a signal");
+            let problem = error("signal-not-number", says, span);
+            self.problems.push(problem.help(format!("take a number from it: `mean of {path}`")));
             return;
         }
         let digits = path.find(|c: char| !c.is_ascii_digit()).unwrap_or(0);
         if digits > 0 {
-            let problem = Problem::error(
-                "unknown-unit",
-                format!("`{}` is not a known unit", &path[digits..]),
-            )
-            .at(span);
-            self.problems.push(
-                match Unit::parse(&path[digits..]).err().and_then(|unknown| unknown.near) {
-                    Some(near) => {
-                        problem.help(format!("did you mean `{} {near}`?", &path[..digits]))
-                    }
-                    None => problem,
-                },
-            );
+            let (number, unit) = path.split_at(digits);
+            let problem = error("unknown-unit", format!("`{unit}` is not a known unit"), span);
+            self.problems.push(match Unit::parse(unit).err().and_then(|unknown| unknown.near) {
+                Some(near) => problem.help(format!("did you mean `{number} {near}`?")),
+                None => problem,
+            });
             return;
         }
         let mut known: Vec<String> =
             self.names.parameter_blocks.keys().chain(self.names.defines.keys()).cloned().collect();
         if scope.pair.is_some() {
-            known.extend(["simulated".to_string(), "measured".to_string()]);
+            known.extend(Side::ALL.map(|side| side.in_words().to_string()));
         }
         if let Some((_, names)) = &scope.limits {
             known.extend(names.iter().cloned());
         }
-        if scope.group.as_ref().is_some_and(|group| group.values.is_some()) {
+        if scope.values().is_some() {
             known.extend(STATISTICS.iter().map(|entry| entry.name.to_string()));
             known.extend(self.names.estimates.keys().cloned());
         }
@@ -481,15 +449,14 @@ impl Checker<'_> {
             }
         }
         self.problems.push(
-            Problem::error("unknown-name", format!("nothing is called `{path}` here"))
-                .at(span)
-                .suggest(path, known.iter().map(String::as_str)),
+            error("unknown-name", format!("nothing is called `{path}` here"), span)
+                .suggest(path, &known),
         );
     }
 
     /// The choice that a bare word stands for: the word itself, or the value of the choice
     /// parameter of this name.
-    pub(super) fn choice_word(&mut self, word: &str, span: &Span) -> Option<String> {
+    pub fn choice_word(&mut self, word: &str, span: &Span) -> Option<String> {
         if !self.names.parameter_blocks.contains_key(word) {
             return Some(word.to_string());
         }
@@ -500,9 +467,9 @@ impl Checker<'_> {
     }
 
     /// As [`Self::choice_word`], for a phrase that is a bare word.
-    pub(super) fn choice_phrase(&mut self, phrase: &Phrase, text: &Text) -> Option<String> {
+    pub fn choice_phrase(&mut self, phrase: &Phrase, text: &Text) -> Option<String> {
         let word = bare_word(phrase)?;
-        self.choice_word(word, &text.place(phrase.range.clone()))
+        self.choice_word(word, &phrase.place(text))
     }
 }
 
@@ -514,9 +481,4 @@ fn datum_type(kind: &DatumKind) -> Type {
         // Any word: the campaigns are not known before the run.
         DatumKind::Campaign => Type::Word(Vec::new()),
     }
-}
-
-pub(super) fn add_input(scope: &mut Scope, input: Input) -> usize {
-    scope.inputs.push(input);
-    scope.inputs.len() - 1
 }

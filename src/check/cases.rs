@@ -1,0 +1,207 @@
+//! Checks what decides between values: `a when b, otherwise c`, and comparisons with words.
+
+use super::Checker;
+use super::conditions::impossible;
+use super::evaluate::words;
+use super::expressions::origin;
+use super::plan::{DatumKind, Expr, Kind, Operator, Origin, Scalar, Type};
+use super::scope::Scope;
+use crate::problem::{error, warning};
+use crate::source::{Span, Spanned};
+use crate::syntax::document::Text;
+use crate::syntax::phrase::{Node, Number, Phrase};
+
+impl Checker<'_> {
+    /// The value of the first case whose condition holds, else of the last: `a when b, otherwise c`.
+    pub fn cases(
+        &mut self,
+        arms: &[(Phrase, Phrase)],
+        otherwise: Option<&Phrase>,
+        text: &Text,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
+        let mut found: Vec<(Expr, Expr)> = Vec::new();
+        let mut last: Option<Expr> = None;
+        let mut values: Vec<Expr> = Vec::new();
+        let mut ok = true;
+        let always = (otherwise.into_iter()).map(|value| (value, None));
+        for (value, condition) in
+            arms.iter().map(|(value, condition)| (value, Some(condition))).chain(always)
+        {
+            let before = scope.asked();
+            let condition = condition.map(|condition| match scope.samples {
+                true => self.condition(condition, text, &mut Scope::section()),
+                false => self.condition(condition, text, scope),
+            });
+            // The case of a condition that parameters or the zone make false is still checked, but
+            // needs no records and no values.
+            let value = self.expr(value, text, scope);
+            let Some(value) = value.filter(|_| !matches!(condition, Some(None))) else {
+                ok = false;
+                continue;
+            };
+            values.push(value.clone());
+            let condition = condition.flatten();
+            let known = match condition.as_ref().map(|condition| &condition.kind) {
+                Some(Kind::Constant(Scalar::Flag(holds))) => Some(*holds),
+                Some(_) => None,
+                None => Some(true),
+            };
+            match condition.filter(|_| known.is_none()) {
+                _ if last.is_some() => scope.forget(before),
+                Some(condition) => found.push((value, condition)),
+                None if known == Some(true) => last = Some(value),
+                None => scope.forget(before),
+            }
+        }
+        let (first, rest) = values.split_first().filter(|_| ok)?;
+        for other in rest {
+            self.alike(first, other)?;
+        }
+        if last.is_none() && !found.is_empty() {
+            self.covered(found.iter().map(|(_, condition)| condition), span);
+        }
+        self.select(found, last, span, scope.zone.as_deref())
+    }
+
+    /// The value of the first condition that holds, of which all have the same type.
+    pub fn select(
+        &mut self,
+        arms: Vec<(Expr, Expr)>,
+        otherwise: Option<Expr>,
+        span: &Origin,
+        zone: Option<&str>,
+    ) -> Option<Expr> {
+        if arms.is_empty() {
+            if otherwise.is_none() {
+                let says = match zone {
+                    Some(zone) => format!("no case of this applies in zone {zone}"),
+                    None => "no case of this can apply with the parameters as set".into(),
+                };
+                self.problems.push(error("no-case", says, span));
+            }
+            return otherwise;
+        }
+        let all: Vec<&Expr> = arms.iter().map(|(value, _)| value).chain(&otherwise).collect();
+        let ty = match &all[0].ty {
+            Type::Number(dimension) | Type::Samples { dimension, .. } => {
+                self.of_one_record(*dimension, &all)?
+            }
+            ty => ty.clone(),
+        };
+        Some(Expr { kind: Kind::Cases(arms, otherwise.map(Box::new)), ty, span: span.clone() })
+    }
+
+    /// Whether one of the conditions certainly holds wherever the present expression is evaluated.
+    pub fn always_one<'e>(&self, conditions: impl Iterator<Item = &'e Expr>) -> bool {
+        let assumed = self.assumed.iter().map(|condition| (condition, true));
+        let all: Vec<(&Expr, bool)> =
+            assumed.chain(conditions.map(|condition| (condition, false))).collect();
+        impossible(&all)
+    }
+
+    /// Warns unless one of the conditions certainly holds.
+    fn covered<'e>(&mut self, conditions: impl Iterator<Item = &'e Expr>, span: &Span) {
+        if !self.always_one(conditions) && !self.partial {
+            let says = "if none of these conditions holds, this has no value";
+            self.problems
+                .push(warning("no-otherwise", says, span).help("end it with `, otherwise ...`"));
+        }
+    }
+
+    /// Both must have the same type and dimension; otherwise a problem points at both.
+    fn alike(&mut self, first: &Expr, other: &Expr) -> Option<()> {
+        let same = match (&first.ty, &other.ty) {
+            (Type::Word(_), Type::Word(_)) | (Type::Flag, Type::Flag) => true,
+            (Type::Word(_) | Type::Flag, _) | (_, Type::Word(_) | Type::Flag) => false,
+            _ => first.dimension() == other.dimension(),
+        };
+        if same {
+            return Some(());
+        }
+        let (a, b) = (first.ty.in_words(), other.ty.in_words());
+        self.refuse(
+            error("unit-mismatch", format!("one case is {a}, another {b}"), &other.span)
+                .label(b)
+                .also(&first.span, a),
+        )
+    }
+
+    /// `a is b`, of words, conditions or numbers.
+    pub fn equality(
+        &mut self,
+        operator: Operator,
+        left: &Phrase,
+        right: &Phrase,
+        text: &Text,
+        span: &Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
+        let Some(left) = self.expr(left, text, scope) else {
+            // The right side is checked as well, unless it may be a word of the part with the
+            // error.
+            if !matches!(right.node, Node::Path(_)) {
+                self.expr(right, text, scope);
+            }
+            return None;
+        };
+        let constant = |value| Expr {
+            kind: Kind::Constant(value),
+            ty: left.ty.clone(),
+            span: origin(right, text),
+        };
+        let right = match (&left.ty, &right.node) {
+            (Type::Word(choices), _) => {
+                constant(Scalar::Word(self.compared_word(&left, choices, right, text)?))
+            }
+            (Type::Flag, Node::Path(path)) if path == "true" || path == "false" => {
+                constant(Scalar::Flag(path == "true"))
+            }
+            _ => {
+                let right = self.expr(right, text, scope)?;
+                if left.ty != right.ty {
+                    return self.mismatch("compared", &left, &right);
+                }
+                right
+            }
+        };
+        let kind = Kind::Binary(operator, Box::new(left), Box::new(right));
+        self.folded(Expr { kind, ty: Type::Flag, span: span.clone() }, scope)
+    }
+
+    /// The word with which a word is compared: one of its choices.
+    fn compared_word(
+        &mut self,
+        left: &Expr,
+        choices: &[String],
+        right: &Phrase,
+        text: &Text,
+    ) -> Option<String> {
+        let at = right.place(text);
+        let word = match &right.node {
+            Node::Path(word) | Node::Quoted(word) => word.clone(),
+            Node::Number(Number { value, unit: None }) => value.to_string(),
+            _ => {
+                let says =
+                    format!("`{}` is a word and can only be compared with a word", words(left));
+                return self.refuse(error("not-a-word", says, &at).also(&left.span, "a word"));
+            }
+        };
+        // A choice parameter stands for its value, unless a word with its name is among the choices.
+        let meant = choices.contains(&word) || matches!(right.node, Node::Quoted(_));
+        let word = if meant { word } else { self.choice_word(&word, &at)? };
+        let is_campaign = matches!(left.kind, Kind::Column(index) if self.names.columns[index].kind == DatumKind::Campaign);
+        if is_campaign {
+            self.campaigns.push(Spanned::new(word.clone(), at));
+        } else if !choices.contains(&word) {
+            let says = format!("`{}` cannot be `{word}`", words(left));
+            return self.refuse(
+                error("unknown-choice", says, &at)
+                    .also(&left.span, format!("one of {}", choices.join(", ")))
+                    .suggest(&word, choices),
+            );
+        }
+        Some(word)
+    }
+}

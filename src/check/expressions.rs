@@ -1,0 +1,444 @@
+//! One walk over phrases that gives typed expressions: of numbers, words and conditions, of values of
+//! a group, and of samples. Where an expression stands decides which names it can use ([`Scope`]).
+
+use super::Checker;
+use super::evaluate::{evaluate, number};
+use super::functions::{function, is_signal_function};
+use super::names::normalised;
+use super::plan::{Expr, Kind, Operator, Origin, Scalar, Type};
+use super::scope::Scope;
+use super::values::Nothing;
+use crate::catalog::{FUNCTIONS, Function, MetricEntry, Reducer, SIGNAL_FUNCTIONS, Signature};
+use crate::problem::{Problem, error};
+use crate::source::Span;
+use crate::syntax::document::Text;
+use crate::syntax::phrase::{At, Node, Number, Phrase};
+use crate::units::Dimension;
+
+impl Type {
+    /// A number, or a number for each sample, of another dimension.
+    fn of_dimension(&self, dimension: Dimension) -> Self {
+        match *self {
+            Self::Samples { track, .. } => Self::Samples { dimension, track },
+            _ => Self::Number(dimension),
+        }
+    }
+
+    /// As in messages: `a force`, `a word`.
+    pub fn in_words(&self) -> String {
+        match self {
+            Self::Number(dimension) | Self::Samples { dimension, .. } => dimension.in_words(),
+            Self::Word(_) => "a word".into(),
+            Self::Flag => "a condition".into(),
+        }
+    }
+}
+
+impl Checker<'_> {
+    /// A typed expression; `None` after a problem.
+    pub fn expr(&mut self, phrase: &Phrase, text: &Text, scope: &mut Scope) -> Option<Expr> {
+        let origin = origin(phrase, text);
+        let span = origin.span.clone();
+        self.deeper(&span, |checker| checker.expr_inside(phrase, text, origin, scope))
+    }
+
+    /// An expression that is a condition.
+    pub fn condition(&mut self, phrase: &Phrase, text: &Text, scope: &mut Scope) -> Option<Expr> {
+        let condition = self.expr(phrase, text, scope)?;
+        self.flag_type(&condition)?;
+        Some(condition)
+    }
+
+    fn expr_inside(
+        &mut self,
+        phrase: &Phrase,
+        text: &Text,
+        span: Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
+        let (kind, ty) = match &phrase.node {
+            node if scope.samples && !computed_from_samples(node) => {
+                let number = self.expr(phrase, text, &mut Scope::section())?;
+                self.number_type(&number)?;
+                return Some(number);
+            }
+            Node::Number(Number { value, .. }) if !value.is_finite() => {
+                let says = format!("`{}` is too large for a number", span.words);
+                return self.refuse(error("not-finite", says, &span));
+            }
+            Node::Number(number) => {
+                (Kind::Constant(Scalar::Number(number.value)), Type::Number(number.dimension()))
+            }
+            Node::Percentile(percent) if scope.group.is_some() => {
+                return self.group_percentile(*percent, &span, scope);
+            }
+            Node::Percentile(percent) => {
+                return self.own_reducer(Reducer::Percentile(*percent), span, scope);
+            }
+            Node::Path(path) if scope.samples => return self.samples_named(path, &span, scope),
+            Node::Path(path) => return self.path(path, &span, scope),
+            Node::Quoted(name) => {
+                let says =
+                    format!("`\"{name}\"` is a name, which only a word can be compared with");
+                return self.refuse(
+                    error("not-a-number", says, &span)
+                        .help("for instance: `campaign is \"series 2\"`"),
+                );
+            }
+            Node::Negative(inner) => {
+                let inner = self.expr(inner, text, scope)?;
+                self.number_type(&inner)?;
+                let ty = inner.ty.clone();
+                (Kind::Negative(Box::new(inner)), ty)
+            }
+            Node::Not(inner) => {
+                (Kind::Not(Box::new(self.condition(inner, text, scope)?)), Type::Flag)
+            }
+            Node::Magnitude(inner) => {
+                let inner = self.expr(inner, text, scope)?;
+                self.number_type(&inner)?;
+                let ty = inner.ty.clone();
+                (Kind::Call(function("magnitude")?, vec![inner]), ty)
+            }
+            Node::Power(inner, exponent) => {
+                let inner = self.expr(inner, text, scope)?;
+                let Some(dimension) = self.number_type(&inner)?.power(*exponent) else {
+                    let says = "this power gives exponents of units that are too large";
+                    return self.refuse(error("power", says, &span));
+                };
+                let ty = inner.ty.of_dimension(dimension);
+                (Kind::Power(Box::new(inner), *exponent), ty)
+            }
+            Node::Binary(operator @ (Operator::Is | Operator::IsNot), left, right) => {
+                return self.equality(*operator, left, right, text, &span, scope);
+            }
+            // `2/3 of std` is two thirds of it. `2/share of std` is ambiguous.
+            Node::Binary(Operator::Divide, _, right)
+                if !scope.samples
+                    && matches!(&right.node, Node::Reduced(factor, _) if self.is_number_name(factor)) =>
+            {
+                let says = "this can be read as `a / (b of c)` and as `(a / b) of c`";
+                return self.refuse(error("ambiguous", says, &span).help("use parentheses"));
+            }
+            Node::Binary(operator, left, right) => {
+                let inputs = scope.inputs.len();
+                let found = self.binary(*operator, left, right, text, span, scope)?;
+                if matches!(found.kind, Kind::Constant(_)) {
+                    // `false and p0.15 > p99.85` does not need the records.
+                    scope.inputs.truncate(inputs);
+                }
+                return Some(found);
+            }
+            Node::Near { .. } => return self.near(phrase, text, scope).map(|near| near.holds),
+            Node::Call(name, arguments) if scope.samples && is_signal_function(&name.node) => {
+                return self.over_axis(name, arguments, text, span, scope);
+            }
+            Node::Call(name, arguments)
+                if !scope.samples && matches!(name.node.as_str(), "measured" | "simulated") =>
+            {
+                return self.on_side(name, arguments, text, &span, scope);
+            }
+            Node::Call(name, arguments) if self.metric_called(name, scope) => {
+                return self.metric_call(name, arguments, text, &span, scope);
+            }
+            Node::Call(name, arguments) => {
+                let function = self.function(name, arguments.len(), text)?;
+                let arguments: Vec<Option<Expr>> =
+                    arguments.iter().map(|argument| self.expr(argument, text, scope)).collect();
+                let arguments = arguments.into_iter().collect::<Option<Vec<_>>>()?;
+                for argument in &arguments {
+                    self.number_type(argument)?;
+                }
+                let dimension = self.function_type(function, &arguments)?;
+                let ty = self.of_one_record(dimension, &arguments.iter().collect::<Vec<_>>())?;
+                (Kind::Call(function, arguments), ty)
+            }
+            // `share of std` with a parameter `share` is a product, `mean of Y` a value of a
+            // signal.
+            Node::Reduced(factor, of) if self.is_number_name(factor) => {
+                return self.binary(Operator::Multiply, factor, of, text, span, scope);
+            }
+            Node::Reduced(reducer, of) if scope.samples => {
+                return self.level(reducer, of, text, span, scope);
+            }
+            Node::Reduced(reducer, of) if let Node::ForEach(one, keys) = &of.node => {
+                return self.of_each_group(reducer, one, keys, text, &span, scope);
+            }
+            Node::ForEach(_, keys) => return self.many_numbers(keys, text, &span),
+            Node::Weighted(of, by) => return self.weighted(of, by, text, &span, scope),
+            Node::Reduced(reducer, of) if self.other_quantity(of, scope).is_some() => {
+                return self.of_other(reducer, of, text, &span, scope);
+            }
+            Node::Reduced(_, of) if scope.value.is_some() => {
+                return self.no_such_quantity(of, text, &span);
+            }
+            Node::Reduced(reducer, of) if scope.group.is_some() => {
+                return self.group_data(reducer, of, text, &span, scope);
+            }
+            Node::Bound { upper, confidence, of, bootstrap } => {
+                return self.group_bound((*upper, *confidence, *bootstrap), of, text, &span, scope);
+            }
+            Node::Share { of_sections, condition } => {
+                return self.group_share(*of_sections, condition, None, text, &span, scope);
+            }
+            Node::Fit(fit) => return self.group_fit(fit, text, &span, scope),
+            Node::Reduced(reducer, signal) => {
+                return self.reduced(reducer, signal, text, &span, scope);
+            }
+            Node::Over(value, over) => return self.slope_over(value, over, text, &span, scope),
+            Node::PlaceOf(name, words) if scope.samples => {
+                return self.placed(name, words, text, &span, scope);
+            }
+            Node::Through(inner, filter) if scope.samples => {
+                return self.filtered(inner, filter, text, span, scope);
+            }
+            Node::PlaceOf(name, _) => return self.not_a_number(&name.node, &span),
+            Node::Through(inner, _) => return self.not_a_number(&inner.words(text), &span),
+            Node::Cases(arms, otherwise) => {
+                return self.cases(arms, otherwise.as_deref(), text, &span, scope);
+            }
+        };
+        self.folded(Expr { kind, ty, span }, scope)
+    }
+
+    fn not_a_number(&mut self, signal: &str, span: &Span) -> Option<Expr> {
+        let says = format!("expected a number, `{signal}` is a signal");
+        self.refuse(
+            error("signal-not-number", says, span)
+                .help("take a number from it: `mean of ...`, `range of ...`"),
+        )
+    }
+
+    /// Arithmetic, a comparison of numbers, or conditions that are joined.
+    fn binary(
+        &mut self,
+        operator: Operator,
+        left: &Phrase,
+        right: &Phrase,
+        text: &Text,
+        span: Origin,
+        scope: &mut Scope,
+    ) -> Option<Expr> {
+        let (left, right) = (self.expr(left, text, scope), self.expr(right, text, scope));
+        let (left, right) = (left?, right?);
+        let ty = self.binary_type(operator, &left, &right, scope)?;
+        if operator == Operator::Divide && number(&right, &Nothing) == Ok(0.0) {
+            return self.refuse(
+                error("not-finite", "this is a division by zero", &span).also(&right.span, "zero"),
+            );
+        }
+        let kind = Kind::Binary(operator, Box::new(left), Box::new(right));
+        self.folded(Expr { kind, ty, span }, scope)
+    }
+
+    fn binary_type(
+        &mut self,
+        operator: Operator,
+        left: &Expr,
+        right: &Expr,
+        scope: &Scope,
+    ) -> Option<Type> {
+        if matches!(operator, Operator::And | Operator::Or) {
+            let (a, b) = (self.flag_type(left), self.flag_type(right));
+            return (a.is_some() && b.is_some()).then_some(Type::Flag);
+        }
+        let (a, b) = (self.number_type(left), self.number_type(right));
+        let (a, b) = (a?, b?);
+        let dimension = match operator {
+            Operator::Multiply => a * b,
+            Operator::Divide
+                if matches!(right.kind, Kind::Constant(Scalar::Number(0.0))) && !scope.samples =>
+            {
+                return self.refuse(error("not-finite", "this divides by zero", &right.span));
+            }
+            Operator::Divide => a / b,
+            Operator::Add | Operator::Subtract if a == b => a,
+            Operator::Subtract if !scope.samples => {
+                return self.mismatch("subtracted", left, right);
+            }
+            Operator::Add | Operator::Subtract => return self.mismatch("added", left, right),
+            _ if a == b => return Some(Type::Flag),
+            _ => return self.mismatch("compared", left, right),
+        };
+        self.of_one_record(dimension, &[left, right])
+    }
+
+    /// The type of what is computed from these parts, sample by sample if any has samples. Track and
+    /// vehicle records have different samples and cannot be combined.
+    pub fn of_one_record(&mut self, dimension: Dimension, parts: &[&Expr]) -> Option<Type> {
+        let mut sampled = parts.iter().filter(|part| matches!(part.ty, Type::Samples { .. }));
+        let Some(first) = sampled.next() else { return Some(Type::Number(dimension)) };
+        let track = first.track();
+        match sampled.find(|other| other.track() != track) {
+            None => Some(Type::Samples { dimension, track }),
+            Some(other) => self.refuse(
+                error(
+                    "mixed-records",
+                    "a channel of the track record cannot be combined with one of simulation and measurement, sample by sample",
+                    &other.span,
+                )
+                .also(&first.span, "the other record"),
+            ),
+        }
+    }
+
+    /// Reports two operands that do not agree.
+    pub fn mismatch<T>(&mut self, done: &str, left: &Expr, right: &Expr) -> Option<T> {
+        let problem = unlike(done, left, right);
+        // A number as it is written, without a unit.
+        let bare = |expr: &Expr| {
+            expr.ty == Type::Number(Dimension::ONE)
+                && matches!(expr.kind, Kind::Constant(Scalar::Number(_)))
+        };
+        let (number, other) = if bare(left) { (left, right) } else { (right, left) };
+        let written = number.span.text();
+        match other.ty {
+            Type::Number(dimension)
+                if done == "compared" && bare(number) && written.parse::<f64>().is_ok() =>
+            {
+                let unit = self.own_unit("", dimension);
+                self.refuse(problem.help(format!("a number has its unit: `{written} {unit}`")))
+            }
+            _ => self.refuse(problem),
+        }
+    }
+
+    /// Replaces an expression of constants by its value, except among samples; a problem where there
+    /// is none, such as for a division by zero.
+    pub fn folded(&mut self, expr: Expr, scope: &Scope) -> Option<Expr> {
+        if matches!(expr.kind, Kind::Constant(_)) {
+            return Some(expr);
+        }
+        let known =
+            |part: &Expr| matches!(part.kind, Kind::Constant(_)) || !part.parts().is_empty();
+        match evaluate(&expr, &Nothing) {
+            Ok(value) if !scope.samples => Some(Expr { kind: Kind::Constant(value), ..expr }),
+            Err(reason) if !expr.any(&|part| !known(part)) => {
+                self.refuse(error("not-finite", reason, &expr.span))
+            }
+            _ => Some(expr),
+        }
+    }
+
+    /// The dimension of a number or of samples.
+    pub fn number_type(&mut self, expr: &Expr) -> Option<Dimension> {
+        if let Type::Number(dimension) | Type::Samples { dimension, .. } = expr.ty {
+            return Some(dimension);
+        }
+        let says = format!("expected a number, this is {}", expr.ty.in_words());
+        self.refuse(error("not-a-number", says, &expr.span))
+    }
+
+    /// Whether it is a condition; a problem if not.
+    pub fn flag_type(&mut self, expr: &Expr) -> Option<()> {
+        if expr.ty == Type::Flag {
+            return Some(());
+        }
+        let says = format!("expected a condition, this is {}", expr.ty.in_words());
+        self.refuse(
+            error("not-a-condition", says, &expr.span)
+                .help("compare it: `... is ...`, `... <= ...`"),
+        )
+    }
+
+    fn function(
+        &mut self,
+        name: &At<String>,
+        count: usize,
+        text: &Text,
+    ) -> Option<&'static Function> {
+        let span = name.place(text);
+        let Some(found) = function(&name.node) else {
+            let problem =
+                error("unknown-function", format!("`{}` is not a function", name.node), &span);
+            return self.refuse(if MetricEntry::called(&name.node).is_some() {
+                problem.help("it is a metric, which compares two signals: use it in the `metric` of a quantity")
+            } else if is_signal_function(&name.node) {
+                problem.help(format!("it gives a signal, expected a number: `rms of {}(...)`", name.node))
+            } else {
+                problem.suggest(&name.node, FUNCTIONS.iter().map(|function| function.name).chain(SIGNAL_FUNCTIONS.map(|(name, ..)| name)))
+            });
+        };
+        let needed = if found.signature == Signature::PairSame { 2 } else { 1 };
+        if count != needed {
+            let says = format!(
+                "wrong number of arguments of `{}`: expected {needed}, found {count}",
+                found.name
+            );
+            return self.refuse(error("arguments", says, &span));
+        }
+        Some(found)
+    }
+
+    /// The dimension of the function's value; a problem at the argument whose dimension does not
+    /// agree.
+    fn function_type(&mut self, function: &Function, arguments: &[Expr]) -> Option<Dimension> {
+        let (first, second) = (arguments.first()?, arguments.get(1));
+        let (name, of) = (function.name, first.dimension());
+        let (says, at) = match function.signature {
+            Signature::Same => return Some(of),
+            Signature::ToPlain => return Some(Dimension::ONE),
+            Signature::Plain if of == Dimension::ONE => return Some(of),
+            Signature::Plain => {
+                let says =
+                    format!("`{name}` needs a plain number or an angle, this is {}", of.in_words());
+                (says, first)
+            }
+            Signature::Root => match of.root() {
+                Some(root) => return Some(root),
+                None => (format!("{} has no square root", of.in_words()), first),
+            },
+            Signature::PairSame if second?.dimension() == of => return Some(of),
+            Signature::PairSame => {
+                let says = format!(
+                    "`{name}` needs two arguments of the same dimension, these are {} and {}",
+                    of.in_words(),
+                    second?.dimension().in_words()
+                );
+                (says, second?)
+            }
+        };
+        let problem = error("unit-mismatch", says, &at.span);
+        let pair = function.signature == Signature::PairSame;
+        self.refuse(if pair { problem.also(&first.span, of.in_words()) } else { problem })
+    }
+}
+
+/// Two operands of different types or dimensions; the problem points at both.
+pub fn unlike(done: &str, left: &Expr, right: &Expr) -> Problem {
+    let (a, b) = (left.ty.in_words(), right.ty.in_words());
+    error("unit-mismatch", format!("{a} and {b} cannot be {done}"), &right.span)
+        .label(b)
+        .also(&left.span, a)
+}
+
+/// The place and the words of a whole field.
+pub fn whole(text: &Text) -> Origin {
+    Origin { span: text.span.clone(), words: normalised(&text.text).into() }
+}
+
+/// Whether a node over samples is computed sample by sample; all others are numbers that are
+/// constant along the record.
+fn computed_from_samples(node: &Node) -> bool {
+    match node {
+        Node::Binary(operator, ..) => matches!(
+            operator,
+            Operator::Add | Operator::Subtract | Operator::Multiply | Operator::Divide
+        ),
+        Node::Path(_)
+        | Node::PlaceOf(..)
+        | Node::Negative(_)
+        | Node::Magnitude(_)
+        | Node::Power(..)
+        | Node::Call(..)
+        | Node::Through(..)
+        | Node::Reduced(..)
+        | Node::Cases(..) => true,
+        _ => false,
+    }
+}
+
+/// The place and the words of a phrase.
+pub fn origin(phrase: &Phrase, text: &Text) -> Origin {
+    Origin { span: phrase.place(text), words: phrase.words(text).into() }
+}
