@@ -159,7 +159,7 @@ fn intervals_of_drawn_quartiles_hold_the_counted_ones() {
 /// rosettacode.org/wiki/Pseudo-random_numbers/Splitmix64.
 #[test]
 fn random_numbers_are_those_of_the_published_generator() {
-    let mut random = SplitMix64(1_234_567);
+    let mut random = SplitMix64::new(1_234_567);
     let drawn: Vec<u64> = (0..5).map(|_| random.number()).collect();
     assert_eq!(
         drawn,

@@ -10,7 +10,7 @@ use crate::run::values::Row;
 use crate::units;
 
 /// Stands for a section that is counted by itself.
-const SECTION: Row = Row::single(0, 0, None, (0.0, 0));
+static SECTION: Row = Row::single(0, 0, None, (0.0, 0));
 
 /// What is reported of a quantity, group by group.
 pub fn of_quantity(graph: &Graph, nodes: &[NodeId], judging: &Judging<'_>) -> Vec<Reported> {

@@ -186,7 +186,7 @@ fn given(key: &str, title: &str, unit: Option<&Unit>, rule: &str) -> DatumNeed {
 fn of_every_table(plan: &Plan) -> Vec<DatumNeed> {
     let optional = |key: &str, title: &str, rule: &str| DatumNeed {
         required: false,
-        default: Some(crate::run::sections::facts::NOT_STATED.into()),
+        default: Some(NOT_STATED.into()),
         ..given(key, title, None, rule)
     };
     let of_repeats = |quantity: &&Quantity| quantity.evaluation.of_repeats();
@@ -256,9 +256,7 @@ fn datum_need(datum: &Datum, users: Users) -> DatumNeed {
         Scalar::Flag(flag) => flag.to_string(),
     });
     let range = datum.range.as_ref().map(|range| range.words.clone());
-    let default = default.or_else(|| {
-        datum.may_be_absent.then(|| crate::run::sections::facts::NOT_STATED.to_string())
-    });
+    let default = default.or_else(|| datum.may_be_absent.then(|| NOT_STATED.to_string()));
     DatumNeed {
         key: datum.key.clone(),
         title: datum.title.clone(),

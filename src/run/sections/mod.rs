@@ -30,4 +30,3 @@ pub use needed::{chosen, needed};
 pub use requirements::sections_in_words;
 pub use unit::{Extent, Unit};
 pub use units::of_run;
-pub use wanted::Point;
