@@ -139,7 +139,7 @@ impl Opened<'_> {
     /// The bytes of the wanted columns of a group, with checked sizes.
     fn chunks(&mut self, group: usize, columns: &[Column]) -> Result<PushBuffers, Problem> {
         let shown = self.shown;
-        let mut chunks = self.store.buffers();
+        let mut chunks = PushBuffers::default();
         let mut memory = 0_u64;
         self.store.ahead(&self.ranges(group, columns), shown)?;
         for column in columns {
@@ -154,11 +154,10 @@ impl Opened<'_> {
             })?;
             memory += range.end - range.start;
             self.within(memory, "a row group")?;
-            let pages =
-                self.store.add(range, &mut chunks, shown, |bytes| guard::pages(bytes, chunk))?;
-            let pages = pages.map_err(|why| {
-                damaged(shown, &format!("row group {}, column `{}`: {why}", group + 1, column.name))
-            })?;
+            let bytes = self.store.read(range.clone(), shown)?;
+            let pages = guard::pages(&bytes, chunk)
+                .map_err(|why| damaged(shown, &format!("{}: {why}", place())))?;
+            chunks.push_range(range, bytes);
             memory += pages.memory;
             self.within(memory, "a row group")?;
         }

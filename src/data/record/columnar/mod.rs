@@ -45,7 +45,7 @@ pub(super) fn read(at: At<'_>, shown: &str, wanted: &[Wanted]) -> Result<Run, Ve
         At::Disk(path) => {
             let bytes = read_file(path, shown, LARGEST_RECORD)?;
             let hash = sha256(&bytes);
-            (Opened::open(Store::memory(bytes), shown)?, hash)
+            (Opened::open(Store::Memory(bytes.into()), shown)?, hash)
         }
         At::Object(stored) => runs::open_object(stored, shown, &Known::default())?,
     };

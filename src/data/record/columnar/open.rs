@@ -6,9 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use bytes::Bytes;
-use parquet::arrow::push_decoder::PushBuffers;
 use parquet::basic::Compression;
-use parquet::file::reader::ChunkReader;
 
 use super::layout::{Layout, damaged, not_numbers};
 use super::{Column, MAGIC, Wanted, find_columns, guard};
@@ -41,7 +39,7 @@ pub(in crate::data::record) enum At<'a> {
 /// Where the bytes are.
 pub(super) enum Store {
     /// The whole file: its parts are used where they lie, without a copy.
-    Memory(PushBuffers, u64),
+    Memory(Bytes),
     Disk {
         file: disk::Reader,
         path: PathBuf,
@@ -75,49 +73,9 @@ impl Store {
         Ok(store)
     }
 
-    pub fn memory(bytes: Vec<u8>) -> Self {
-        let size = bytes.len() as u64;
-        let mut whole = PushBuffers::default();
-        whole.push_range(0..size, bytes.into());
-        Self::Memory(whole, size)
-    }
-
-    /// What a decoder is given before any part is added.
-    pub fn buffers(&self) -> PushBuffers {
-        match self {
-            Self::Memory(whole, _) => whole.clone(),
-            Self::Disk { .. } | Self::Object(_) => PushBuffers::default(),
-        }
-    }
-
-    /// Adds a part of the file to the buffers of a decoder; `look` sees its bytes.
-    pub fn add<T>(
-        &mut self,
-        range: Range<u64>,
-        buffers: &mut PushBuffers,
-        shown: &str,
-        look: impl FnOnce(&[u8]) -> T,
-    ) -> Result<T, Problem> {
-        match self {
-            Self::Memory(whole, _) => {
-                let count = usize::try_from(range.end - range.start).unwrap_or(usize::MAX);
-                let bytes = whole
-                    .get_bytes(range.start, count)
-                    .map_err(|error| damaged(shown, &error.to_string()))?;
-                Ok(look(&bytes))
-            }
-            Self::Disk { .. } | Self::Object(_) => {
-                let bytes = self.read(range.clone(), shown)?;
-                let seen = look(&bytes);
-                buffers.push_range(range, bytes);
-                Ok(seen)
-            }
-        }
-    }
-
     pub fn size(&self) -> u64 {
         match self {
-            Self::Memory(_, size) => *size,
+            Self::Memory(bytes) => bytes.len() as u64,
             Self::Disk { size, .. } => *size,
             Self::Object(stored) => stored.object.size(),
         }
@@ -126,7 +84,7 @@ impl Store {
     /// The path or the address.
     pub fn name(&self) -> &Path {
         match self {
-            Self::Memory(..) => Path::new(""),
+            Self::Memory(_) => Path::new(""),
             Self::Disk { path, .. } => path,
             Self::Object(stored) => Path::new(stored.object.url()),
         }
@@ -149,40 +107,36 @@ impl Store {
         if range.start > range.end || range.end > self.size() {
             return Err(damaged(shown, "a part of it lies outside the file"));
         }
-        let count = usize::try_from(range.end - range.start)
-            .map_err(|_| damaged(shown, "a part of it is too large"))?;
-        match self {
-            Self::Memory(whole, _) => whole
-                .get_bytes(range.start, count)
-                .map_err(|error| damaged(shown, &error.to_string())),
-            Self::Disk { file, path, held, .. } => {
-                if let Some(kept) = held.as_ref().and_then(|held| held.get(path, &range)) {
-                    return Ok(kept);
-                }
-                let mut bytes = vec![0; count];
-                let done = file
-                    .seek(SeekFrom::Start(range.start))
-                    .and_then(|_| file.read_exact(&mut bytes));
-                let bytes =
-                    done.map(|()| Bytes::from(bytes)).map_err(|error| unreadable(shown, &error))?;
-                if let Some(held) = held {
-                    held.keep(path, range.start, bytes.clone());
-                }
-                Ok(bytes)
-            }
-            Self::Object(Stored { object, held }) => {
-                let name = Path::new(object.url());
-                if let Some(kept) = held.get(name, &range) {
-                    return Ok(kept);
-                }
-                let read = object
-                    .read(std::slice::from_ref(&range))
-                    .map_err(|why| unreadable(shown, &why))?;
-                let bytes = read.into_iter().next().unwrap_or_default();
-                held.keep(name, range.start, bytes.clone());
-                Ok(bytes)
-            }
+        let at = |place: u64| {
+            usize::try_from(place).map_err(|_| damaged(shown, "a part of it is too large"))
+        };
+        let held = match self {
+            Self::Memory(bytes) => return Ok(bytes.slice(at(range.start)?..at(range.end)?)),
+            Self::Disk { held, .. } => held.clone(),
+            Self::Object(stored) => Some(stored.held.clone()),
+        };
+        if let Some(kept) = held.as_ref().and_then(|held| held.get(self.name(), &range)) {
+            return Ok(kept);
         }
+        let bytes = match self {
+            Self::Memory(_) => Bytes::new(),
+            Self::Disk { file, .. } => {
+                let mut bytes = vec![0; at(range.end - range.start)?];
+                file.seek(SeekFrom::Start(range.start))
+                    .and_then(|_| file.read_exact(&mut bytes))
+                    .map_err(|error| unreadable(shown, &error))?;
+                bytes.into()
+            }
+            Self::Object(stored) => {
+                let read = stored.object.read(std::slice::from_ref(&range));
+                let read = read.map_err(|why| unreadable(shown, &why))?;
+                read.into_iter().next().unwrap_or_default()
+            }
+        };
+        if let Some(held) = held {
+            held.keep(self.name(), range.start, bytes.clone());
+        }
+        Ok(bytes)
     }
 }
 
