@@ -10,7 +10,7 @@ use fishplate::data::Campaign;
 use fishplate::library;
 use fishplate::metrics::{cluster, percentile, statistics, weighted};
 use fishplate::problem::Problems;
-use fishplate::result::{Certification, StatisticResult, Verdict};
+use fishplate::result::{Certification, Scope, StatisticResult, Verdict};
 use fishplate::run::{Settings, Shifts, evaluate};
 use fishplate::source::Source;
 use fishplate::study::{Settings as StudySettings, case::Case, selections};
@@ -70,8 +70,9 @@ fn weights_and_groups_agree_with_numpy() {
         } else {
             format!("zone {}", text("zone"))
         };
-        let result =
-            all(&found).find(|known| known.name == text("estimate") && known.scope == scope);
+        let result = all(&found).find(|known| {
+            known.name.to_string() == text("estimate") && known.scope.to_string() == scope
+        });
         let result = result.unwrap_or_else(|| panic!("{one} is missing"));
         let factor = if result.unit == "km/h" { 1.0 / 3.6 } else { 1.0 };
         let (value, want) =
@@ -183,13 +184,13 @@ fn groups_need_their_pairs() {
     // Zones 1 to 3 have three sections, zone 4 four; straight track (zone 1) has two sides.
     let reason = "zone 2, wheelset 1: 3 pairs of section and signal; at least 4 required; also too few in 7 other groups";
     assert_eq!(found.quantities[0].reason.as_deref(), Some(reason));
-    for one in all(&found).filter(|one| one.name == "mean") {
-        let short = one.scope.starts_with("zone 2") || one.scope.starts_with("zone 3");
+    for one in all(&found).filter(|one| one.name.to_string() == "mean") {
+        let short = ["2", "3"].iter().any(|zone| one.scope == Scope::zone(zone));
         assert_eq!((one.value.is_none(), one.holds.is_none()), (short, short), "{}", one.scope);
         let says = "3 pairs of section and signal; at least 4 required";
         assert_eq!(one.reason.as_deref(), short.then_some(says), "{}", one.scope);
     }
-    assert!(all(&found).any(|one| one.name == "std" && one.value.is_some()));
+    assert!(all(&found).any(|one| one.name.to_string() == "std" && one.value.is_some()));
     let enough =
         |minimum: &str| certified(&assessed(&format!("{minimum}{limit}")), &coach()).verdict;
     assert_eq!(enough("  minimum pairs  3 for each zone and wheelset\n"), Verdict::Validated);
@@ -352,7 +353,7 @@ fn repeats_are_values_of_a_regression() {
     for (found, n) in found.iter().zip([4, 3, 1]) {
         for one in all(found).filter(|one| one.name.starts_with("prediction")) {
             let wheelset =
-                &one.group.iter().find(|(key, _)| key == "wheelset").expect("a wheelset").1;
+                &one.scope.keys.iter().find(|(key, _)| key == "wheelset").expect("a wheelset").1;
             let wanted = |known: &&Value| {
                 known["estimate"] == "loading_2d"
                     && known["zone"] == "4"
