@@ -99,6 +99,12 @@ impl Problem {
         self
     }
 
+    /// At a place, if it has none yet: a problem of a file as a whole is shown where it is named.
+    #[must_use]
+    pub fn or_at(self, span: &Span) -> Self {
+        if self.at.is_some() { self } else { self.at(span) }
+    }
+
     #[must_use]
     pub fn label(mut self, text: impl Into<String>) -> Self {
         self.label = Some(text.into());
@@ -115,6 +121,15 @@ impl Problem {
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.help = Some(text.into());
         self
+    }
+
+    /// Adds help if there is some.
+    #[must_use]
+    pub fn help_if(self, help: Option<impl Into<String>>) -> Self {
+        match help {
+            Some(help) => self.help(help),
+            None => self,
+        }
     }
 
     /// Adds the help "did you mean ...?" with a known word.

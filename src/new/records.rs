@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::data::record::{Wanted, read_headings, read_record};
 use crate::metrics::resample::interpolate;
 use crate::problem::{Problem, Problems};
+use crate::units::number::significant;
 use crate::units::{Dimension, Unit};
 
 pub const TIME: &str = "time";
@@ -78,12 +79,10 @@ impl Series {
 
     /// The same with other times, by linear interpolation.
     fn at(&self, time: Vec<f64>) -> Self {
+        // Interpolated values have no more digits than a measurement can have.
         let of = |values: &[f64]| {
-            interpolate(&self.time, values, &time)
-                .unwrap_or_default()
-                .into_iter()
-                .map(nine_digits)
-                .collect()
+            let values = interpolate(&self.time, values, &time).unwrap_or_default();
+            values.into_iter().map(|value| significant(value, 9)).collect()
         };
         let channels = self
             .channels
@@ -106,11 +105,6 @@ impl Series {
     }
 }
 
-/// Interpolated values have no more digits than a measurement can have.
-fn nine_digits(value: f64) -> f64 {
-    format!("{value:.8e}").parse().unwrap_or(value)
-}
-
 impl Pair {
     /// Reads both records; `told` takes what was changed.
     ///
@@ -124,7 +118,7 @@ impl Pair {
     ) -> Option<Self> {
         let mut one = |path: &Path| {
             let read = series(path, told);
-            read.map_err(|found| found.into_iter().for_each(|problem| problems.push(problem))).ok()
+            read.map_err(|found| problems.add(found)).ok()
         };
         let (simulated, measured) = (one(simulated), one(measured));
         let (mut simulated, measured) = (simulated?, measured?);
@@ -264,11 +258,7 @@ fn series(path: &Path, told: &mut Vec<String>) -> Result<Series, Vec<Problem>> {
     if !faults.is_empty() {
         return Err(faults);
     }
-    let wanted: Vec<Wanted> = headings
-        .iter()
-        .map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true })
-        .collect();
-    let record = read_record(path, &shown, &wanted)?;
+    let record = read_record(path, &shown, &Wanted::all(&headings))?;
     let axis = |name: &str, dimension: Dimension| {
         record
             .columns

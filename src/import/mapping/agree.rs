@@ -198,9 +198,7 @@ fn agree_side(
             None => problem,
         });
     }
-    left_out_of(side, &left_out, "not mapped")
-        .into_iter()
-        .for_each(|problem| problems.push(problem));
+    problems.add(left_out_of(side, &left_out, "not mapped"));
     let others = maps.iter().chain(side.distance.iter().filter_map(|distance| match distance {
         Distance::Channel(map) => Some(map),
         Distance::Speed { .. } | Distance::Trigger { .. } => None,
@@ -289,7 +287,7 @@ fn units(map: &ChannelMap, need: &ChannelNeed, problems: &mut Problems) {
     let Ok(wanted) = Unit::parse(&need.unit) else { return };
     let stated = map.unit.iter().chain(&map.written_in).map(|unit| (&unit.value, &unit.span));
     for (unit, span) in
-        stated.chain(map.offset.iter().map(|offset| (&offset.value.1, &offset.span)))
+        stated.chain(map.offset.iter().map(|offset| (&offset.value.unit, &offset.span)))
     {
         if unit.dimension != wanted.dimension {
             let says = format!(
