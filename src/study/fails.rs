@@ -57,8 +57,9 @@ impl Fails {
             columns[from..to].iter().for_each(|column| self.one(row, *column));
             return;
         }
-        let singles = columns[from..first * STEP].iter().chain(&columns[last * STEP..to]);
-        singles.for_each(|column| self.one(row, *column));
+        for part in [from..first * STEP, last * STEP..to] {
+            columns[part].iter().for_each(|column| self.one(row, *column));
+        }
         let start = row as usize * self.words;
         let set = |cut: usize| &self.from[cut * self.words..(cut + 1) * self.words];
         let words = self.bits[start..start + self.words].iter_mut();
@@ -123,6 +124,25 @@ impl Fails {
                 let count = &mut counts[row * self.columns + column];
                 *count = count.saturating_add(u8::from(self.has(row, column)));
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whole sets and single columns together are the columns between two positions.
+    #[test]
+    fn ranges_of_an_order_are_marked() {
+        let order: Vec<u32> = (0..331_u32).map(|k| k * 97 % 331).collect();
+        for (from, to) in [(0, 331), (0, 0), (5, 60), (63, 65), (64, 128), (1, 330), (200, 331)] {
+            let (mut fails, mut single) = (Fails::new(2, 331), Fails::new(2, 331));
+            fails.order(&order);
+            fails.between(1, &order, from, to);
+            order[from..to].iter().for_each(|column| single.one(1, *column));
+            assert_eq!(fails.words(), single.words(), "{from} to {to}");
+            assert_eq!(fails.count(), (to - from) as u64);
         }
     }
 }

@@ -18,6 +18,11 @@ pub struct Window {
 }
 
 impl Window {
+    /// With room for so many values.
+    pub fn with_room(values: usize) -> Self {
+        Self { kept: vec![0.0; values], ..Self::default() }
+    }
+
     /// Counts and stores the values of a row.
     #[inline(always)]
     pub fn look(&mut self, row: &Row, q: &[f64], y: &[f64]) {
@@ -52,18 +57,24 @@ impl Window {
         if rank < self.below || next >= upto_kept + at_high {
             return None;
         }
-        let mut value = |rank: u64| {
-            if rank < upto_low {
-                self.low
-            } else if rank >= upto_kept {
-                self.high
-            } else {
-                let kept = &mut self.kept[..self.length];
-                *kept.select_nth_unstable_by((rank - upto_low) as usize, f64::total_cmp).1
-            }
+        let kept =
+            |rank: u64| (upto_low..upto_kept).contains(&rank).then(|| (rank - upto_low) as usize);
+        let beyond = |rank: u64| if rank < upto_low { self.low } else { self.high };
+        let numbers = &mut self.kept[..self.length];
+        // The number of a place, and the least of those that follow.
+        let mut selected = |place: usize| {
+            let (_, value, above) = numbers.select_nth_unstable_by(place, f64::total_cmp);
+            (*value, above.iter().copied().fold(f64::INFINITY, f64::min))
         };
-        let found = value(rank);
-        Some((found, if next == rank { found } else { value(next) }))
+        Some(match (kept(rank), kept(next)) {
+            (Some(place), Some(_)) => {
+                let (value, above) = selected(place);
+                (value, if next == rank { value } else { above })
+            }
+            (Some(place), None) => (selected(place).0, beyond(next)),
+            (None, Some(place)) => (beyond(rank), selected(place).0),
+            (None, None) => (beyond(rank), beyond(next)),
+        })
     }
 
     /// Number of values that meet a condition that holds below the window and fails above it.
@@ -86,4 +97,36 @@ fn keep(numbers: &mut [f64], wanted: impl Fn(f64) -> bool) -> usize {
         length += usize::from(wanted(number));
     }
     length
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of numbers with many equal ones: wherever the bounds are, ranks inside are those of the
+    /// sorted numbers, others are refused.
+    #[test]
+    fn ranks_are_those_of_sorted_numbers() {
+        let numbers: Vec<f64> = (0..600).map(|k| f64::from(k * 7919 % 211) / 10.0 - 9.0).collect();
+        let mut sorted = numbers.clone();
+        sorted.sort_unstable_by(f64::total_cmp);
+        for (low, high) in [(-30.0, 30.0), (-4.0, 2.5), (0.0, 0.0), (1.05, 1.06), (3.0, 90.0)] {
+            for rank in 0..599 {
+                for next in [rank, rank + 1] {
+                    let mut window = Window { low, high, ..Window::with_room(3) };
+                    for part in numbers.chunks(77) {
+                        window.look(&Row::default(), part, &vec![0.0; part.len()]);
+                    }
+                    let (value, above) = (sorted[rank], sorted[next]);
+                    let inside = low <= value && above <= high;
+                    let found = window.ranked(rank as u64, next as u64);
+                    assert_eq!(found, inside.then_some((value, above)), "{low} {high} {rank}");
+                    if inside {
+                        let below = sorted.iter().filter(|number| **number <= value).count();
+                        assert_eq!(window.counted(|number| number <= value), below as u64);
+                    }
+                }
+            }
+        }
+    }
 }
