@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use schemars::{JsonSchema, generate::SchemaSettings};
 
-use super::output::{Console, Exit};
+use super::output::{Console, Done};
 use crate::result::blind::Blind;
 use crate::result::comparison::Comparison;
 use crate::result::diagnosis::Diagnosis;
@@ -49,6 +49,6 @@ fn of_file<T: JsonSchema>() -> serde_json::Value {
 }
 
 /// Prints a schema.
-pub fn print(of: Of, console: &Console) -> Exit {
+pub fn print(of: Of, console: &Console) -> Done {
     console.print(&result::text(&schema(of)))
 }

@@ -103,6 +103,6 @@ pub fn sorted(mut values: Vec<f64>) -> Option<Spread> {
         count: values.len() as f64,
         exact: true,
         within: None,
-        intervals: None,
+        intervals: Default::default(),
     })
 }

@@ -328,7 +328,7 @@ fn annex_t_with_confidence() {
                 quantity
                     .statistics
                     .iter()
-                    .find(|result| result.name == name)
+                    .find(|result| result.name.to_string() == name)
                     .and_then(|result| result.value)
                     .expect(name)
             };

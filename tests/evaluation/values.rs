@@ -237,7 +237,7 @@ fn too_few_values_are_a_reason() {
     let of = |word: &str| {
         statistics(&found)
             .iter()
-            .find(|one| one.name.starts_with(word))
+            .find(|one| one.name.to_string().starts_with(word))
             .and_then(|one| one.reason.clone())
             .expect("a reason")
     };
@@ -267,7 +267,7 @@ fn a_study_takes_estimates_and_repeats() {
     let case = Case::of(&pool, None).expect("a case");
     let found = selections(&case, &StudySettings::default());
     // Zones of 3, 3, 3 and 4 sections, 3 of each.
-    assert_eq!(found.combinations, 4.0);
+    assert_eq!(found.counted.combinations, 4.0);
     let value = |sections: &[usize]| {
         let values: Vec<f64> =
             sections.iter().flat_map(|&at| case.quantities[0].values[at].iter().copied()).collect();
@@ -421,7 +421,7 @@ fn a_limit_does_not_vanish() {
     let of = |name: &str| {
         statistics(&found)
             .iter()
-            .find(|one| one.name == name)
+            .find(|one| one.name.to_string() == name)
             .unwrap_or_else(|| panic!("{name} is missing"))
     };
     assert_eq!(of("p60").reason.as_deref(), Some("no value is available"));

@@ -131,7 +131,7 @@ fn range(quantities: &[&QuantityResult]) -> Range {
             .iter()
             .filter(|quantity| quantity.from.is_none())
             .flat_map(|quantity| shown(quantity))
-            .any(|one| one.name == "mean");
+            .any(|one| one.name == StatisticName::Mean);
     (if has_sign { -high } else { 0.0 }, high)
 }
 

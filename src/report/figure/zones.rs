@@ -4,7 +4,7 @@ use indexmap::IndexSet;
 
 use super::legend::Entry;
 use super::style::{Color, Mark, look};
-use crate::result::{Certification, PairValue};
+use crate::result::{Certification, PairValue, RecordName};
 
 /// The zones of a campaign in the order of the protocol.
 #[derive(Clone, Debug, Default)]

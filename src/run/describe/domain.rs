@@ -418,7 +418,7 @@ pub fn barred(results: &[DomainResult]) -> Vec<String> {
 }
 
 fn titled(result: &DomainResult) -> String {
-    if result.scope == "all" {
+    if result.group.is_empty() {
         result.title.clone()
     } else {
         format!("{}, {}", result.title, result.scope)
