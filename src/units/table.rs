@@ -107,7 +107,15 @@ const UNITS: &[(&str, &[Unit])] = &[
     ("K", &[("K", "kelvin", 1.0, "1 m")]),
     ("A", &[("A", "ampere", 1.0, "1 k m u µ n")]),
     ("m^2 kg s^-3 A^-1", &[("V", "volt", 1.0, "1 m M k u µ n")]),
-    ("m^3", &[("l", "litre", 1e-3, "1 c d m"), ("L", "litre", 1e-3, "1 m")]),
+    (
+        "m^3",
+        &[
+            ("l", "litre", 1e-3, ""),
+            ("L", "litre", 1e-3, ""),
+            ("l", "litre", 1e-3, "c d m"),
+            ("L", "litre", 1e-3, "m"),
+        ],
+    ),
     ("m^2 kg s^-3 A^-2", &[("Ohm", "ohm", 1.0, "1 M k m u µ"), ("Ω", "ohm", 1.0, "1 M k m u µ")]),
     ("m^-2 kg^-1 s^3 A^2", &[("S", "siemens", 1.0, "1 m u µ")]),
     ("s A", &[("C", "coulomb", 1.0, "1 m u µ n p")]),
