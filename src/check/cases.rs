@@ -166,8 +166,7 @@ impl Checker<'_> {
                 right
             }
         };
-        let kind = Kind::Binary(operator, Box::new(left), Box::new(right));
-        self.folded(Expr { kind, ty: Type::Flag, span: span.clone() }, scope)
+        self.folded(Expr::flag(operator, left, right, span), scope)
     }
 
     /// The word with which a word is compared: one of its choices.

@@ -336,8 +336,7 @@ impl Checker<'_> {
     /// A limit that refers to other limits and is a constant must be above zero.
     fn amounts(&mut self, limits: &[Limit], unit: Option<&Unit>) {
         for limit in limits.iter().filter(|limit| !limit.at_least) {
-            let mut names = Vec::new();
-            referred(&limit.bound.expr, &mut names);
+            let names = referred(&limit.bound.expr);
             let Some((name, place)) = names.first() else { continue };
             let Ok(value) = number(&limit.bound.expr, &Others { limits, of: limit, depth: 0 })
             else {
@@ -366,11 +365,7 @@ impl Checker<'_> {
     /// Every limit that a limit refers to must apply to the same sections. A limit must not depend
     /// on itself.
     fn references(&mut self, limits: &[Limit]) {
-        let refers = |limit: &Limit| {
-            let mut names = Vec::new();
-            referred(&limit.bound.expr, &mut names);
-            names
-        };
+        let refers = |limit: &Limit| referred(&limit.bound.expr);
         let target = |limit: &Limit, name: &str| {
             limits.iter().position(|other| {
                 other.estimate.name == name && same_sections(&other.scope, &limit.scope)
@@ -427,8 +422,7 @@ fn say_unconfirmed(limits: &mut [Limit], words: &str) {
             .map(|limit| limit.estimate.name.clone())
             .collect();
         for limit in limits.iter_mut() {
-            let mut names = Vec::new();
-            referred(&limit.bound.expr, &mut names);
+            let names = referred(&limit.bound.expr);
             limit.unconfirmed |= names.iter().any(|(name, _)| sources.contains(name));
         }
     }
@@ -491,10 +485,12 @@ fn way_back(from: usize, next: &[Vec<usize>]) -> Option<Vec<usize>> {
 }
 
 /// The statistics whose limits an expression refers to, with their places.
-fn referred(expr: &Expr, names: &mut Vec<(String, Span)>) {
+fn referred(expr: &Expr) -> Vec<(String, Span)> {
+    let mut names = Vec::new();
     expr.visit(&mut |part| {
         if let Kind::LimitOf(name) = &part.kind {
             names.push((name.clone(), part.span.span.clone()));
         }
     });
+    names
 }

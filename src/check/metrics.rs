@@ -131,7 +131,8 @@ impl Checker<'_> {
         })
     }
 
-    fn samples_are_kept(&mut self, taken: Taken, chain: &[Step], at: &Span) -> Option<()> {
+    /// Whether the filter leaves the samples that a metric compares; a problem if not.
+    pub fn samples_are_kept(&mut self, taken: Taken, chain: &[Step], at: &Span) -> Option<()> {
         let Some(step) =
             chain.iter().find(|step| !step.kind.keeps_samples()).filter(|_| taken.needs_samples())
         else {

@@ -1,7 +1,7 @@
 //! Finds two limits that apply to the same statistic of a quantity in the same section.
 
 use super::conditions::impossible;
-use super::plan::{Expr, Kind, Limit, Operator, Scalar, Scope, Type};
+use super::plan::{Expr, Kind, Limit, Operator, Scalar, Scope};
 use crate::problem::{Problems, error};
 use crate::syntax::document::Block;
 
@@ -47,10 +47,9 @@ pub fn find(limits: &[Limit], zone: Option<&Expr>, block: &Block, problems: &mut
 
 /// The condition on the section under which the limit applies; `None` for all sections.
 fn scope_condition(scope: &Scope, zone: Option<&Expr>) -> Option<Expr> {
-    let joined = |operator: Operator, a: Expr, b: Expr| Expr {
-        span: a.span.clone(),
-        kind: Kind::Binary(operator, Box::new(a), Box::new(b)),
-        ty: Type::Flag,
+    let joined = |operator: Operator, a: Expr, b: Expr| {
+        let span = a.span.clone();
+        Expr::flag(operator, a, b, &span)
     };
     let is = |zone: &Expr, name: &String| {
         let word = Expr {

@@ -72,18 +72,10 @@ impl Checker<'_> {
                 (None, None, None) => return None,
             };
             let otherwise = otherwise?;
-            if let (Test::Require(requirement), Some(step)) =
-                (&test, chain.iter().find(|step| !step.kind.keeps_samples()))
-                && requirement.inputs.iter().any(|input| input.taken.needs_samples())
-            {
-                return self.refuse(
-                    error(
-                        "metric-of-window",
-                        "this metric compares samples and cannot follow a window or resampling",
-                        &requirement.holds.span,
-                    )
-                    .also(&step.span, "this step"),
-                );
+            if let Test::Require(requirement) = &test {
+                for input in &requirement.inputs {
+                    self.samples_are_kept(input.taken, &chain, &requirement.holds.span)?;
+                }
             }
             rules.push(Plausibility {
                 name: block.name_text().to_string(),

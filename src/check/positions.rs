@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 
 use super::Checker;
 use super::names::{Assignment, Place};
-use super::plan::{Expr, Kind, Operator, Origin, Type};
+use super::plan::{Expr, Operator, Origin};
 use super::scope::Scope;
 use crate::problem::{error, warning};
 use crate::source::Span;
@@ -298,14 +298,8 @@ fn joined(words: &[At<String>]) -> String {
 fn both(before: Option<&Expr>, condition: &Expr) -> Expr {
     match before {
         None => condition.clone(),
-        Some(before) => Expr {
-            kind: Kind::Binary(
-                Operator::And,
-                Box::new(before.clone()),
-                Box::new(condition.clone()),
-            ),
-            ty: Type::Flag,
-            span: condition.span.clone(),
-        },
+        Some(before) => {
+            Expr::flag(Operator::And, before.clone(), condition.clone(), &condition.span)
+        }
     }
 }

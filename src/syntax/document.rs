@@ -49,6 +49,15 @@ pub struct Comments {
     pub after: Vec<String>,
 }
 
+impl Comments {
+    /// Puts a comment beside; one that is there goes above.
+    pub fn put_beside(&mut self, comment: Option<String>) {
+        if let Some(comment) = comment {
+            self.before.extend(self.beside.replace(comment));
+        }
+    }
+}
+
 /// A text and its place.
 #[derive(Clone, Debug)]
 pub struct Text {

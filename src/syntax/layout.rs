@@ -214,9 +214,40 @@ pub fn columns(text: &str) -> usize {
     text.chars().count()
 }
 
+/// A document that is printed line by line.
+#[derive(Debug, Default)]
+pub struct Page {
+    pub text: String,
+}
+
+impl Page {
+    /// Comments on lines of their own.
+    pub fn comments(&mut self, indent: usize, comments: &[String]) {
+        comments.iter().for_each(|text| self.line(indent, &comment(text), None));
+    }
+
+    /// A line with the comment beside it.
+    pub fn line(&mut self, indent: usize, text: &str, beside: Option<&str>) {
+        self.text.extend(std::iter::repeat_n(' ', indent));
+        self.text.push_str(text);
+        if let Some(beside) = beside {
+            self.text.push_str("  ");
+            self.text.push_str(&comment(beside));
+        }
+        self.text.push('\n');
+    }
+
+    /// A blank line, except at the top and after another blank line.
+    pub fn blank(&mut self) {
+        if !self.text.is_empty() && !self.text.ends_with("\n\n") {
+            self.text.push('\n');
+        }
+    }
+}
+
 /// A comment for its own line or the end of a line. Characters that YAML does not allow (YAML
 /// 1.2.2, section 5.1) are replaced in both forms.
-pub fn comment(text: &str) -> String {
+fn comment(text: &str) -> String {
     let shown = |c: char| match c {
         '\n' | '\r' => ' ',
         '\t' => c,

@@ -105,22 +105,19 @@ pub fn is_family_name(text: &str) -> bool {
 
 /// The words at the start of a field. They are more than its key if its value begins with words.
 pub fn words(text: &str) -> Result<Vec<Range<usize>>, Fault> {
-    let pairs = Lines::parse(Rule::field, text).map_err(|error| in_words(text, &error))?;
-    Ok(pairs
-        .flat_map(Pair::into_inner)
-        .filter(|pair| pair.as_rule() == Rule::word)
-        .map(|pair| range(&pair))
-        .collect())
+    ranges(text, Rule::field, Rule::word)
 }
 
 /// The quoted pieces of prose, each with its quotes.
 pub fn prose(text: &str) -> Result<Vec<Range<usize>>, Fault> {
-    let pairs = Lines::parse(Rule::prose, text).map_err(|error| in_words(text, &error))?;
-    Ok(pairs
-        .flat_map(Pair::into_inner)
-        .filter(|pair| pair.as_rule() == Rule::quoted)
-        .map(|pair| range(&pair))
-        .collect())
+    ranges(text, Rule::prose, Rule::quoted)
+}
+
+/// Where the parts of a rule stand in a text that is another rule.
+fn ranges(text: &str, whole: Rule, part: Rule) -> Result<Vec<Range<usize>>, Fault> {
+    let pairs = Lines::parse(whole, text).map_err(|error| in_words(text, &error))?;
+    let parts = pairs.flat_map(Pair::into_inner).filter(|pair| pair.as_rule() == part);
+    Ok(parts.map(|pair| range(&pair)).collect())
 }
 
 fn range(pair: &Pair<'_, Rule>) -> Range<usize> {

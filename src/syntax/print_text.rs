@@ -2,21 +2,19 @@
 
 use super::document::{Block, Document, Field};
 use super::keys::{self, Sort};
-use super::layout::{self, WIDTH, columns, comment};
+use super::layout::{self, Page, WIDTH, columns};
 use super::rules::quoted;
 
-const INDENT: &str = "  ";
+const INDENT: usize = 2;
 
 /// Writes the canonical text. Reading it gives the same document in canonical order, and printing
 /// that gives the same text.
 pub fn print_text(document: &Document) -> String {
     let document = layout::in_order(document);
-    let mut out = String::new();
-    for text in &document.leading {
-        line(&mut out, "", &comment(text), None);
-    }
+    let mut out = Page::default();
+    out.comments(0, &document.leading);
     if !document.leading.is_empty() {
-        out.push('\n');
+        out.text.push('\n');
     }
     let mut above: Option<&Block> = None;
     for block in &document.blocks {
@@ -27,24 +25,20 @@ pub fn print_text(document: &Document) -> String {
                 && block.comments.before.is_empty()
         });
         if above.is_some() && !together {
-            out.push('\n');
+            out.text.push('\n');
         }
         print_block(block, &mut out);
         above = Some(block);
     }
     if above.is_some() && !document.trailing.is_empty() {
-        out.push('\n');
+        out.text.push('\n');
     }
-    for text in &document.trailing {
-        line(&mut out, "", &comment(text), None);
-    }
-    out
+    out.comments(0, &document.trailing);
+    out.text
 }
 
-fn print_block(block: &Block, out: &mut String) {
-    for text in &block.comments.before {
-        line(out, "", &comment(text), None);
-    }
+fn print_block(block: &Block, out: &mut Page) {
+    out.comments(0, &block.comments.before);
     let mut header = block.kind.text.clone();
     if let Some(name) = &block.name {
         header = format!("{header} {}", name.text);
@@ -52,21 +46,17 @@ fn print_block(block: &Block, out: &mut String) {
     if let Some(title) = &block.title {
         header = format!("{header} {}", quoted(&title.text));
     }
-    line(out, "", &header, block.comments.beside.as_deref());
+    out.line(0, &header, block.comments.beside.as_deref());
     let column = block.fields.iter().map(|field| columns(&field.key.text)).max().unwrap_or(0);
     for field in &block.fields {
         print_field(block, field, column, out);
     }
-    for text in &block.comments.after {
-        line(out, INDENT, &comment(text), None);
-    }
+    out.comments(INDENT, &block.comments.after);
 }
 
-fn print_field(block: &Block, field: &Field, column: usize, out: &mut String) {
-    for text in &field.comments.before {
-        line(out, INDENT, &comment(text), None);
-    }
-    let room = WIDTH.saturating_sub(2 * INDENT.len() + column);
+fn print_field(block: &Block, field: &Field, column: usize, out: &mut Page) {
+    out.comments(INDENT, &field.comments.before);
+    let room = WIDTH.saturating_sub(2 * INDENT + column);
     let lines: Vec<String> = match layout::sort(keys::of_block(block), field) {
         Sort::Phrase => layout::wrap_phrase(&layout::phrase(&field.value.text), room),
         // Quotes take two columns. Escapes are rare and may exceed the width.
@@ -78,17 +68,7 @@ fn print_field(block: &Block, field: &Field, column: usize, out: &mut String) {
     let mut head = format!("{:column$}", field.key.text);
     let mut beside = field.comments.beside.as_deref();
     for piece in lines {
-        line(out, INDENT, &format!("{head}{INDENT}{piece}"), beside.take());
+        out.line(INDENT, &format!("{head}{:INDENT$}{piece}", ""), beside.take());
         head = " ".repeat(column);
     }
-}
-
-fn line(out: &mut String, indent: &str, text: &str, beside: Option<&str>) {
-    out.push_str(indent);
-    out.push_str(text);
-    if let Some(beside) = beside {
-        out.push_str("  ");
-        out.push_str(&comment(beside));
-    }
-    out.push('\n');
 }

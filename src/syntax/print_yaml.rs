@@ -2,13 +2,13 @@
 
 use super::document::{Block, Document, Field};
 use super::keys::{self, KINDS, Kind, Sort};
-use super::layout::{self, WIDTH, columns, comment};
+use super::layout::{self, Page, WIDTH, columns};
 
 /// Writes the canonical YAML. Reading it gives the same document in canonical order, and printing
 /// that gives the same YAML.
 pub fn print_yaml(document: &Document) -> String {
     let document = layout::in_order(document);
-    let mut out = Page { text: String::new() };
+    let mut out = Page::default();
     out.comments(0, &document.leading);
     if !document.leading.is_empty() {
         out.blank();
@@ -46,10 +46,6 @@ pub fn print_yaml(document: &Document) -> String {
         out.comments(0, &document.trailing);
     }
     out.text
-}
-
-struct Page {
-    text: String,
 }
 
 impl Page {
@@ -138,27 +134,6 @@ impl Page {
             }
         }
         self.line(indent, &format!("{head} {written}"), beside);
-    }
-
-    fn comments<T: AsRef<str>>(&mut self, indent: usize, comments: &[T]) {
-        comments.iter().for_each(|text| self.line(indent, &comment(text.as_ref()), None));
-    }
-
-    fn line(&mut self, indent: usize, text: &str, beside: Option<&str>) {
-        self.text.extend(std::iter::repeat_n(' ', indent));
-        self.text.push_str(text);
-        if let Some(beside) = beside {
-            self.text.push_str("  ");
-            self.text.push_str(&comment(beside));
-        }
-        self.text.push('\n');
-    }
-
-    /// A blank line, except at the top and after another blank line.
-    fn blank(&mut self) {
-        if !self.text.is_empty() && !self.text.ends_with("\n\n") {
-            self.text.push('\n');
-        }
     }
 }
 

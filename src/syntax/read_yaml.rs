@@ -193,9 +193,7 @@ impl YamlReader<'_> {
         comments: &mut Comments,
     ) -> Option<Text> {
         comments.before.extend(self.remarks.above());
-        if let Some(beside) = self.remarks.beside(node.span.end) {
-            comments.before.extend(comments.beside.replace(beside));
-        }
+        comments.put_beside(self.remarks.beside(node.span.end));
         if let Some(first) = first {
             self.reader.problems.push(
                 error(
@@ -255,9 +253,7 @@ impl YamlReader<'_> {
                 let mut above = Some(above);
                 for item in items {
                     let mut comments = above.take().unwrap_or_default();
-                    if let Some(beside) = self.remarks.pass_to_item(item.span.start) {
-                        comments.before.extend(comments.beside.replace(beside));
-                    }
+                    comments.put_beside(self.remarks.pass_to_item(item.span.start));
                     self.read_value(kind, known, &key, item, comments, block);
                 }
             }
@@ -299,9 +295,7 @@ impl YamlReader<'_> {
         }
         let mut comments = above;
         comments.before.extend(self.remarks.above());
-        if let Some(beside) = self.remarks.beside(node.span.end) {
-            comments.before.extend(comments.beside.replace(beside));
-        }
+        comments.put_beside(self.remarks.beside(node.span.end));
         self.reader.field(kind, known, block, Field { key: key.clone(), value, comments });
     }
 

@@ -62,7 +62,7 @@ impl<'a> Reader<'a> {
         if let Some(kind) = near.filter(|kind| spelt(kind) == word) {
             return Some(kind);
         }
-        let owners = owners(&[word]);
+        let owners = owners(word);
         let problem = error("unknown-block", format!("`{word}` is not a block of a protocol"), at);
         self.problems.push(match (near, owners.is_empty()) {
             (Some(near), _) => problem.help(format!("did you mean `{}`?", spelt(near))),
@@ -91,9 +91,8 @@ impl<'a> Reader<'a> {
         words: &[&str],
         at: &Span,
     ) -> Option<(&'static Key, usize)> {
-        let other = (1..=words.len().min(LONGEST))
-            .rev()
-            .map(|count| (owners(&words[..count]), count))
+        let other = beginnings(words)
+            .map(|(word, count)| (owners(&word), count))
             .find(|(owners, _)| !owners.is_empty());
         // `minimum signal` is a misspelling of `minimum signals` rather than the `minimum` of
         // another kind.
@@ -115,9 +114,8 @@ impl<'a> Reader<'a> {
         let count = near.map_or(1, |(_, count)| count);
         // A field of the block with the same word that has a name, or has none.
         let twin = kind.with_name(!kind.named);
-        let of_twin = (1..=words.len().min(LONGEST))
-            .rev()
-            .find(|&count| twin.key(&words[..count].join(" ")).is_some());
+        let of_twin =
+            beginnings(words).find(|(word, _)| twin.key(word).is_some()).map(|(_, count)| count);
         let count = of_twin.unwrap_or(count);
         let written = if self.form == Form::Yaml {
             words.join(" ")
@@ -269,19 +267,20 @@ pub fn bad_name(name: &str, at: &Span) -> Problem {
 
 /// The longest key that the first words form, and its number of words.
 pub fn key(kind: &'static Kind, words: &[&str]) -> Option<(&'static Key, usize)> {
-    (1..=words.len().min(LONGEST))
-        .rev()
-        .find_map(|count| kind.key(&words[..count].join(" ")).map(|key| (key, count)))
+    beginnings(words).find_map(|(word, count)| kind.key(&word).map(|key| (key, count)))
 }
 
 fn near_key(kind: &'static Kind, words: &[&str]) -> Option<(&'static Key, usize)> {
-    (1..=words.len().min(LONGEST)).rev().find_map(|count| {
-        let like =
-            kind.keys.iter().map(|key| key.word).filter(|word| word.split(' ').count() == count);
-        near(&words[..count].join(" "), like)
-            .and_then(|near| kind.key(near))
-            .map(|key| (key, count))
+    beginnings(words).find_map(|(word, count)| {
+        let like = |known: &&str| known.split(' ').count() == count;
+        let near = near(&word, kind.keys.iter().map(|key| key.word).filter(like))?;
+        kind.key(near).map(|key| (key, count))
     })
+}
+
+/// The first words joined by blanks, and how many they are; the longest beginning first.
+fn beginnings(words: &[&str]) -> impl Iterator<Item = (String, usize)> {
+    (1..=words.len().min(LONGEST)).rev().map(|count| (words[..count].join(" "), count))
 }
 
 /// The most similar candidate, if at most a third of the letters differ.
@@ -293,10 +292,9 @@ fn near<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a
 }
 
 /// The kinds that have a field with these words.
-fn owners(words: &[&str]) -> Vec<&'static str> {
-    let word = words.join(" ");
+fn owners(word: &str) -> Vec<&'static str> {
     let mut owners: Vec<&str> =
-        KINDS.iter().filter(|kind| kind.key(&word).is_some()).map(|kind| kind.word).collect();
+        KINDS.iter().filter(|kind| kind.key(word).is_some()).map(|kind| kind.word).collect();
     owners.dedup();
     owners
 }

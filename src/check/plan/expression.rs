@@ -101,6 +101,12 @@ pub enum AxisOperation {
 }
 
 impl Expr {
+    /// A comparison of two parts, or two conditions that are joined.
+    pub fn flag(operator: Operator, left: Self, right: Self, span: &Origin) -> Self {
+        let kind = Kind::Binary(operator, Box::new(left), Box::new(right));
+        Self { kind, ty: Type::Flag, span: span.clone() }
+    }
+
     /// The dimension of a number or of samples; that of a plain number for words and conditions.
     pub fn dimension(&self) -> Dimension {
         match self.ty {

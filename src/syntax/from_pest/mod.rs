@@ -24,11 +24,11 @@ use tree::{cases, either, estimate, pick, step, sum};
 struct Grammar;
 
 pub fn expression(text: &Text, problems: &mut Problems) -> Option<Phrase> {
-    cases(parts(parse(Rule::expression, text, problems)?).next()?)
+    cases(parsed(Rule::expression, text, problems)?.next()?)
 }
 
 pub fn of_places(text: &Text, problems: &mut Problems) -> Option<OfPlaces> {
-    let mut inner = parts(parse(Rule::of_places, text, problems)?);
+    let mut inner = parsed(Rule::of_places, text, problems)?;
     let mut found = OfPlaces { signal: inner.next()?.named(), picks: Vec::new(), when: None };
     for part in inner {
         match part.rule {
@@ -40,15 +40,15 @@ pub fn of_places(text: &Text, problems: &mut Problems) -> Option<OfPlaces> {
 }
 
 pub fn places(text: &Text, problems: &mut Problems) -> Option<Vec<Pick>> {
-    Some(parts(parse(Rule::places, text, problems)?).map(pick).collect())
+    Some(parsed(Rule::places, text, problems)?.map(pick).collect())
 }
 
 pub fn list(text: &Text, problems: &mut Problems) -> Option<Vec<At<String>>> {
-    Some(parts(parse(Rule::list, text, problems)?).map(|part| part.named()).collect())
+    Some(parsed(Rule::list, text, problems)?.map(|part| part.named()).collect())
 }
 
 pub fn alias(text: &Text, problems: &mut Problems) -> Option<Alias> {
-    let mut inner = parts(parse(Rule::alias, text, problems)?).filter(|part| part.rule != Rule::is);
+    let mut inner = parsed(Rule::alias, text, problems)?.filter(|part| part.rule != Rule::is);
     let name = inner.next()?.named();
     let mut cases = Vec::new();
     while let (Some(member), Some(condition)) = (inner.next(), inner.next()) {
@@ -59,18 +59,18 @@ pub fn alias(text: &Text, problems: &mut Problems) -> Option<Alias> {
 
 /// Name and unit of an axis such as `distance in m`.
 pub fn axis(text: &Text, problems: &mut Problems) -> Option<(At<String>, At<String>)> {
-    let mut inner = parts(parse(Rule::axis, text, problems)?);
+    let mut inner = parsed(Rule::axis, text, problems)?;
     Some((inner.next()?.named(), inner.next()?.named()))
 }
 
 pub fn range(text: &Text, problems: &mut Problems) -> Option<(Phrase, Phrase)> {
-    let mut inner = parts(parse(Rule::range, text, problems)?);
+    let mut inner = parsed(Rule::range, text, problems)?;
     Some((sum(inner.next()?)?, sum(inner.next()?)?))
 }
 
 pub fn domain(text: &Text, problems: &mut Problems) -> Option<Domain> {
     let mut domain = Domain { over: Vec::new(), each: Vec::new() };
-    for part in parts(parse(Rule::domain, text, problems)?) {
+    for part in parsed(Rule::domain, text, problems)? {
         if part.rule == Rule::each_keys {
             domain.each = parts(part).map(|key| key.named()).collect();
             continue;
@@ -83,15 +83,15 @@ pub fn domain(text: &Text, problems: &mut Problems) -> Option<Domain> {
 }
 
 pub fn chain(text: &Text, problems: &mut Problems) -> Option<Vec<At<Step>>> {
-    parts(parse(Rule::chain, text, problems)?).map(step).collect()
+    parsed(Rule::chain, text, problems)?.map(step).collect()
 }
 
 pub fn step_alone(text: &Text, problems: &mut Problems) -> Option<At<Step>> {
-    step(parts(parse(Rule::steps, text, problems)?).next()?)
+    step(parsed(Rule::steps, text, problems)?.next()?)
 }
 
 pub fn limit(text: &Text, problems: &mut Problems) -> Option<Limit> {
-    let mut inner = parts(parse(Rule::limit, text, problems)?).peekable();
+    let mut inner = parsed(Rule::limit, text, problems)?.peekable();
     let first = inner.next()?;
     let statistic = first.named();
     let statistic =
@@ -142,14 +142,14 @@ pub fn limit(text: &Text, problems: &mut Problems) -> Option<Limit> {
 
 /// How many there must be: `24`, `3 for each zone and wheelset`.
 pub fn minimum(text: &Text, problems: &mut Problems) -> Option<Minimum> {
-    let mut inner = parts(parse(Rule::minimum, text, problems)?);
+    let mut inner = parsed(Rule::minimum, text, problems)?;
     let count = cases(inner.next()?)?;
     Some(Minimum { count, scope: scope_or_all(inner.next())? })
 }
 
 /// An estimate without a limit: `mean for each zone`, `total of length in km`.
 pub fn report(text: &Text, problems: &mut Problems) -> Option<Report> {
-    let mut inner = parts(parse(Rule::report, text, problems)?).peekable();
+    let mut inner = parsed(Rule::report, text, problems)?.peekable();
     let of = cases(inner.next()?)?;
     let unit = inner.next_if(|part| part.rule == Rule::coordinate_unit).map(|unit| unit.named());
     Some(Report { of, unit, scope: scope_or_all(inner.next())? })
@@ -175,7 +175,7 @@ fn scope(part: Part<'_>) -> Option<Scope> {
 }
 
 pub fn verdict(text: &Text, problems: &mut Problems) -> Option<Verdict> {
-    let inner = parts(parse(Rule::verdict, text, problems)?).next()?;
+    let inner = parsed(Rule::verdict, text, problems)?.next()?;
     match inner.rule {
         Rule::every_limit => return Some(Verdict::EveryLimit),
         Rule::some_verdict => return Some(Verdict::Over(over_verdicts(inner)?)),
@@ -242,14 +242,14 @@ fn is_keyword(word: &str) -> bool {
     Grammar::parse(Rule::keyword, word).is_ok()
 }
 
-/// Parses a field with one rule. A syntax error becomes a problem at its word.
-fn parse<'t>(rule: Rule, text: &'t Text, problems: &mut Problems) -> Option<Part<'t>> {
+/// The parts of a field that is parsed with one rule. A syntax error becomes a problem at its word.
+fn parsed<'t>(rule: Rule, text: &'t Text, problems: &mut Problems) -> Option<Parts<'t>> {
     if let Some(problem) = depth::too_deep(text) {
         problems.push(problem);
         return None;
     }
     match Grammar::parse(rule, &units::marked(&text.text)) {
-        Ok(mut pairs) => Some(Part::new(pairs.next()?, &text.text)),
+        Ok(mut pairs) => Some(parts(Part::new(pairs.next()?, &text.text))),
         Err(error) => {
             problems.push(explain::syntax(rule, &error, text));
             None
@@ -293,7 +293,9 @@ impl<'t> Part<'t> {
     }
 }
 
-fn parts(part: Part<'_>) -> std::vec::IntoIter<Part<'_>> {
+type Parts<'t> = std::vec::IntoIter<Part<'t>>;
+
+fn parts(part: Part<'_>) -> Parts<'_> {
     part.inner.into_iter()
 }
 
