@@ -99,6 +99,12 @@ impl Problem {
         self
     }
 
+    /// At a place, if it has none yet: a problem of a file as a whole is shown where it is named.
+    #[must_use]
+    pub fn or_at(self, span: &Span) -> Self {
+        if self.at.is_some() { self } else { self.at(span) }
+    }
+
     #[must_use]
     pub fn label(mut self, text: impl Into<String>) -> Self {
         self.label = Some(text.into());
@@ -115,6 +121,15 @@ impl Problem {
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.help = Some(text.into());
         self
+    }
+
+    /// Adds help if there is some.
+    #[must_use]
+    pub fn help_if(self, help: Option<impl Into<String>>) -> Self {
+        match help {
+            Some(help) => self.help(help),
+            None => self,
+        }
     }
 
     /// Adds the help "did you mean ...?" with a known word.
@@ -297,6 +312,12 @@ pub fn plain(text: &str) -> String {
 pub fn acts(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+impl From<Problem> for Problems {
+    fn from(problem: Problem) -> Self {
+        Self(vec![problem])
+    }
 }
 
 /// A reader that ends at its first problem, in one that collects them.

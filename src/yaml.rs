@@ -3,9 +3,15 @@
 //! One YAML 1.2 document, core schema: only `true` and `false` are booleans; `no` and `1.2.3` are
 //! text.
 
+mod fields;
 mod load;
 mod scalar;
 
+pub(crate) use fields::fields;
+pub use fields::{
+    Entries, FromNode, Hertz, Literal, Metres, OneOrMore, OtherKeys, Quantity, Ratio, Reader,
+    Seconds, Words, quoted, span_of_key, span_of_value, unknown_unit,
+};
 pub use load::{Remark, load, load_as_written, remarks};
 
 use std::ops::Range;
@@ -72,6 +78,11 @@ impl Node {
 
     pub fn entry(&self, key: &str) -> Option<&(Key, Node)> {
         self.entries().iter().find(|(known, _)| known.text == key)
+    }
+
+    /// The place of the value of a key; of one that is not there, that of the map.
+    pub fn span_of(&self, key: &str) -> &Span {
+        self.get(key).map_or(&self.span, |node| &node.span)
     }
 
     /// Looks up `a.b.c` in nested maps. A key that contains a dot is found by its full text first.

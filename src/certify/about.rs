@@ -181,7 +181,7 @@ fn imported(origin: &Origin) -> Vec<ImportedSide> {
         read_as: record.read_as.clone(),
         steps: record.steps.clone(),
     };
-    let side = |(side, channels): &(String, Vec<String>)| ImportedSide {
+    let side = |(side, channels): (&String, &Vec<String>)| ImportedSide {
         side: side.clone(),
         channels: channels.clone(),
         records: imported.records.iter().filter(|one| one.side == *side).map(record).collect(),

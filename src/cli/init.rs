@@ -5,18 +5,19 @@ use std::sync::Arc;
 
 use clap::Args;
 
-use super::output::{Console, Done, Ended, Exit};
+use super::output::{Console, Done};
 use super::protocols::load;
+use super::scaffold::{Scaffold, scaffold};
 use crate::check::{self, Overrides, family, family::Family};
 use crate::data::record::{listed_headings, read_headings};
 use crate::graph;
 use crate::init::channels::{Listed, channels, listed};
 use crate::init::protocol::Parent;
 use crate::init::{File, campaign, protocol};
+use crate::library;
 use crate::problem::{Problem, Problems};
 use crate::run::needs;
 use crate::source::Source;
-use crate::{disk, library};
 
 const PROTOCOL: &str = "protocol.fp";
 
@@ -39,14 +40,11 @@ pub struct Init {
 
 impl Init {
     pub fn run(self, console: &Console) -> Done {
-        let mut problems = Problems::default();
-        problems.add(check_folder(&self.folder).err());
-        let files = self.files(&mut problems);
-        let files = console.sound(files, &problems)?;
-        write(&self.folder, &files).map_err(Ended::unfinished)?;
-        console.say(&format!("written: {}", self.folder.display()));
-        files.iter().for_each(|(path, _)| console.say(&format!("  {path}")));
-        Ok(Exit::Done)
+        scaffold(&self.folder, console, |name, problems| {
+            let files = self.files(name, problems)?;
+            let after = files.iter().map(|(path, _)| format!("  {path}")).collect();
+            Some(Scaffold { files, before: Vec::new(), after })
+        })
     }
 
     fn listed(&self, problems: &mut Problems) -> Option<Listed> {
@@ -90,7 +88,7 @@ impl Init {
         Some(listed)
     }
 
-    fn files(&self, problems: &mut Problems) -> Option<Vec<File>> {
+    fn files(&self, name: &str, problems: &mut Problems) -> Option<Vec<File>> {
         let mut listed = self.listed(problems);
         let family = match &self.extends {
             Some(name) => Some(load(name, problems)?),
@@ -104,8 +102,7 @@ impl Init {
             without_known(family, listed, problems)?;
         }
         let parent = family.as_ref().map(parent);
-        let name = self.name();
-        let text = protocol::text(&name, listed.as_ref(), parent.as_ref())
+        let text = protocol::text(name, listed.as_ref(), parent.as_ref())
             .map_err(|problem| problems.push(*problem))
             .ok()?;
         let source = Source::new(PROTOCOL, text);
@@ -118,16 +115,9 @@ impl Init {
         let needs = needs::needs(&plan, &graph::from_plan(&plan));
         let mut files = vec![(PROTOCOL.to_string(), source.text.clone())];
         files.extend(copies.into_iter().map(|(path, source)| (path, source.text.clone())));
-        files.extend(
-            campaign::files(&name, &needs).map_err(|problem| problems.push(*problem)).ok()?,
-        );
+        files
+            .extend(campaign::files(name, &needs).map_err(|problem| problems.push(*problem)).ok()?);
         Some(files)
-    }
-
-    /// The campaign is called as its folder.
-    fn name(&self) -> String {
-        let name = self.folder.file_name().map(|name| name.to_string_lossy().into_owned());
-        name.filter(|name| !name.is_empty()).unwrap_or_else(|| "campaign".into())
     }
 }
 
@@ -197,50 +187,4 @@ fn without_known(family: &Family, listed: &mut Listed, problems: &mut Problems) 
     });
     listed.time = listed.time.take().filter(|_| plan.time.is_some());
     Some(())
-}
-
-/// Nothing that is there is changed.
-pub fn check_folder(folder: &Path) -> Result<(), Problem> {
-    let shown = folder.display();
-    if !disk::may_exist(folder) {
-        return Ok(());
-    }
-    let names = disk::names(folder).map_err(|error| {
-        Problem::error(
-            "folder-not-empty",
-            format!("`{shown}` is there and is no folder that can be read: {error}"),
-        )
-        .help("give another folder")
-    })?;
-    match names.iter().map(|name| name.to_string_lossy().into_owned()).min() {
-        None => Ok(()),
-        Some(first) => Err(Problem::error(
-            "folder-not-empty",
-            format!("the folder `{shown}` is not empty: it has `{first}`"),
-        )
-        .help("give a folder that does not exist; nothing is overwritten")),
-    }
-}
-
-/// Writes all files, or none.
-pub fn write(folder: &Path, files: &[File]) -> Result<(), Problem> {
-    let failed = |path: &Path, error: &std::io::Error| {
-        Problem::error("write-failed", format!("`{}` cannot be written: {error}", path.display()))
-    };
-    let mut written: Vec<PathBuf> = Vec::new();
-    let mut one = |(inside, text): &File| {
-        let path = folder.join(inside);
-        let parent = path.parent().unwrap_or(folder);
-        disk::make_folder(parent).map_err(|error| failed(parent, &error))?;
-        disk::create_new(&path, text.as_bytes(), false).map_err(|error| failed(&path, &error))?;
-        written.push(path);
-        Ok(())
-    };
-    let result = files.iter().try_for_each(&mut one);
-    if result.is_err() {
-        for path in &written {
-            let _ = disk::remove(path);
-        }
-    }
-    result
 }

@@ -18,6 +18,7 @@ mod places;
 mod protocols;
 mod reduce;
 mod report;
+mod scaffold;
 mod sections;
 mod sign;
 mod simulate;

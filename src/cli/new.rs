@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::init::{check_folder, write};
-use super::output::{Console, Done, Ended, Exit};
+use super::output::{Console, Done};
+use super::scaffold::{Scaffold, scaffold};
 use crate::check::{self, Overrides, family};
 use crate::library;
 use crate::new::records::Pair;
@@ -38,23 +38,21 @@ pub struct New {
 
 impl New {
     pub fn run(self, console: &Console) -> Done {
-        let mut problems = Problems::default();
-        problems.add(check_folder(&self.folder).err());
-        let made = self.made(&mut problems);
-        let made = console.sound(made, &problems)?;
-        write(&self.folder, &made.files).map_err(Ended::unfinished)?;
-        made.told.iter().for_each(|line| console.say(line));
-        let folder = self.folder.display();
-        console.say(&format!("written: {folder}"));
-        console.say(&format!("next: fishplate certify {folder} --out {folder}/report"));
-        console.say(&format!("      fill in {folder}/simulator.py, then"));
-        let with = format!("--effects {folder}/effects.yaml --simulator {folder}/sim.yaml");
-        console.say(&format!("      fishplate diagnose {folder} {with} --preflight"));
-        console.say(&format!("      fishplate diagnose {folder} {with} --out {folder}/diagnosis"));
-        Ok(Exit::Done)
+        scaffold(&self.folder, console, |name, problems| {
+            let Made { files, told } = self.made(name, problems)?;
+            let folder = self.folder.display();
+            let with = format!("--effects {folder}/effects.yaml --simulator {folder}/sim.yaml");
+            let after = vec![
+                format!("next: fishplate certify {folder} --out {folder}/report"),
+                format!("      fill in {folder}/simulator.py, then"),
+                format!("      fishplate diagnose {folder} {with} --preflight"),
+                format!("      fishplate diagnose {folder} {with} --out {folder}/diagnosis"),
+            ];
+            Some(Scaffold { files, before: told, after })
+        })
     }
 
-    fn made(&self, problems: &mut Problems) -> Option<Made> {
+    fn made(&self, name: &str, problems: &mut Problems) -> Option<Made> {
         let mut told = Vec::new();
         let pairs: Vec<Option<Pair>> = self
             .from
@@ -65,13 +63,7 @@ impl New {
             })
             .collect();
         let pairs: Vec<Pair> = pairs.into_iter().collect::<Option<_>>()?;
-        let name = self
-            .folder
-            .file_name()
-            .map(|name| name.to_string_lossy().into_owned())
-            .filter(|name| !name.is_empty());
-        let name = name.unwrap_or_else(|| "campaign".into());
-        let made = files(&name, DOMAINS[self.domain as usize], &pairs)
+        let made = files(name, DOMAINS[self.domain as usize], &pairs)
             .map_err(|problem| problems.push(problem))
             .ok()?;
         // What is written must be sound, whatever the columns are called.

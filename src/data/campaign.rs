@@ -16,19 +16,20 @@ pub use facts::Fact;
 pub use files::{Inputs, ReadFile};
 pub use opening::POINT_KEY;
 pub use records::{OFFSET, RecordKind};
-pub use runs::{CORRECT, Part, RUN_COLUMN, RUNS, Run, RunFact, TELL};
+pub use runs::{OnDrift, Part, RUN_COLUMN, RUNS, Run, RunFact};
 
 pub use super::folder::Memory;
 use super::folder::{Folder, Place, check_file_name};
-use super::identification::{self, Stated};
-use super::members::{self, RecordFolder};
+use super::identification::Stated;
+use super::members::RecordFolder;
 use super::origin::Origin;
 use super::table::{Cell, Table};
 use crate::disk;
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Spanned};
-use crate::yaml::{Key, Node, Value};
-use opening::Opening;
+use crate::yaml::{Key, Node, Reader, Value};
+use opening::Layout;
+pub(super) use opening::{LAYOUT, Opening, at_the_margin};
 
 /// The file that makes a folder a campaign.
 pub const CAMPAIGN_FILE: &str = "campaign.yaml";
@@ -132,16 +133,13 @@ impl Campaign {
         let nowhere = Source::new(path.display().to_string(), "").whole();
         let place =
             folder.place(CAMPAIGN_FILE, &nowhere).map_err(|problem| problems.push(problem)).ok()?;
-        let mut opening = Opening { folder, files: Vec::new(), problems };
-        let on_disk = !opening.folder.memory().texts.contains_key(CAMPAIGN_FILE);
-        if on_disk
-            && disk::is_folder(&opening.folder.real().join(disk::UNFINISHED)).unwrap_or(false)
-        {
+        let on_disk = !folder.memory().texts.contains_key(CAMPAIGN_FILE);
+        if on_disk && disk::is_folder(&folder.real().join(disk::UNFINISHED)).unwrap_or(false) {
             let says = format!(
                 "`{}` is incomplete: the run that wrote this campaign was interrupted",
                 path.display()
             );
-            opening.problems.push(
+            problems.push(
                 Problem::error("unfinished-set", says)
                     .help("repeat that run, with the same `--out`"),
             );
@@ -150,14 +148,16 @@ impl Campaign {
         // Anything else that is not a plain file is reported when it is read.
         if on_disk && matches!(disk::kind(&place.path), Ok(None)) {
             let says = format!("there is no file `{}`", place.shown);
-            opening.problems.push(
+            problems.push(
                 Problem::error("file-missing", says)
                     .help("a campaign is a folder with a file `campaign.yaml`"),
             );
             return None;
         }
-        let (source, tree) = opening.yaml(&place, None)?;
-        let mut campaign = Self::of_tree(opening, source, tree)?;
+        let with = Opening { folder, files: Vec::new(), tree: None };
+        let mut reader = Reader { with, problems };
+        let (source, tree) = reader.yaml(&place, None)?;
+        let mut campaign = Self::of_tree(reader, source, tree)?;
         campaign.find_names(problems);
         (problems.errors() == before).then_some(campaign)
     }
@@ -174,9 +174,10 @@ impl Campaign {
         problems: &mut Problems,
     ) -> Option<Self> {
         let before = problems.errors();
-        let opening =
-            Opening { folder: Folder::nowhere().with(memory), files: Vec::new(), problems };
-        let mut campaign = Self::of_tree(opening, Arc::clone(&tree.span.source), tree)?;
+        let folder = Folder::nowhere().with(memory);
+        let with = Opening { folder, files: Vec::new(), tree: None };
+        let reader = Reader { with, problems };
+        let mut campaign = Self::of_tree(reader, Arc::clone(&tree.span.source), tree)?;
         if campaign.sections.is_none() && campaign.runs.is_empty() {
             campaign.names = names;
         } else {
@@ -187,79 +188,49 @@ impl Campaign {
 
     /// Everything that `campaign.yaml` and its tables say; the names of the sections are not known
     /// yet.
-    fn of_tree(mut opening: Opening<'_>, source: Arc<Source>, tree: Node) -> Option<Self> {
-        let before = opening.problems.errors();
-        if !matches!(tree.value, Value::Map(_)) {
-            opening.problems.push(
-                Problem::error(
-                    "wrong-kind",
-                    format!(
-                        "a campaign must be a map of keys and values, not {}",
-                        tree.kind_in_words()
-                    ),
-                )
-                .at(&tree.span),
-            );
-            return None;
-        }
-        let name = opening.text(&tree, "name").map(|name| name.value);
-        if name.is_none() && tree.get("name").is_none() {
-            opening.problems.push(
-                Problem::error("key-missing", "the campaign has no `name`")
-                    .at(&tree.span.part(0..0)),
-            );
-        }
-        let short_name = opening.text(&tree, facts::SHORT_NAME);
-        opening.misspelt(&tree);
-        let mut vehicles = opening.vehicles(&tree);
-        let sections = opening.sections(&tree);
-        let application = opening.application(&tree);
-        let record_folders = RecordKind::ALL
-            .into_iter()
-            .flat_map(|kind| members::read(&tree, kind, &opening.folder, opening.problems))
-            .collect();
-        let runs = runs::read(&tree, &opening.folder, opening.problems);
+    fn of_tree(reader: Reader<'_, Opening<'_>>, source: Arc<Source>, tree: Node) -> Option<Self> {
+        let before = reader.problems.errors();
+        let Opening { folder, files, .. } = reader.with;
+        let with = Opening { folder, files, tree: Some(&tree) };
+        let mut reader = Reader { with, problems: reader.problems };
+        let layout: Layout = reader.file(&tree)?;
+        let runs = layout.runs.0;
+        let sections = layout.sections.map(|table| table.0);
         if let Some(table) = &sections {
-            runs::check_column(table, &runs, opening.problems);
+            runs::check_column(table, &runs, reader.problems);
         }
-        let protocol = opening.text(&tree, "protocol");
-        let parameters = opening.parameters(&tree);
-        let origin = opening.origin(&tree);
+        let name = layout.name.map(|name| name.value).unwrap_or_default();
+        let mut vehicles = layout.vehicles.0;
         if vehicles.is_empty() {
-            let data = Node {
-                value: Value::Map(Vec::new()),
-                span: tree.span.clone(),
-                raw: String::new(),
-                exact: false,
-            };
+            let data = Node { value: Value::Map(Vec::new()), ..tree.clone() };
             vehicles.push(VehicleState { state: None, data });
         }
-        let report = identification::read(&tree, opening.problems);
-        let Opening { folder, files, problems } = opening;
+        let Reader { with: Opening { folder, files, .. }, problems } = reader;
+        let of_kinds = [layout.measurement, layout.simulation, layout.track];
         let campaign = Self {
-            short_name: short_name.unwrap_or_else(|| {
+            short_name: layout.short_name.unwrap_or_else(|| {
                 let at =
                     tree.get("name").map_or_else(|| tree.span.part(0..0), |node| node.span.clone());
-                Spanned::new(name.clone().unwrap_or_default(), at)
+                Spanned::new(name.clone(), at)
             }),
-            name: name.unwrap_or_default(),
+            name,
             facts: facts::facts(&tree),
-            parameters,
-            report,
-            protocol,
-            origin,
+            parameters: layout.parameters.0,
+            report: layout.report.0,
+            protocol: layout.protocol,
+            origin: layout.origin.map(|origin| origin.0),
             vehicle: vehicles[0].data.clone(),
             vehicles,
             names: Vec::new(),
             sections,
-            application,
+            application: layout.application.map(|table| table.0),
             source,
-            tree,
             files,
             protocols: Vec::new(),
             folder,
-            record_folders,
+            record_folders: of_kinds.into_iter().flat_map(|folders| folders.0).collect(),
             runs,
+            tree,
         };
         (problems.errors() == before).then_some(campaign)
     }

@@ -8,7 +8,9 @@ use super::origin::{ORIGIN_FILE, ORIGIN_KEY};
 use super::record::{Format, Record, Wanted};
 use super::table::{Cell, Table};
 use super::text::read_any;
-use super::write::{Entry, FileColumn, Outputs, Values, campaign_yaml, csv, parquet, table_csv};
+use super::write::{
+    Entry, FileColumn, Outputs, Values, campaign_yaml_with, csv, parquet, table_csv,
+};
 use super::{Campaign, RecordKind};
 use crate::problem::Problem;
 use crate::source::Spanned;
@@ -102,8 +104,7 @@ fn stretch(
     // As much as the evaluation of a section in a run reads.
     let Part { from, to, .. } = Part::around(axis, (start, end), None);
     let headings = source.headings()?;
-    let of = |name: String| Wanted { name, dimension: None, required: true };
-    let wanted: Vec<Wanted> = headings.into_iter().map(|heading| of(heading.name)).collect();
+    let wanted = Wanted::all(&headings);
     let range = from - moved..to - moved;
     let record = source.stretch(&wanted, axis, range, run.known(kind))?;
     Ok((record, source.inside().to_string()))
@@ -170,12 +171,7 @@ fn rest(
         }
     }
     outputs.add(SECTIONS, with_facts(campaign, table).as_bytes())?;
-    let written = [KEY, ORIGIN_KEY, RUNS, "sections"];
-    let kept =
-        campaign.tree.entries().iter().filter(|(key, _)| !written.contains(&key.text.as_str()));
-    let mut entries: Vec<(&str, Entry<'_>)> =
-        kept.map(|(key, node)| (key.text.as_str(), Entry::Node(node))).collect();
-    entries.push(("sections", Entry::Text(SECTIONS)));
+    let mut entries = vec![("sections", Entry::Text(SECTIONS))];
     entries.extend(kinds.iter().map(|kind| (*kind, Entry::Text(kind))));
     if let Some(node) = campaign.tree.get(ORIGIN_KEY) {
         entries.push((
@@ -188,7 +184,9 @@ fn rest(
         ));
     }
     entries.push((KEY, Entry::Text(TABLE)));
-    outputs.add(CAMPAIGN_FILE, campaign_yaml(&entries).as_bytes())
+    let without = [KEY, ORIGIN_KEY, RUNS, "sections"];
+    let text = campaign_yaml_with(&campaign.tree, &without, &entries);
+    outputs.add(CAMPAIGN_FILE, text.as_bytes())
 }
 
 /// The table of sections with what the campaign says of each run, without the run.

@@ -5,7 +5,7 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
 use super::record::Frame;
-use super::text::{read_any, read_text, text_of};
+use super::text::{read_any, read_text, text_of, unreadable};
 use crate::disk;
 use crate::problem::{Problem, nearest};
 use crate::source::{Source, Span};
@@ -110,10 +110,7 @@ impl Folder {
                 "file-missing",
                 format!("`{}` went away while it was read", place.shown),
             )),
-            Err(error) => Err(Problem::error(
-                "file-unreadable",
-                format!("`{}` cannot be read: {error}", place.shown),
-            )),
+            Err(error) => Err(unreadable(&place.shown, &error)),
         }
     }
 
@@ -180,9 +177,7 @@ impl Folder {
         if !self.on_disk() {
             return Ok(Place { path, shown: inside.clone(), inside });
         }
-        let real = disk::real(&path).map_err(|error| {
-            Problem::error("file-unreadable", format!("`{written}` cannot be read: {error}")).at(at)
-        })?;
+        let real = disk::real(&path).map_err(|error| unreadable(written, &error).at(at))?;
         if real.is_some_and(|real| !real.starts_with(&self.real)) {
             return Err(outside("is a symbolic link out of the campaign's folder"));
         }
@@ -195,6 +190,12 @@ impl Folder {
     }
 }
 
+/// The names in a folder that are texts; none if it cannot be read.
+pub(super) fn names_in(folder: &Path) -> Vec<String> {
+    let names = disk::names(folder).unwrap_or_default().into_iter();
+    names.filter_map(|name| name.into_string().ok()).collect()
+}
+
 /// Names a file beside one that is missing, if its name is similar.
 fn near_file(problem: Problem, place: &Place) -> Problem {
     let (Some(folder), Some(name)) =
@@ -205,11 +206,7 @@ fn near_file(problem: Problem, place: &Place) -> Problem {
     if problem.code != "file-missing" {
         return problem;
     }
-    let beside: Vec<String> = disk::names(folder)
-        .unwrap_or_default()
-        .iter()
-        .filter_map(|name| Some(name.to_str()?.to_string()))
-        .collect();
+    let beside = names_in(folder);
     match nearest(name, beside.iter().map(String::as_str)) {
         Some(near) => problem.meant(
             &place
@@ -225,7 +222,7 @@ fn near_file(problem: Problem, place: &Place) -> Problem {
 ///
 /// # Errors
 /// `path-outside` if it is not a single file name on every system.
-pub(super) fn check_file_name(name: &str, at: &Span) -> Result<(), Problem> {
+pub fn check_file_name(name: &str, at: &Span) -> Result<(), Problem> {
     let says = if name.contains(['/', '\\', ':']) || name.starts_with('.') {
         format!(
             "`{name}` is used as a file name and must not contain `/`, `\\` or `:` or begin with a point"

@@ -1,8 +1,9 @@
 //! The block `report` of `campaign.yaml`: identification of the report, customer, test item,
 //! equipment and dates.
 
+use super::campaign::{LAYOUT, at_the_margin};
 use crate::problem::{Problem, Problems};
-use crate::yaml::{Key, Node, Value};
+use crate::yaml::{FromNode, Key, Node, Reader, Value};
 
 /// The key of the block.
 pub const REPORT_KEY: &str = "report";
@@ -62,101 +63,118 @@ pub const FIELDS: &[Field] = &[
 /// A field of [`FIELDS`] and its value.
 pub type Stated = (&'static Field, Option<String>);
 
-/// All fields in the order of [`FIELDS`]; missing ones are `None`.
+/// The block: all fields in the order of [`FIELDS`]; missing ones are `None`.
 ///
 /// Problems: `unknown-key` (with the nearest one), `key-twice`, `wrong-kind`, `report-date` (not a
 /// date).
-pub fn read(tree: &Node, problems: &mut Problems) -> Vec<Stated> {
-    let mut found: Vec<Stated> = FIELDS.iter().map(|field| (field, None)).collect();
-    let Some(block) = tree.get(REPORT_KEY) else { return found };
-    match &block.value {
-        Value::Null => {}
-        Value::Map(entries) => {
-            for (key, node) in entries {
-                entry(key, node, &mut found, problems);
-            }
-        }
-        _ => {
-            let says = format!(
-                "`{REPORT_KEY}` must be a map of keys and values, not {}",
-                block.kind_in_words()
-            );
-            problems.push(Problem::error("wrong-kind", says).at(&block.span));
-        }
+#[derive(Clone, Debug)]
+pub struct Report(pub Vec<Stated>);
+
+impl Default for Report {
+    fn default() -> Self {
+        Self(FIELDS.iter().map(|field| (field, None)).collect())
     }
-    found
 }
 
-fn entry(key: &Key, node: &Node, found: &mut [Stated], problems: &mut Problems) {
-    let name = plain(&key.text);
-    if let Some(group) = FIELDS.iter().filter_map(|field| field.group).find(|group| *group == name)
-    {
-        match &node.value {
-            Value::Map(entries) => {
+impl<C> FromNode<C> for Report {
+    fn from_node(reader: &mut Reader<'_, C>, _: &Key, node: &Node) -> Option<Self> {
+        let mut report = Self::default();
+        if !matches!(node.value, Value::Map(_) | Value::Null) {
+            let what = format!("`{REPORT_KEY}`");
+            reader.problems.push(node.is_not(&what, "a map of keys and values"));
+        }
+        for (key, node) in node.entries() {
+            report.entry(key, node, reader.problems);
+        }
+        Some(report)
+    }
+}
+
+impl Report {
+    fn entry(&mut self, key: &Key, node: &Node, problems: &mut Problems) {
+        let name = plain(&key.text);
+        let groups = || FIELDS.iter().filter_map(|field| field.group);
+        let Some(group) = groups().find(|group| *group == name) else {
+            // `date of issue` at the top level is `issue` of the dates.
+            let at = match name.strip_prefix("date of ") {
+                Some(dated) => position(DATES, dated),
+                None => position(None, &name),
+            };
+            if let Some(at) = at {
+                return self.state(at, key, node, problems);
+            }
+            let dates = ["date of receipt", "date of test", "date of issue"];
+            let problem = unknown(key, "a report", members(None).chain(groups()).chain(dates));
+            return problems.push(match LAYOUT.contains(&key.text.as_str()) {
+                true => problem.help(at_the_margin(&key.text)),
+                false => problem,
+            });
+        };
+        let description = position(Some(group), "description");
+        match (&node.value, description) {
+            (Value::Null, _) => {}
+            (Value::Map(entries), _) => {
                 for (inner, node) in entries {
-                    let name = plain(&inner.text);
-                    match FIELDS
-                        .iter()
-                        .position(|field| field.group == Some(group) && field.key == name)
-                    {
-                        Some(at) => state(at, inner, node, found, problems),
-                        None => problems.push(unknown(
-                            inner,
-                            &format!("`{group}` of a report"),
-                            members(group),
-                        )),
+                    match position(Some(group), &plain(&inner.text)) {
+                        Some(at) => self.state(at, inner, node, problems),
+                        None => {
+                            let what = format!("`{group}` of a report");
+                            problems.push(unknown(inner, &what, members(Some(group))));
+                        }
                     }
                 }
             }
             // A test item given as text.
-            _ if node.scalar_text().is_some() && members(group).any(|key| key == "description") => {
-                let at = FIELDS
-                    .iter()
-                    .position(|field| field.group == Some(group) && field.key == "description");
-                at.into_iter().for_each(|at| state(at, key, node, found, problems));
-            }
-            Value::Null => {}
+            (_, Some(at)) if node.is_scalar() => self.state(at, key, node, problems),
             _ => {
-                let keys =
-                    members(group).map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ");
-                let says =
-                    format!("`{group}` must be a map with {keys}, not {}", node.kind_in_words());
-                problems.push(Problem::error("wrong-kind", says).at(&node.span));
+                let keys: Vec<String> =
+                    members(Some(group)).map(|key| format!("`{key}`")).collect();
+                let be = format!("a map with {}", keys.join(", "));
+                problems.push(node.is_not(&format!("`{group}`"), &be));
             }
         }
-        return;
     }
-    // `date of issue` at the top level is `issue` of the dates.
-    let dated = name.strip_prefix("date of ");
-    let at = FIELDS.iter().position(|field| match field.group {
-        None => field.key == name,
-        group => group == DATES && Some(field.key) == dated,
-    });
-    match at {
-        Some(at) => state(at, key, node, found, problems),
-        None => {
-            let groups = FIELDS.iter().filter_map(|field| field.group);
-            let dates = ["date of receipt", "date of test", "date of issue"];
-            let alone = FIELDS.iter().filter(|field| field.group.is_none()).map(|field| field.key);
-            let problem = unknown(key, "a report", alone.chain(groups).chain(dates));
-            problems.push(match CAMPAIGN_KEYS.contains(&key.text.as_str()) {
-                true => problem.help(format!(
-                    "`{}` is a key of the campaign: it stands at the left margin",
-                    key.text
-                )),
-                false => problem,
-            });
+
+    fn state(&mut self, at: usize, key: &Key, node: &Node, problems: &mut Problems) {
+        let (field, stated) = &mut self.0[at];
+        let text = match &node.value {
+            Value::Null => return,
+            Value::List(items) => {
+                let items: Option<Vec<&str>> = items.iter().map(Node::scalar_text).collect();
+                items.map(|items| items.join("; "))
+            }
+            _ => node.scalar_text().map(str::to_owned),
+        };
+        let Some(text) = text else {
+            let what = format!("`{}`", key.text);
+            return problems.push(node.is_not(&what, "text or a list of texts"));
+        };
+        let text = text.trim().to_owned();
+        if text.is_empty() {
+            return;
         }
+        problems.push(if (field.group, field.key) == (DATES, ISSUE) && date(&text).is_none() {
+            Problem::error("report-date", format!("`{text}` is not a valid date of issue"))
+                .at(&node.span)
+                .help("write year-month-day, such as 2026-03-31")
+        } else if stated.is_some() {
+            let says = format!("the {} is stated twice", field.title.to_lowercase());
+            Problem::error("key-twice", says).at(&key.span)
+        } else {
+            *stated = Some(text);
+            return;
+        });
     }
 }
 
-/// Keys of `campaign.yaml` that may have been indented into the block.
-const CAMPAIGN_KEYS: [&str; 8] =
-    ["name", "vehicle", "sections", "measurement", "simulation", "track", "parameters", "protocol"];
+/// The place of a field in [`FIELDS`].
+fn position(group: Option<&str>, key: &str) -> Option<usize> {
+    FIELDS.iter().position(|field| field.group == group && field.key == key)
+}
 
-/// Keys of a map inside the block.
-fn members(group: &'static str) -> impl Iterator<Item = &'static str> {
-    FIELDS.iter().filter(move |field| field.group == Some(group)).map(|field| field.key)
+/// Keys of a map inside the block, or of the block itself.
+fn members(group: Option<&str>) -> impl Iterator<Item = &'static str> {
+    FIELDS.iter().filter(move |field| field.group == group).map(|field| field.key)
 }
 
 fn unknown<'a>(key: &Key, of: &str, known: impl Iterator<Item = &'a str>) -> Problem {
@@ -170,46 +188,6 @@ fn unknown<'a>(key: &Key, of: &str, known: impl Iterator<Item = &'a str>) -> Pro
     } else {
         suggested.help(format!("the keys are {}", known.join(", ")))
     }
-}
-
-fn state(at: usize, key: &Key, node: &Node, found: &mut [Stated], problems: &mut Problems) {
-    let field = found[at].0;
-    let text = match &node.value {
-        Value::Null => return,
-        Value::List(items) => items
-            .iter()
-            .map(Node::scalar_text)
-            .collect::<Option<Vec<_>>>()
-            .map(|items| items.join("; ")),
-        _ => node.scalar_text().map(str::to_owned),
-    };
-    let Some(text) = text else {
-        let says =
-            format!("`{}` must be text or a list of texts, not {}", key.text, node.kind_in_words());
-        return problems.push(Problem::error("wrong-kind", says).at(&node.span));
-    };
-    let text = text.trim().to_owned();
-    if text.is_empty() {
-        return;
-    }
-    if (field.group, field.key) == (DATES, ISSUE) && date(&text).is_none() {
-        let says = format!("`{text}` is not a valid date of issue");
-        return problems.push(
-            Problem::error("report-date", says)
-                .at(&node.span)
-                .help("write year-month-day, such as 2026-03-31"),
-        );
-    }
-    if found[at].1.is_some() {
-        return problems.push(
-            Problem::error(
-                "key-twice",
-                format!("the {} is stated twice", field.title.to_lowercase()),
-            )
-            .at(&key.span),
-        );
-    }
-    found[at].1 = Some(text);
 }
 
 /// Underscores are equivalent to spaces.
@@ -245,9 +223,10 @@ mod tests {
     fn stated(text: &str) -> (Vec<(String, String)>, String) {
         let mut problems = Problems::default();
         let source = Source::new("campaign.yaml", text);
-        let found = crate::yaml::load(&source, &mut problems)
-            .map(|tree| read(&tree, &mut problems))
-            .unwrap_or_default();
+        let found = crate::yaml::load(&source, &mut problems).and_then(|tree| {
+            Reader { with: (), problems: &mut problems }.optional(&tree, REPORT_KEY)
+        });
+        let Report(found) = found.unwrap_or_default();
         let given = found
             .into_iter()
             .filter_map(|(field, value)| Some((field.title.to_owned(), value?)))

@@ -6,13 +6,13 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use serde::{Deserialize, Serialize};
 
-use super::campaign::RecordKind;
+use super::campaign::{Opening, RecordKind};
 use super::folder::{Folder, Place};
 use super::record::{Format, Held, Known, Stored};
-use crate::problem::{Problem, Problems};
+use crate::problem::Problem;
 use crate::source::{Span, Spanned};
 use crate::store;
-use crate::yaml::{Node, Value};
+use crate::yaml::{FromNode, Key, Node, Reader, Value};
 
 /// A folder of records.
 #[derive(Clone, Debug)]
@@ -81,83 +81,77 @@ impl From<RecordKind> for WhichRecord {
 /// Longest name of a record [bytes]: a file name of any system.
 const LONGEST: usize = 200;
 
-/// Reads the folders of one kind: a folder, a list of folders, or a map of names and folders.
+/// The folders of one kind: a folder, a list of folders, or a map of names and folders.
 ///
 /// Problems: `wrong-kind`, `no-records` for an empty list, `name-invalid`, `duplicate-name`, and
 /// those of [`Folder::place`].
-pub(super) fn read(
-    tree: &Node,
-    kind: RecordKind,
-    folder: &Folder,
-    problems: &mut Problems,
-) -> Vec<RecordFolder> {
-    let Some(node) = tree.get(kind.key()) else { return Vec::new() };
-    let several = matches!(node.value, Value::List(_) | Value::Map(_)) && kind != RecordKind::Track;
-    if !several {
-        return text(node, kind.key(), problems)
-            .map(|folder| of(kind, None, None, folder))
-            .into_iter()
-            .collect();
+#[derive(Clone, Debug, Default)]
+pub(super) struct Folders(pub Vec<RecordFolder>);
+
+impl FromNode<Opening<'_>> for Folders {
+    fn from_node(reader: &mut Reader<'_, Opening<'_>>, key: &Key, node: &Node) -> Option<Self> {
+        let kind = RecordKind::ALL.into_iter().find(|kind| kind.key() == key.text)?;
+        let several = matches!(node.value, Value::List(_) | Value::Map(_));
+        if !several || kind == RecordKind::Track {
+            return Some(Self(vec![of(kind, None, None, Spanned::from_node(reader, key, node)?)]));
+        }
+        let mut found: Vec<(Spanned<String>, Spanned<String>)> = Vec::new();
+        let items = node.items().iter().map(|item| (None, item));
+        let entries = node.entries().iter().map(|(name, item)| (Some(name), item));
+        for (name, item) in items.chain(entries) {
+            let Some(written) = Spanned::from_node(reader, name.unwrap_or(key), item) else {
+                continue;
+            };
+            let inside = inside(&reader.with.folder, &written);
+            let Some(inside) = reader.keep(inside) else { continue };
+            let name = match name {
+                Some(name) => Spanned::new(name.text.trim().to_string(), name.span.clone()),
+                None => {
+                    let last = inside.rsplit('/').next().unwrap_or_default();
+                    Spanned::new(last.to_string(), written.span.clone())
+                }
+            };
+            found.push((name, written));
+        }
+        if node.items().is_empty() && node.entries().is_empty() {
+            let says = format!("`{}` names no folder", key.text);
+            let help = format!("`{0}: {0}`, or a list of folders", key.text);
+            reader.problems.push(Problem::error("no-records", says).at(&node.span).help(help));
+        }
+        reader.are_different(&found, &key.text);
+        let one = found.len() == 1;
+        let named = |(name, folder): (Spanned<String>, Spanned<String>)| {
+            let called: Arc<str> = name.value.into();
+            of(kind, (!one).then(|| Arc::clone(&called)), Some(called), folder)
+        };
+        Some(Self(found.into_iter().map(named).collect()))
     }
-    let mut found: Vec<(Spanned<String>, Spanned<String>)> = Vec::new();
-    for item in node.items() {
-        let Some(written) = text(item, kind.key(), problems) else { continue };
-        match inside(folder, &written) {
-            Ok(inside) => {
-                let name = inside.rsplit('/').next().unwrap_or_default().to_string();
-                found.push((Spanned::new(name, written.span.clone()), written));
-            }
-            Err(problem) => problems.push(problem),
+}
+
+impl Reader<'_, Opening<'_>> {
+    /// Names and folders of records are different, and the names can be used.
+    fn are_different(&mut self, found: &[(Spanned<String>, Spanned<String>)], key: &str) {
+        for (at, (name, written)) in found.iter().enumerate() {
+            self.keep(check_name(name));
+            let before = &found[..at];
+            let (problem, first) = if let Some((first, _)) =
+                before.iter().find(|(known, _)| known.value == name.value)
+            {
+                let says = format!("two records are named `{}`", name.value);
+                let help =
+                    format!("give each its own name: `{key}: {{name: folder, other: folder}}`");
+                (Problem::error("duplicate-name", says).at(&name.span).help(help), first)
+            } else if let Some((_, first)) =
+                before.iter().find(|(_, known)| same_folder(&self.with.folder, known, written))
+            {
+                let says = format!("the folder `{}` is given twice", written.value);
+                (Problem::error("duplicate-name", says).at(&written.span), first)
+            } else {
+                continue;
+            };
+            self.problems.push(problem.also(&first.span, "the first"));
         }
     }
-    for (key, item) in node.entries() {
-        let Some(written) = text(item, &key.text, problems) else { continue };
-        match inside(folder, &written) {
-            Ok(_) => {
-                found.push((Spanned::new(key.text.trim().to_string(), key.span.clone()), written))
-            }
-            Err(problem) => problems.push(problem),
-        }
-    }
-    if node.items().is_empty() && node.entries().is_empty() {
-        let says = format!("`{}` names no folder", kind.key());
-        let help = format!("`{}: {}`, or a list of folders", kind.key(), kind.key());
-        problems.push(Problem::error("no-records", says).at(&node.span).help(help));
-    }
-    for (at, (name, written)) in found.iter().enumerate() {
-        if let Err(problem) = check_name(name) {
-            problems.push(problem);
-        }
-        let before = &found[..at];
-        if let Some((first, _)) = before.iter().find(|(known, _)| known.value == name.value) {
-            let says = format!("two records are named `{}`", name.value);
-            let help = format!(
-                "give each its own name: `{}: {{name: folder, other: folder}}`",
-                kind.key()
-            );
-            problems.push(
-                Problem::error("duplicate-name", says)
-                    .at(&name.span)
-                    .also(&first.span, "the first")
-                    .help(help),
-            );
-        } else if let Some((_, first)) =
-            before.iter().find(|(_, known)| same_folder(folder, known, written))
-        {
-            let says = format!("the folder `{}` is given twice", written.value);
-            problems.push(
-                Problem::error("duplicate-name", says)
-                    .at(&written.span)
-                    .also(&first.span, "the first"),
-            );
-        }
-    }
-    let one = found.len() == 1;
-    let named = |(name, folder): (Spanned<String>, Spanned<String>)| {
-        let called: Arc<str> = name.value.into();
-        of(kind, (!one).then(|| Arc::clone(&called)), Some(called), folder)
-    };
-    found.into_iter().map(named).collect()
 }
 
 fn of(
@@ -174,19 +168,6 @@ fn of(
         strangers: OnceLock::new(),
         place: OnceLock::new(),
         objects: Arc::default(),
-    }
-}
-
-fn text(node: &Node, key: &str, problems: &mut Problems) -> Option<Spanned<String>> {
-    match node.scalar_text() {
-        Some(text) if !text.trim().is_empty() => {
-            Some(Spanned::new(text.to_string(), node.span.clone()))
-        }
-        _ => {
-            let says = format!("`{key}` must be text; this is {}", node.kind_in_words());
-            problems.push(Problem::error("wrong-kind", says).at(&node.span));
-            None
-        }
     }
 }
 
@@ -239,6 +220,7 @@ pub(super) fn several(kind: RecordKind, folders: &[&RecordFolder], at: &Span) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::problem::Problems;
     use crate::source::Source;
     use crate::yaml;
 
@@ -247,13 +229,16 @@ mod tests {
         let folder = Folder::open(temp.path()).expect("there");
         let mut problems = Problems::default();
         let tree = yaml::load(&Source::new("campaign.yaml", text), &mut problems).expect("YAML");
-        let found = read(&tree, RecordKind::Simulation, &folder, &mut problems);
+        let with = Opening { folder, files: Vec::new(), tree: None };
+        let mut reader = Reader { with, problems: &mut problems };
+        let found: Folders = reader.optional(&tree, "simulation").unwrap_or_default();
         assert!(
             problems.0.iter().all(|problem| problem.at.is_some()),
             "{}",
             problems.render(false)
         );
         let found = found
+            .0
             .into_iter()
             .map(|one| (one.name.map(|name| name.to_string()), one.folder.value))
             .collect();

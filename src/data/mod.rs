@@ -14,8 +14,7 @@
 //! | `blocks` | a long record, block by block |
 //! | `table` | a small table such as `sections.csv` |
 //! | `crate::yaml` | YAML with places of all values |
-//! | `origin` | origin of the records of a campaign written by a program |
-//! | `imported` | what an import did |
+//! | `origin` | origin of the records of a campaign written by a program; what an import did |
 //! | `sites` | sections on the same stretch of track |
 //! | `checks` | checks of the samples of a record |
 //! | `fingerprint` | hash of a present file of a campaign |
@@ -32,7 +31,6 @@ pub(crate) mod faults;
 pub mod fingerprint;
 mod folder;
 pub mod identification;
-mod imported;
 mod members;
 pub mod origin;
 pub mod record;
@@ -46,7 +44,7 @@ pub use campaign::{Campaign, RecordKind};
 pub use campaigns::{Campaigns, qualified};
 pub use cells::Heading;
 pub use checks::{Axis, check_axis};
-pub use folder::Place;
+pub use folder::{Place, check_file_name};
 pub use members::WhichRecord;
 pub use record::{Column, Record, Wanted, read_record};
 pub use table::Table;

@@ -1,91 +1,87 @@
 //! Origin of the records of a campaign written by a program: `origin.yaml`, named by the key
 //! `origin` of `campaign.yaml`.
 
-pub use super::imported::{Imported, ImportedRecord};
-
+use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
 
-use crate::problem::{Problem, Problems};
-use crate::yaml::{self, Node};
+use crate::yaml::{FromNode, Key, Literal, Node, Reader, fields};
 
 /// Name of the file.
 pub const ORIGIN_FILE: &str = "origin.yaml";
 /// The key of `campaign.yaml`.
 pub const ORIGIN_KEY: &str = "origin";
 
-/// Origin of the simulated records of a campaign.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Origin {
-    /// Program and version.
-    pub program: String,
-    /// `simulate`, `diagnose` or `import`.
-    pub command: String,
-    /// Name of the campaign whose simulation was first changed.
-    pub campaign: String,
-    pub simulator: Option<String>,
-    /// Effects in the simulated records, in the order in which they were added.
-    pub effects: Vec<OriginEffect>,
-    /// Measured records to which the sizes of the effects were fitted.
-    pub fitted_to: Vec<OriginFile>,
-    /// Files from which the records were computed.
-    pub sources: Vec<OriginFile>,
-    /// What an import did, if records were imported.
-    pub imported: Option<Imported>,
+fields! {
+    /// Origin of the simulated records of a campaign. Keys of other programs are ignored.
+    #[derive(Default, PartialEq, Serialize, Deserialize)]
+    pub struct Origin: "an origin" or Ignored {
+        /// Program and version.
+        "program" program: String = String::new(),
+        /// `simulate`, `diagnose` or `import`.
+        "command" command: String = String::new(),
+        /// Name of the campaign whose simulation was first changed.
+        "campaign" campaign: String = String::new(),
+        #[serde(skip_serializing_if = "Option::is_none")]
+        "simulator" simulator: Option<String>,
+        /// Effects in the simulated records, in the order in which they were added.
+        "effects" effects: Vec<OriginEffect>,
+        /// Measured records to which the sizes of the effects were fitted.
+        #[serde(rename = "fitted to")]
+        "fitted to" fitted_to: Vec<OriginFile>,
+        /// Files from which the records were computed.
+        "sources" sources: Vec<OriginFile>,
+    } also {
+        /// What an import did, if records were imported.
+        #[serde(flatten)]
+        imported: Option<Imported> = imported,
+    }
 }
 
-/// An effect with its size.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct OriginEffect {
-    pub effect: String,
-    /// Name, value, unit.
-    pub parameters: Vec<(String, f64, String)>,
-    /// Channels of the effect; empty for an effect on the vehicle.
-    pub channels: Vec<String>,
-    /// Sections of the effect, if not all: `zone 3, 4`.
-    pub confined_to: Option<String>,
+fields! {
+    /// An effect with its size.
+    #[derive(Default, PartialEq, Serialize, Deserialize)]
+    pub struct OriginEffect: "an effect of an origin" or Ignored {
+        "effect" effect: String,
+        "parameters" parameters: Vec<OriginParameter>,
+        /// Channels of the effect; empty for an effect on the vehicle.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        "channels" channels: Vec<String>,
+        /// Sections of the effect, if not all: `zone 3, 4`.
+        #[serde(rename = "confined to", skip_serializing_if = "Option::is_none")]
+        "confined to" confined_to: Option<String>,
+    }
 }
 
-/// A file by its path in its campaign.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct OriginFile {
-    pub path: String,
-    pub sha256: String,
+fields! {
+    /// A parameter of an effect.
+    #[derive(PartialEq, Serialize, Deserialize)]
+    pub struct OriginParameter: "a parameter of an effect" or Ignored {
+        "name" name: String,
+        "value" value: f64,
+        "unit" unit: String,
+    }
+}
+
+fields! {
+    /// A file by its path in its campaign.
+    #[derive(PartialEq, Serialize, Deserialize)]
+    pub struct OriginFile: "a file of an origin" or Ignored {
+        "path" path: String,
+        "sha256" sha256: String,
+    }
 }
 
 impl OriginEffect {
-    fn value(&self) -> Value {
-        let parameters = self.parameters.iter();
-        let parameters: Vec<Value> = parameters
-            .map(|(name, value, unit)| json!({ "name": name, "value": value, "unit": unit }))
-            .collect();
-        let mut all = json!({ "effect": self.effect, "parameters": parameters });
-        if !self.channels.is_empty() {
-            all["channels"] = json!(self.channels);
-        }
-        if let Some(sections) = &self.confined_to {
-            all["confined to"] = json!(sections);
-        }
-        all
-    }
-
     /// `friction = 0.23`, `sensor_gain: gain = 0.8 on Y_3R`, `payload: payload.mass = 3500 kg in
     /// zone 4`
     pub fn in_words(&self, equals: &str) -> String {
-        let value = |value: f64, unit: &str| {
-            format!(
-                "{}{}",
-                short(value),
-                if unit == "-" { String::new() } else { format!(" {unit}") }
-            )
-        };
         let mut words = match &self.parameters[..] {
-            [(_, one, unit)] => format!("{}{equals}{}", self.effect, value(*one, unit)),
+            [one] => format!("{}{equals}{}", self.effect, one.in_words()),
             [] => self.effect.clone(),
             several => {
                 let all: Vec<String> = several
                     .iter()
-                    .map(|(name, one, unit)| format!("{name}{equals}{}", value(*one, unit)))
+                    .map(|one| format!("{}{equals}{}", one.name, one.in_words()))
                     .collect();
                 format!("{} ({})", self.effect, all.join(", "))
             }
@@ -97,10 +93,15 @@ impl OriginEffect {
     }
 }
 
-/// Three significant digits for a sentence; the file has all digits.
-fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-    format!("{rounded}")
+impl OriginParameter {
+    /// Three significant digits for a sentence; the file has all digits.
+    fn in_words(&self) -> String {
+        let rounded: f64 = format!("{:.2e}", self.value).parse().unwrap_or(self.value);
+        match self.unit.as_str() {
+            "-" => rounded.to_string(),
+            unit => format!("{rounded} {unit}"),
+        }
+    }
 }
 
 impl Origin {
@@ -109,131 +110,60 @@ impl Origin {
         self.effects.iter().map(|effect| effect.in_words(equals)).collect::<Vec<_>>().join(" and ")
     }
 
-    /// Reads the file, or the map in `campaign.yaml`. Unknown keys, from other programs, are
-    /// ignored.
-    ///
-    /// Problems: `wrong-kind`.
-    pub fn read(node: &Node, problems: &mut Problems) -> Option<Self> {
-        if !matches!(node.value, yaml::Value::Map(_)) {
-            let says =
-                format!("an origin must be a map of keys and values, not {}", node.kind_in_words());
-            problems.push(Problem::error("wrong-kind", says).at(&node.span));
-            return None;
-        }
-        let before = problems.errors();
-        let text = |key: &str| node.get(key).and_then(Node::scalar_text).map(str::to_string);
-        let origin = Self {
-            program: text("program").unwrap_or_default(),
-            command: text("command").unwrap_or_default(),
-            campaign: text("campaign").unwrap_or_default(),
-            simulator: text("simulator"),
-            effects: items(node, "effects", problems)
-                .into_iter()
-                .filter_map(|node| effect(node, problems))
-                .collect(),
-            fitted_to: items(node, "fitted to", problems)
-                .into_iter()
-                .filter_map(|node| file(node, problems))
-                .collect(),
-            sources: items(node, "sources", problems)
-                .into_iter()
-                .filter_map(|node| file(node, problems))
-                .collect(),
-            imported: Imported::read(node, problems),
-        };
-        (problems.errors() == before).then_some(origin)
-    }
-
     /// The text of `origin.yaml`.
     pub fn text(&self) -> String {
-        let files = |files: &[OriginFile]| {
-            files.iter().map(|file| json!({ "path": file.path, "sha256": file.sha256 })).collect()
-        };
-        let (fitted_to, sources): (Vec<Value>, Vec<Value>) =
-            (files(&self.fitted_to), files(&self.sources));
-        let effects: Vec<Value> = self.effects.iter().map(OriginEffect::value).collect();
-        let mut all = json!({
-            "program": self.program,
-            "command": self.command,
-            "campaign": self.campaign,
-            "simulator": self.simulator,
-            "effects": effects,
-            "fitted to": fitted_to,
-            "sources": sources,
-        });
-        let imported = self.imported.as_ref().map(Imported::entries);
-        if let Value::Object(all) = &mut all {
-            all.retain(|_, value| !value.is_null());
-            all.extend(imported.into_iter().flatten());
-        }
-        // Texts, numbers, lists and maps can always be written.
-        serde_yaml::to_string(&all).unwrap_or_default()
+        // Texts, numbers and lists can always be written.
+        serde_yaml::to_string(self).unwrap_or_default()
     }
 }
 
-/// The items of an optional list.
-fn items<'a>(node: &'a Node, key: &str, problems: &mut Problems) -> Vec<&'a Node> {
-    match node.get(key) {
-        None => Vec::new(),
-        Some(list) => match &list.value {
-            yaml::Value::List(items) => items.iter().collect(),
-            yaml::Value::Null => Vec::new(),
-            _ => {
-                let says = format!("`{key}` must be a list, not {}", list.kind_in_words());
-                problems.push(Problem::error("wrong-kind", says).at(&list.span));
-                Vec::new()
-            }
-        },
+/// What an import did, if there was one: it states its mapping.
+fn imported<C>(reader: &mut Reader<'_, C>, key: &Key, node: &Node) -> Option<Imported> {
+    node.get("mapping")?;
+    Imported::from_node(reader, key, node)
+}
+
+fields! {
+    /// What an import did: the mapping, and for each record its source and the steps.
+    #[derive(Default, PartialEq, Serialize, Deserialize)]
+    pub struct Imported: "an import" or Ignored {
+        /// For each side what its channels were made of, `Y_1L = -ST1 Y li`.
+        "channels" channels: IndexMap<String, Vec<String>>,
+        "records" records: Vec<ImportedRecord>,
+        /// The text of the mapping.
+        "mapping" mapping: Literal,
     }
 }
 
-fn text(node: &Node, key: &str, problems: &mut Problems) -> Option<String> {
-    let found = node.get(key).and_then(Node::scalar_text).map(str::to_string);
-    if found.is_none() {
-        problems.push(
-            Problem::error("wrong-kind", format!("`{key}` must be given, as text")).at(&node.span),
-        );
+fields! {
+    /// How one record was made.
+    #[derive(PartialEq, Serialize, Deserialize)]
+    pub struct ImportedRecord: "a record of an import" or Ignored {
+        /// `measurement` or `simulation`.
+        "side" side: String,
+        "section" section: String,
+        /// The file that it was read from, as the mapping names it.
+        "file" file: String,
+        /// What was detected in the file.
+        #[serde(rename = "read as")]
+        "read as" read_as: String,
+        /// What was done, in order.
+        "steps" steps: Vec<String>,
     }
-    found
-}
-
-fn file(node: &Node, problems: &mut Problems) -> Option<OriginFile> {
-    Some(OriginFile {
-        path: text(node, "path", problems)?,
-        sha256: text(node, "sha256", problems)?,
-    })
-}
-
-fn effect(node: &Node, problems: &mut Problems) -> Option<OriginEffect> {
-    let effect = text(node, "effect", problems)?;
-    let mut parameters = Vec::new();
-    for one in items(node, "parameters", problems) {
-        let Some(value) = one.get("value").and_then(Node::number) else {
-            problems.push(
-                Problem::error("wrong-kind", "a parameter must have a `value` that is a number")
-                    .at(&one.span),
-            );
-            continue;
-        };
-        parameters.push((text(one, "name", problems)?, value, text(one, "unit", problems)?));
-    }
-    let channels = items(node, "channels", problems)
-        .iter()
-        .filter_map(|one| one.scalar_text().map(str::to_string))
-        .collect();
-    let confined_to = node.get("confined to").and_then(Node::scalar_text).map(str::to_string);
-    Some(OriginEffect { effect, parameters, channels, confined_to })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::source::Source;
+    use crate::yaml;
 
     fn read(text: &str) -> (Option<Origin>, Problems) {
         let mut problems = Problems::default();
         let node = yaml::load(&Source::new("origin.yaml", text), &mut problems).expect("YAML");
-        (Origin::read(&node, &mut problems), problems)
+        let before = problems.errors();
+        let origin: Option<Origin> = Reader { with: (), problems: &mut problems }.file(&node);
+        (origin.filter(|_| problems.errors() == before), problems)
     }
 
     #[test]
@@ -242,7 +172,11 @@ mod tests {
             effect: name.into(),
             parameters: parameters
                 .iter()
-                .map(|(name, value, unit)| ((*name).into(), *value, (*unit).into()))
+                .map(|(name, value, unit)| OriginParameter {
+                    name: (*name).into(),
+                    value: *value,
+                    unit: (*unit).into(),
+                })
                 .collect(),
             ..OriginEffect::default()
         };
@@ -264,7 +198,21 @@ mod tests {
             ],
             fitted_to: vec![file("measurement/S01.csv")],
             sources: vec![file("campaign.yaml"), file("track/S01.csv")],
-            imported: Some(Imported { mapping: "name: x\n".into(), ..Imported::default() }),
+            imported: Some(Imported {
+                mapping: Literal("  name: x\n\n# remark: \"y\"\nmeasurement:\n  files: a\n".into()),
+                channels: [
+                    ("measurement".into(), vec!["Y_1L = -ST1 Y li".into()]),
+                    ("simulation".into(), Vec::new()),
+                ]
+                .into(),
+                records: vec![ImportedRecord {
+                    side: "measurement".into(),
+                    section: "S01".into(),
+                    file: "raw/Messung: S01.csv".into(),
+                    read_as: "csv; separator `;`".into(),
+                    steps: vec!["1794 rows at 200 Hz".into(), "- odd".into()],
+                }],
+            }),
         };
         let (found, problems) = read(&origin.text());
         assert_eq!(
@@ -277,7 +225,16 @@ mod tests {
             origin.effects_in_words(" = "),
             "friction = 0.23 and sensor_gain = 0.812 on Y_3R in zone 3, 4 and payload (a = 3500 kg, b = -0.1 m)"
         );
-        assert_eq!(read(&Origin::default().text()).0, Some(Origin::default()));
+        let odd = Literal("name: \u{7}\n".into());
+        let imported = Some(Imported { mapping: odd, ..Imported::default() });
+        let least = Origin {
+            program: "x".into(),
+            command: "y".into(),
+            campaign: "z".into(),
+            imported,
+            ..Origin::default()
+        };
+        assert_eq!(read(&least.text()).0, Some(least));
     }
 
     #[test]

@@ -52,6 +52,16 @@ impl Wanted {
         Self { name: name.into(), dimension: Some(dimension), required: true }
     }
 
+    /// Columns of whatever dimension, all of which must be there.
+    pub fn all<'a>(headings: impl IntoIterator<Item = &'a Heading>) -> Vec<Self> {
+        let wanted = |heading: &Heading| Self {
+            name: heading.name.clone(),
+            dimension: None,
+            required: true,
+        };
+        headings.into_iter().map(wanted).collect()
+    }
+
     /// The same column, optional.
     #[must_use]
     pub fn if_there(self) -> Self {

@@ -181,6 +181,18 @@ impl Table {
         self.rows.get(row)?.get(column)
     }
 
+    /// As [`Table::numbers`], of the column with a name, which must be there.
+    ///
+    /// # Errors
+    /// As [`Table::need_column`] and [`Table::numbers`].
+    pub fn numbers_named(
+        &self,
+        column: &str,
+        dimension: Option<Dimension>,
+    ) -> Result<Vec<Option<f64>>, Vec<Problem>> {
+        self.numbers(self.need_column(column)?, dimension)
+    }
+
     /// A column as numbers in SI; `None` where a cell is empty.
     ///
     /// # Errors

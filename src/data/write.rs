@@ -8,7 +8,9 @@ pub use columnar::{
     FileColumn, Layout, Values, csv, csv_header, csv_rows, parquet, parquet_in_groups,
 };
 pub use digits::Digits;
-pub use format::{Entry, OutColumn, campaign_yaml, record, record_csv, table_csv, yaml_text};
+pub use format::{
+    Entry, OutColumn, campaign_yaml, campaign_yaml_with, record, record_csv, table_csv, yaml_text,
+};
 
 use std::io;
 use std::path::Path;

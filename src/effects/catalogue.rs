@@ -6,7 +6,7 @@ use super::expression::Formula;
 use super::operators::Operator;
 use crate::source::{Source, Span};
 use crate::units::Unit;
-use crate::yaml::Node;
+use crate::yaml::{Node, Words};
 
 /// A catalogue as declared in a text file.
 #[derive(Clone, Debug)]
@@ -41,18 +41,20 @@ pub enum Acts {
 }
 
 impl Acts {
-    pub const ALL: [Self; 4] =
-        [Self::Vehicle, Self::Track, Self::Environment, Self::MeasuringChain];
-
+    /// The word for it in a catalogue.
     #[must_use]
     pub fn in_words(self) -> &'static str {
-        match self {
-            Self::Vehicle => "vehicle",
-            Self::Track => "track",
-            Self::Environment => "environment",
-            Self::MeasuringChain => "measuring chain",
-        }
+        self.word()
     }
+}
+
+impl Words for Acts {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("vehicle", Self::Vehicle),
+        ("track", Self::Track),
+        ("environment", Self::Environment),
+        ("measuring chain", Self::MeasuringChain),
+    ];
 }
 
 /// One effect.
@@ -91,6 +93,8 @@ pub struct Parameter {
     /// Plausible range, in the unit.
     pub low: f64,
     pub high: f64,
+    /// The values that a diagnosis tries, in increasing order.
+    pub trials: Vec<f64>,
     pub meaning: String,
     /// Whether the effect vanishes towards the upper end of the range.
     pub vanishes_high: bool,

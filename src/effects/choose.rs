@@ -7,6 +7,8 @@ use super::read::CHANNEL;
 use crate::problem::Problem;
 use crate::source::{Source, Span};
 use crate::units::Unit;
+use crate::units::number::{Refused, split};
+use crate::yaml::unknown_unit;
 
 /// An effect with its size and sections.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +68,7 @@ pub fn choose(catalogue: &Catalogue, texts: &[String]) -> Result<Vec<Applied>, V
     for text in texts {
         let source = Source::new("--effect", text.clone());
         match one(catalogue, text, &source) {
-            Err(problem) => problems.push(*problem),
+            Err(problem) => problems.push(problem),
             Ok(applied) => match chosen.iter_mut().find(|known| {
                 known.effect == applied.effect
                     && known.channels == applied.channels
@@ -100,7 +102,7 @@ fn one(
     catalogue: &Catalogue,
     text: &str,
     source: &std::sync::Arc<Source>,
-) -> Result<Applied, Box<Problem>> {
+) -> Result<Applied, Problem> {
     let place = |part: &str| -> Span {
         let start = part.as_ptr() as usize - text.as_ptr() as usize;
         source.span(start..start + part.len())
@@ -124,7 +126,7 @@ fn one(
     let effect = catalogue.effect(name).ok_or_else(|| {
         let problem = Problem::error("unknown-effect", format!("there is no effect `{name}`"))
             .at(&place(name));
-        Box::new(problem.suggest(name, catalogue.effects.iter().map(|effect| effect.name.as_str())))
+        problem.suggest(name, catalogue.effects.iter().map(|effect| effect.name.as_str()))
     })?;
     let (parameter, channel) = parameter_named(effect, parameter, &place)?;
     let value = match value {
@@ -137,7 +139,7 @@ fn one(
             "{value}{unit} is outside the range of `{}`: {low} to {high}{unit}",
             parameter.name
         );
-        return Err(Box::new(Problem::error("range", says).at(&place(rest))));
+        return Err(Problem::error("range", says).at(&place(rest)));
     }
     let mut channels: Vec<String> = channel.into_iter().collect();
     if let Action::Signals(operator, allowed) = &effect.action {
@@ -152,17 +154,17 @@ fn one(
                 )
                 .at(&place(name));
                 let groups = catalogue.groups.iter().map(|group| group.name.as_str());
-                Box::new(problem.suggest(name, allowed.iter().map(String::as_str).chain(groups)))
+                problem.suggest(name, allowed.iter().map(String::as_str).chain(groups))
             })?);
         }
         channels = in_pairs(*operator, channels, allowed).map_err(|says| {
             let problem = Problem::error("channel-missing", format!("`{}` {says}", effect.name))
                 .at(&place(rest));
-            Box::new(problem.help(format!(
+            problem.help(format!(
                 "write `{rest} on {}, {}`",
                 allowed[0],
                 allowed.get(1).unwrap_or(&allowed[0])
-            )))
+            ))
         })?;
         if channels.is_empty() {
             if parameter.name.contains(CHANNEL) {
@@ -170,18 +172,16 @@ fn one(
                     "`{}` acts on one channel or a group, which must be given",
                     effect.name
                 );
-                return Err(Box::new(
-                    Problem::error("channel-missing", says)
-                        .at(&place(rest))
-                        .help(format!("write `{rest} on {}`", allowed[0])),
-                ));
+                return Err(Problem::error("channel-missing", says)
+                    .at(&place(rest))
+                    .help(format!("write `{rest} on {}`", allowed[0])));
             }
             channels.clone_from(allowed);
         }
     } else if let Some(on) = on {
         let says =
             format!("`{}` acts on the {}, not on channels", effect.name, effect.acts.in_words());
-        return Err(Box::new(Problem::error("unknown-channel", says).at(&place(on))));
+        return Err(Problem::error("unknown-channel", says).at(&place(on)));
     }
     Ok(Applied {
         effect: name.to_string(),
@@ -217,7 +217,7 @@ fn parameter_named<'a>(
     effect: &'a Effect,
     named: Option<&str>,
     place: &dyn Fn(&str) -> Span,
-) -> Result<(&'a Parameter, Option<String>), Box<Problem>> {
+) -> Result<(&'a Parameter, Option<String>), Problem> {
     let Some(named) = named else {
         // The first parameter is the main one.
         return Ok((&effect.parameters[0], None));
@@ -232,11 +232,9 @@ fn parameter_named<'a>(
                         "unknown-channel",
                         format!("`{}` does not act on `{channel}`", effect.name),
                     );
-                    return Err(Box::new(
-                        problem
-                            .at(&place(channel))
-                            .suggest(channel, allowed.iter().map(String::as_str)),
-                    ));
+                    return Err(problem
+                        .at(&place(channel))
+                        .suggest(channel, allowed.iter().map(String::as_str)));
                 }
                 return Ok((parameter, Some(channel.to_string())));
             }
@@ -251,45 +249,34 @@ fn parameter_named<'a>(
         format!("`{}` has no parameter `{named}`", effect.name),
     )
     .at(&place(named));
-    Err(Box::new(problem.suggest(named, effect.parameter_names())))
+    Err(problem.suggest(named, effect.parameter_names()))
 }
 
 fn number(
     parameter: &Parameter,
     written: &str,
     place: &dyn Fn(&str) -> Span,
-) -> Result<f64, Box<Problem>> {
+) -> Result<f64, Problem> {
     if let Some((_, value)) = WORDS.iter().find(|(word, _)| *word == written) {
         return Ok(*value);
     }
-    let end = written
-        .find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c)))
-        .unwrap_or(written.len());
-    let (digits, unit) = written.split_at(end);
-    let wrong = |says: String| Box::new(Problem::error("wrong-kind", says).at(&place(written)));
-    let value: f64 =
-        digits.trim().parse().map_err(|_| wrong(format!("`{written}` is not a number")))?;
-    if !value.is_finite() {
-        return Err(wrong(format!("`{written}` is too large")));
-    }
-    let unit = unit.trim();
+    let refused = |refused: Refused| Problem {
+        help: refused.help,
+        ..Problem::error("wrong-kind", refused.says).at(&place(written))
+    };
+    let (value, unit) = split(written, &Unit::one()).map_err(refused)?;
     if unit.is_empty() {
         return Ok(value);
     }
-    let unit = Unit::parse(unit).map_err(|unknown| {
-        let problem =
-            Problem::error("unknown-unit", format!("`{}` is not a known unit", unknown.word))
-                .at(&place(unit));
-        Box::new(unknown.near.map_or(problem.clone(), |near| problem.meant(near)))
-    })?;
+    let unit = Unit::parse(unit).map_err(|unknown| unknown_unit(&unknown, &place(unit)))?;
     if unit.dimension != parameter.unit.dimension {
         let says = format!("`{}` is in {}, not in {unit}", parameter.name, parameter.unit);
-        return Err(Box::new(Problem::error("unit-mismatch", says).at(&place(written))));
+        return Err(Problem::error("unit-mismatch", says).at(&place(written)));
     }
     Ok(parameter.unit.from_si(unit.to_si(value)))
 }
 
-fn confinement(text: &str, place: &dyn Fn(&str) -> Span) -> Result<Confined, Box<Problem>> {
+fn confinement(text: &str, place: &dyn Fn(&str) -> Span) -> Result<Confined, Problem> {
     let text = text.trim();
     let (word, values) = text.split_once(' ').unwrap_or((text, ""));
     let column = COLUMNS
@@ -300,10 +287,7 @@ fn confinement(text: &str, place: &dyn Fn(&str) -> Span) -> Result<Confined, Box
             let problem =
                 Problem::error("unknown-word", format!("an effect cannot be confined to `{text}`"))
                     .at(&place(text));
-            Box::new(
-                problem
-                    .help("write `in zones 3, 4`, `in direction left` or `in sections S01, S02`"),
-            )
+            problem.help("write `in zones 3, 4`, `in direction left` or `in sections S01, S02`")
         })?;
     let values = values
         .split(',')

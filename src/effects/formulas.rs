@@ -1,5 +1,4 @@
-//! Reads the parts of a catalogue in the protocol language: `signals` of an effect, and the units
-//! of channels.
+//! Reads the parts of a catalogue in the protocol language: `signals` of an effect.
 
 use super::catalogue::{Action, Parameter};
 use super::expression::{Formula, Known};
@@ -7,38 +6,9 @@ use super::read::{CHANNEL, Reader};
 use crate::problem::Problem;
 use crate::syntax::document::Text;
 use crate::units::Unit;
-use crate::yaml::{Node, Value};
+use crate::yaml::Node;
 
-impl Reader<'_> {
-    /// `units`: groups or channels with their units.
-    pub fn units(&mut self, node: &Node, units: &mut Vec<(String, Unit)>) {
-        if !matches!(node.value, Value::Map(_)) {
-            self.fault(
-                "wrong-kind",
-                format!(
-                    "`units` must be a map of channels and units, not {}",
-                    node.kind_in_words()
-                ),
-                Some(node),
-            );
-        }
-        for (key, written) in node.entries() {
-            let Some(unit) = self.unit(written.scalar_text().unwrap_or_default(), written) else {
-                continue;
-            };
-            let name = Node {
-                value: Value::Text(key.text.clone()),
-                span: key.span.clone(),
-                raw: key.text.clone(),
-                exact: key.exact,
-            };
-            for channel in self.channels(&name) {
-                units.retain(|(known, _)| *known != channel);
-                units.push((channel, unit.clone()));
-            }
-        }
-    }
-
+impl Reader<'_, '_> {
     /// `signals`: channels with their expressions.
     pub fn formulas(
         &mut self,
@@ -56,11 +26,7 @@ impl Reader<'_> {
             }
         }
         if signals.entries().is_empty() {
-            let says = format!(
-                "`signals` must be a map of channels and expressions, not {}",
-                signals.kind_in_words()
-            );
-            self.fault("wrong-kind", says, Some(signals));
+            self.problems.push(signals.is_not("`signals`", "a map of channels and expressions"));
             return None;
         }
         for parameter in parameters
@@ -71,14 +37,15 @@ impl Reader<'_> {
                 "`{}` needs a number as `neutral`, at which the expressions change nothing",
                 parameter.name
             );
-            self.fault("key-missing", says, effect.lookup("parameters"));
+            let at = effect.get("parameters").unwrap_or(effect);
+            self.fault("key-missing", says, &at.span);
         }
         let last = |name: &str| name.rsplit('.').next().unwrap_or_default().to_string();
         let names: Vec<(String, Unit)> = parameters
             .iter()
             .map(|parameter| (last(&parameter.name), parameter.unit.clone()))
             .collect();
-        let channels = self.units.clone();
+        let channels = self.with.units.clone();
         let mut formulas = Vec::new();
         for (key, written) in signals.entries() {
             let Some((_, unit)) = channels.iter().find(|(channel, _)| *channel == key.text) else {
@@ -91,11 +58,7 @@ impl Reader<'_> {
                 continue;
             };
             let Some(text) = written.scalar_text() else {
-                self.fault(
-                    "wrong-kind",
-                    format!("an expression must be text, not {}", written.kind_in_words()),
-                    Some(written),
-                );
+                self.problems.push(written.is_not("an expression", "text"));
                 continue;
             };
             let text =

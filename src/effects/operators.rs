@@ -3,6 +3,7 @@
 use super::expression::Formula;
 use super::signals::Signals;
 use crate::metrics::filter::{Band, Cutoff, Filter, Phase};
+use crate::yaml::Words;
 
 /// An operation on channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -26,34 +27,27 @@ pub enum Operator {
 }
 
 impl Operator {
-    pub const ALL: [Self; 10] = [
-        Self::Crosstalk,
-        Self::LowPass,
-        Self::Gain,
-        Self::Polarity,
-        Self::Offset,
-        Self::Drift,
-        Self::Noise,
-        Self::Clip,
-        Self::Swap,
-        Self::Shift,
-    ];
-
+    /// The word for it in a catalogue.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Crosstalk => "crosstalk",
-            Self::LowPass => "low-pass",
-            Self::Gain => "gain",
-            Self::Polarity => "polarity",
-            Self::Offset => "offset",
-            Self::Drift => "drift",
-            Self::Noise => "noise",
-            Self::Clip => "clip",
-            Self::Swap => "swap",
-            Self::Shift => "shift",
-        }
+        self.word()
     }
+}
+
+impl Words for Operator {
+    const CODE: &'static str = "unknown-operator";
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("crosstalk", Self::Crosstalk),
+        ("low-pass", Self::LowPass),
+        ("gain", Self::Gain),
+        ("polarity", Self::Polarity),
+        ("offset", Self::Offset),
+        ("drift", Self::Drift),
+        ("noise", Self::Noise),
+        ("clip", Self::Clip),
+        ("swap", Self::Swap),
+        ("shift", Self::Shift),
+    ];
 }
 
 /// Order of the low-pass.

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::Options;
 use crate::problem::Problem;
+use crate::yaml::Words;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
@@ -21,36 +22,20 @@ pub enum Format {
     Tdms,
 }
 
-impl Format {
-    pub const ALL: [Self; 8] = [
-        Self::Csv,
-        Self::Ascii,
-        Self::Mdf4,
-        Self::Mat,
-        Self::Xlsx,
-        Self::Parquet,
-        Self::Arrow,
-        Self::Tdms,
+impl Words for Format {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("csv", Self::Csv),
+        ("ascii", Self::Ascii),
+        ("mdf4", Self::Mdf4),
+        ("mat", Self::Mat),
+        ("xlsx", Self::Xlsx),
+        ("parquet", Self::Parquet),
+        ("arrow", Self::Arrow),
+        ("tdms", Self::Tdms),
     ];
+}
 
-    /// The word in a mapping.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Csv => "csv",
-            Self::Ascii => "ascii",
-            Self::Mdf4 => "mdf4",
-            Self::Mat => "mat",
-            Self::Xlsx => "xlsx",
-            Self::Parquet => "parquet",
-            Self::Arrow => "arrow",
-            Self::Tdms => "tdms",
-        }
-    }
-
-    pub fn from_word(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|format| format.word() == word)
-    }
-
+impl Format {
     /// With its article, for messages.
     pub(super) fn title(self) -> &'static str {
         match self {
@@ -198,9 +183,8 @@ pub(super) fn of(
         }
         (None, Some(content)) => Ok(content),
         (None, None) => {
-            if let Some(format) =
-                Format::ALL.into_iter().find(|format| format.endings().contains(&ending.as_str()))
-            {
+            let all = || Format::WORDS.iter().map(|(_, format)| *format);
+            if let Some(format) = all().find(|format| format.endings().contains(&ending.as_str())) {
                 let is = if looks_text { "text" } else { "not of this format" };
                 return mislabelled(
                     format!("`{shown}` ends like {}", format.title()),
@@ -220,7 +204,7 @@ pub(super) fn of(
             if looks_text {
                 return Ok(Format::Csv);
             }
-            let words: Vec<&str> = Format::ALL.iter().map(|format| format.word()).collect();
+            let words: Vec<&str> = Format::WORDS.iter().map(|(word, _)| *word).collect();
             Err(Problem::error(
                 "format-unknown",
                 format!("`{shown}` is neither a text nor of a known binary format"),
@@ -371,12 +355,5 @@ mod tests {
             Err("format-mislabelled")
         );
         assert_eq!(code(b"\x01\x02\x03\x04", "x.csv", None), Err("format-unknown"));
-    }
-
-    #[test]
-    fn words_lead_back() {
-        for format in Format::ALL {
-            assert_eq!(Format::from_word(format.word()), Some(format));
-        }
     }
 }

@@ -33,7 +33,7 @@ mod xlsx;
 use std::path::Path;
 
 pub use format::Format;
-pub use text::{DateOrder, Separator};
+pub use text::{DateOrder, DecimalMark, Separator};
 
 use bytes::Bytes;
 
@@ -41,6 +41,7 @@ use crate::data::hash::sha256;
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::units::{Dimension, Unit};
+use crate::yaml::fields;
 
 /// A file of another system.
 #[derive(Clone, Debug)]
@@ -94,25 +95,26 @@ pub struct Place {
     pub span: Option<Span>,
 }
 
-/// What is said of a file; the rest is detected.
-#[derive(Clone, Debug, Default)]
-pub struct Options {
-    pub form: Option<Format>,
-    pub separator: Option<Separator>,
-    /// `.` or `,`.
-    pub decimal: Option<char>,
-    /// A label of the WHATWG encoding standard, such as `windows-1252`.
-    pub encoding: Option<String>,
-    /// Number of lines before the numbers.
-    pub header_lines: Option<usize>,
-    /// Line of the names, from 1; in a sheet its row.
-    pub names_line: Option<usize>,
-    /// Line of the units, from 1; in a sheet its row. 0: there is none.
-    pub units_line: Option<usize>,
-    /// Beginning of a line that is not read.
-    pub comment: Option<String>,
-    /// Order of day, month and year in time stamps such as 03/04/2026.
-    pub dates: Option<DateOrder>,
+fields! {
+    /// What is said of a file; the rest is detected.
+    #[derive(Default)]
+    pub struct Options: "`{key}`" {
+        "form" form: Option<Format>,
+        "separator" separator: Option<Separator>,
+        "decimal" decimal: Option<DecimalMark>,
+        /// A label of the WHATWG encoding standard, such as `windows-1252`.
+        "encoding" encoding: Option<String>,
+        /// Number of lines before the numbers.
+        "header lines" header_lines: Option<usize>,
+        /// Line of the names, from 1; in a sheet its row.
+        "line of names" names_line: Option<usize>,
+        /// Line of the units, from 1; in a sheet its row. 0: there is none.
+        "line of units" units_line: Option<usize>,
+        /// Beginning of a line that is not read.
+        "comment" comment: Option<String>,
+        /// Order of day, month and year in time stamps such as 03/04/2026.
+        "dates" dates: Option<DateOrder>,
+    }
 }
 
 /// Whether the values are wanted.

@@ -61,13 +61,12 @@ pub fn import(
     progress: &(dyn Fn(&str) + Sync),
 ) -> Result<Problems, Problems> {
     if mapping.runs.is_some() {
-        let one = |problem: Problem| Problems(vec![problem]);
         let runs::Imported { sources, accounts, faults, warnings } =
-            runs::import(mapping, needs, format, outputs, progress).map_err(one)?;
+            runs::import(mapping, needs, format, outputs, progress)?;
         if faults.any_error() {
             return Err(few(faults));
         }
-        add_campaign(outputs, mapping, format, &sources, accounts).map_err(one)?;
+        add_campaign(outputs, mapping, format, &sources, accounts)?;
         return Ok(few(warnings));
     }
     let mut jobs: Vec<Job<'_>> = Vec::new();
@@ -94,7 +93,7 @@ pub fn import(
                 // After a fault nothing is written; the rest is read for its faults.
                 if !faults.any_error() {
                     let inside = mapping::record_path(made.kind, &made.section, format.ending());
-                    outputs.add(&inside, &text).map_err(|problem| Problems(vec![problem]))?;
+                    outputs.add(&inside, &text)?;
                 }
                 let number = mapping
                     .sections
@@ -113,8 +112,7 @@ pub fn import(
     if faults.any_error() {
         return Err(few(faults));
     }
-    add_campaign(outputs, mapping, format, &sources, accounts.into_values().collect())
-        .map_err(|problem| Problems(vec![problem]))?;
+    add_campaign(outputs, mapping, format, &sources, accounts.into_values().collect())?;
     Ok(few(warnings))
 }
 
@@ -131,25 +129,11 @@ fn work(
     format: Format,
     progress: &(dyn Fn(&str) + Sync),
 ) -> Done {
-    let (path, shown) = mapping.place(&job.path);
-    let file = match foreign::read(&path, &shown, &job.side.format) {
-        Ok(file) => file,
-        Err(problems) => {
-            let problems =
-                problems
-                    .into_iter()
-                    .map(|problem| {
-                        if problem.at.is_some() {
-                            problem
-                        } else {
-                            problem.at(&job.side.files.span)
-                        }
-                    })
-                    .collect();
-            return Done { source: None, texts: Vec::new(), problems };
-        }
-    };
     let mut done = Done { source: None, texts: Vec::new(), problems: Vec::new() };
+    let (file, shown) = match file_of_side(mapping, job.side, &job.path) {
+        Ok(read) => read,
+        Err(problems) => return Done { problems, ..done },
+    };
     for section in &job.sections {
         let of =
             Of { mapping, side: job.side, needs, section, file: &file, store: None, shown: &shown };
@@ -162,18 +146,22 @@ fn work(
         }
         progress(section);
     }
-    done.source = Some(SourceFile {
-        path: job.path.clone(),
-        sha256: file.sha256.clone(),
-        read_as: read_as(&file),
-    });
+    done.source = Some(SourceFile::new(&job.path, &file));
     done
 }
 
-/// The format and what was detected in it, in a line.
-fn read_as(file: &File) -> String {
-    let facts = file.facts.iter().map(|(name, value)| format!("{name} {value}"));
-    std::iter::once(file.format.word().to_string()).chain(facts).collect::<Vec<_>>().join("; ")
+/// A file that the mapping names, and its name in messages. Problems of the file as a whole are
+/// shown where it is named.
+fn file_of_side(
+    mapping: &Mapping,
+    side: &Side,
+    written: &str,
+) -> Result<(File, String), Vec<Problem>> {
+    let (path, shown) = mapping.place(written);
+    let placed = |problems: Vec<Problem>| {
+        problems.into_iter().map(|problem| problem.or_at(&side.files.span)).collect::<Vec<_>>()
+    };
+    Ok((foreign::read(&path, &shown, &side.format).map_err(placed)?, shown))
 }
 
 /// Most problems reported; the same fault is usually in every section.

@@ -6,12 +6,11 @@ use std::sync::Arc;
 use super::mapping::{self, Mapping};
 use super::process::{Made, Of, Store, record};
 use super::write::{SourceFile, account, write_record};
-use super::{drift, read_as};
+use super::{drift, file_of_side};
 use crate::data::RecordKind;
 use crate::data::origin::ImportedRecord;
 use crate::data::record::Format;
 use crate::data::write::Outputs;
-use crate::foreign;
 use crate::problem::{Problem, Problems};
 use crate::run::needs::Needs;
 
@@ -96,12 +95,7 @@ fn of_side(
     store: &Arc<Store>,
 ) -> Result<(Made, SourceFile), Vec<Problem>> {
     let written = mapping.sections.fill(&side.files.value, run);
-    let (path, shown) = mapping.place(&written);
-    let at = |problem: Problem| {
-        if problem.at.is_some() { problem } else { problem.at(&side.files.span) }
-    };
-    let file = foreign::read(&path, &shown, &side.format)
-        .map_err(|problems| problems.into_iter().map(at).collect::<Vec<_>>())?;
+    let (file, shown) = file_of_side(mapping, side, &written)?;
     let made = record(&Of {
         mapping,
         side,
@@ -111,5 +105,5 @@ fn of_side(
         store: Some(store),
         shown: &shown,
     })?;
-    Ok((made, SourceFile { path: written, sha256: file.sha256.clone(), read_as: read_as(&file) }))
+    Ok((made, SourceFile::new(&written, &file)))
 }

@@ -6,21 +6,23 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
+use indexmap::IndexMap;
 use rayon::prelude::*;
 
 use super::mapping::{Channels, Distance, Mapping, Runs, Side, record_path};
 use super::process::{BLOCK, Column, Made, Store, Values};
-use crate::data::campaign::RUNS;
+use crate::data::campaign::{CAMPAIGN_FILE, RUNS};
 use crate::data::origin::{Imported, ImportedRecord, ORIGIN_FILE, ORIGIN_KEY, Origin, OriginFile};
 use crate::data::record::Format;
 use crate::data::text::read_any;
 use crate::data::write::Values::{self as FileValues, Numbers};
 use crate::data::write::{
-    Entry, FileColumn, Layout, Outputs, campaign_yaml, csv_header, csv_rows, parquet_in_groups,
+    Entry, FileColumn, Layout, Outputs, campaign_yaml_with, csv_header, csv_rows, parquet_in_groups,
 };
+use crate::foreign::File;
 use crate::problem::Problem;
 use crate::source::{Span, Spanned};
-use crate::yaml::{Key, Node, Value};
+use crate::yaml::{Key, Literal, Node, Value, Words};
 
 /// Significant digits of a channel: those of a 32-bit number, and more than any sensor resolves.
 const DIGITS: usize = 9;
@@ -108,6 +110,16 @@ pub struct SourceFile {
     pub read_as: String,
 }
 
+impl SourceFile {
+    /// The format and what was detected in it stand in a line.
+    pub fn new(path: &str, file: &File) -> Self {
+        let facts = file.facts.iter().map(|(name, value)| format!("{name} {value}"));
+        let all: Vec<String> =
+            std::iter::once(file.format.word().to_string()).chain(facts).collect();
+        Self { path: path.to_string(), sha256: file.sha256.clone(), read_as: all.join("; ") }
+    }
+}
+
 /// How a record was made: its side, section and file, and the steps.
 pub fn account(made: &Made, file: &SourceFile) -> ImportedRecord {
     ImportedRecord {
@@ -150,8 +162,7 @@ fn copied(
     inside: String,
 ) -> Result<Copied, Problem> {
     let (path, shown) = mapping.place(written);
-    let bytes = read_any(&path, &shown)
-        .map_err(|problem| if problem.at.is_some() { problem } else { problem.at(&named.span) })?;
+    let bytes = read_any(&path, &shown).map_err(|problem| problem.or_at(&named.span))?;
     Ok(Copied { written: Spanned::new(written.to_string(), named.span.clone()), inside, bytes })
 }
 
@@ -240,10 +251,8 @@ pub fn add_campaign(
         }
     }
     let tree = campaign_tree(mapping, format);
-    let mut lines: Vec<(&str, Entry<'_>)> =
-        tree.entries().iter().map(|(key, node)| (key.text.as_str(), Entry::Node(node))).collect();
-    lines.push((ORIGIN_KEY, Entry::Text(ORIGIN_FILE)));
-    outputs.add("campaign.yaml", campaign_yaml(&lines).as_bytes())?;
+    let text = campaign_yaml_with(&tree, &[], &[(ORIGIN_KEY, Entry::Text(ORIGIN_FILE))]);
+    outputs.add(CAMPAIGN_FILE, text.as_bytes())?;
     let sources = sources
         .iter()
         .map(|source| OriginFile { path: source.path.clone(), sha256: source.sha256.clone() });
@@ -253,7 +262,7 @@ pub fn add_campaign(
         campaign: mapping.name.value.clone(),
         sources: sources.chain(of_copies).collect(),
         imported: Some(Imported {
-            mapping: mapping.source.text.clone(),
+            mapping: Literal(mapping.source.text.clone()),
             channels: channels(mapping),
             records,
         }),
@@ -290,7 +299,7 @@ fn of_runs(mapping: &Mapping, runs: &Runs, format: Format) -> Node {
 }
 
 /// What the channels of each side were made of.
-fn channels(mapping: &Mapping) -> Vec<(String, Vec<String>)> {
+fn channels(mapping: &Mapping) -> IndexMap<String, Vec<String>> {
     let of_side = |side: &Side| {
         let mut lines: Vec<String> = match &side.channels {
             Channels::AsNamed => vec!["every channel as named in the file".into()],
@@ -304,10 +313,12 @@ fn channels(mapping: &Mapping) -> Vec<(String, Vec<String>)> {
         let names = |list: &[Spanned<String>]| {
             list.iter().map(|name| name.value.as_str()).collect::<Vec<_>>().join(" or ")
         };
-        if !side.time.from.is_empty() {
-            lines.insert(0, format!("time = {}", names(&side.time.from)));
+        if !side.time.from.0.is_empty() {
+            lines.insert(0, format!("time = {}", names(&side.time.from.0)));
         }
-        lines.extend(side.units.iter().map(|(text, unit)| format!("unit `{text}` read as {unit}")));
+        lines.extend(
+            side.units.iter().map(|(key, unit)| format!("unit `{}` read as {unit}", key.text)),
+        );
         (side.kind.key().to_string(), lines)
     };
     mapping.sides.iter().map(of_side).collect()

@@ -10,7 +10,7 @@ use crate::init::protocol::identifier;
 use crate::problem::{Problem, Problems};
 use crate::source::Source;
 use crate::units::Unit;
-use crate::yaml::{self, Node};
+use crate::yaml::{self, Entries, Reader, fields};
 
 const EFFECTS: &str = include_str!("../../templates/new/effects.yaml");
 /// Trials of a diagnosis as shares of the way from the neutral value to an end of the range: five
@@ -21,8 +21,27 @@ const TWO_SIDED: [f64; 3] = [0.1, 0.3, 0.8];
 /// A clip at this many times the largest value changes nothing.
 const ABOVE_PEAK: f64 = 1.05;
 
+fields! {
+    /// An effect that is offered, as `templates/new/effects.yaml` has it.
+    struct Listed: "an effect" {
+        "title" title: String,
+        "means" means: String,
+        "domains" domains: Vec<String>,
+        /// What its parameter multiplies.
+        "of" of: String = String::new(),
+        "operator" operator: Option<String>,
+        "parameter" parameter: String = String::new(),
+        "neutral" neutral: f64 = 0.0,
+        "range" range: Vec<f64>,
+        "default" default: f64,
+        "vanishes" vanishes: Option<String>,
+        "settled by" settled_by: String,
+        "term" term: String = String::new(),
+    }
+}
+
 /// An effect of the catalogue, as its template prints it.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Entry {
     pub name: String,
     pub title: String,
@@ -56,55 +75,39 @@ pub fn entries(
     cut: &Cut,
 ) -> Result<Vec<Entry>, Problem> {
     let wrong = |says: &str| Problem::error("internal", format!("the list of effects: {says}"));
-    let tree = yaml::load(&Source::new("effects.yaml", EFFECTS), &mut Problems::default())
+    let mut problems = Problems::default();
+    let tree = yaml::load(&Source::new("effects.yaml", EFFECTS), &mut problems)
         .ok_or_else(|| wrong("no YAML"))?;
+    let mut reader = Reader { with: (), problems: &mut problems };
+    let listed: Option<Entries<Listed>> = reader.file(&tree);
+    if let Some(problem) = problems.0.into_iter().next() {
+        return Err(problem);
+    }
     let mut found = Vec::new();
-    for (key, node) in tree.entries() {
-        let text =
-            |key: &str| node.get(key).and_then(Node::scalar_text).unwrap_or_default().to_string();
-        let domains: Vec<&str> = node
-            .get("domains")
-            .map_or(&[][..], Node::items)
-            .iter()
-            .filter_map(Node::scalar_text)
-            .collect();
-        if !domains.contains(&domain) {
+    for (key, effect) in listed.map(|listed| listed.0).unwrap_or_default() {
+        if !effect.domains.iter().any(|known| known == domain) {
             continue;
         }
-        let ends: Vec<f64> = node
-            .get("range")
-            .map_or(&[][..], Node::items)
-            .iter()
-            .filter_map(Node::number)
-            .collect();
-        let (&[low, high], Some(default)) =
-            (ends.as_slice(), node.get("default").and_then(Node::number))
-        else {
-            return Err(wrong("an effect without range or default"));
+        let (&[low, high], default) = (effect.range.as_slice(), effect.default) else {
+            return Err(wrong("an effect without range"));
         };
         let entry = Entry {
             name: key.text.clone(),
-            title: text("title"),
-            means: text("means"),
+            title: effect.title,
+            means: effect.means.clone(),
             acts_on: "vehicle",
-            settled_by: text("settled by"),
-            operator: None,
-            group: String::new(),
+            settled_by: effect.settled_by,
             parameter: key.text.clone(),
             unit: "-".into(),
             neutral: "0".into(),
-            default: String::new(),
-            range: String::new(),
-            trials: String::new(),
-            measured_in: String::new(),
-            vanishes: false,
-            term: text("term"),
+            term: effect.term,
+            ..Entry::default()
         };
         let sized = |entry: Entry, neutral: f64, scale: f64| {
             sized(entry, (low, high), neutral, default, scale)
         };
-        let Some(operator) = node.get("operator").and_then(Node::scalar_text) else {
-            let of = Of::named(&text("of")).ok_or_else(|| wrong("an unknown `of`"))?;
+        let Some(operator) = effect.operator else {
+            let of = Of::named(&effect.of).ok_or_else(|| wrong("an unknown `of`"))?;
             for scales in all {
                 let (unit, scale) = of.of(scales);
                 if !(scale.is_finite() && scale > 0.0) {
@@ -122,7 +125,7 @@ pub fn entries(
                     name,
                     title,
                     term,
-                    measured_in: text("means"),
+                    measured_in: effect.means.clone(),
                     unit,
                     ..entry.clone()
                 };
@@ -132,12 +135,12 @@ pub fn entries(
         };
         let entry = Entry {
             acts_on: "measuring chain",
-            operator: Some(operator.into()),
-            parameter: text("parameter"),
+            operator: Some(operator.clone()),
+            parameter: effect.parameter,
             ..entry
         };
-        let neutral = node.get("neutral").and_then(Node::number).unwrap_or(0.0);
-        match text("of").as_str() {
+        let neutral = effect.neutral;
+        match effect.of.as_str() {
             "" => found.push(sized(
                 Entry { group: "all_channels".into(), measured_in: "factor".into(), ..entry },
                 neutral,
@@ -240,25 +243,7 @@ mod tests {
     use super::*;
 
     fn entry() -> Entry {
-        let text = String::new;
-        Entry {
-            name: text(),
-            title: text(),
-            means: text(),
-            acts_on: "vehicle",
-            settled_by: text(),
-            operator: None,
-            group: text(),
-            parameter: text(),
-            unit: text(),
-            neutral: text(),
-            default: text(),
-            range: text(),
-            trials: text(),
-            measured_in: text(),
-            vanishes: false,
-            term: text(),
-        }
+        Entry { acts_on: "vehicle", ..Entry::default() }
     }
 
     #[test]

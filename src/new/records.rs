@@ -264,11 +264,7 @@ fn series(path: &Path, told: &mut Vec<String>) -> Result<Series, Vec<Problem>> {
     if !faults.is_empty() {
         return Err(faults);
     }
-    let wanted: Vec<Wanted> = headings
-        .iter()
-        .map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true })
-        .collect();
-    let record = read_record(path, &shown, &wanted)?;
+    let record = read_record(path, &shown, &Wanted::all(&headings))?;
     let axis = |name: &str, dimension: Dimension| {
         record
             .columns

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::made::first;
 use super::{Simulator, Task};
 use crate::data::record::{Record, Wanted, read_record};
 use crate::data::table::Cell;
@@ -32,11 +33,17 @@ pub fn model_parameters() -> Vec<(&'static str, &'static str)> {
 #[derive(Debug)]
 pub struct Builtin<'a> {
     campaign: &'a Campaign,
+    machine: Machine,
+    steps: Steps,
+    name: String,
+}
+
+/// A vehicle with its profiles.
+#[derive(Debug)]
+struct Machine {
     vehicle: Vehicle,
     new: ProfileTable,
     worn: Option<ProfileTable>,
-    steps: Steps,
-    name: String,
 }
 
 /// Name of the model in reports.
@@ -83,7 +90,8 @@ impl<'a> Builtin<'a> {
         };
         let new = read("profile.file", "profile.csv", true, problems)?;
         let worn = read("profile.worn_file", "profile_worn.csv", false, problems);
-        Some(Self { campaign, vehicle, new, worn, steps: 1.into(), name: MODEL.into() })
+        let machine = Machine { vehicle, new, worn };
+        Some(Self { campaign, machine, steps: 1.into(), name: MODEL.into() })
     }
 
     /// The same with another method or step, which its name then says.
@@ -96,13 +104,15 @@ impl<'a> Builtin<'a> {
             ..self
         }
     }
+}
 
+impl Machine {
     /// The vehicle with some parameters set.
     fn with(&self, settings: &[(String, f64)]) -> Result<(Vehicle, Profile), Problem> {
         let mut vehicle = self.vehicle.clone();
         for (key, value) in settings {
             vehicle.set(key, *value).map_err(|fault| match fault {
-                Some(fault) => inadmissible(&fault, &None),
+                Some(fault) => inadmissible(&fault),
                 None => Problem::error(
                     "unknown-parameter",
                     format!("the model has no parameter `{key}`"),
@@ -144,7 +154,7 @@ impl Simulator for Builtin<'_> {
             )
             .at(&section.cell.span));
         };
-        let (vehicle, profile) = self.with(task.settings)?;
+        let (vehicle, profile) = self.machine.with(task.settings)?;
         let track = track_of(self.campaign, &section.cell)?;
         let mut around = Window::around(section.start, section.end);
         if task.inside_only {
@@ -193,10 +203,7 @@ pub fn vehicle(tree: &Node, problems: &mut Problems) -> Option<Vehicle> {
                     let says =
                         format!("`{}` ({}): {}", parameter.key, parameter.meaning, refused.says);
                     let problem = Problem::error("wrong-kind", says).at(&node.span);
-                    problems.push(match refused.help {
-                        Some(help) => problem.help(help),
-                        None => problem,
-                    });
+                    problems.push(problem.help_if(refused.help));
                 }
             }
         }
@@ -210,25 +217,22 @@ pub fn vehicle(tree: &Node, problems: &mut Problems) -> Option<Vehicle> {
         Ok(vehicle) => Some(vehicle),
         Err(faults) => {
             for fault in faults {
-                let key = match fault {
-                    VehicleFault::Missing(parameter) | VehicleFault::Inadmissible(parameter, _) => {
-                        parameter.key
-                    }
-                };
-                let problem = inadmissible(&fault, &tree.lookup(key).map(|node| node.span.clone()))
-                    .or_at(tree);
+                let (VehicleFault::Missing(parameter) | VehicleFault::Inadmissible(parameter, _)) =
+                    &fault;
+                let key = parameter.key;
                 problems.push(match (&fault, tree.lookup(key)) {
-                    (VehicleFault::Missing(parameter), Some(node)) => {
-                        let says = format!(
-                            "`{key}` ({}) must be a number in {}, not {}",
-                            parameter.meaning,
-                            parameter.unit,
-                            node.kind_in_words()
-                        );
-                        Problem::error("wrong-kind", says).at(&node.span)
+                    (VehicleFault::Missing(_), Some(node)) => {
+                        let what = format!("`{key}` ({})", parameter.meaning);
+                        node.is_not(&what, &format!("a number in {}", parameter.unit))
                     }
-                    (VehicleFault::Missing(_), None) => misspelt(problem, tree, key),
-                    (VehicleFault::Inadmissible(..), _) => problem,
+                    (VehicleFault::Missing(_), None) => {
+                        let problem = inadmissible(&fault).at(&tree.span.part(0..0));
+                        misspelt(problem, tree, key)
+                    }
+                    (VehicleFault::Inadmissible(..), node) => {
+                        let top = tree.span.part(0..0);
+                        inadmissible(&fault).at(node.map_or(&top, |node| &node.span))
+                    }
                 });
             }
             None
@@ -268,18 +272,8 @@ fn misspelt(problem: Problem, tree: &Node, key: &str) -> Problem {
     }
 }
 
-trait OrAt {
-    fn or_at(self, tree: &Node) -> Self;
-}
-
-impl OrAt for Problem {
-    fn or_at(self, tree: &Node) -> Self {
-        if self.at.is_some() { self } else { self.at(&tree.span.part(0..0)) }
-    }
-}
-
-fn inadmissible(fault: &VehicleFault, at: &Option<crate::source::Span>) -> Problem {
-    let problem = match fault {
+fn inadmissible(fault: &VehicleFault) -> Problem {
+    match fault {
         VehicleFault::Missing(parameter) => Problem::error(
             "key-missing",
             format!(
@@ -295,10 +289,6 @@ fn inadmissible(fault: &VehicleFault, at: &Option<crate::source::Span>) -> Probl
             );
             Problem::error("range", says)
         }
-    };
-    match at {
-        Some(span) => problem.at(span),
-        None => problem,
     }
 }
 
@@ -329,31 +319,13 @@ pub fn single(
         .flatten();
     let track =
         read_track(|wanted| read_record(track_file, &track_file.display().to_string(), wanted));
-    let (Some(mut vehicle), Some(new), Ok(track)) =
+    let (Some(vehicle), Some(new), Ok(track)) =
         (vehicle, new, track.map_err(|problem| problems.push(problem)))
     else {
         return Err(problems);
     };
     let all = |problem: Problem| Problems(vec![problem]);
-    for (key, value) in settings {
-        vehicle.set(key, *value).map_err(|fault| {
-            all(fault.map_or_else(
-                || {
-                    Problem::error(
-                        "unknown-parameter",
-                        format!("the model has no parameter `{key}`"),
-                    )
-                },
-                |fault| inadmissible(&fault, &None),
-            ))
-        })?;
-    }
-    let Some(profile) = Profile::new(&new, worn.as_ref(), &vehicle) else {
-        return Err(all(Problem::error(
-            "profile",
-            "a worn profile needs a second profile table over the same displacements",
-        )));
-    };
+    let (vehicle, profile) = Machine { vehicle, new, worn }.with(settings).map_err(all)?;
     let (start, end) = (track.distance[0], track.distance[track.distance.len() - 1]);
     let half = vehicle.half_bogie_spacing + vehicle.half_wheelbase;
     let window = Window { from: start - shift, to: end - half - shift };
@@ -454,11 +426,4 @@ fn increasing(record: &Record, name: &str, values: &[f64]) -> Result<(), Problem
         }
         None => Ok(()),
     }
-}
-
-fn first(problems: Vec<Problem>) -> Problem {
-    problems
-        .into_iter()
-        .next()
-        .unwrap_or_else(|| Problem::error("unreadable", "the file cannot be read"))
 }

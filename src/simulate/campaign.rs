@@ -58,7 +58,7 @@ pub fn recorded_inside(
             end: section.end,
             at: Some(section.cell.span.clone()),
         };
-        checks::check_section(&record, axis, &wanted).map_err(|problem| vec![problem])?;
+        checks::check_section(&record, axis, &wanted)?;
     }
     Ok(found)
 }
@@ -68,14 +68,9 @@ fn whole(
     kind: RecordKind,
     section: &Section,
 ) -> Result<(Record, ReadFile), Vec<Problem>> {
-    campaign.file_for_each_section().map_err(|problem| vec![problem])?;
-    let headings =
-        campaign.record_source(kind, &section.cell).map_err(|problem| vec![problem])?.headings()?;
-    let wanted: Vec<Wanted> = headings
-        .iter()
-        .map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true })
-        .collect();
-    campaign.read(kind.into(), &section.cell, &wanted, None)
+    campaign.file_for_each_section()?;
+    let headings = campaign.record_source(kind, &section.cell)?.headings()?;
+    campaign.read(kind.into(), &section.cell, &Wanted::all(&headings), None)
 }
 
 /// As [`recorded`], of a record that need not be in a campaign.
@@ -84,11 +79,7 @@ fn whole(
 /// Of reading; the record has no `time`.
 pub fn signals_of(source: &RecordSource) -> Result<(Signals, Units), Vec<Problem>> {
     let headings = source.headings()?;
-    let wanted: Vec<Wanted> = headings
-        .iter()
-        .map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true })
-        .collect();
-    signals(&source.read(&wanted)?)
+    signals(&source.read(&Wanted::all(&headings))?)
 }
 
 fn signals(record: &Record) -> Result<(Signals, Units), Vec<Problem>> {

@@ -1,7 +1,7 @@
 //! Origin of a simulated campaign.
 
 use crate::data::hash::sha256;
-use crate::data::origin::{Origin, OriginEffect, OriginFile};
+use crate::data::origin::{Origin, OriginEffect, OriginFile, OriginParameter};
 use crate::data::{Campaign, RecordKind};
 use crate::disk;
 use crate::effects::{Applied, Catalogue};
@@ -109,7 +109,11 @@ fn effect(applied: &Applied, catalogue: &Catalogue) -> OriginEffect {
         parameters: applied
             .values
             .iter()
-            .map(|(name, value)| (name.clone(), *value, unit(name)))
+            .map(|(name, value)| OriginParameter {
+                name: name.clone(),
+                value: *value,
+                unit: unit(name),
+            })
             .collect(),
         channels: applied.channels.clone(),
         confined_to: applied

@@ -136,11 +136,7 @@ fn column(
     dimension: Option<Dimension>,
     problems: &mut Problems,
 ) -> Vec<Option<f64>> {
-    let numbers = table
-        .need_column(name)
-        .map_err(|problem| vec![problem])
-        .and_then(|at| table.numbers(at, dimension));
-    numbers.unwrap_or_else(|found| {
+    table.numbers_named(name, dimension).unwrap_or_else(|found| {
         found.into_iter().for_each(|problem| problems.push(problem));
         Vec::new()
     })

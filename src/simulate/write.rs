@@ -7,7 +7,7 @@ use super::origin::Made;
 use crate::data::campaign::{CAMPAIGN_FILE, Memory};
 use crate::data::origin::{ORIGIN_FILE, ORIGIN_KEY};
 use crate::data::record::Format;
-use crate::data::write::{Entry, Outputs, campaign_yaml};
+use crate::data::write::{Entry, Outputs, campaign_yaml, campaign_yaml_with};
 use crate::data::{Campaign, RecordKind};
 use crate::effects::Signals;
 use crate::problem::{Problem, Problems};
@@ -42,16 +42,12 @@ pub fn with_records<'a>(
 
 /// `campaign.yaml` of a campaign with other simulated records.
 fn text_of(campaign: &Campaign, name: &str, origin: bool) -> String {
-    let entries =
-        campaign.tree.entries().iter().filter(|(key, _)| !OWN.contains(&key.text.as_str()));
-    let mut lines: Vec<(&str, Entry<'_>)> = vec![("name", Entry::Text(name))];
-    lines.extend(entries.map(|(key, node)| (key.text.as_str(), Entry::Node(node))));
-    lines.push(("simulation", Entry::Text(FOLDER)));
-    lines.push(("simulation_ran_on", Entry::Text("measured track")));
-    if origin {
-        lines.push((ORIGIN_KEY, Entry::Text(ORIGIN_FILE)));
-    }
-    campaign_yaml(&lines)
+    let mut new = vec![
+        ("simulation", Entry::Text(FOLDER)),
+        ("simulation_ran_on", Entry::Text("measured track")),
+    ];
+    new.extend(origin.then_some((ORIGIN_KEY, Entry::Text(ORIGIN_FILE))));
+    campaign_yaml(&[("name", Entry::Text(name))]) + &campaign_yaml_with(&campaign.tree, &OWN, &new)
 }
 
 /// Writes a copy of a campaign with other simulated records. All other files are copied, and an

@@ -26,19 +26,7 @@ pub struct Refused {
 pub fn read(text: &str, expected: &Unit) -> Result<Read, Refused> {
     let text = text.trim();
     let refused = |says: String, help: Option<String>| Refused { says, help };
-    let end = number_end(text);
-    let number = text[..end].parse::<f64>().ok().filter(|number| number.is_finite());
-    let Some(number) = number.filter(|_| !text[end..].starts_with([',', '.'])) else {
-        return Err(match decimal_comma(text) {
-            Some(mended) => refused(
-                format!("`{text}` has a decimal comma; numbers are written with a point"),
-                Some(format!("write `{mended}`")),
-            ),
-            None => refused(format!("`{text}` is not a number{}", place(expected)), None),
-        });
-    };
-    let unit = text[end..].trim();
-    let unit = unit.strip_prefix('[').and_then(|inner| inner.strip_suffix(']')).unwrap_or(unit);
+    let (number, unit) = split(text, expected)?;
     if unit.is_empty() {
         return Ok(Read { si: expected.to_si(number), unit_stated: false });
     }
@@ -59,6 +47,30 @@ pub fn read(text: &str, expected: &Unit) -> Result<Read, Refused> {
         return Err(refused(says, weight(number, &unit, expected)));
     }
     Ok(Read { si: unit.to_si(number), unit_stated: true })
+}
+
+/// A finite number, and the text of its unit, which may stand in brackets or be missing.
+///
+/// # Errors
+/// Not a number, a decimal comma.
+pub fn split<'a>(text: &'a str, expected: &Unit) -> Result<(f64, &'a str), Refused> {
+    let text = text.trim();
+    let end = number_end(text);
+    let number = text[..end].parse::<f64>().ok().filter(|number| number.is_finite());
+    let Some(number) = number.filter(|_| !text[end..].starts_with([',', '.'])) else {
+        return Err(match decimal_comma(text) {
+            Some(mended) => Refused {
+                says: format!("`{text}` has a decimal comma; numbers are written with a point"),
+                help: Some(format!("write `{mended}`")),
+            },
+            None => {
+                Refused { says: format!("`{text}` is not a number{}", place(expected)), help: None }
+            }
+        });
+    };
+    let unit = text[end..].trim();
+    let bare = unit.strip_prefix('[').and_then(|inner| inner.strip_suffix(']'));
+    Ok((number, bare.unwrap_or(unit)))
 }
 
 /// ` (in kN)`, or nothing for a dimensionless number.

@@ -330,10 +330,7 @@ impl<'a> Loader<'a> {
             _ => "yaml-syntax",
         };
         let problem = Problem::error(code, says).at(&span);
-        match help {
-            Some(help) => problem.help(help),
-            None => problem,
-        }
+        problem.help_if(help)
     }
 }
 

@@ -1,10 +1,7 @@
 //! Facts: what `campaign.yaml` says beyond the layout of the folder. They are printed.
 
-use super::RecordKind;
-use super::runs::RUNS;
+use super::opening::Layout;
 use crate::data::cells::name_and_unit;
-use crate::data::identification::REPORT_KEY;
-use crate::data::origin::ORIGIN_KEY;
 use crate::source::Span;
 use crate::yaml::{Key, Node, Value};
 
@@ -22,30 +19,12 @@ pub struct Fact {
     pub span: Span,
 }
 
-/// Keys of `campaign.yaml` beside those of the records.
-pub(super) const LAYOUT: [&str; 10] = [
-    "name",
-    SHORT_NAME,
-    "vehicle",
-    "sections",
-    APPLICATION,
-    "parameters",
-    "protocol",
-    ORIGIN_KEY,
-    REPORT_KEY,
-    RUNS,
-];
-/// The key of the table of wanted operation.
-pub(super) const APPLICATION: &str = "application";
-/// What the campaign is called where it stands beside others.
-pub(super) const SHORT_NAME: &str = "short name";
-
 /// Scalars at the top and one map below it, in the order written.
 pub(super) fn facts(tree: &Node) -> Vec<Fact> {
-    let layout =
-        |key: &str| LAYOUT.contains(&key) || RecordKind::ALL.iter().any(|kind| kind.key() == key);
     let mut facts = Vec::new();
-    for (key, node) in tree.entries().iter().filter(|(key, _)| !layout(&key.text)) {
+    for (key, node) in
+        tree.entries().iter().filter(|(key, _)| !Layout::KEYS.contains(&key.text.as_str()))
+    {
         facts.extend(fact("", key, node));
         facts
             .extend(node.entries().iter().filter_map(|(inner, node)| fact(&key.text, inner, node)));

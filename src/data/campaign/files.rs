@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{CAMPAIGN_FILE, Campaign, RecordKind, Run};
 use crate::data::folder::Place;
+use crate::data::text::unreadable;
 use crate::disk;
 use crate::problem::Problem;
 
@@ -152,12 +153,7 @@ impl Campaign {
         let mut found: Vec<Place> = Vec::new();
         for written in named {
             let place = self.folder.place(&written, &self.tree.span.part(0..0))?;
-            let unreadable = |error| {
-                Problem::error(
-                    "file-unreadable",
-                    format!("`{}` cannot be read: {error}", place.shown),
-                )
-            };
+            let unreadable = |error| unreadable(&place.shown, &error);
             if disk::is_file(&place.path).map_err(unreadable)? && !found.contains(&place) {
                 found.push(place);
             }

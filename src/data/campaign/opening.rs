@@ -1,15 +1,17 @@
-//! What `campaign.yaml` says of the layout of the folder, read key by key.
+//! What `campaign.yaml` says of the layout of the folder.
 
 use std::sync::Arc;
 
-use super::facts::{APPLICATION, LAYOUT};
-use super::{Parameter, ReadFile, RecordKind, VehicleState};
+use super::runs::Runs;
+use super::{Parameter, ReadFile, VehicleState};
 use crate::data::folder::{Folder, Place};
-use crate::data::origin::{ORIGIN_KEY, Origin};
+use crate::data::identification::Report;
+use crate::data::members::Folders;
+use crate::data::origin::Origin;
 use crate::data::table::Table;
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Span, Spanned};
-use crate::yaml::{self, Node, Value};
+use crate::yaml::{self, FromNode, Key, Node, Reader, Value, fields};
 
 /// The column of the section table that names the sections; without it, the first column does.
 const SECTION_KEY: &str = "section";
@@ -17,185 +19,187 @@ const SECTION_KEY: &str = "section";
 /// The column of that table that names the points of operation.
 pub const POINT_KEY: &str = "point";
 
-/// A campaign that is being opened, and what was wrong with it so far.
-pub(super) struct Opening<'a> {
-    pub(super) folder: Folder,
-    pub(super) files: Vec<ReadFile>,
-    pub(super) problems: &'a mut Problems,
+/// The keys of `campaign.yaml` that are no facts.
+pub(in crate::data) const LAYOUT: &[&str] = Layout::KEYS;
+
+/// The folder of a campaign that is being opened, and what was read in it so far.
+#[derive(Debug)]
+pub struct Opening<'a> {
+    pub(in crate::data) folder: Folder,
+    pub(in crate::data) files: Vec<ReadFile>,
+    /// The whole of `campaign.yaml`.
+    pub(in crate::data) tree: Option<&'a Node>,
 }
 
-impl Opening<'_> {
-    fn keep<T>(&mut self, result: Result<T, Problem>) -> Option<T> {
-        result.map_err(|problem| self.problems.push(problem)).ok()
+fields! {
+    /// The keys of `campaign.yaml` that say how the folder is laid out; all others are facts.
+    pub(super) struct Layout in Opening<'_>: "a campaign" or Free {
+        "name" name: Option<Spanned<String>> => "what the campaign is called",
+        "short name" short_name: Option<Spanned<String>>,
+        "vehicle" vehicles: Vehicles = Vehicles::default(),
+        "sections" sections: Option<SectionTable>,
+        /// The table of wanted operation.
+        "application" application: Option<Application>,
+        "measurement" measurement: Folders = Folders::default(),
+        "simulation" simulation: Folders = Folders::default(),
+        "track" track: Folders = Folders::default(),
+        "runs" runs: Runs = Runs::default(),
+        "protocol" protocol: Option<Spanned<String>>,
+        "parameters" parameters: Parameters = Parameters::default(),
+        "origin" origin: Option<OriginStated>,
+        "report" report: Report = Report::default(),
     }
+}
 
+impl Reader<'_, Opening<'_>> {
+    /// The tree of a YAML file. `named`: where the file is named, if it is.
     pub(super) fn yaml(
         &mut self,
         place: &Place,
         named: Option<&Span>,
     ) -> Option<(Arc<Source>, Node)> {
-        let read = self.folder.read_text(place);
-        let (source, sha256, bytes) =
-            self.keep(read.map_err(|problem| named_at(problem, named)))?;
-        self.files.push(ReadFile { path: place.inside.clone(), sha256, bytes });
+        let read = self.with.folder.read_text(place).map_err(|problem| match named {
+            Some(span) => problem.or_at(span),
+            None => problem,
+        });
+        let (source, sha256, bytes) = self.keep(read)?;
+        self.with.files.push(ReadFile { path: place.inside.clone(), sha256, bytes });
         let tree = yaml::load(&source, self.problems)?;
         Some((source, tree))
     }
 
-    /// The text of a key, if it is there; it must be a single value then.
-    pub(super) fn text(&mut self, tree: &Node, key: &str) -> Option<Spanned<String>> {
-        let node = tree.get(key)?;
-        match node.scalar_text() {
-            Some(text) if !text.trim().is_empty() => {
-                Some(Spanned::new(text.to_string(), node.span.clone()))
-            }
-            _ => {
-                let says = format!("`{key}` must be text; this is {}", node.kind_in_words());
-                self.problems.push(Problem::error("wrong-kind", says).at(&node.span));
-                None
-            }
-        }
+    /// The place of a file that `campaign.yaml` names.
+    fn place(&mut self, written: &Spanned<String>) -> Option<Place> {
+        let place = self.with.folder.place(&written.value, &written.span);
+        self.keep(place)
     }
 
-    /// A key of the layout that is one letter off would be printed as a fact and otherwise ignored.
-    pub(super) fn misspelt(&mut self, tree: &Node) {
-        let layout = || LAYOUT.into_iter().chain(RecordKind::ALL.into_iter().map(RecordKind::key));
-        for (key, _) in tree.entries() {
-            let off =
-                |known: &&str| strsim::damerau_levenshtein(&key.text.to_lowercase(), known) <= 1;
-            if layout().any(|known| known == key.text) {
-                continue;
-            }
-            if let Some(near) = layout().find(off) {
-                let problem =
-                    Problem::error("unknown-key", format!("a campaign has no key `{}`", key.text))
-                        .at(&key.span);
-                self.problems.push(problem.help(format!("did you mean `{near}`?")));
-            }
-        }
+    /// The tree of a YAML file that `campaign.yaml` names.
+    fn named_yaml(&mut self, key: &Key, node: &Node) -> Option<Node> {
+        let written = Spanned::from_node(self, key, node)?;
+        let place = self.place(&written)?;
+        Some(self.yaml(&place, Some(&written.span))?.1)
     }
 
-    /// The vehicle file, or one for each state.
-    pub(super) fn vehicles(&mut self, tree: &Node) -> Vec<VehicleState> {
-        let Some(node) = tree.get("vehicle") else { return Vec::new() };
-        let Value::Map(states) = &node.value else {
-            let written = self.text(tree, "vehicle");
-            let data = written.and_then(|written| self.vehicle(&written));
-            return data.map(|data| VehicleState { state: None, data }).into_iter().collect();
-        };
-        if states.is_empty() {
-            let problem = Problem::error("wrong-kind", "`vehicle` names no file").at(&node.span);
-            self.problems
-                .push(problem.help("`vehicle: vehicle.yaml`, or a file for each state: `vehicle: {tare: tare.yaml, laden: laden.yaml}`"));
-        }
-        let mut found = Vec::new();
-        for (state, _) in states {
-            let written = self.text(node, &state.text);
-            let data = written.and_then(|written| self.vehicle(&written));
-            found.extend(
-                data.map(|data| VehicleState { state: Some(state.text.trim().to_string()), data }),
-            );
-        }
-        found
-    }
-
-    fn vehicle(&mut self, written: &Spanned<String>) -> Option<Node> {
-        let place = self.folder.place(&written.value, &written.span);
-        let place = self.keep(place)?;
-        let (_, vehicle) = self.yaml(&place, Some(&written.span))?;
-        // A file of comments only is a vehicle without data; what needs some says so.
-        if matches!(vehicle.value, Value::Map(_) | Value::Null) {
-            return Some(vehicle);
-        }
-        let says =
-            format!("a vehicle is a map of keys and values; this is {}", vehicle.kind_in_words());
-        self.problems.push(Problem::error("wrong-kind", says).at(&vehicle.span));
-        None
-    }
-
-    pub(super) fn sections(&mut self, tree: &Node) -> Option<Table> {
-        self.table(tree, "sections", Some(SECTION_KEY))
-    }
-
-    pub(super) fn application(&mut self, tree: &Node) -> Option<Table> {
-        // No other column has names: of two equal speeds in the first one, the second would be a
-        // fault.
-        self.table(tree, APPLICATION, None)?.named_by(POINT_KEY, self.problems)
-    }
-
-    fn table(&mut self, tree: &Node, key: &str, names: Option<&str>) -> Option<Table> {
-        let written = self.text(tree, key)?;
-        let place = self.folder.place(&written.value, &written.span);
-        let place = self.keep(place)?;
+    fn table(&mut self, key: &Key, node: &Node, names: Option<&str>) -> Option<Table> {
+        let written = Spanned::from_node(self, key, node)?;
+        let place = self.place(&written)?;
         let mut found = Problems::default();
-        let read = self.folder.read_text(&place).map_err(|problem| found.push(problem)).ok();
+        let read = self.with.folder.read_text(&place).map_err(|problem| found.push(problem)).ok();
         let table = read.and_then(|(source, sha256, bytes)| {
             Some((Table::parse(source, sha256, names, &mut found)?, bytes))
         });
         for problem in found.0 {
-            self.problems.push(named_at(problem, Some(&written.span)));
+            self.problems.push(problem.or_at(&written.span));
         }
         let (table, bytes) = table?;
-        self.files.push(ReadFile { path: place.inside, sha256: table.sha256.clone(), bytes });
+        self.with.files.push(ReadFile { path: place.inside, sha256: table.sha256.clone(), bytes });
         Some(table)
-    }
-
-    /// A file, or what stands in `campaign.yaml` itself.
-    pub(super) fn origin(&mut self, tree: &Node) -> Option<Origin> {
-        let node = tree.get(ORIGIN_KEY)?;
-        if matches!(node.value, Value::Map(_)) {
-            return Origin::read(node, self.problems);
-        }
-        let written = self.text(tree, ORIGIN_KEY)?;
-        let place = self.folder.place(&written.value, &written.span);
-        let place = self.keep(place)?;
-        let (_, found) = self.yaml(&place, Some(&written.span))?;
-        Origin::read(&found, self.problems)
-    }
-
-    pub(super) fn parameters(&mut self, tree: &Node) -> Vec<Parameter> {
-        let Some(node) = tree.get("parameters") else { return Vec::new() };
-        if !matches!(node.value, Value::Map(_) | Value::Null) {
-            let says = format!(
-                "`parameters` must be a map of names and values; this is {}",
-                node.kind_in_words()
-            );
-            self.problems.push(Problem::error("wrong-kind", says).at(&node.span));
-        }
-        for (key, value) in node.entries() {
-            // What the campaign lacks was meant, whatever the protocol calls its parameters.
-            let layout = ["vehicle", "sections", APPLICATION, "protocol"]
-                .into_iter()
-                .chain(RecordKind::ALL.map(RecordKind::key));
-            if layout.into_iter().any(|known| known == key.text) && tree.get(&key.text).is_none() {
-                let says = format!("`{}` stands among the parameters of the protocol", key.text);
-                let problem = Problem::error("unknown-key", says).at(&key.span);
-                self.problems.push(problem.help(format!(
-                    "`{}` is a key of the campaign: it stands at the left margin",
-                    key.text
-                )));
-                continue;
-            }
-            if value.scalar_text().is_none() {
-                let says = format!(
-                    "the parameter `{}` must be a single value; this is {}",
-                    key.text,
-                    value.kind_in_words()
-                );
-                self.problems.push(Problem::error("wrong-kind", says).at(&value.span));
-            }
-        }
-        node.entries()
-            .iter()
-            .map(|(name, value)| Parameter { name: name.clone(), value: value.clone() })
-            .collect()
     }
 }
 
-/// A problem of a file as a whole is shown where the file is named.
-fn named_at(problem: Problem, span: Option<&Span>) -> Problem {
-    match span {
-        Some(span) if problem.at.is_none() => problem.at(span),
-        _ => problem,
+/// The vehicle file, or one for each state.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Vehicles(pub Vec<VehicleState>);
+
+impl FromNode<Opening<'_>> for Vehicles {
+    fn from_node(reader: &mut Reader<'_, Opening<'_>>, key: &Key, node: &Node) -> Option<Self> {
+        let Value::Map(states) = &node.value else {
+            let data = vehicle(reader, key, node)?;
+            return Some(Self(vec![VehicleState { state: None, data }]));
+        };
+        if states.is_empty() {
+            let problem = Problem::error("wrong-kind", "`vehicle` names no file").at(&node.span);
+            reader.problems
+                .push(problem.help("`vehicle: vehicle.yaml`, or a file for each state: `vehicle: {tare: tare.yaml, laden: laden.yaml}`"));
+        }
+        let mut found = Vec::new();
+        for (state, file) in states {
+            let data = vehicle(reader, state, file);
+            let state = Some(state.text.trim().to_string());
+            found.extend(data.map(|data| VehicleState { state, data }));
+        }
+        Some(Self(found))
     }
+}
+
+/// A file of comments only is a vehicle without data; what needs some says so.
+fn vehicle(reader: &mut Reader<'_, Opening<'_>>, key: &Key, node: &Node) -> Option<Node> {
+    let vehicle = reader.named_yaml(key, node)?;
+    if matches!(vehicle.value, Value::Map(_) | Value::Null) {
+        return Some(vehicle);
+    }
+    reader.problems.push(vehicle.is_not("a vehicle", "a map of keys and values"));
+    None
+}
+
+/// The table of sections.
+#[derive(Clone, Debug)]
+pub(super) struct SectionTable(pub Table);
+
+impl FromNode<Opening<'_>> for SectionTable {
+    fn from_node(reader: &mut Reader<'_, Opening<'_>>, key: &Key, node: &Node) -> Option<Self> {
+        reader.table(key, node, Some(SECTION_KEY)).map(Self)
+    }
+}
+
+/// The table of wanted operation.
+#[derive(Clone, Debug)]
+pub(super) struct Application(pub Table);
+
+impl FromNode<Opening<'_>> for Application {
+    fn from_node(reader: &mut Reader<'_, Opening<'_>>, key: &Key, node: &Node) -> Option<Self> {
+        // No other column has names: of two equal speeds in the first one, the second would be a
+        // fault.
+        reader.table(key, node, None)?.named_by(POINT_KEY, reader.problems).map(Self)
+    }
+}
+
+/// A file with the origin, or what stands in `campaign.yaml` itself.
+#[derive(Clone, Debug)]
+pub(super) struct OriginStated(pub Origin);
+
+impl FromNode<Opening<'_>> for OriginStated {
+    fn from_node(reader: &mut Reader<'_, Opening<'_>>, key: &Key, node: &Node) -> Option<Self> {
+        if matches!(node.value, Value::Map(_)) {
+            return Origin::from_node(reader, key, node).map(Self);
+        }
+        let tree = reader.named_yaml(key, node)?;
+        reader.file(&tree).map(Self)
+    }
+}
+
+/// Values of the protocol's parameters.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Parameters(pub Vec<Parameter>);
+
+impl FromNode<Opening<'_>> for Parameters {
+    fn from_node(reader: &mut Reader<'_, Opening<'_>>, _: &Key, node: &Node) -> Option<Self> {
+        if !matches!(node.value, Value::Map(_) | Value::Null) {
+            reader.problems.push(node.is_not("`parameters`", "a map of names and values"));
+        }
+        for (key, value) in node.entries() {
+            // What the campaign lacks was meant, whatever the protocol calls its parameters.
+            let campaign_key = MEANT.contains(&key.text.as_str());
+            if campaign_key && reader.with.tree.is_none_or(|tree| tree.get(&key.text).is_none()) {
+                let says = format!("`{}` stands among the parameters of the protocol", key.text);
+                let problem = Problem::error("unknown-key", says).at(&key.span);
+                reader.problems.push(problem.help(at_the_margin(&key.text)));
+            } else if value.scalar_text().is_none() {
+                let what = format!("the parameter `{}`", key.text);
+                reader.problems.push(value.is_not(&what, "a single value"));
+            }
+        }
+        let entries = node.entries().iter().cloned();
+        Some(Self(entries.map(|(name, value)| Parameter { name, value }).collect()))
+    }
+}
+
+/// Keys of the campaign that are taken for parameters where they are indented below them.
+const MEANT: [&str; 7] =
+    ["vehicle", "sections", "application", "protocol", "measurement", "simulation", "track"];
+
+/// Help for a key of the campaign that was indented into a block.
+pub(in crate::data) fn at_the_margin(key: &str) -> String {
+    format!("`{key}` is a key of the campaign: it stands at the left margin")
 }

@@ -2,17 +2,18 @@
 //! section.
 
 use std::collections::HashSet;
+use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
 use super::{Campaign, Part, ReadFile};
-use crate::data::folder::{Place, check_file_name};
+use crate::data::folder::{Place, check_file_name, names_in};
 use crate::data::members::{self, RecordFolder, WhichRecord};
 use crate::data::record::{Format, Record, RecordSource, Wanted};
 use crate::data::table::Cell;
-use crate::data::text::other_format;
+use crate::data::text::{other_format, unreadable};
 use crate::disk;
 use crate::problem::Problem;
 use crate::source::{Span, Spanned};
@@ -215,10 +216,8 @@ impl Campaign {
             return Ok(RecordSource::Memory(Arc::clone(frame)));
         }
         self.none_in_memory(&name, &section.span)?;
-        let unreadable = |inside: &str, error| {
-            Problem::error("file-unreadable", format!("`{inside}` cannot be read: {error}"))
-                .at(&section.span)
-        };
+        let unreadable =
+            |inside: &str, error: io::Error| unreadable(inside, &error).at(&section.span);
         let [csv, parquet] = Format::ALL.map(|format| {
             let place = self.folder.place(&format!("{name}.{}", format.ending()), &section.span)?;
             let there =
@@ -298,11 +297,8 @@ impl Campaign {
             .inside
             .rsplit_once('/')
             .map_or(String::new(), |(folder, _)| format!("{folder}/"));
-        let names = disk::names(beside)
-            .unwrap_or_default()
+        names_in(beside)
             .into_iter()
-            .filter_map(|name| name.into_string().ok());
-        names
             .filter(|name| disk::is_folder(&beside.join(name)).unwrap_or(false))
             .map(|name| format!("{inside}{name}"))
             .collect()
@@ -312,11 +308,8 @@ impl Campaign {
     /// meant.
     fn strangers(&self, folder: &Path) -> Vec<String> {
         let sections: HashSet<&str> = self.names.iter().map(|name| name.value.as_str()).collect();
-        let names = disk::names(folder)
-            .unwrap_or_default()
+        names_in(folder)
             .into_iter()
-            .filter_map(|name| name.into_string().ok());
-        names
             .filter(|name| !Format::stem(name).is_some_and(|name| sections.contains(name)))
             .collect()
     }
@@ -334,9 +327,9 @@ impl Campaign {
         wanted: &[Wanted],
         part: Option<&Part>,
     ) -> Result<(Record, ReadFile), Vec<Problem>> {
-        let source = self.source_of(which, section).map_err(|problem| vec![problem])?;
+        let source = self.source_of(which, section)?;
         let offset = match which.kind {
-            RecordKind::Measurement => self.offset(section).map_err(|problem| vec![problem])?,
+            RecordKind::Measurement => self.offset(section)?,
             RecordKind::Simulation | RecordKind::Track => None,
         };
         let moved = offset.as_ref().map_or(0.0, |(_, offset)| *offset);

@@ -3,33 +3,42 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::opening::Opening;
 use super::{Campaign, RecordKind};
 use crate::data::cells::name_and_unit;
-use crate::data::folder::Folder;
+use crate::data::folder::{check_file_name, names_in};
 use crate::data::record::{Format, Held, Known, RecordSource};
 use crate::data::table::{Cell, Table};
+use crate::data::text::unreadable;
 use crate::disk;
 use crate::problem::{Problem, Problems};
 use crate::source::{Span, Spanned};
 use crate::store;
-use crate::yaml::{Node, Value};
+use crate::yaml::{FromNode, Key, Node, Reader, Value, Words, fields};
 
 /// The key of the runs in `campaign.yaml`.
 pub const RUNS: &str = "runs";
 /// The column of the table of sections that says from which run a section is cut.
 pub const RUN_COLUMN: &str = "run";
-/// The key of a run that says what is done with a drift of the distance between both sides, and its
-/// words.
-const DRIFT: &str = "drift";
-pub const CORRECT: &str = "correct";
-pub const TELL: &str = "tell";
+/// What is done with a drift of the distance between both sides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OnDrift {
+    Correct,
+    Tell,
+}
+
+impl Words for OnDrift {
+    const CODE: &'static str = "unknown-choice";
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("correct", Self::Correct), ("tell", Self::Tell)];
+}
 
 /// A run: a record of each kind, and what the campaign says of it.
 #[derive(Clone, Debug)]
 pub struct Run {
     pub name: Spanned<String>,
-    files: Vec<(RecordKind, Spanned<String>)>,
-    /// Of each file, in the order of [`RecordKind::ALL`].
+    /// In the order of [`RecordKind::ALL`].
+    files: [Option<Spanned<String>>; 3],
     known: [Known; 3],
     pub facts: Vec<RunFact>,
     /// Whether the shift of the measurement along the run is corrected.
@@ -57,133 +66,111 @@ impl Run {
 
     /// What is known of a file, of which each section reads a stretch.
     pub fn known(&self, kind: RecordKind) -> &Known {
-        match kind {
-            RecordKind::Measurement => &self.known[0],
-            RecordKind::Simulation => &self.known[1],
-            RecordKind::Track => &self.known[2],
-        }
+        &self.known[kind as usize]
     }
 
     fn file(&self, kind: RecordKind) -> Option<&Spanned<String>> {
-        self.files.iter().find(|(of, _)| *of == kind).map(|(_, file)| file)
+        self.files[kind as usize].as_ref()
     }
 }
 
-/// Reads the runs of a campaign.
+fields! {
+    /// A run as it is written; all other keys are facts.
+    struct Written in Opening<'_>: "a run" or Free {
+        "measurement" measurement: Option<RunFile>,
+        "simulation" simulation: Option<RunFile>,
+        "track" track: Option<RunFile>,
+        "drift" drift: OnDrift = OnDrift::Tell,
+    }
+}
+
+/// The runs of a campaign by their names.
 ///
 /// Problems: `wrong-kind`, `no-records`, `name-invalid`, `unknown-key`, `unknown-choice`,
-/// `format-not-read`, and those of [`Folder::place`].
-pub(super) fn read(tree: &Node, folder: &Folder, problems: &mut Problems) -> Vec<Run> {
-    const EXAMPLE: &str = "for instance: `runs: {R1: {measurement: R1/measurement.parquet, simulation: R1/simulation.parquet}}`";
-    let Some(node) = tree.get(RUNS) else { return Vec::new() };
-    if !matches!(&node.value, Value::Map(runs) if !runs.is_empty()) {
-        let says =
-            format!("`{RUNS}` must be a map of names and runs; this is {}", node.kind_in_words());
-        problems.push(Problem::error("wrong-kind", says).at(&node.span).help(EXAMPLE));
-        return Vec::new();
+/// `format-not-read`, and those of [`Folder::place`](crate::data::folder::Folder::place).
+#[derive(Clone, Debug, Default)]
+pub(super) struct Runs(pub Vec<Run>);
+
+impl FromNode<Opening<'_>> for Runs {
+    fn from_node(reader: &mut Reader<'_, Opening<'_>>, _: &Key, node: &Node) -> Option<Self> {
+        const EXAMPLE: &str = "for instance: `runs: {R1: {measurement: R1/measurement.parquet, simulation: R1/simulation.parquet}}`";
+        if node.entries().is_empty() {
+            let problem = node.is_not(&format!("`{RUNS}`"), "a map of names and runs");
+            reader.problems.push(problem.help(EXAMPLE));
+        }
+        let held = Held::default();
+        let mut runs = Vec::new();
+        for (key, node) in node.entries() {
+            let name = Spanned::new(key.text.trim().to_string(), key.span.clone());
+            if let Err(problem) = check_file_name(&name.value, &name.span) {
+                reader.problems.push(Problem { code: "name-invalid", ..problem });
+            } else if !matches!(&node.value, Value::Map(_)) {
+                let problem =
+                    node.is_not(&format!("the run `{}`", name.value), "a map of its files");
+                reader.problems.push(problem.help(EXAMPLE));
+            } else {
+                runs.extend(run(reader, name, key, node, &held));
+            }
+        }
+        Some(Self(runs))
     }
-    let (mut runs, held) = (Vec::new(), Held::default());
-    for (key, node) in node.entries() {
-        let name = Spanned::new(key.text.trim().to_string(), key.span.clone());
-        if let Err(problem) = crate::data::folder::check_file_name(&name.value, &name.span) {
-            problems.push(Problem { code: "name-invalid", ..problem });
-            continue;
-        }
-        if !matches!(&node.value, Value::Map(_)) {
-            let says = format!(
-                "the run `{}` must be a map of its files; this is {}",
-                name.value,
-                node.kind_in_words()
-            );
-            problems.push(Problem::error("wrong-kind", says).at(&node.span).help(EXAMPLE));
-            continue;
-        }
-        if let Some(run) = one(name, node, (folder, &held), problems) {
-            runs.push(run);
-        }
-    }
-    runs
 }
 
-fn one(
+fn run(
+    reader: &mut Reader<'_, Opening<'_>>,
     name: Spanned<String>,
+    key: &Key,
     node: &Node,
-    (folder, held): (&Folder, &Held),
-    problems: &mut Problems,
+    held: &Held,
 ) -> Option<Run> {
-    let before = problems.errors();
+    let before = reader.problems.errors();
+    let written = Written::from_node(reader, key, node)?;
+    let files = [written.measurement, written.simulation, written.track];
+    let files = files.map(|file| file.map(|file| file.0));
+    let mut facts = Vec::new();
+    for (key, _) in
+        node.entries().iter().filter(|(key, _)| !Written::KEYS.contains(&key.text.as_str()))
+    {
+        let Some(value) = reader.optional(node, &key.text) else { continue };
+        let (name, unit) = name_and_unit(&key.text);
+        let unit = unit.map(|range| key.text[range].trim().to_string());
+        facts.push(RunFact { name: name.to_string(), unit, value });
+    }
+    if files.iter().all(Option::is_none) && reader.problems.errors() == before {
+        let says = format!("the run `{}` names no file", name.value);
+        let problem = Problem::error("no-records", says).at(&node.span);
+        reader.problems.push(problem.help("name its files: `measurement`, `simulation`, `track`"));
+    }
     let known = std::array::from_fn(|_| Known::with(held));
-    let mut run = Run { name, files: Vec::new(), facts: Vec::new(), known, correct_drift: false };
-    for (key, value) in node.entries() {
-        let Some(text) = value.scalar_text().map(str::trim).filter(|text| !text.is_empty()) else {
-            let says = format!(
-                "`{}` of a run must be a single value; this is {}",
-                key.text,
-                value.kind_in_words()
-            );
-            problems.push(Problem::error("wrong-kind", says).at(&value.span));
-            continue;
-        };
-        let written = Spanned::new(text.to_string(), value.span.clone());
-        let known = || RecordKind::ALL.into_iter().map(RecordKind::key).chain([DRIFT]);
-        if let Some(kind) = RecordKind::ALL.into_iter().find(|kind| kind.key() == key.text) {
-            match check_file(&written, folder) {
-                Ok(()) => run.files.push((kind, written)),
-                Err(problem) => problems.push(problem),
-            }
-        } else if key.text == DRIFT {
-            match text {
-                CORRECT => run.correct_drift = true,
-                TELL => {}
-                other => {
-                    let says = format!("`{DRIFT}` cannot be `{other}`");
-                    problems.push(
-                        Problem::error("unknown-choice", says)
-                            .at(&value.span)
-                            .suggest(other, [CORRECT, TELL]),
-                    );
-                }
-            }
-        } else if let Some(near) =
-            known().find(|known| strsim::damerau_levenshtein(&key.text.to_lowercase(), known) <= 1)
-        {
-            let problem = Problem::error("unknown-key", format!("a run has no key `{}`", key.text))
-                .at(&key.span);
-            problems.push(problem.help(format!("did you mean `{near}`?")));
-        } else {
-            let (name, unit) = name_and_unit(&key.text);
-            let unit = unit.map(|range| key.text[range].trim().to_string());
-            run.facts.push(RunFact { name: name.to_string(), unit, value: written });
-        }
-    }
-    if run.files.is_empty() && problems.errors() == before {
-        let says = format!("the run `{}` names no file", run.name.value);
-        problems.push(
-            Problem::error("no-records", says)
-                .at(&node.span)
-                .help("name its files: `measurement`, `simulation`, `track`"),
-        );
-    }
-    (problems.errors() == before).then_some(run)
+    let correct_drift = written.drift == OnDrift::Correct;
+    (reader.problems.errors() == before).then_some(Run { name, files, known, facts, correct_drift })
 }
 
-/// A file of a run is inside the campaign, or an object in a store. Of an object only Parquet can
-/// be read in parts.
-fn check_file(written: &Spanned<String>, folder: &Folder) -> Result<(), Problem> {
-    if !store::is_url(&written.value) {
-        return folder.place(&written.value, &written.span).map(|_| ());
+/// A file of a run: inside the campaign, or an object in a store. Of an object only Parquet can be
+/// read in parts.
+#[derive(Clone, Debug)]
+struct RunFile(Spanned<String>);
+
+impl FromNode<Opening<'_>> for RunFile {
+    fn from_node(reader: &mut Reader<'_, Opening<'_>>, key: &Key, node: &Node) -> Option<Self> {
+        let written: Spanned<String> = Spanned::from_node(reader, key, node)?;
+        if !store::is_url(&written.value) {
+            let place = reader.with.folder.place(&written.value, &written.span);
+            reader.keep(place)?;
+        } else if Format::of(Path::new(&written.value)) != Format::Parquet {
+            let says = format!(
+                "`{}` is in a store and does not end in `.{}`",
+                written.value,
+                Format::Parquet.ending()
+            );
+            let problem = Problem::error("format-not-read", says).at(&written.span);
+            reader
+                .problems
+                .push(problem.help("write it as Parquet, or copy it to the campaign's folder"));
+            return None;
+        }
+        Some(Self(written))
     }
-    if Format::of(Path::new(&written.value)) == Format::Parquet {
-        return Ok(());
-    }
-    let says = format!(
-        "`{}` is in a store and does not end in `.{}`",
-        written.value,
-        Format::Parquet.ending()
-    );
-    Err(Problem::error("format-not-read", says)
-        .at(&written.span)
-        .help("write it as Parquet, or copy it to the campaign's folder"))
 }
 
 /// Every run that the table of sections names is there.
@@ -274,10 +261,7 @@ impl Campaign {
             return Ok(RecordSource::Memory(Arc::clone(frame)));
         }
         self.none_in_memory(&place.inside, &file.span)?;
-        let unreadable = |error| {
-            Problem::error("file-unreadable", format!("`{}` cannot be read: {error}", place.inside))
-                .at(&file.span)
-        };
+        let unreadable = |error| unreadable(&place.inside, &error).at(&file.span);
         if known.place().is_some() || disk::is_file(&place.path).map_err(unreadable)? {
             known.found(&place);
             return Ok(RecordSource::File(place));
@@ -285,14 +269,11 @@ impl Campaign {
         let problem =
             Problem::error("file-missing", format!("there is no file `{}`", place.inside))
                 .at(&file.span);
-        let others =
-            place.path.parent().and_then(|folder| disk::names(folder).ok()).unwrap_or_default();
+        let others = place.path.parent().map(names_in).unwrap_or_default();
         let folder =
             file.value.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
-        let others: Vec<String> = others
-            .into_iter()
-            .filter_map(|name| Some(format!("{folder}{}", name.to_str()?)))
-            .collect();
+        let others: Vec<String> =
+            others.into_iter().map(|name| format!("{folder}{name}")).collect();
         Err(problem.suggest(&file.value, others.iter().map(String::as_str)))
     }
 

@@ -121,6 +121,13 @@ pub fn campaign_yaml(entries: &[(&str, Entry<'_>)]) -> String {
     text
 }
 
+/// The text of a `campaign.yaml` with other entries in place of some keys; the new ones stand last.
+pub fn campaign_yaml_with(tree: &Node, without: &[&str], new: &[(&str, Entry<'_>)]) -> String {
+    let kept = tree.entries().iter().filter(|(key, _)| !without.contains(&key.text.as_str()));
+    let kept = kept.map(|(key, node)| (key.text.as_str(), Entry::Node(node)));
+    campaign_yaml(&kept.chain(new.iter().copied()).collect::<Vec<_>>())
+}
+
 /// The value after a key or a dash, with its line break.
 fn push_node(text: &mut String, node: &Node, depth: usize) {
     match &node.value {

@@ -4,12 +4,50 @@ use std::ops::Range;
 
 use super::super::Options;
 use super::{numbers, stamps};
+use crate::yaml::Words;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Separator {
     Mark(char),
     /// Any number of blanks and tabs.
     Blanks,
+}
+
+impl Words for Separator {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("comma", Self::Mark(',')),
+        ("semicolon", Self::Mark(';')),
+        ("tab", Self::Mark('\t')),
+        ("blanks", Self::Blanks),
+        ("bar", Self::Mark('|')),
+    ];
+
+    /// Also a single mark, as it is.
+    fn from_word(word: &str) -> Option<Self> {
+        let mut letters = word.chars();
+        let known = Self::WORDS.iter().find(|(known, _)| *known == word).map(|(_, value)| *value);
+        let mark = letters.next().filter(|letter| !letter.is_alphanumeric()).map(Self::Mark);
+        known.or(mark.filter(|_| letters.next().is_none()))
+    }
+}
+
+/// What stands before the fraction of a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DecimalMark {
+    Comma,
+    Point,
+}
+
+impl DecimalMark {
+    /// The mark itself.
+    pub(super) fn letter(self) -> char {
+        if self == Self::Comma { ',' } else { '.' }
+    }
+}
+
+impl Words for DecimalMark {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("comma", Self::Comma), ("point", Self::Point), (",", Self::Comma), (".", Self::Point)];
 }
 
 impl Separator {
@@ -161,7 +199,7 @@ pub(super) fn detect(lines: &[Line<'_>], options: &Options) -> Option<Dialect> {
         ],
     };
     let decimals = match options.decimal {
-        Some(said) => vec![said],
+        Some(said) => vec![said.letter()],
         None => vec!['.', ','],
     };
     let mut best: Option<(f64, Dialect)> = None;

@@ -18,7 +18,7 @@ mod values;
 use std::ops::Range;
 
 pub(in crate::foreign) use decode::wide;
-pub use dialect::Separator;
+pub use dialect::{DecimalMark, Separator};
 use dialect::{Dialect, Line};
 pub(in crate::foreign) use header::name_and_unit;
 #[cfg(feature = "foreign")]
@@ -31,6 +31,7 @@ use super::load::Budget;
 use super::{Format, Input, Options, Read, Table};
 use crate::problem::Problem;
 use crate::source::{Source, Span};
+use crate::yaml::Words;
 
 /// Maximum length of a line in bytes, as for a record of a campaign.
 const LONGEST_LINE: usize = 1 << 20;
@@ -44,14 +45,8 @@ struct Text<'a> {
 /// Reads a text table.
 pub(super) fn read(input: &Input<'_>, format: Format) -> Result<Read, Vec<Problem>> {
     let (shown, options) = (input.shown, input.options);
-    if let Some(mark) = options.decimal.filter(|mark| !matches!(mark, '.' | ',')) {
-        return Err(vec![
-            Problem::error("dialect", format!("`{mark}` is not a decimal mark"))
-                .help("write `.` or `,`"),
-        ]);
-    }
     if options.separator.is_some_and(|separator| {
-        options.decimal.is_some_and(|mark| separator == Separator::Mark(mark))
+        options.decimal.is_some_and(|mark| separator == Separator::Mark(mark.letter()))
     }) {
         return Err(vec![Problem::error(
             "dialect",

@@ -1,6 +1,7 @@
 //! Time stamps: dates, clock times, both.
 
 use super::super::Options;
+use crate::yaml::Words;
 
 /// Order of day, month and year in a date of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,16 +11,9 @@ pub enum DateOrder {
     YearMonthDay,
 }
 
-impl DateOrder {
-    /// `dmy`, `mdy`, `ymd`.
-    pub fn from_word(word: &str) -> Option<Self> {
-        match word {
-            "dmy" => Some(Self::DayMonthYear),
-            "mdy" => Some(Self::MonthDayYear),
-            "ymd" => Some(Self::YearMonthDay),
-            _ => None,
-        }
-    }
+impl Words for DateOrder {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("dmy", Self::DayMonthYear), ("mdy", Self::MonthDayYear), ("ymd", Self::YearMonthDay)];
 }
 
 /// A stamp as written.

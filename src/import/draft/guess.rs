@@ -35,9 +35,10 @@ fn is_name_of(convention: &Convention, foreign: &str, channel: &str) -> bool {
     let foreign = plain(foreign);
     let known = convention
         .names
+        .0
         .iter()
-        .find(|(name, _)| name == channel)
-        .map_or(&[][..], |(_, others)| others);
+        .find(|(name, _)| name.text == channel)
+        .map_or(&[][..], |(_, others)| &others.0);
     plain(channel) == foreign || known.iter().any(|other| plain(other) == foreign)
 }
 
@@ -129,8 +130,9 @@ fn common_mean(looks: &[Look], dimension: Dimension, within: f64) -> Option<(f64
 pub fn guesses(looks: &[Look], needs: &[&ChannelNeed], convention: &Convention) -> Vec<Guess> {
     let mut guesses: Vec<Guess> = needs.iter().map(|need| one(looks, need, convention)).collect();
     let axes = ["time", "distance", "speed"];
-    for (name, _) in convention.names.iter().filter(|(name, _)| {
-        !axes.contains(&name.as_str()) && !needs.iter().any(|need| need.column == *name)
+    let names = || convention.names.0.iter().map(|(name, _)| &name.text);
+    for name in names().filter(|name| {
+        !axes.contains(&name.as_str()) && !needs.iter().any(|need| need.column == **name)
     }) {
         if let [look] = named(looks, convention, name)[..] {
             let reasons =
@@ -143,9 +145,8 @@ pub fn guesses(looks: &[Look], needs: &[&ChannelNeed], convention: &Convention) 
             });
         }
     }
-    let place = |guess: &Guess| {
-        convention.names.iter().position(|(name, _)| *name == guess.channel).unwrap_or(usize::MAX)
-    };
+    let place =
+        |guess: &Guess| names().position(|name| *name == guess.channel).unwrap_or(usize::MAX);
     guesses.sort_by_key(place);
     for group in &convention.opposite {
         let look = |guesses: &[Guess], name: &str| {
@@ -154,8 +155,11 @@ pub fn guesses(looks: &[Look], needs: &[&ChannelNeed], convention: &Convention) 
         };
         let pairs: Vec<(&String, &Look, &Look)> = group
             .pairs
+            .0
             .iter()
-            .filter_map(|(right, left)| Some((left, look(&guesses, right)?, look(&guesses, left)?)))
+            .filter_map(|(right, left)| {
+                Some((left, look(&guesses, &right.text)?, look(&guesses, left)?))
+            })
             .collect();
         // One pair with equal signs leaves the sign of all open: a file has one convention, and not
         // every pair shows it.
@@ -228,15 +232,15 @@ fn one(looks: &[Look], need: &ChannelNeed, convention: &Convention) -> Guess {
         ));
         return taken(look, reasons);
     }
-    for group in convention.common.iter().filter(|group| group.channels.contains(&need.column)) {
-        let Some((median, near)) = common_mean(looks, wanted.dimension, group.within) else {
+    for group in convention.common.iter().filter(|group| group.channels.0.contains(&need.column)) {
+        let Some((median, near)) = common_mean(looks, wanted.dimension, group.within.value) else {
             continue;
         };
         let ratio = unit.to_si(look.mean) / median;
-        if near < group.channels.len() {
+        if near < group.channels.0.len() {
             continue;
         }
-        if (1.0 / group.within..=group.within).contains(&ratio) {
+        if (1.0 / group.within.value..=group.within.value).contains(&ratio) {
             reasons.push(format!(
                 "by content: its mean is common to {near} channels, {}",
                 group.title
@@ -263,15 +267,16 @@ fn one(looks: &[Look], need: &ChannelNeed, convention: &Convention) -> Guess {
 /// Candidates by content for a channel of a group with a common mean.
 fn by_content(looks: &[Look], need: &ChannelNeed, convention: &Convention) -> Option<String> {
     let wanted = Unit::parse(&need.unit).ok()?;
-    let group = convention.common.iter().find(|group| group.channels.contains(&need.column))?;
-    let (median, near) = common_mean(looks, wanted.dimension, group.within)?;
-    if near < group.channels.len() {
+    let group = convention.common.iter().find(|group| group.channels.0.contains(&need.column))?;
+    let (median, near) = common_mean(looks, wanted.dimension, group.within.value)?;
+    if near < group.channels.0.len() {
         return None;
     }
     let alike = looks.iter().filter(|look| {
         look.unit.as_ref().is_some_and(|unit| {
             unit.dimension == wanted.dimension
-                && (1.0 / group.within..=group.within).contains(&(unit.to_si(look.mean) / median))
+                && (1.0 / group.within.value..=group.within.value)
+                    .contains(&(unit.to_si(look.mean) / median))
         })
     });
     let names: Vec<&str> = alike.map(|look| look.name.as_str()).collect();
@@ -318,24 +323,21 @@ mod tests {
         }
     }
 
+    fn convention_of(text: &str) -> Convention {
+        let mut problems = Problems::default();
+        let tree = yaml::load(&Source::new("c.yaml", text), &mut problems).expect("YAML");
+        let convention = Reader { with: (), problems: &mut problems }.file(&tree);
+        assert!(problems.0.is_empty(), "{}", problems.render(false));
+        convention.expect("a convention")
+    }
+
     fn convention() -> Convention {
-        Convention {
-            names: vec![
-                ("Q_1R".into(), vec!["ST1 Q re".into()]),
-                ("Y_1L".into(), vec!["ST1 Y li".into()]),
-            ],
-            common: vec![crate::import::mapping::Common {
-                title: "vertical".into(),
-                channels: vec!["Q_1R".into(), "Q_1L".into()],
-                within: 1.5,
-                above: "outer".into(),
-            }],
-            opposite: vec![crate::import::mapping::Opposite {
-                title: "guiding".into(),
-                pairs: vec![("Y_1R".into(), "Y_1L".into())],
-            }],
-            ..Convention::default()
-        }
+        convention_of(
+            "convention: c\n\
+             names: {Q_1R: ST1 Q re, Y_1L: [ST1 Y li]}\n\
+             common mean: [{title: vertical, channels: [Q_1R, Q_1L], within: 1.5, above: outer}]\n\
+             opposite mean: [{title: guiding, pairs: {Y_1R: Y_1L}}]\n",
+        )
     }
 
     #[test]
@@ -368,14 +370,9 @@ mod tests {
     #[test]
     fn axes_without_a_unit_are_known_by_name() {
         let names = |list: &[&str]| list.iter().map(ToString::to_string).collect::<Vec<_>>();
-        let convention = Convention {
-            names: vec![
-                ("time".into(), names(&["Zeit", "t"])),
-                ("distance".into(), names(&["Weg", "s"])),
-                ("speed".into(), names(&["v"])),
-            ],
-            ..Convention::default()
-        };
+        let convention = convention_of(
+            "convention: c\nnames: {time: [Zeit, t], distance: [Weg, s], speed: v}\n",
+        );
         let rising = |name: &str| Look { increases: true, even: true, ..look(name, "", 1.0) };
         let looks = [look("v", "", 20.0), rising("Zeit"), rising("s"), rising("n")];
         let of = |name: &str, dimension| {

@@ -20,6 +20,7 @@ use crate::data::RecordKind;
 use crate::foreign::{self, File, Options, Table};
 use crate::problem::Problem;
 use crate::run::needs::Needs;
+use crate::yaml::Words;
 use look::{Look, look};
 
 pub use text::draft;

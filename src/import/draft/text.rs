@@ -8,6 +8,7 @@ use crate::data::write::yaml_text;
 use crate::import::mapping::agree::record_of;
 use crate::run::needs::ChannelNeed;
 use crate::units::{Dimension, Unit};
+use crate::yaml::Words;
 
 /// Column at which the comments begin, where a line is shorter.
 const COMMENTS: usize = 44;

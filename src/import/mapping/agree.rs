@@ -289,7 +289,7 @@ fn units(map: &ChannelMap, need: &ChannelNeed, problems: &mut Problems) {
     let Ok(wanted) = Unit::parse(&need.unit) else { return };
     let stated = map.unit.iter().chain(&map.written_in).map(|unit| (&unit.value, &unit.span));
     for (unit, span) in
-        stated.chain(map.offset.iter().map(|offset| (&offset.value.1, &offset.span)))
+        stated.chain(map.offset.iter().map(|offset| (&offset.value.unit, &offset.span)))
     {
         if unit.dimension != wanted.dimension {
             let says = format!(

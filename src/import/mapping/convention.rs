@@ -4,12 +4,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::reader::{Reader, at};
 use crate::data::text::read_text;
 use crate::library;
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Spanned};
-use crate::yaml::{self, Node, Value};
+use crate::yaml::{self, Entries, FromNode, Key, Node, OneOrMore, Reader, Value, fields};
 
 /// What is exchanged when the vehicle is turned.
 #[derive(Clone, Debug, Default)]
@@ -38,34 +37,47 @@ impl Turning {
     }
 }
 
-/// A shipped or own convention.
-#[derive(Debug, Default)]
-pub struct Convention {
-    pub name: String,
-    /// Channel, and foreign names of it.
-    pub names: Vec<(String, Vec<String>)>,
-    /// Groups of channels with a common mean, and what that is.
-    pub common: Vec<Common>,
-    pub opposite: Vec<Opposite>,
-    pub turning: Option<Turning>,
+fields! {
+    /// A shipped or own convention.
+    #[derive(Default)]
+    pub struct Convention: "a convention" {
+        "convention" name: String => "its name",
+        "title" title: Option<String>,
+        /// Channels, and foreign names of each.
+        "names" names: Entries<OneOrMore<String>>,
+        /// Groups of channels with a common mean, and what that is.
+        "common mean" common: Vec<Common>,
+        "opposite mean" opposite: Vec<Opposite>,
+        "turning" turning: Option<Turning>,
+    }
 }
 
-/// Channels of a group that carry the same load.
-#[derive(Debug)]
-pub struct Common {
-    pub title: String,
-    pub channels: Vec<String>,
-    /// Largest ratio of the mean of one to the median of all.
-    pub within: f64,
-    /// What it means if a mean is above that of the group.
-    pub above: String,
+fields! {
+    /// Channels of a group that carry the same load.
+    pub struct Common: "a group with a common mean" {
+        "title" title: String => "what the group is",
+        "channels" channels: OneOrMore<String>,
+        /// Largest ratio of the mean of one to the median of all.
+        "within" within: Spanned<f64>,
+        /// What it means if a mean is above that of the group.
+        "above" above: String = String::new(),
+    }
 }
 
-/// Pairs of channels whose means have opposite signs.
-#[derive(Debug)]
-pub struct Opposite {
-    pub title: String,
-    pub pairs: Vec<(String, String)>,
+fields! {
+    /// Pairs of channels whose means have opposite signs.
+    pub struct Opposite: "a group with opposite means" {
+        "title" title: String => "what the group is",
+        "pairs" pairs: Entries<String>,
+    }
+}
+
+fields! {
+    /// The block `turning`.
+    struct Written: "`turning`" {
+        "exchange" exchange: Entries<Spanned<String>>,
+        "reverse sign" reverse: OneOrMore<String>,
+    }
 }
 
 /// A convention by path, relative to a folder, or by shipped name.
@@ -79,10 +91,17 @@ pub fn find(name: &Spanned<String>, folder: &Path, problems: &mut Problems) -> O
     } else {
         shipped(&name.value)
     };
-    let source = source.map_err(|problem| problems.push(at(problem, &name.span))).ok()?;
+    let source = source.map_err(|problem| problems.push(problem.or_at(&name.span))).ok()?;
     let before = problems.errors();
     let tree = yaml::load(&source, problems)?;
-    let convention = convention(&mut Reader { problems }, &tree);
+    let mut reader = Reader { with: (), problems };
+    let mut convention: Convention = reader.file(&tree)?;
+    for group in convention.common.iter().filter(|group| group.within.value <= 1.0) {
+        reader.fault("wrong-kind", "`within` must be a factor above 1", &group.within.span);
+    }
+    if let Some(turning) = &mut convention.turning {
+        turning.from.clone_from(&convention.name);
+    }
     (problems.errors() == before).then_some(convention)
 }
 
@@ -99,92 +118,37 @@ fn shipped(name: &str) -> Result<Arc<Source>, Problem> {
     )
 }
 
-fn convention(reader: &mut Reader<'_>, tree: &Node) -> Convention {
-    reader.keys(
-        tree,
-        &["convention", "title", "names", "common mean", "opposite mean", "turning"],
-        "a convention",
-    );
-    let name = reader
-        .need_text(tree, "convention", "its name")
-        .map_or_else(String::new, |name| name.value);
-    let mut names = Vec::new();
-    for (key, node) in tree.get("names").map_or(&[][..], Node::entries) {
-        let list = match &node.value {
-            Value::List(items) => items
-                .iter()
-                .filter_map(|item| reader.text_of(item, &key.text))
-                .map(|text| text.value)
-                .collect(),
-            _ => reader.text_of(node, &key.text).into_iter().map(|text| text.value).collect(),
-        };
-        names.push((key.text.clone(), list));
-    }
-    let mut common = Vec::new();
-    for node in tree.get("common mean").map_or(&[][..], Node::items) {
-        reader.keys(node, &["title", "channels", "within", "above"], "a group with a common mean");
-        let within = node.get("within").and_then(Node::number);
-        if within.is_none_or(|within| within <= 1.0) {
-            reader.fault("wrong-kind", "`within` must be a factor above 1", &node.span);
-        }
-        common.push(Common {
-            title: reader
-                .need_text(node, "title", "what the group is")
-                .map_or_else(String::new, |text| text.value),
-            channels: reader.texts(node, "channels").into_iter().map(|text| text.value).collect(),
-            within: within.unwrap_or(1.0),
-            above: reader.text(node, "above").map_or_else(String::new, |text| text.value),
-        });
-    }
-    let mut opposite = Vec::new();
-    for node in tree.get("opposite mean").map_or(&[][..], Node::items) {
-        reader.keys(node, &["title", "pairs"], "a group with opposite means");
-        let pairs = node.get("pairs").map_or(&[][..], Node::entries);
-        opposite.push(Opposite {
-            title: reader
-                .need_text(node, "title", "what the group is")
-                .map_or_else(String::new, |text| text.value),
-            pairs: pairs.iter().map(|(key, node)| (key.text.clone(), node.raw.clone())).collect(),
-        });
-    }
-    let turning =
-        tree.get("turning").map(|node| Turning { from: name.clone(), ..block(reader, node) });
-    Convention { name, names, common, opposite, turning }
-}
-
 /// `turning: bogie-vehicle`, or the block itself.
-pub(super) fn turning(reader: &mut Reader<'_>, node: &Node, folder: &Path) -> Option<Turning> {
+pub(super) fn turning(reader: &mut Reader<'_>, map: &Node, folder: &Path) -> Option<Turning> {
+    let (key, node) = map.entry("turning")?;
     if matches!(node.value, Value::Map(_)) {
-        return Some(Turning { from: "the mapping".into(), ..block(reader, node) });
+        return Turning::from_node(reader, key, node);
     }
-    let named = reader.text_of(node, "turning")?;
+    let named = Spanned::from_node(reader, key, node)?;
     let found = find(&named, folder, reader.problems)?;
     if found.turning.is_none() {
-        reader.fault(
-            "key-missing",
-            format!("the convention `{}` states no `turning`", named.value),
-            &named.span,
-        );
+        let says = format!("the convention `{}` states no `turning`", named.value);
+        reader.fault("key-missing", says, &named.span);
     }
     found.turning
 }
 
-fn block(reader: &mut Reader<'_>, node: &Node) -> Turning {
-    reader.keys(node, &["exchange", "reverse sign"], "`turning`");
-    let mut exchange: Vec<(String, String)> = Vec::new();
-    for (key, value) in node.get("exchange").map_or(&[][..], Node::entries) {
-        let Some(other) = reader.text_of(value, &key.text) else { continue };
-        let taken = |name: &str| exchange.iter().any(|(one, two)| one == name || two == name);
-        if taken(&key.text) || taken(&other.value) || key.text == other.value {
-            let says = format!(
-                "`{}` and `{}`: a channel is exchanged with one other channel",
-                key.text, other.value
-            );
-            reader.fault("mapped-twice", says, &other.span);
-            continue;
+impl<C> FromNode<C> for Turning {
+    fn from_node(reader: &mut Reader<'_, C>, key: &Key, node: &Node) -> Option<Self> {
+        let written = Written::from_node(reader, key, node)?;
+        let mut exchange: Vec<(String, String)> = Vec::new();
+        for (Key { text: one, .. }, other) in written.exchange.0 {
+            let taken = |name: &str| exchange.iter().any(|(one, two)| one == name || two == name);
+            if taken(&one) || taken(&other.value) || one == other.value {
+                let says = format!(
+                    "`{one}` and `{}`: a channel is exchanged with one other channel",
+                    other.value
+                );
+                reader.fault("mapped-twice", says, &other.span);
+            } else {
+                exchange.push((one, other.value));
+            }
         }
-        exchange.push((key.text.clone(), other.value));
+        Some(Self { exchange, reverse: written.reverse.0, from: "the mapping".into() })
     }
-    let reverse = reader.texts(node, "reverse sign").into_iter().map(|text| text.value).collect();
-    Turning { exchange, reverse, from: String::new() }
 }

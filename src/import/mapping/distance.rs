@@ -1,30 +1,35 @@
 //! Time and distance of a record: where they are from.
 
-use super::channels::{ChannelMap, channel_map};
-use super::reader::{Reader, hertz, metre, second};
+use super::channels::ChannelMap;
 use super::sections::Sections;
-use super::stated::{self, Stated};
+use super::stated::Stated;
 use crate::problem::Problem;
 use crate::source::{Span, Spanned};
-use crate::units::Unit;
-use crate::yaml::{Key, Node, Value};
+use crate::units::{Dimension, Unit};
+use crate::yaml::{
+    FromNode, Hertz, Key, Metres, Node, OneOrMore, Ratio, Reader, Seconds, Value, fields,
+    span_of_value,
+};
 
 /// Largest drift of a clock: a watch crystal is below 100 ppm, and 1 % is a wrong rate.
 const MOST_DRIFT: f64 = 0.01;
 
-#[derive(Clone, Debug)]
-pub struct Time {
-    /// The channel; several names where the groups of a file call it differently. Empty: rate of
-    /// the file.
-    pub from: Vec<Spanned<String>>,
-    pub unit: Option<Spanned<Unit>>,
-    /// Sampling rate where there is no channel and the file states none, in Hz.
-    pub rate: Option<f64>,
-    /// Added to the time, in s.
-    pub shift: Option<Stated>,
-    /// How much the clock of the record is fast.
-    pub drift: f64,
-    pub span: Span,
+fields! {
+    /// Where the time of a record is from.
+    pub struct Time in &Sections: "`time`" {
+        /// The channel; several names where the groups of a file call it differently. Empty: rate
+        /// of the file.
+        "from" from: OneOrMore<Spanned<String>>,
+        "unit" unit: Option<Spanned<Unit>>,
+        /// Sampling rate where there is no channel and the file states none.
+        "rate" rate: Option<Hertz>,
+        /// Added to the time.
+        "shift" shift: Option<Stated<Seconds>>,
+        /// How much the clock of the record is fast.
+        "drift" drift: Ratio = Ratio(0.0),
+    } also {
+        span: Span = span_of_value,
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -33,14 +38,14 @@ pub enum Distance {
     /// Integral of a speed over time.
     Speed {
         speed: ChannelMap,
-        start: Option<Stated>,
+        start: Option<Stated<Metres>>,
     },
     /// A pulse after each length.
     Trigger {
         channel: ChannelMap,
         every: f64,
         threshold: Option<f64>,
-        start: Option<Stated>,
+        start: Option<Stated<Metres>>,
     },
 }
 
@@ -54,209 +59,155 @@ pub struct Match {
     pub span: Span,
 }
 
-pub(super) fn time(
-    reader: &mut Reader<'_>,
-    node: Option<&Node>,
-    at: &Span,
-    sections: &Sections,
-) -> Time {
-    let mut time = Time {
-        from: Vec::new(),
-        unit: None,
-        rate: None,
-        shift: None,
-        drift: 0.0,
-        span: stated::place(node, at),
+impl Time {
+    /// A time of which the file says all.
+    fn from_file(from: Vec<Spanned<String>>, span: Span) -> Self {
+        let from = OneOrMore(from);
+        Self { from, unit: None, rate: None, shift: None, drift: Ratio(0.0), span }
+    }
+}
+
+/// `time: NAME`, a list of names, or a map with more.
+pub(super) fn time(reader: &mut Reader<'_, &Sections>, side: &Node, at: &Span) -> Time {
+    let Some((key, node)) = side.entry("time") else {
+        return Time::from_file(Vec::new(), at.clone());
     };
-    let Some(node) = node else { return time };
-    match &node.value {
-        Value::Map(_) => {
-            reader.keys(node, &["from", "unit", "rate", "shift", "drift"], "`time`");
-            time.from = reader.texts(node, "from");
-            time.rate = reader.number(node, "rate", &hertz());
-            time.unit = reader
-                .text(node, "unit")
-                .and_then(|written| Some(Spanned::new(reader.unit(&written)?, written.span)));
-            time.shift = node
-                .get("shift")
-                .and_then(|shift| stated::read(reader, shift, "shift", &second(), sections));
-            time.drift = reader.number(node, "drift", &Unit::one()).unwrap_or(0.0);
-            if time.drift.abs() > MOST_DRIFT {
-                let at = stated::place(node.get("drift"), &node.span);
-                let problem = Problem::error(
-                    "out-of-range",
-                    format!("a drift of {} is more than {MOST_DRIFT}", time.drift),
-                )
-                .at(&at);
-                reader.problems.push(
-                    problem.help("write it in parts per million: `50 ppm`; another rate is `rate`"),
-                );
-            }
-            if let (Some(rate), Some(from)) = (time.rate, time.from.first()) {
-                reader.fault(
-                    "contradiction",
-                    format!(
-                        "the time is from the channel `{}`, and a rate of {rate} Hz is stated",
-                        from.value
-                    ),
-                    &from.span,
-                );
-            }
-            if let Some(unit) =
-                time.unit.as_ref().filter(|unit| unit.value.dimension != second().dimension)
-            {
-                reader.fault(
-                    "unit-mismatch",
-                    format!(
-                        "the time is in {}, which is {}",
-                        unit.value,
-                        unit.value.dimension.in_words()
-                    ),
-                    &unit.span,
-                );
-            }
-        }
-        Value::List(items) => {
-            time.from = items.iter().filter_map(|item| reader.text_of(item, "time")).collect()
-        }
-        _ => time.from = reader.text_of(node, "time").into_iter().collect(),
+    if !matches!(node.value, Value::Map(_)) {
+        let names: Option<OneOrMore<_>> = OneOrMore::from_node(reader, key, node);
+        return Time::from_file(names.map_or_else(Vec::new, |names| names.0), node.span.clone());
+    }
+    let Some(time) = Time::from_node(reader, key, node) else {
+        return Time::from_file(Vec::new(), node.span.clone());
+    };
+    let Ratio(drift) = time.drift;
+    if drift.abs() > MOST_DRIFT {
+        let says = format!("a drift of {drift} is more than {MOST_DRIFT}");
+        let problem = Problem::error("out-of-range", says).at(node.span_of("drift"));
+        reader
+            .problems
+            .push(problem.help("write it in parts per million: `50 ppm`; another rate is `rate`"));
+    }
+    if let (Some(Hertz(rate)), Some(from)) = (time.rate, time.from.0.first()) {
+        let says = format!(
+            "the time is from the channel `{}`, and a rate of {rate} Hz is stated",
+            from.value
+        );
+        reader.fault("contradiction", says, &from.span);
+    }
+    if let Some(Spanned { value: unit, span }) = &time.unit
+        && unit.dimension != Dimension::TIME
+    {
+        let says = format!("the time is in {unit}, which is {}", unit.dimension.in_words());
+        reader.fault("unit-mismatch", says, span);
     }
     time
 }
 
-const KEYS: [&str; 11] = [
-    "from",
-    "from speed",
-    "from trigger",
-    "every",
-    "threshold",
-    "start",
-    "match",
-    "unit",
-    "factor",
-    "offset",
-    "table",
-];
-/// Those that the channel itself takes.
-const OF_CHANNEL: [&str; 4] = ["unit", "factor", "offset", "table"];
-
-pub(super) fn distance(
-    reader: &mut Reader<'_>,
-    key: &Key,
-    node: &Node,
-    sections: &Sections,
-) -> (Option<Distance>, Option<Match>) {
-    if !matches!(node.value, Value::Map(_)) {
-        return (channel_map(reader, key, node).map(Distance::Channel), None);
+fields! {
+    /// A distance of which more is stated than its name in the file.
+    struct Written in &Sections: "`distance`" {
+        "from" from: Option<Node>,
+        "from speed" from_speed: Option<Node>,
+        "from trigger" from_trigger: Option<Node>,
+        "every" every: Option<Spanned<Metres>>,
+        "threshold" threshold: Option<f64>,
+        "start" start: Option<Stated<Metres>>,
+        "match" matched: Option<Match>,
+        "unit" unit: Option<Node>,
+        "factor" factor: Option<Node>,
+        "offset" offset: Option<Node>,
+        "table" table: Option<Node>,
     }
-    reader.keys(node, &KEYS, "`distance`");
-    let ways: Vec<&str> = KEYS[..3].iter().copied().filter(|way| node.get(way).is_some()).collect();
-    let matched = node.entry("match").and_then(|(key, node)| matching(reader, key, node));
-    let [way] = ways[..] else {
-        let says = if ways.is_empty() {
-            "`distance` does not say where it is from"
-        } else {
-            "`distance` is stated in several ways"
-        };
-        let problem =
-            Problem::error(if ways.is_empty() { "key-missing" } else { "contradiction" }, says)
-                .at(&node.span);
-        reader.problems.push(problem.help("write one of `from`, `from speed` and `from trigger`"));
-        return (None, matched);
-    };
-    let needs = |what: &str| if what == "start" { way != "from" } else { way == "from trigger" };
-    for what in ["every", "threshold", "start"]
-        .into_iter()
-        .filter(|what| node.get(what).is_some() && !needs(what))
-    {
-        let at = stated::place(node.get(what), &node.span);
-        let problem = Problem::error(
-            "contradiction",
-            format!("`{what}` has no meaning for a distance with `{way}`"),
-        )
-        .at(&at);
-        reader.problems.push(if what == "start" {
-            problem.help("write `offset` to add a length to the channel")
-        } else {
-            problem
-        });
-    }
-    // The channel is read as any other, with the keys that it takes.
-    let Some((_, from)) = node.entry(way) else { return (None, matched) };
-    let own =
-        node.entries().iter().filter(|(key, _)| OF_CHANNEL.contains(&key.text.as_str())).cloned();
-    let from_key = Key { text: "from".into(), span: key.span.clone(), exact: false };
-    let entries: Vec<(Key, Node)> = std::iter::once((from_key, from.clone())).chain(own).collect();
-    let channel = Node { value: Value::Map(entries), ..node.clone() };
-    let Some(channel) = channel_map(reader, key, &channel) else { return (None, matched) };
-    let start = node
-        .get("start")
-        .and_then(|start| stated::read(reader, start, "start", &metre(), sections));
-    let distance = match way {
-        "from" => Some(Distance::Channel(channel)),
-        "from speed" => Some(Distance::Speed { speed: channel, start }),
-        _ => {
-            let every = reader.number(node, "every", &metre());
-            if every.is_none() && node.get("every").is_none() {
-                let problem = Problem::error(
-                    "key-missing",
-                    "`every` is missing: the length from pulse to pulse",
-                )
-                .at(&node.span);
-                reader.problems.push(problem.help("write `every: 0.5 m`"));
-            }
-            if every.is_some_and(|every| every <= 0.0) {
-                reader.fault(
-                    "out-of-range",
-                    "the length from pulse to pulse must be above zero",
-                    &stated::place(node.get("every"), &node.span),
-                );
-            }
-            let threshold = node.get("threshold").and_then(|node| match node.number() {
-                Some(number) => Some(number),
-                None => {
-                    reader.fault(
-                        "wrong-kind",
-                        "`threshold` must be a number in the unit of the file",
-                        &node.span,
-                    );
-                    None
-                }
-            });
-            every.map(|every| Distance::Trigger { channel, every, threshold, start })
-        }
-    };
-    (distance, matched)
 }
 
-fn matching(reader: &mut Reader<'_>, key: &Key, node: &Node) -> Option<Match> {
+/// Keys that the channel itself takes.
+const OF_CHANNEL: [&str; 4] = ["unit", "factor", "offset", "table"];
+
+/// The distance, and its match with the track file.
+pub(super) fn distance(
+    reader: &mut Reader<'_, &Sections>,
+    side: &Node,
+) -> Option<(Option<Distance>, Option<Match>)> {
+    let (key, node) = side.entry("distance")?;
     if !matches!(node.value, Value::Map(_)) {
-        let problem = Problem::error(
-            "wrong-kind",
-            format!("`match` must be a map, not {}", node.kind_in_words()),
-        )
-        .at(&node.span);
-        reader.problems.push(problem.help("write `match: {curvature: NAME, within: 20 m}`: a column of the track file and a channel"));
+        return Some((ChannelMap::from_node(reader, key, node).map(Distance::Channel), None));
+    }
+    let written = Written::from_node(reader, key, node)?;
+    Some((way(reader, key, node, &written), written.matched))
+}
+
+fn way(
+    reader: &mut Reader<'_, &Sections>,
+    key: &Key,
+    node: &Node,
+    written: &Written,
+) -> Option<Distance> {
+    let Written { every, threshold, start, .. } = written;
+    let ways: Vec<&str> =
+        Written::KEYS[..3].iter().copied().filter(|way| node.get(way).is_some()).collect();
+    let [way] = ways[..] else {
+        let (code, says) = match ways.is_empty() {
+            true => ("key-missing", "`distance` does not say where it is from"),
+            false => ("contradiction", "`distance` is stated in several ways"),
+        };
+        let problem = Problem::error(code, says).at(&node.span);
+        reader.problems.push(problem.help("write one of `from`, `from speed` and `from trigger`"));
         return None;
+    };
+    for (what, belongs) in [
+        ("every", way == "from trigger"),
+        ("threshold", way == "from trigger"),
+        ("start", way != "from"),
+    ] {
+        if let Some(other) = node.get(what).filter(|_| !belongs) {
+            let says = format!("`{what}` has no meaning for a distance with `{way}`");
+            let help = "write `offset` to add a length to the channel".to_string();
+            let problem = Problem::error("contradiction", says).at(&other.span);
+            reader.problems.push(Problem { help: (what == "start").then_some(help), ..problem });
+        }
     }
-    let own: Vec<ChannelMap> = node
-        .entries()
-        .iter()
-        .filter(|(key, _)| key.text != "within")
-        .filter_map(|(key, node)| channel_map(reader, key, node))
-        .collect();
-    let within = reader.number(node, "within", &metre());
-    if own.is_empty() || node.get("within").is_none() {
-        let problem = Problem::error(
-            "key-missing",
-            "`match` needs a column of the track file with its channel, and `within`",
-        )
-        .at(&key.span);
-        reader.problems.push(problem.help("write `match: {curvature: NAME, within: 20 m}`"));
+    // The channel is read as any other, with the keys that it takes.
+    let own =
+        node.entries().iter().filter(|(key, _)| OF_CHANNEL.contains(&key.text.as_str())).cloned();
+    let from = Key { text: "from".into(), span: key.span.clone(), exact: false };
+    let entries = std::iter::once((from, node.get(way)?.clone())).chain(own).collect();
+    let channel = Node { value: Value::Map(entries), ..node.clone() };
+    let channel = ChannelMap::from_node(reader, key, &channel)?;
+    let start = start.clone();
+    match way {
+        "from" => return Some(Distance::Channel(channel)),
+        "from speed" => return Some(Distance::Speed { speed: channel, start }),
+        _ => {}
     }
-    within.filter(|_| !own.is_empty()).map(|within| Match {
-        channels: own,
-        within,
-        span: key.span.clone(),
-    })
+    if node.get("every").is_none() {
+        let says = "`every` is missing: the length from pulse to pulse";
+        let problem = Problem::error("key-missing", says).at(&node.span);
+        reader.problems.push(problem.help("write `every: 0.5 m`"));
+    }
+    let Spanned { value: Metres(every), span } = every.as_ref()?;
+    if *every <= 0.0 {
+        reader.fault("out-of-range", "the length from pulse to pulse must be above zero", span);
+    }
+    Some(Distance::Trigger { channel, every: *every, threshold: *threshold, start })
+}
+
+/// `match: {curvature: NAME, within: 20 m}`
+impl<C> FromNode<C> for Match {
+    fn from_node(reader: &mut Reader<'_, C>, key: &Key, node: &Node) -> Option<Self> {
+        const HELP: &str = "write `match: {curvature: NAME, within: 20 m}`: a column of the track file and a channel";
+        if !matches!(node.value, Value::Map(_)) {
+            reader.problems.push(node.is_not("`match`", "a map").help(HELP));
+            return None;
+        }
+        let channels = node.entries().iter().filter(|(key, _)| key.text != "within");
+        let channels: Vec<ChannelMap> =
+            channels.filter_map(|(key, node)| ChannelMap::from_node(reader, key, node)).collect();
+        let within: Option<Metres> = reader.optional(node, "within");
+        if channels.is_empty() || node.get("within").is_none() {
+            let says = "`match` needs a column of the track file with its channel, and `within`";
+            reader.problems.push(Problem::error("key-missing", says).at(&key.span).help(HELP));
+        }
+        let Metres(within) = within.filter(|_| !channels.is_empty())?;
+        Some(Self { channels, within, span: key.span.clone() })
+    }
 }

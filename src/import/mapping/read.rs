@@ -3,28 +3,32 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::reader::{Reader, at, metre};
-use super::{Mapping, Sections, convention, runs, sections, side, slips};
+use super::sections::NAME;
+use super::{Mapping, Sections, Side, convention, runs, sections, side, slips};
 use crate::data::RecordKind;
 use crate::data::text::read_text;
 use crate::problem::{Problem, Problems};
-use crate::source::{Source, Spanned};
-use crate::yaml::{self, Key, Node, Value};
+use crate::source::{Source, Span, Spanned};
+use crate::yaml::{self, Entries, Key, Metres, Node, OneOrMore, Reader, fields};
 
-const TOP: [&str; 12] = [
-    "name",
-    "protocol",
-    "campaign",
-    "sections",
-    "runs",
-    "vehicle",
-    "track",
-    "copy",
-    "margin",
-    "turning",
-    "measurement",
-    "simulation",
-];
+fields! {
+    /// A mapping as it is written.
+    struct Written: "a mapping" {
+        "name" name: Option<Spanned<String>> => "the name of the campaign",
+        "protocol" protocol: Option<Spanned<String>>,
+        "campaign" campaign: Entries<Node>,
+        "sections" sections: Option<Node>,
+        "runs" runs: Option<Node>,
+        "vehicle" vehicle: Option<Spanned<String>>,
+        "track" track: Option<Spanned<String>>,
+        "copy" copies: OneOrMore<Spanned<String>>,
+        "margin" margin: Option<Metres>,
+        "turning" turning: Option<Node>,
+        "measurement" measurement: Option<Node>,
+        "simulation" simulation: Option<Node>,
+    }
+}
+
 /// Keys of `campaign.yaml` that the import writes itself.
 const OWN: [&str; 9] = [
     "name",
@@ -47,58 +51,38 @@ pub fn read(source: &Arc<Source>, folder: &Path, problems: &mut Problems) -> Opt
     let before = problems.errors();
     let tree = loaded(source, problems)?;
     let tree = slips::decimal_commas(tree, problems);
-    let mut reader = Reader { problems };
-    let closed = reader.problems.errors();
-    open_places(&tree, reader.problems);
-    if reader.problems.errors() > closed {
-        return None;
-    }
-    reader.keys(&tree, &TOP, "a mapping");
-    if reader.problems.errors() > before && !matches!(tree.value, Value::Map(_)) {
-        return None;
-    }
-    let name = reader.need_text(&tree, "name", "the name of the campaign");
-    let protocol = reader.text(&tree, "protocol");
-    let campaign = campaign(&tree, &mut reader);
-    let vehicle = reader.text(&tree, "vehicle").and_then(|written| {
+    open_places(&tree, problems)?;
+    let mut reader = Reader { with: (), problems };
+    let written: Written = reader.file(&tree)?;
+    check_campaign(&written.campaign.0, &mut reader);
+    let vehicle = written.vehicle.and_then(|written| {
         let path = folder.join(&written.value);
-        let read = read_text(&path, &path.display().to_string())
-            .map_err(|problem| reader.problems.push(at(problem, &written.span)));
-        let node = yaml::load(&read.ok()?.0, reader.problems)?;
-        Some((written, node))
+        let read = read_text(&path, &path.display().to_string());
+        let (text, _) = reader.keep(read.map_err(|problem| problem.or_at(&written.span)))?;
+        Some((written, yaml::load(&text, reader.problems)?))
     });
-    let (runs, sections) = match tree.get("runs") {
-        Some(node) => runs::read(&mut reader, &tree, node)
-            .map_or((None, None), |(runs, sections)| (Some(runs), Some(sections))),
+    let (runs, sections) = match written.runs {
+        Some(_) => runs::read(&mut reader, &tree).unzip(),
         None => (None, sections::read(&mut reader, &tree, folder)),
     };
-    let turning =
-        tree.get("turning").and_then(|node| convention::turning(&mut reader, node, folder));
-    let margin = reader.number(&tree, "margin", &metre());
-    let copies = reader.texts(&tree, "copy");
-    let track = reader.text(&tree, "track").map(|written| {
-        if written.value.contains('{') {
-            written
-        } else {
-            let word = if tree.get("runs").is_some() { "run" } else { "section" };
-            Spanned::new(
-                format!("{}/{{{word}}}.csv", written.value.trim_end_matches('/')),
-                written.span,
-            )
-        }
-    });
+    let turning = convention::turning(&mut reader, &tree, folder);
     let known = sections.clone().unwrap_or_else(|| Sections::none(source));
+    let track = written.track.map(|mut track| {
+        if !track.value.contains('{') {
+            let word = if tree.get("runs").is_some() { "run" } else { NAME };
+            track.value = format!("{}/{{{word}}}.csv", track.value.trim_end_matches('/'));
+        }
+        track
+    });
+    let mut reader = Reader { with: &known, problems };
     if let Some(track) = &track {
-        known.check_placeholders(track, &mut reader);
+        sections::check_placeholders(&mut reader, track);
     }
-    let sides: Vec<_> = [RecordKind::Measurement, RecordKind::Simulation]
+    let sides: Vec<Side> = [RecordKind::Measurement, RecordKind::Simulation]
         .into_iter()
-        .filter_map(|kind| {
-            tree.entry(kind.key())
-                .and_then(|(key, node)| side::read(&mut reader, kind, key, node, &known))
-        })
+        .filter_map(|kind| side::read(&mut reader, kind, &tree))
         .collect();
-    if RecordKind::ALL.iter().take(2).all(|kind| tree.get(kind.key()).is_none()) {
+    if written.measurement.is_none() && written.simulation.is_none() {
         let says = "the mapping has neither `measurement` nor `simulation`";
         reader.problems.push(
             Problem::error("key-missing", says)
@@ -109,15 +93,15 @@ pub fn read(source: &Arc<Source>, folder: &Path, problems: &mut Problems) -> Opt
     let mapping = Mapping {
         source: Arc::clone(source),
         folder: folder.to_path_buf(),
-        name: name?,
-        protocol,
-        campaign,
+        name: written.name?,
+        protocol: written.protocol,
+        campaign: written.campaign.0,
         sections: sections?,
         runs,
         vehicle,
-        copies,
+        copies: written.copies.0,
         track,
-        margin,
+        margin: written.margin.map(|margin| margin.0),
         turning,
         sides,
     };
@@ -131,10 +115,7 @@ fn loaded(source: &Arc<Source>, problems: &mut Problems) -> Option<Node> {
     let tree = yaml::load(source, &mut found);
     for problem in found.0 {
         let quotes = problem.at.as_ref().and_then(|at| slips::unquoted(source, at));
-        problems.push(match quotes {
-            Some(help) => problem.help(help),
-            None => problem,
-        });
+        problems.push(problem.help_if(quotes));
     }
     tree
 }
@@ -171,49 +152,37 @@ fn turned(mapping: &Mapping, problems: &mut Problems) {
     }
 }
 
-/// A draft marks what is to be decided by `?`.
-fn open_places(node: &Node, problems: &mut Problems) {
-    let open = |text: &str| !text.is_empty() && text.trim_matches('?').trim().is_empty();
-    if node.scalar_text().is_some_and(open) {
-        let problem =
-            Problem::error("open-place", "this place of the draft is open").at(&node.span);
-        problems.push(
-            problem
-                .help("decide it, or remove the line; the comments beside it say what was found"),
-        );
-    }
-    node.items().iter().for_each(|item| open_places(item, problems));
-    for (key, value) in node.entries() {
-        if open(&key.text) {
-            let problem =
-                Problem::error("open-place", "this place of the draft is open").at(&key.span);
-            problems.push(problem.help("write the name of the channel, or remove the line"));
+/// A draft marks what is to be decided by `?`; `None` if there is such a place.
+fn open_places(node: &Node, problems: &mut Problems) -> Option<()> {
+    let before = problems.errors();
+    let tell = |text: &str, at: &Span, help: &str, problems: &mut Problems| {
+        if !text.is_empty() && text.trim_matches('?').trim().is_empty() {
+            let problem = Problem::error("open-place", "this place of the draft is open");
+            problems.push(problem.at(at).help(help));
         }
+    };
+    let help = "decide it, or remove the line; the comments beside it say what was found";
+    tell(node.scalar_text().unwrap_or_default(), &node.span, help, problems);
+    for item in node.items() {
+        open_places(item, problems);
+    }
+    for (key, value) in node.entries() {
+        let help = "write the name of the channel, or remove the line";
+        tell(&key.text, &key.span, help, problems);
         open_places(value, problems);
     }
+    (problems.errors() == before).then_some(())
 }
 
-/// Further keys of campaign.yaml.
-fn campaign(tree: &Node, reader: &mut Reader<'_>) -> Vec<(Key, Node)> {
-    let Some(node) = tree.get("campaign") else { return Vec::new() };
-    if !matches!(node.value, Value::Map(_)) {
-        reader.fault(
-            "wrong-kind",
-            format!(
-                "`campaign` must be a map of keys for campaign.yaml, not {}",
-                node.kind_in_words()
-            ),
-            &node.span,
-        );
-    }
-    for (key, _) in node.entries().iter().filter(|(key, _)| OWN.contains(&key.text.as_str())) {
+/// Further keys of campaign.yaml are not those that the import writes itself.
+fn check_campaign(entries: &[(Key, Node)], reader: &mut Reader<'_>) {
+    for (key, _) in entries.iter().filter(|(key, _)| OWN.contains(&key.text.as_str())) {
         let says = format!("`{}` of the campaign is written by the import", key.text);
-        let help = if TOP.contains(&key.text.as_str()) {
+        let help = if Written::KEYS.contains(&key.text.as_str()) {
             format!("`{}` stands at the left margin of the mapping", key.text)
         } else {
             "remove it".into()
         };
         reader.problems.push(Problem::error("unknown-key", says).at(&key.span).help(help));
     }
-    node.entries().to_vec()
 }

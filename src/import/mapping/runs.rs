@@ -1,13 +1,12 @@
 //! Whole runs as sources: their names, what the campaign says of them, and what is done with a
 //! drift of the distance.
 
-use super::reader::{Reader, metre};
 use super::sections::{self, Sections};
-use super::stated::place;
-use crate::data::campaign::{CORRECT, RUNS, TELL};
+use crate::data::RecordKind;
+use crate::data::campaign::{OnDrift, RUNS};
 use crate::problem::Problem;
 use crate::source::{Span, Spanned};
-use crate::yaml::{Key, Node, Value};
+use crate::yaml::{FromNode, Key, Metres, Node, Reader, Value, fields};
 
 /// Largest change of the shift from one window to the next that is looked for, in m, where the
 /// mapping states none.
@@ -18,9 +17,8 @@ const WINDOW: f64 = 250.0;
 /// Shortest window in largest shifts: a window must be longer than what it is moved by.
 const SHORTEST: f64 = 2.0;
 
+/// The key of what is done with a drift.
 const DRIFT: &str = "drift";
-const CLOCK: &str = "clock";
-const KEYS: [&str; 4] = ["do", CLOCK, "within", "window"];
 
 /// The runs of a mapping.
 #[derive(Clone, Debug)]
@@ -43,92 +41,67 @@ pub struct Drift {
     pub span: Span,
 }
 
+fields! {
+    /// A drift of which more is stated than what is done with it.
+    struct Written: "`drift`" {
+        "do" what: OnDrift => "what is done with the drift",
+        "clock" clock: Option<OnDrift>,
+        "within" within: Metres = Metres(WITHIN),
+        "window" window: Option<Metres>,
+    }
+}
+
 /// `runs: [R1, R2]`, or `runs: {R1: {country: DE}, R2: {country: CH}}`.
-pub(super) fn read(reader: &mut Reader<'_>, tree: &Node, node: &Node) -> Option<(Runs, Sections)> {
+pub(super) fn read(reader: &mut Reader<'_>, tree: &Node) -> Option<(Runs, Sections)> {
     const EXAMPLE: &str =
         "write `runs: [R1, R2]`, or with what holds for each run `runs: {R1: {country: DE}}`";
     let before = reader.problems.errors();
-    let mut facts = Vec::new();
-    let mut names = Vec::new();
-    match &node.value {
+    let (key, node) = tree.entry(RUNS)?;
+    let (names, facts): (Vec<Spanned<String>>, Vec<Vec<(Key, Node)>>) = match &node.value {
         Value::List(items) if !items.is_empty() => {
-            names = items.iter().filter_map(|item| reader.text_of(item, RUNS)).collect();
-            facts = vec![Vec::new(); names.len()];
+            let names: Vec<Spanned<String>> = Vec::from_node(reader, key, node)?;
+            names.into_iter().map(|name| (name, Vec::new())).unzip()
         }
-        Value::Map(entries) if !entries.is_empty() => {
-            for (key, of_run) in entries {
-                names.push(Spanned::new(key.text.trim().to_string(), key.span.clone()));
-                facts.push(of_one(reader, &key.text, of_run));
-            }
-        }
+        Value::Map(entries) if !entries.is_empty() => entries
+            .iter()
+            .map(|(key, run)| {
+                let name = Spanned::new(key.text.trim().to_string(), key.span.clone());
+                (name, facts_of_run(reader, &key.text, run))
+            })
+            .unzip(),
         _ => {
-            let says = format!(
-                "`{RUNS}` must be a list of names, or a map of names and facts; this is {}",
-                node.kind_in_words()
-            );
-            reader.problems.push(Problem::error("wrong-kind", says).at(&node.span).help(EXAMPLE));
+            let be = "a list of names, or a map of names and facts";
+            reader.problems.push(node.is_not(&format!("`{RUNS}`"), be).help(EXAMPLE));
+            Default::default()
         }
-    }
-    for (number, name) in names.iter().enumerate() {
-        if let Some(first) = names[..number].iter().find(|first| first.value == name.value) {
-            let problem =
-                Problem::error("duplicate-name", format!("two runs are called `{}`", name.value))
-                    .at(&name.span);
-            reader.problems.push(problem.also(&first.span, "the first of them"));
-        }
-    }
-    sections::check(reader.problems, &names);
+    };
+    sections::check_names(reader.problems, &names, "run");
     if let Some(margin) = tree.get("margin") {
-        reader.fault(
-            "contradiction",
-            "`margin` cuts the record of a section; a run is kept as a whole",
-            &margin.span,
-        );
+        let says = "`margin` cuts the record of a section; a run is kept as a whole";
+        reader.fault("contradiction", says, &margin.span);
     }
-    let table = reader.text(tree, "sections");
-    let runs = Runs { facts, table };
-    (reader.problems.errors() == before)
-        .then(|| (runs, Sections { table: None, names, span: node.span.clone(), word: "run" }))
+    let table = reader.optional(tree, "sections");
+    let sections = Sections { table: None, names, span: node.span.clone(), word: "run" };
+    (reader.problems.errors() == before).then_some((Runs { facts, table }, sections))
 }
 
-fn of_one(reader: &mut Reader<'_>, name: &str, node: &Node) -> Vec<(Key, Node)> {
-    if matches!(node.value, Value::Null) {
-        return Vec::new();
-    }
-    if !matches!(node.value, Value::Map(_)) {
-        let says = format!(
-            "the run `{name}` must be a map of what holds for it, not {}",
-            node.kind_in_words()
-        );
-        reader.problems.push(
-            Problem::error("wrong-kind", says)
-                .at(&node.span)
-                .help("for instance: `{country: DE, line: north}`"),
-        );
-        return Vec::new();
+fn facts_of_run(reader: &mut Reader<'_>, name: &str, node: &Node) -> Vec<(Key, Node)> {
+    if !matches!(node.value, Value::Map(_) | Value::Null) {
+        let problem = node.is_not(&format!("the run `{name}`"), "a map of what holds for it");
+        reader.problems.push(problem.help("for instance: `{country: DE, line: north}`"));
     }
     for (key, value) in node.entries() {
-        if ["measurement", "simulation", "track"].contains(&key.text.as_str()) {
-            let problem = Problem::error(
-                "unknown-key",
-                format!("`{}` of a run is written by the import", key.text),
-            )
-            .at(&key.span);
+        if RecordKind::ALL.iter().any(|kind| kind.key() == key.text) {
+            let says = format!("`{}` of a run is written by the import", key.text);
+            let problem = Problem::error("unknown-key", says).at(&key.span);
             reader.problems.push(
                 problem.help("the path of its file stands in `files` of the side, with `{run}`"),
             );
-        } else if key.text == DRIFT && ![CORRECT, TELL].contains(&value.raw.as_str()) {
-            let problem =
-                Problem::error("unknown-choice", format!("`{DRIFT}` cannot be `{}`", value.raw))
-                    .at(&value.span);
-            reader.problems.push(problem.suggest(&value.raw, [CORRECT, TELL]));
+        } else if key.text == DRIFT {
+            OnDrift::from_node(reader, key, value);
         } else if value.scalar_text().is_none() {
-            let says = format!(
-                "`{}` of a run must be a single value; this is {}",
-                key.text,
-                value.kind_in_words()
-            );
-            reader.fault("wrong-kind", says, &value.span);
+            let problem = value.is_not(&format!("`{}` of a run", key.text), "a single value");
+            reader.problems.push(problem);
         }
     }
     node.entries().to_vec()
@@ -136,58 +109,41 @@ fn of_one(reader: &mut Reader<'_>, name: &str, node: &Node) -> Vec<(Key, Node)> 
 
 /// `drift: correct`, `drift: tell`, or `drift: {do: correct, clock: correct, within: 20 m, window:
 /// 250 m}`.
-pub(super) fn drift(reader: &mut Reader<'_>, side: &Node, sections: &Sections) -> Option<Drift> {
-    let (key, node) = side.entry(DRIFT)?;
-    let before = reader.problems.errors();
-    let what = match &node.value {
-        Value::Map(_) => {
-            reader.keys(node, &KEYS, "`drift`");
-            reader.need_text(node, "do", "what is done with the drift")?
+impl FromNode<&Sections> for Drift {
+    fn from_node(reader: &mut Reader<'_, &Sections>, key: &Key, node: &Node) -> Option<Self> {
+        let before = reader.problems.errors();
+        let Written { what, clock, within: Metres(within), window } = match &node.value {
+            Value::Map(_) => Written::from_node(reader, key, node)?,
+            _ => {
+                let what = OnDrift::from_node(reader, key, node)?;
+                Written { what, clock: None, within: Metres(WITHIN), window: None }
+            }
+        };
+        let window = window.map_or_else(|| WINDOW.max(SHORTEST * within), |window| window.0);
+        if within <= 0.0 {
+            let says = "`within` must be above zero";
+            reader.fault("out-of-range", says, node.span_of("within"));
+        } else if window < SHORTEST * within {
+            let says =
+                format!("a window of {window} m is too short for a shift of up to {within} m");
+            let problem = Problem::error("out-of-range", says).at(node.span_of("window"));
+            reader
+                .problems
+                .push(problem.help(format!("at least {} m are needed", SHORTEST * within)));
         }
-        _ => reader.text_of(node, DRIFT)?,
-    };
-    let clock = reader.text(node, CLOCK);
-    for (key, what) in
-        std::iter::once((DRIFT, &what)).chain(clock.as_ref().map(|clock| (CLOCK, clock)))
-    {
-        if ![CORRECT, TELL].contains(&what.value.as_str()) {
-            let problem =
-                Problem::error("unknown-choice", format!("`{key}` cannot be `{}`", what.value))
-                    .at(&what.span);
-            reader.problems.push(problem.suggest(&what.value, [CORRECT, TELL]));
+        if reader.with.word != "run" && !reader.with.names.is_empty() {
+            let says = "a drift is looked for along runs, and this mapping imports sections";
+            let problem = Problem::error("contradiction", says).at(&key.span);
+            reader.problems.push(
+                problem.help("name the runs in `runs`; the shift of single sections is `offsets`"),
+            );
         }
+        (reader.problems.errors() == before).then(|| Self {
+            correct: what == OnDrift::Correct,
+            correct_clock: clock == Some(OnDrift::Correct),
+            within,
+            window,
+            span: key.span.clone(),
+        })
     }
-    let within = reader.number(node, "within", &metre()).unwrap_or(WITHIN);
-    let window =
-        reader.number(node, "window", &metre()).unwrap_or_else(|| WINDOW.max(SHORTEST * within));
-    if within <= 0.0 {
-        reader.fault(
-            "out-of-range",
-            "`within` must be above zero",
-            &place(node.get("within"), &node.span),
-        );
-    } else if window < SHORTEST * within {
-        let says = format!("a window of {window} m is too short for a shift of up to {within} m");
-        let problem =
-            Problem::error("out-of-range", says).at(&place(node.get("window"), &node.span));
-        reader.problems.push(problem.help(format!("at least {} m are needed", SHORTEST * within)));
-    }
-    if sections.word != "run" && !sections.names.is_empty() {
-        let problem = Problem::error(
-            "contradiction",
-            "a drift is looked for along runs, and this mapping imports sections",
-        )
-        .at(&key.span);
-        reader.problems.push(
-            problem.help("name the runs in `runs`; the shift of single sections is `offsets`"),
-        );
-    }
-    let correct_clock = clock.is_some_and(|clock| clock.value == CORRECT);
-    (reader.problems.errors() == before).then(|| Drift {
-        correct: what.value == CORRECT,
-        correct_clock,
-        within,
-        window,
-        span: key.span.clone(),
-    })
 }

@@ -3,17 +3,16 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::reader::{Reader, at, metre, placeholders};
-use crate::data::RecordKind;
-use crate::data::Table;
 use crate::data::table::Cell;
 use crate::data::text::read_text;
+use crate::data::{RecordKind, Table, check_file_name};
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Span, Spanned};
-use crate::yaml::{Node, Value};
+use crate::units::Dimension;
+use crate::yaml::{FromNode, Node, Reader, Value};
 
 /// The column that names the sections.
-const NAME: &str = "section";
+pub(super) const NAME: &str = "section";
 
 #[derive(Clone, Debug)]
 pub struct Sections {
@@ -36,24 +35,6 @@ impl Sections {
             .flat_map(|(_, table)| table.columns.iter().map(|column| column.name.as_str()))
     }
 
-    /// Placeholders of a path must be known: `{section}`, of runs `{run}`, or a column of the table
-    /// of sections.
-    pub(super) fn check_placeholders(&self, written: &Spanned<String>, reader: &mut Reader<'_>) {
-        for name in placeholders(&written.value) {
-            if name != self.word && !self.has_column(name) {
-                let says = match self.word {
-                    "run" => format!("`{{{name}}}` is not `{{run}}`"),
-                    word => format!(
-                        "`{{{name}}}` is neither `{{{word}}}` nor a column of the table of sections"
-                    ),
-                };
-                let problem = Problem::error("unknown-placeholder", says);
-                let known = std::iter::once(self.word).chain(self.columns());
-                reader.problems.push(problem.at(&written.span).suggest(name, known));
-            }
-        }
-    }
-
     pub fn has_column(&self, name: &str) -> bool {
         self.columns().any(|known| known == name)
     }
@@ -73,7 +54,7 @@ impl Sections {
             Problem::error("no-sections", "there is no table of sections").at(&self.span)
         })?;
         let numbers = table
-            .numbers(table.need_column(column)?, Some(metre().dimension))
+            .numbers_named(column, Some(Dimension::LENGTH))
             .map_err(|mut problems| problems.swap_remove(0))?;
         let row = table.row_named(section);
         row.and_then(|row| numbers.get(row).copied().flatten()).ok_or_else(|| {
@@ -110,82 +91,83 @@ impl Sections {
     }
 }
 
+/// The table of sections, or a list of their names.
 pub(super) fn read(reader: &mut Reader<'_>, tree: &Node, folder: &Path) -> Option<Sections> {
-    let Some(node) = tree.get("sections") else {
-        let problem = Problem::error(
-            "key-missing",
-            "`sections` is missing: the table of sections, or their names",
-        )
-        .at(&tree.span.part(0..0));
+    let Some((key, node)) = tree.entry("sections") else {
+        let says = "`sections` is missing: the table of sections, or their names";
+        let problem = Problem::error("key-missing", says).at(&tree.span.part(0..0));
         reader.problems.push(problem.help("write `sections: sections.csv`, or `sections: [S01, S02]` where whole records are evaluated"));
         return None;
     };
-    if let Value::List(items) = &node.value {
-        let names: Vec<Cell> =
-            items.iter().filter_map(|item| reader.text_of(item, "sections")).collect();
-        let before = reader.problems.errors();
-        for (number, name) in names.iter().enumerate() {
-            if let Some(first) = names[..number].iter().find(|first| first.value == name.value) {
-                let problem = Problem::error(
-                    "duplicate-name",
-                    format!("two sections are called `{}`", name.value),
-                )
-                .at(&name.span);
-                reader.problems.push(problem.also(&first.span, "the first of them"));
-            }
-        }
-        check(reader.problems, &names);
-        return (reader.problems.errors() == before).then_some(Sections {
-            table: None,
-            names,
-            span: node.span.clone(),
-            word: NAME,
-        });
-    }
-    let written = reader.text_of(node, "sections")?;
-    let path = folder.join(&written.value);
-    let shown = path.display().to_string();
-    if let Err(problem) = read_text(&path, &shown) {
-        reader.problems.push(at(problem, &written.span));
-        return None;
-    }
-    let table = Table::read(&path, &shown, Some(NAME), reader.problems)?;
-    let names: Vec<Cell> = table.names().cloned().collect();
     let before = reader.problems.errors();
-    check(reader.problems, &names);
-    (reader.problems.errors() == before).then(|| Sections {
-        span: written.span.clone(),
-        table: Some((written, Arc::new(table))),
-        names,
-        word: NAME,
-    })
+    let (table, names, span) = if matches!(node.value, Value::List(_)) {
+        let names: Vec<Cell> = Vec::from_node(reader, key, node)?;
+        (None, names, node.span.clone())
+    } else {
+        let written: Spanned<String> = Spanned::from_node(reader, key, node)?;
+        let path = folder.join(&written.value);
+        let shown = path.display().to_string();
+        let placed = |problem: Problem| problem.or_at(&written.span);
+        reader.keep(read_text(&path, &shown).map_err(placed))?;
+        let table = Table::read(&path, &shown, Some(NAME), reader.problems)?;
+        let names = table.names().cloned().collect();
+        let span = written.span.clone();
+        (Some((written, Arc::new(table))), names, span)
+    };
+    check_names(reader.problems, &names, NAME);
+    (reader.problems.errors() == before).then_some(Sections { table, names, span, word: NAME })
 }
 
-/// Names become names of files.
-pub(super) fn check(problems: &mut Problems, names: &[Cell]) {
-    for name in names {
-        let bad = name.value.contains(['/', '\\', ':'])
-            || name.value.starts_with('.')
-            || name.value.chars().any(char::is_control);
-        if bad || name.value.is_empty() || name.value.len() > 200 {
-            let says = format!(
-                "`{}` becomes the name of a file and must not contain `/`, `\\` or `:` or begin with a point",
-                name.value
-            );
-            problems.push(Problem::error("path-outside", says).at(&name.span));
+/// Names are different, and become names of files.
+pub(super) fn check_names(problems: &mut Problems, names: &[Cell], word: &str) {
+    for (number, name) in names.iter().enumerate() {
+        if let Some(first) = names[..number].iter().find(|first| first.value == name.value) {
+            let says = format!("two {word}s are called `{}`", name.value);
+            let problem = Problem::error("duplicate-name", says).at(&name.span);
+            problems.push(problem.also(&first.span, "the first of them"));
         }
+        if let Err(problem) = check_file_name(&name.value, &name.span) {
+            problems.push(problem);
+        }
+    }
+}
+
+/// Placeholders of a path must be known: `{section}`, of runs `{run}`, or a column of the table of
+/// sections.
+pub(super) fn check_placeholders(reader: &mut Reader<'_, &Sections>, written: &Spanned<String>) {
+    let sections = reader.with;
+    let word = sections.word;
+    let names = written.value.split('{').skip(1).filter_map(|rest| rest.split_once('}'));
+    for (name, _) in names.filter(|(name, _)| *name != word && !sections.has_column(name)) {
+        let says = match word {
+            "run" => format!("`{{{name}}}` is not `{{run}}`"),
+            word => format!(
+                "`{{{name}}}` is neither `{{{word}}}` nor a column of the table of sections"
+            ),
+        };
+        let problem = Problem::error("unknown-placeholder", says).at(&written.span);
+        let known = std::iter::once(word).chain(sections.columns());
+        reader.problems.push(problem.suggest(name, known));
+    }
+}
+
+/// A column that the mapping names must exist.
+pub(super) fn check_column(reader: &mut Reader<'_, &Sections>, name: &str, span: &Span) {
+    if !reader.with.has_column(name) {
+        let says = format!("the table of sections has no column `{name}`");
+        let problem = Problem::error("unknown-column", says).at(span);
+        reader.problems.push(problem.suggest(name, reader.with.columns()));
     }
 }
 
 /// A section that the mapping names must exist.
-pub(super) fn known(reader: &mut Reader<'_>, sections: &Sections, name: &str, span: &Span) {
-    if !sections.names.is_empty() && !sections.names.iter().any(|known| known.value == name) {
+pub(super) fn known(reader: &mut Reader<'_, &Sections>, name: &str, span: &Span) {
+    let Sections { names, word, .. } = reader.with;
+    if !names.is_empty() && !names.iter().any(|known| known.value == name) {
         let problem =
-            Problem::error("unknown-section", format!("there is no {} `{name}`", sections.word))
-                .at(span);
-        reader
-            .problems
-            .push(problem.suggest(name, sections.names.iter().map(|known| known.value.as_str())));
+            Problem::error("unknown-section", format!("there is no {word} `{name}`")).at(span);
+        let names = names.iter().map(|known| known.value.as_str());
+        reader.problems.push(problem.suggest(name, names));
     }
 }
 

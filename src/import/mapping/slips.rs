@@ -2,7 +2,7 @@
 
 use crate::problem::{Problem, Problems};
 use crate::source::{Source, Span};
-use crate::yaml::{Key, Node, Value};
+use crate::yaml::{Key, Node, Value, quoted};
 
 /// `{offset: 0,3 kN}` is a map with a key `3 kN` for YAML. The comma is told, and the number is
 /// read as it was meant, so that nothing else is said of it.
@@ -68,11 +68,6 @@ pub(super) fn unquoted(source: &Source, at: &Span) -> Option<String> {
     let (_, rest) = value.strip_prefix('{')?.split_once('}')?;
     // A comment or a comma may follow a map.
     (!rest.is_empty() && !rest.starts_with([' ', ',', '}'])).then(|| quoted(key, value))
-}
-
-/// What is written in place of a value with braces.
-pub(super) fn quoted(key: &str, value: &str) -> String {
-    format!("a value that begins with `{{` needs quotes: `{key}: \"{value}\"`")
 }
 
 #[cfg(test)]

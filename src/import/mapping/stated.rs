@@ -1,74 +1,74 @@
 //! A number that a mapping states once, for each section, or where it is to be found.
 
-use super::reader::Reader;
 use super::sections::{self, Sections};
 use crate::problem::Problem;
-use crate::source::{Span, Spanned};
+use crate::source::Spanned;
 use crate::units::{Unit, number};
-use crate::yaml::{Node, Value};
+use crate::yaml::{Entries, FromNode, Key, Node, Quantity, Reader, Value, fields};
 
-/// In SI.
+/// `69.02 m`; `{fact: x_start, unit: m}`; `{column: chainage}`; `{S01: 69.02 m, S06: 113 m}`.
 #[derive(Clone, Debug)]
-pub enum Stated {
-    Number(f64),
+pub enum Stated<Q> {
+    Number(Q),
     /// A fact of the file or of its table, in a unit.
     Fact(Spanned<String>, Unit),
     /// A column of the table of sections.
     Column(Spanned<String>),
-    BySection(Vec<(String, f64)>),
+    BySection(Vec<(Key, Q)>),
 }
 
-/// `69.02 m`; `{fact: x_start, unit: m}`; `{column: chainage}`; `{S01: 69.02 m, S06: 113 m}`.
-pub(super) fn read(
-    reader: &mut Reader<'_>,
-    node: &Node,
-    key: &str,
-    unit: &Unit,
-    sections: &Sections,
-) -> Option<Stated> {
-    let Value::Map(entries) = &node.value else {
-        return reader.number_of(node, key, unit).map(Stated::Number);
-    };
-    if node.get("fact").is_some() {
-        reader.keys(node, &["fact", "unit"], &format!("`{key}` from a fact"));
-        let fact = reader.text(node, "fact")?;
-        let written = reader.need_text(node, "unit", "the unit of the fact")?;
-        let stated = reader.unit(&written)?;
-        if stated.dimension != unit.dimension {
-            let says = format!(
-                "`{key}` is {}, and {stated} is {}",
-                unit.dimension.in_words(),
-                stated.dimension.in_words()
-            );
-            reader.fault("unit-mismatch", says, &written.span);
-            return None;
-        }
-        return Some(Stated::Fact(fact, stated));
+fields! {
+    /// A number that the file states.
+    struct Fact: "`{key}` from a fact" {
+        "fact" fact: Spanned<String>,
+        "unit" unit: Spanned<Unit> => "the unit of the fact",
     }
-    if node.get("column").is_some() {
-        reader.keys(node, &["column"], &format!("`{key}` from the table of sections"));
-        let column = reader.text(node, "column")?;
-        if !sections.has_column(&column.value) {
-            let problem = Problem::error(
-                "unknown-column",
-                format!("the table of sections has no column `{}`", column.value),
-            );
-            reader
-                .problems
-                .push(problem.at(&column.span).suggest(&column.value, sections.columns()));
-            return None;
-        }
-        return Some(Stated::Column(column));
-    }
-    let mut found = Vec::new();
-    for (name, value) in entries {
-        sections::known(reader, sections, &name.text, &name.span);
-        found.push((name.text.clone(), reader.number_of(value, key, unit)?));
-    }
-    Some(Stated::BySection(found))
 }
 
-impl Stated {
+fields! {
+    /// A number that the table of sections states.
+    struct Column: "`{key}` from the table of sections" {
+        "column" column: Spanned<String>,
+    }
+}
+
+impl<'a, Q> FromNode<&'a Sections> for Stated<Q>
+where
+    Q: Quantity + FromNode<&'a Sections>,
+{
+    fn from_node(reader: &mut Reader<'_, &'a Sections>, key: &Key, node: &Node) -> Option<Self> {
+        if !matches!(node.value, Value::Map(_)) {
+            return Q::from_node(reader, key, node).map(Self::Number);
+        }
+        if node.get("fact").is_some() {
+            let Fact { fact, unit } = Fact::from_node(reader, key, node)?;
+            let Spanned { value: unit, span } = unit;
+            if unit.dimension != Q::unit().dimension {
+                let says = format!(
+                    "`{}` is {}, and {unit} is {}",
+                    key.text,
+                    Q::unit().dimension.in_words(),
+                    unit.dimension.in_words()
+                );
+                reader.fault("unit-mismatch", says, &span);
+                return None;
+            }
+            return Some(Self::Fact(fact, unit));
+        }
+        if node.get("column").is_some() {
+            let Column { column } = Column::from_node(reader, key, node)?;
+            sections::check_column(reader, &column.value, &column.span);
+            return Some(Self::Column(column));
+        }
+        let Entries(values) = Entries::from_node(reader, key, node)?;
+        for (name, _) in &values {
+            sections::known(reader, &name.text, &name.span);
+        }
+        Some(Self::BySection(values))
+    }
+}
+
+impl<Q: Quantity> Stated<Q> {
     /// The value for a section and where it is from; `None` if it is not stated for this section.
     ///
     /// # Errors
@@ -80,9 +80,10 @@ impl Stated {
         facts: &[(String, String)],
     ) -> Result<Option<f64>, Problem> {
         match self {
-            Self::Number(value) => Ok(Some(*value)),
+            Self::Number(value) => Ok(Some(value.si())),
             Self::BySection(values) => {
-                Ok(values.iter().find(|(name, _)| name == section).map(|(_, value)| *value))
+                let value = values.iter().find(|(name, _)| name.text == section);
+                Ok(value.map(|(_, value)| value.si()))
             }
             Self::Column(column) => {
                 if sections.cell(section, &column.value).is_some_and(|cell| cell.value.is_empty()) {
@@ -125,9 +126,4 @@ impl Stated {
             Self::Column(name) => format!("the column `{}` of the table of sections", name.value),
         }
     }
-}
-
-/// Where something stands, for problems.
-pub(super) fn place(node: Option<&Node>, otherwise: &Span) -> Span {
-    node.map_or_else(|| otherwise.clone(), |node| node.span.clone())
 }

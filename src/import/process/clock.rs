@@ -9,6 +9,7 @@ use crate::foreign::Table;
 use crate::metrics::{resample, sinc};
 use crate::problem::Problem;
 use crate::units::{Dimension, Unit};
+use crate::yaml::Quantity;
 
 /// A rate within this share of another is the same: rates are rounded, and clocks differ by less
 /// than 0.01 %.
@@ -59,13 +60,18 @@ pub fn clock(
     let named = |name: &str| table.channels.iter().find(|channel| channel.name == name);
     let which =
         if table.name.is_empty() { String::new() } else { format!(", table `{}`", table.name) };
-    let found = time.from.iter().find_map(|name| named(&name.value).map(|channel| (name, channel)));
+    let found =
+        time.from.0.iter().find_map(|name| named(&name.value).map(|channel| (name, channel)));
     let mut factor = 1.0;
-    let mut times = match (found, time.from.first()) {
+    let mut times = match (found, time.from.0.first()) {
         (Some((name, channel)), _) => {
             let text = channel.unit.as_deref().map(str::trim).filter(|text| !text.is_empty());
             let stated = text.and_then(|text| {
-                of.side.units.iter().find(|(known, _)| known == text).map(|(_, unit)| unit.clone())
+                of.side
+                    .units
+                    .iter()
+                    .find(|(known, _)| known.text == text)
+                    .map(|(_, unit)| unit.clone())
             });
             let unit = time
                 .unit
@@ -102,7 +108,9 @@ pub fn clock(
             });
         }
         (None, None) => {
-            let Some(rate) = time.rate.or(table.rate).filter(|rate| *rate > 0.0 && alone) else {
+            let Some(rate) =
+                time.rate.map(Quantity::si).or(table.rate).filter(|rate| *rate > 0.0 && alone)
+            else {
                 let says = match alone {
                     true => {
                         format!("`{}`{which} states neither a time nor a sampling rate", of.shown)
@@ -136,10 +144,10 @@ pub fn clock(
         .transpose()?
         .flatten()
         .unwrap_or(0.0);
-    times.iter_mut().for_each(|at| *at = *at / (1.0 + time.drift) + shift);
+    times.iter_mut().for_each(|at| *at = *at / (1.0 + time.drift.0) + shift);
     let (first, last) = (times[0], times[times.len() - 1]);
     let rate = if gaps.is_some() {
-        (1.0 + time.drift) / usual
+        (1.0 + time.drift.0) / usual
     } else {
         (times.len() - 1) as f64 / (last - first)
     };

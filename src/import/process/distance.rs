@@ -10,6 +10,7 @@ use crate::metrics::synchronise::{self, Estimate, Pair, Search};
 use crate::metrics::{along, resample, statistics};
 use crate::problem::Problem;
 use crate::units::{Dimension, Unit};
+use crate::yaml::Metres;
 
 /// Distance over time, both increasing or to be checked.
 #[derive(Clone, Debug)]
@@ -29,7 +30,7 @@ pub fn curve(
     clocks: &[Option<Clock>],
     facts: &[(String, String)],
 ) -> Result<Curve, Problem> {
-    let start_of = |start: &Option<Stated>| -> Result<(f64, String), Problem> {
+    let start_of = |start: &Option<Stated<Metres>>| -> Result<(f64, String), Problem> {
         let Some(start) = start else { return Ok((0.0, String::new())) };
         let value = start.of(of.section, &of.mapping.sections, facts)?;
         let Some(value) = value else {
@@ -152,7 +153,7 @@ impl<'a> Source<'a> {
                 _ => sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value),
             }
         }
-        let offset = map.offset.as_ref().map_or(0.0, |offset| offset.value.0);
+        let offset = map.offset.as_ref().map_or(0.0, |offset| offset.value.si);
         if map.factor != 1.0 || offset != 0.0 {
             sum.iter_mut().for_each(|value| *value = map.factor * *value + offset);
         }

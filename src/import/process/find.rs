@@ -87,8 +87,12 @@ impl<'a> Of<'a> {
                 map.name.value, name.value
             )));
         };
-        let stated =
-            self.side.units.iter().find(|(known, _)| known == text).map(|(_, unit)| unit.clone());
+        let stated = self
+            .side
+            .units
+            .iter()
+            .find(|(known, _)| known.text == text)
+            .map(|(_, unit)| unit.clone());
         let unit = stated.map_or_else(|| Unit::parse(text), Ok).map_err(|unknown| {
             let problem = Problem::error(
                 "unknown-unit",

@@ -18,7 +18,7 @@ mod times;
 pub use find::Of;
 pub use store::{BLOCK, Store, Values};
 
-use super::mapping::{ChannelMap, Channels, Term, agree};
+use super::mapping::{ChannelMap, Channels, Distance, Side, Term, agree};
 use crate::data::RecordKind;
 use crate::foreign::Table;
 use crate::problem::{Problem, Severity};
@@ -59,8 +59,7 @@ const MOST_TOLD: usize = 8;
 /// `no-common-time`, `uneven-time`, `sum-of-tables`, `no-pulses`, `no-match`, `not-finite`,
 /// `axis-not-increasing`, `outside-record`; of stated values `unknown-fact`, `wrong-number`.
 pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
-    let one = |problem: Problem| vec![problem];
-    let tables = of.tables().map_err(one)?;
+    let tables = of.tables()?;
     let facts: Vec<(String, String)> =
         tables.iter().flat_map(|table| &table.facts).chain(&of.file.facts).cloned().collect();
     let maps = maps(of, &tables)?;
@@ -97,19 +96,17 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
             .channels
             .iter()
             .map(|map| values_for_match(of, map, &tables))
-            .collect::<Result<_, _>>()
-            .map_err(one)?,
+            .collect::<Result<_, _>>()?,
     };
     let used_or_matched = || used().chain(matched.iter().map(|(table, ..)| *table));
     let base = most_used(used(), &tables);
-    let clocks = clocks(of, &tables, &facts, used_or_matched()).map_err(one)?;
+    let clocks = clocks(of, &tables, &facts, used_or_matched())?;
     let curve = of
         .side
         .distance
         .as_ref()
         .map(|distance| distance::curve(of, distance, &tables, &clocks, &facts))
-        .transpose()
-        .map_err(one)?;
+        .transpose()?;
     let Some(base_clock) = clocks.get(base).and_then(Option::as_ref) else {
         return Err(vec![
             Problem::error("time-missing", format!("`{}` has no time", of.shown))
@@ -118,7 +115,7 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
     };
     let mut steps = Vec::new();
     let span = span(&clocks, used_or_matched(), curve.as_ref().map(|curve| &curve.clock));
-    let rate = of.side.rate.as_ref().map(|rate| rate.value);
+    let rate = of.side.rate.as_ref().map(|rate| rate.value.0);
     if let Some(rate) = &of.side.rate
         && let Some(problem) = times::impossible(of, rate, base_clock, span)
     {
@@ -151,7 +148,7 @@ pub fn record(of: &Of<'_>) -> Result<Made, Vec<Problem>> {
         {
             Some(Ok((values, how))) => {
                 sampled.push((how, table));
-                let values = Values::keep(values, of.store).map_err(one)?;
+                let values = Values::keep(values, of.store)?;
                 columns.push(Column { name: map.name.value.clone(), unit: unit.clone(), values });
             }
             Some(Err(why)) => faults.push(
@@ -221,26 +218,15 @@ fn maps(of: &Of<'_>, tables: &[&Table]) -> Result<Vec<ChannelMap>, Vec<Problem>>
         Channels::Maps(maps) => Ok(maps.clone()),
         Channels::AsNamed => {
             let span = of.side.span.clone();
-            let axis = |name: &str| {
-                of.side.time.from.iter().any(|time| time.value == name)
-                    || matches!(&of.side.distance, Some(super::mapping::Distance::Channel(map)) if map.terms.iter().any(|term| term.name.value == name))
-            };
             let channels = tables.iter().flat_map(|table| &table.channels);
-            let named = channels
-                .filter(|channel| !axis(&channel.name) && !is_second_axis(of, &channel.name));
+            let named = channels.filter(|channel| {
+                !is_axis(of, &channel.name) && !is_second_axis(of, &channel.name)
+            });
             let maps: Vec<ChannelMap> = named
                 .map(|channel| {
                     let name = Spanned::new(channel.name.clone(), span.clone());
                     let terms = vec![Term { name: name.clone(), reversed: false }];
-                    ChannelMap {
-                        name,
-                        terms,
-                        table: None,
-                        unit: None,
-                        factor: 1.0,
-                        offset: None,
-                        written_in: None,
-                    }
+                    ChannelMap::named(name, terms)
                 })
                 .collect();
             if maps.is_empty() {
@@ -254,6 +240,13 @@ fn maps(of: &Of<'_>, tables: &[&Table]) -> Result<Vec<ChannelMap>, Vec<Problem>>
     }
 }
 
+/// Whether the time or the distance is from a channel of the file.
+fn is_axis(of: &Of<'_>, name: &str) -> bool {
+    let Side { time, distance, .. } = of.side;
+    time.from.0.iter().any(|time| time.value == name)
+        || matches!(distance, Some(Distance::Channel(map)) if map.terms.iter().any(|term| term.name.value == name))
+}
+
 /// A record has one time and one distance: those that the mapping states.
 fn is_second_axis(of: &Of<'_>, name: &str) -> bool {
     name == "time" || name == "distance" && of.side.distance.is_some()
@@ -261,18 +254,11 @@ fn is_second_axis(of: &Of<'_>, name: &str) -> bool {
 
 /// Tells which channels are not kept although all keep their names.
 fn left_out(of: &Of<'_>, tables: &[&Table], steps: &mut Vec<String>) {
-    use super::mapping::Distance;
-    let source = |name: &str| match &of.side.distance {
-        Some(Distance::Channel(map)) => map.terms.iter().any(|term| term.name.value == name),
-        _ => false,
-    };
-    let is_axis =
-        |name: &str| of.side.time.from.iter().any(|time| time.value == name) || source(name);
     for name in ["time", "distance"]
         .into_iter()
         .filter(|name| of.side.channels.maps().is_none() && is_second_axis(of, name))
     {
-        if !is_axis(name)
+        if !is_axis(of, name)
             && tables.iter().any(|table| table.channels.iter().any(|channel| channel.name == name))
         {
             steps.push(format!(
@@ -324,7 +310,6 @@ fn clocks(
     facts: &[(String, String)],
     used: impl Iterator<Item = usize>,
 ) -> Result<Vec<Option<Clock>>, Problem> {
-    use super::mapping::Distance;
     let mut wanted = vec![false; tables.len()];
     used.for_each(|table| wanted[table] = true);
     if let Some(
@@ -431,7 +416,7 @@ fn along_track(
         .as_ref()
         .map(|offsets| offsets.of(of.section, &of.mapping.sections, facts))
         .transpose();
-    if let Some(offset) = offset.map_err(|problem| vec![problem])?.flatten() {
+    if let Some(offset) = offset?.flatten() {
         values.iter_mut().for_each(|value| *value += offset);
         steps.push(format!("{offset:+} m added to the distance (synchronisation)"));
     }
@@ -482,7 +467,7 @@ fn finish(
     }));
     columns.extend(channels);
     for column in &columns {
-        if let Some((row, missing)) = column.values.missing().map_err(|problem| vec![problem])? {
+        if let Some((row, missing)) = column.values.missing()? {
             let says = format!(
                 "{}: `{}` has no value in {missing} of {} rows, first at {} s",
                 of.called(),

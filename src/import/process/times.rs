@@ -8,6 +8,7 @@ use crate::foreign::Table;
 use crate::import::mapping::{ChannelMap, Distance};
 use crate::problem::Problem;
 use crate::source::{Span, Spanned};
+use crate::yaml::Hertz;
 
 /// Most samples that are made for each one of the file. Interpolation adds nothing to a record but
 /// its size.
@@ -19,12 +20,13 @@ const MOST_FINER: f64 = 20.0;
 /// Problems: `out-of-range`.
 pub fn impossible(
     of: &Of<'_>,
-    rate: &Spanned<f64>,
+    rate: &Spanned<Hertz>,
     base: &Clock,
     (start, end): (f64, f64),
 ) -> Option<Problem> {
-    let asked = short(rate.value);
-    let (says, help) = if rate.value > MOST_FINER * base.rate {
+    let Hertz(asked_rate) = rate.value;
+    let asked = short(asked_rate);
+    let (says, help) = if asked_rate > MOST_FINER * base.rate {
         let says = format!(
             "{}: a rate of {asked} Hz is more than {MOST_FINER} times that of `{}`, {} Hz",
             of.called(),
@@ -32,7 +34,7 @@ pub fn impossible(
             short(base.rate)
         );
         (says, "a rate above that of the file adds nothing to the records")
-    } else if end > start && (end - start) * rate.value < 1.0 {
+    } else if end > start && (end - start) * asked_rate < 1.0 {
         let says = format!(
             "{}: a rate of {asked} Hz leaves no two samples of the {} s of `{}`",
             of.called(),
@@ -183,8 +185,8 @@ fn step_in_words(step: f64) -> String {
 
 /// The rows of a record and its rate.
 pub fn told(of: &Of<'_>, base: &Clock, grid: &Grid, steps: &mut Vec<String>) {
-    if of.side.time.drift != 0.0 {
-        steps.push(format!("time divided by 1 + {:.6} (drift of the clock)", of.side.time.drift));
+    if of.side.time.drift.0 != 0.0 {
+        steps.push(format!("time divided by 1 + {:.6} (drift of the clock)", of.side.time.drift.0));
     }
     if let Some(shift) = &of.side.time.shift {
         steps.push(format!("time shifted ({})", shift.from_where()));

@@ -198,10 +198,7 @@ fn vehicle_datum(
         Problem::error("vehicle-data", format!("`{}`: {}", datum.key, refused.says)).at(&node.span);
     let problem = problem
         .also(datum.range.as_ref().map_or(&datum.span, |range| &range.span), "declared here");
-    problems.push(match refused.help {
-        Some(help) => problem.help(help),
-        None => problem,
-    });
+    problems.push(problem.help_if(refused.help));
     None
 }
 

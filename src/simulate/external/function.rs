@@ -46,11 +46,7 @@ impl External<'_> {
         let place = self.campaign.record_place(kind, &section.cell)?;
         let headings = read_headings(&place.path, &place.inside).map_err(first)?;
         let given = |name: &str| kind == RecordKind::Track || name == TIME || name == DISTANCE;
-        let wanted: Vec<Wanted> = headings
-            .iter()
-            .filter(|heading| given(&heading.name))
-            .map(|heading| Wanted { name: heading.name.clone(), dimension: None, required: true })
-            .collect();
+        let wanted = Wanted::all(headings.iter().filter(|heading| given(&heading.name)));
         let record = read_record(&place.path, &place.inside, &wanted).map_err(first)?;
         let column = |column: &crate::data::Column| {
             (
@@ -128,7 +124,7 @@ impl External<'_> {
     /// The function cannot be loaded; a parameter that one of them has and another has not.
     pub fn check(&self, catalogue: &Catalogue) -> Result<(), Vec<Problem>> {
         let Some(workers) = &self.workers else { return Ok(()) };
-        self.values(workers).map_err(|problem| vec![problem])?;
+        self.values(workers)?;
         let names = workers.parameters().map_err(|failed| vec![self.told(&failed, None)])?;
         let mut problems = Vec::new();
         for effect in catalogue.effects.iter().filter(|effect| effect.action == Action::Simulator) {

@@ -42,12 +42,28 @@ const BYTES: u64 = 4096;
 const FIRST_LOOK: Duration = Duration::from_millis(1);
 const LONGEST_PAUSE: Duration = Duration::from_millis(50);
 
-/// A command that starts a program, by words before it if there are any.
-pub(super) fn launched(launch: &[String], program: &Path) -> Command {
-    let Some((first, words)) = launch.split_first() else { return Command::new(program) };
-    let mut command = Command::new(first);
-    command.args(words).arg(program);
-    command
+/// A command that starts a program in a folder, by words before it if there are any. The mark finds
+/// what it starts.
+pub(super) fn launched(
+    launch: &[String],
+    program: &Path,
+    folder: &Path,
+    environment: &[(String, String)],
+) -> (Command, Mark) {
+    let mut command = match launch.split_first() {
+        Some((first, words)) => {
+            let mut command = Command::new(first);
+            command.args(words).arg(program);
+            command
+        }
+        None => Command::new(program),
+    };
+    let mark = Mark::new();
+    command.current_dir(folder).envs(environment.iter().cloned()).env(started::NAME, mark.value());
+    // A separate process group, so that its child processes are ended with it.
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut command, 0);
+    (command, mark)
 }
 
 /// Runs a program to its end. Its output goes to files, so that it cannot block.
@@ -58,19 +74,8 @@ pub fn run(call: &Call<'_>) -> Result<(), Fault> {
     let mut error = disk::scratch_file().map_err(Fault::NotStarted)?;
     let mut output = disk::scratch_file().map_err(Fault::NotStarted)?;
     let to = |file: &File| file.try_clone().map(Stdio::from).map_err(Fault::NotStarted);
-    let mut command = launched(call.launch, call.program);
-    command
-        .args(call.arguments)
-        .current_dir(call.folder)
-        .stdin(Stdio::null())
-        .stdout(to(&output)?)
-        .stderr(to(&error)?);
-    command.envs(call.environment.iter().map(|(name, value)| (name, value)));
-    let mark = Mark::new();
-    command.env(started::NAME, mark.value());
-    // A separate process group, so that its child processes are terminated with it.
-    #[cfg(unix)]
-    std::os::unix::process::CommandExt::process_group(&mut command, 0);
+    let (mut command, mark) = launched(call.launch, call.program, call.folder, call.environment);
+    command.args(call.arguments).stdin(Stdio::null()).stdout(to(&output)?).stderr(to(&error)?);
     let mut child = command.spawn().map_err(Fault::NotStarted)?;
     let status = wait(&mut child, call.timeout, &mark);
     let mut said = || {

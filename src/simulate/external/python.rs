@@ -13,7 +13,7 @@ use serde_json::{Map, Value, json};
 
 use super::process::{Printed, end, last_lines, launched};
 use super::read::{Program, Python};
-use super::started::{self, Mark};
+use super::started::Mark;
 use crate::disk;
 
 /// The script that calls the function.
@@ -111,18 +111,14 @@ impl Workers {
 
     fn start(&self) -> Result<Worker, Failed> {
         let errors = disk::scratch_file().map_err(Failed::NotStarted)?;
-        let mut command = launched(&self.launch, &self.python.interpreter);
-        command.args(["-c", WORKER]).arg(&self.python.file).current_dir(&self.folder);
+        let (mut command, mark) =
+            launched(&self.launch, &self.python.interpreter, &self.folder, &self.environment);
         command
+            .args(["-c", WORKER])
+            .arg(&self.python.file)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(errors.try_clone().map_err(Failed::NotStarted)?);
-        command.envs(self.environment.iter().map(|(name, value)| (name, value)));
-        let mark = Mark::new();
-        command.env(started::NAME, mark.value());
-        // A separate process group, so that its child processes are ended with it.
-        #[cfg(unix)]
-        std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut child = command.spawn().map_err(Failed::NotStarted)?;
         let input = child.stdin.take();
         let (send, lines) = channel();

@@ -1,5 +1,6 @@
 //! Reads `sim.yaml`, which describes how an external simulator is called.
 
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -7,9 +8,9 @@ use std::time::Duration;
 use super::words::{Hole, Word};
 use crate::disk;
 use crate::problem::{Problem, Problems};
-use crate::source::{Source, Span};
-use crate::units::{Dimension, Unit};
-use crate::yaml::{self, Node, Value};
+use crate::source::{Source, Span, Spanned};
+use crate::units::{Dimension, Unit, number};
+use crate::yaml::{self, Entries, Key, Node, Reader, Value, fields};
 
 /// An external simulator as described by its file.
 #[derive(Clone, Debug)]
@@ -52,21 +53,25 @@ pub struct Python {
     pub file: PathBuf,
 }
 
-const KEYS: [&str; 13] = [
-    "simulator",
-    "title",
-    "command",
-    "python",
-    "interpreter",
-    "set",
-    "speed unit",
-    "timeout",
-    "retries",
-    "environment",
-    "channels",
-    "inputs",
-    "tolerance",
-];
+fields! {
+    /// `sim.yaml` as it is written.
+    struct Written: "a simulator" {
+        "simulator" name: Option<String> => "its name",
+        "title" title: Option<String>,
+        "command" command: Option<Node>,
+        "python" python: Option<Spanned<String>>,
+        "interpreter" interpreter: Option<Spanned<String>>,
+        "set" set: Option<Node>,
+        "speed unit" speed_unit: Option<Spanned<Unit>>,
+        "timeout" timeout: Option<Spanned<String>>,
+        "retries" retries: Option<Spanned<f64>>,
+        "environment" environment: Entries<Node>,
+        "channels" channels: Vec<String>,
+        "inputs" inputs: Vec<Spanned<String>>,
+        "tolerance" tolerance: Option<Spanned<String>>,
+    }
+}
+
 /// Keys that a command has and a Python function has not, and the reverse.
 const OF_COMMAND: [&str; 2] = ["set", "speed unit"];
 const OF_PYTHON: [&str; 1] = ["interpreter"];
@@ -89,64 +94,67 @@ pub fn read_program(
     let before = problems.errors();
     let tree = yaml::load(source, problems)?;
     let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_path_buf());
-    let mut reader = Reader { folder: &folder, problems };
-    if !matches!(tree.value, Value::Map(_)) {
-        reader.fault(
-            "wrong-kind",
-            format!("a simulator must be a map of keys and values, not {}", tree.kind_in_words()),
-            &tree.span,
-        );
-        return None;
-    }
-    reader.keys(&tree);
-    let name = reader.text(&tree, "simulator");
-    if tree.get("simulator").is_none() {
-        reader.fault("key-missing", "`simulator` is missing", &tree.span.part(0..0));
-    }
+    let mut reader = Reader { with: folder.as_path(), problems };
+    let written: Option<Written> = reader.file(&tree);
     reader.one_way(&tree);
-    let python = tree.get("python").and_then(|node| reader.python(node, tree.get("interpreter")));
-    let command =
-        tree.get("command").map(|node| reader.words(node, &Hole::OF_COMMAND)).unwrap_or_default();
-    let set = tree.get("set").map(|node| reader.words(node, &Hole::OF_SET)).unwrap_or_default();
-    let speed_unit = tree
-        .get("speed unit")
-        .and_then(|node| reader.unit(node, Dimension::LENGTH / Dimension::TIME));
-    let timeout = tree.get("timeout").and_then(|node| reader.seconds(node));
-    let retries =
-        tree.get("retries").and_then(|node| reader.number(node, "retries", 0.0, MOST_RETRIES));
-    let tolerance = tree.get("tolerance").and_then(|node| reader.share(node));
-    let environment = reader.environment(&tree);
-    let channels =
-        tree.get("channels").map(|node| reader.texts(node, "channels")).unwrap_or_default();
-    let inputs = tree.get("inputs").map(|node| reader.inputs(node)).unwrap_or_default();
-    if let Some(node) = tree.get("command") {
+    let written = written?;
+    let python = written.python.as_ref();
+    let python = python.map(|file| reader.python(file, written.interpreter.as_ref()));
+    let words = |reader: &mut Reader<'_, &Path>, node: &Option<Node>, allowed: &[Hole]| {
+        node.as_ref().map(|node| reader.words(node, allowed)).unwrap_or_default()
+    };
+    let command = words(&mut reader, &written.command, &Hole::OF_COMMAND);
+    let set = words(&mut reader, &written.set, &Hole::OF_SET);
+    if let Some(unit) = &written.speed_unit
+        && unit.value.dimension != Dimension::SPEED
+    {
+        let says = format!("{} does not have the required dimension", unit.value);
+        reader.fault("unit-mismatch", says, &unit.span);
+    }
+    let timeout = written.timeout.as_ref().and_then(|written| {
+        let range = "a time-out must be between 1 ms and 1000000 s";
+        reader.number(written, ("s", "90 s"), (0.001..=1e6, range))
+    });
+    if let Some(retries) = &written.retries
+        && !((0.0..=MOST_RETRIES).contains(&retries.value) && retries.value.fract() == 0.0)
+    {
+        let says = format!("`retries` must be a whole number from 0 to {MOST_RETRIES}");
+        reader.fault("range", says, &retries.span);
+    }
+    let tolerance = written.tolerance.as_ref().and_then(|written| {
+        let range = "a tolerance must be a share between 0 and 1";
+        reader.number(written, ("-", "5 %"), (0.0..=1.0, range))
+    });
+    let environment = reader.environment(&written.environment.0);
+    let inputs = written.inputs.iter().map(|file| reader.input(file)).collect();
+    if let Some(node) = &written.command {
         reader.command(node, &command, &set);
     }
     if problems.errors() > before {
         return None;
     }
-    let name = name?;
+    let of_python = written.python.map(|file| file.span);
     Some(Program {
-        title: tree.get("title").and_then(Node::scalar_text).unwrap_or(&name).to_string(),
-        name,
+        title: written.title.or(written.name.clone())?,
+        name: written.name?,
         source: Arc::clone(source),
         folder,
         launch: Vec::new(),
         command,
         python,
         set,
-        speed_unit: speed_unit.or_else(|| Unit::parse("m/s").ok())?,
-        timeout: timeout.unwrap_or(TIMEOUT),
+        speed_unit: written
+            .speed_unit
+            .map(|unit| unit.value)
+            .or_else(|| Unit::parse("m/s").ok())?,
+        timeout: timeout.map_or(TIMEOUT, Duration::from_secs_f64),
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        retries: retries.unwrap_or(0.0) as u32,
+        retries: written.retries.map_or(0, |retries| retries.value as u32),
         environment,
-        channels,
+        channels: written.channels,
         inputs,
         tolerance: tolerance.unwrap_or(TOLERANCE),
-        span: tree
-            .get("command")
-            .or_else(|| tree.get("python"))
-            .map_or_else(|| tree.span.clone(), |node| node.span.clone()),
+        span: written.command.map(|node| node.span).or(of_python).unwrap_or(tree.span),
     })
 }
 
@@ -168,26 +176,7 @@ impl Program {
     }
 }
 
-struct Reader<'a> {
-    folder: &'a Path,
-    problems: &'a mut Problems,
-}
-
-impl Reader<'_> {
-    fn fault(&mut self, code: &'static str, says: impl Into<String>, at: &Span) {
-        self.problems.push(Problem::error(code, says).at(at));
-    }
-
-    fn keys(&mut self, tree: &Node) {
-        for (key, _) in tree.entries().iter().filter(|(key, _)| !KEYS.contains(&key.text.as_str()))
-        {
-            let problem =
-                Problem::error("unknown-key", format!("a simulator has no key `{}`", key.text))
-                    .at(&key.span);
-            self.problems.push(problem.suggest(&key.text, KEYS));
-        }
-    }
-
+impl Reader<'_, &Path> {
     /// A command or a Python function, with the keys that belong to it.
     fn one_way(&mut self, tree: &Node) {
         let others = match (tree.get("command"), tree.get("python")) {
@@ -216,53 +205,14 @@ impl Reader<'_> {
         }
     }
 
-    fn python(&mut self, node: &Node, interpreter: Option<&Node>) -> Option<Python> {
-        let Some(text) = node.scalar_text().filter(|text| !text.trim().is_empty()) else {
-            self.fault(
-                "wrong-kind",
-                format!("`python` must be the path of a file, not {}", node.kind_in_words()),
-                &node.span,
-            );
-            return None;
-        };
-        let file = self.folder.join(text);
-        if !disk::may_be_file(&file) {
-            self.fault(
-                "file-missing",
-                format!("there is no file `{text}` in the folder of this file"),
-                &node.span,
-            );
-        }
-        let name = interpreter.map_or(Some(INTERPRETER), Node::scalar_text).unwrap_or_default();
-        let span = interpreter.map_or(&node.span, |node| &node.span);
+    fn python(&mut self, file: &Spanned<String>, interpreter: Option<&Spanned<String>>) -> Python {
+        let file_path = self.input(file);
+        let (name, span) = interpreter
+            .map_or((INTERPRETER, &file.span), |named| (named.value.as_str(), &named.span));
         self.program(name, span);
         let interpreter =
-            if name.contains(['/', '\\']) { self.folder.join(name) } else { PathBuf::from(name) };
-        Some(Python { interpreter, file })
-    }
-
-    fn text(&mut self, tree: &Node, key: &str) -> Option<String> {
-        let node = tree.get(key)?;
-        match node.scalar_text().map(str::trim).filter(|text| !text.is_empty()) {
-            Some(text) => Some(text.to_string()),
-            None => {
-                let says = match node.scalar_text() {
-                    Some(_) => format!("`{key}` is empty"),
-                    None => format!("`{key}` must be text, not {}", node.kind_in_words()),
-                };
-                self.fault("wrong-kind", says, &node.span);
-                None
-            }
-        }
-    }
-
-    fn texts(&mut self, node: &Node, key: &str) -> Vec<String> {
-        let texts: Vec<String> =
-            node.items().iter().filter_map(|item| Some(item.scalar_text()?.to_string())).collect();
-        if texts.is_empty() || texts.len() != node.items().len() {
-            self.fault("wrong-kind", format!("`{key}` must be a list of names"), &node.span);
-        }
-        texts
+            if name.contains(['/', '\\']) { self.with.join(name) } else { PathBuf::from(name) };
+        Python { interpreter, file: file_path }
     }
 
     fn words(&mut self, node: &Node, allowed: &[Hole]) -> Vec<Word> {
@@ -278,108 +228,28 @@ impl Reader<'_> {
         node.items().iter().filter_map(|item| Word::read(item, allowed, self.problems)).collect()
     }
 
-    fn unit(&mut self, node: &Node, dimension: Dimension) -> Option<Unit> {
-        let text = node.scalar_text().unwrap_or_default();
-        match Unit::parse(text) {
-            Ok(unit) if unit.dimension == dimension => Some(unit),
-            Ok(unit) => {
-                self.fault(
-                    "unit-mismatch",
-                    format!("{unit} does not have the required dimension"),
-                    &node.span,
-                );
-                None
-            }
-            Err(unknown) => {
-                let problem = Problem::error(
-                    "unknown-unit",
-                    format!("`{}` is not a known unit", unknown.word),
-                )
-                .at(&node.span);
-                self.problems.push(match unknown.near {
-                    Some(near) => problem.meant(near),
-                    None => problem,
-                });
-                None
-            }
-        }
-    }
-
-    /// A number with or without a unit; without one it is in SI units.
-    fn quantity(&mut self, node: &Node, dimension: Dimension, example: &str) -> Option<f64> {
-        let text = node.scalar_text().unwrap_or_default().trim();
-        let end = text.find(|c: char| !(c.is_ascii_digit() || c == '.')).unwrap_or(text.len());
-        let (digits, written) = (&text[..end], text[end..].trim());
-        let number: Option<f64> = digits.parse().ok();
-        let unit = if written.is_empty() { None } else { Unit::parse(written).ok() };
-        match (number, unit) {
-            (Some(number), None) if written.is_empty() => Some(number),
-            (Some(number), Some(unit)) if unit.dimension == dimension => Some(unit.to_si(number)),
-            _ => {
-                self.fault(
-                    "wrong-kind",
-                    format!("`{text}` is not valid here; expected a value such as `{example}`"),
-                    &node.span,
-                );
-                None
-            }
-        }
-    }
-
-    fn seconds(&mut self, node: &Node) -> Option<Duration> {
-        let seconds = self.quantity(node, Dimension::TIME, "90 s")?;
-        if !(0.001..=1e6).contains(&seconds) {
-            self.fault("range", "a time-out must be between 1 ms and 1000000 s", &node.span);
+    /// A number in a range, in SI with or without a unit.
+    fn number(
+        &mut self,
+        written: &Spanned<String>,
+        (unit, example): (&str, &str),
+        (range, says): (RangeInclusive<f64>, &str),
+    ) -> Option<f64> {
+        let text = &written.value;
+        let Ok(read) = number::read(text, &Unit::parse(unit).ok()?) else {
+            let says = format!("`{text}` is not valid here; expected a value such as `{example}`");
+            self.fault("wrong-kind", says, &written.span);
             return None;
+        };
+        if !range.contains(&read.si) {
+            self.fault("range", says, &written.span);
         }
-        Some(Duration::from_secs_f64(seconds))
+        Some(read.si)
     }
 
-    fn share(&mut self, node: &Node) -> Option<f64> {
-        let share = self.quantity(node, Dimension::ONE, "5 %")?;
-        if !(0.0..=1.0).contains(&share) {
-            self.fault("range", "a tolerance must be a share between 0 and 1", &node.span);
-            return None;
-        }
-        Some(share)
-    }
-
-    fn number(&mut self, node: &Node, key: &str, low: f64, high: f64) -> Option<f64> {
-        match node.number() {
-            Some(number) if (low..=high).contains(&number) && number.fract() == 0.0 => Some(number),
-            Some(_) => {
-                self.fault(
-                    "range",
-                    format!("`{key}` must be a whole number from {low} to {high}"),
-                    &node.span,
-                );
-                None
-            }
-            None => {
-                self.fault(
-                    "wrong-kind",
-                    format!("`{key}` must be a number, not {}", node.kind_in_words()),
-                    &node.span,
-                );
-                None
-            }
-        }
-    }
-
-    fn environment(&mut self, tree: &Node) -> Vec<(String, String)> {
-        let Some(node) = tree.get("environment") else { return Vec::new() };
-        if !matches!(node.value, Value::Map(_)) {
-            self.fault(
-                "wrong-kind",
-                format!(
-                    "`environment` must be a map of names and texts, not {}",
-                    node.kind_in_words()
-                ),
-                &node.span,
-            );
-        }
+    fn environment(&mut self, entries: &[(Key, Node)]) -> Vec<(String, String)> {
         let mut found = Vec::new();
-        for (key, value) in node.entries() {
+        for (key, value) in entries {
             match value.scalar_text().filter(|text| !text.contains('\0')) {
                 Some(text) if !key.text.is_empty() && !key.text.contains(['=', '\0']) => {
                     found.push((key.text.clone(), text.to_string()))
@@ -394,17 +264,14 @@ impl Reader<'_> {
         found
     }
 
-    fn inputs(&mut self, node: &Node) -> Vec<PathBuf> {
-        let texts = self.texts(node, "inputs");
-        let paths: Vec<PathBuf> = texts.iter().map(|text| self.folder.join(text)).collect();
-        for (text, _) in texts.iter().zip(&paths).filter(|(_, path)| !disk::may_be_file(path)) {
-            self.fault(
-                "file-missing",
-                format!("there is no file `{text}` in the folder of this file"),
-                &node.span,
-            );
+    /// The path of a file, which must be there.
+    fn input(&mut self, file: &Spanned<String>) -> PathBuf {
+        let path = self.with.join(&file.value);
+        if !disk::may_be_file(&path) {
+            let says = format!("there is no file `{}` in the folder of this file", file.value);
+            self.fault("file-missing", says, &file.span);
         }
-        paths
+        path
     }
 
     /// Checks the command as a whole.
@@ -444,7 +311,7 @@ impl Reader<'_> {
     /// Checks that a program is there, or that the system finds it.
     fn program(&mut self, name: &str, at: &Span) {
         if name.contains(['/', '\\']) {
-            if !disk::may_be_file(&self.folder.join(name)) {
+            if !disk::may_be_file(&self.with.join(name)) {
                 self.fault(
                     "no-such-program",
                     format!("there is no program `{name}` relative to the folder of this file"),

@@ -1,6 +1,6 @@
 //! Text tables in the dialects of measuring systems and simulation programs.
 
-use fishplate::foreign::{DateOrder, Format, Options, Separator};
+use fishplate::foreign::{DateOrder, DecimalMark, Format, Options, Separator};
 use fishplate::problem::Problems;
 
 use super::text;
@@ -66,7 +66,7 @@ fn what_is_said_is_stronger_than_what_is_detected() {
     let said = Options {
         header_lines: Some(2),
         separator: Some(Separator::Mark(';')),
-        decimal: Some(','),
+        decimal: Some(DecimalMark::Comma),
         ..Options::default()
     };
     assert_eq!(read(b"a;b\n1;2\n3;4\n", &said), ["a [] [3.0]", "b [] [4.0]"]);
