@@ -10,7 +10,7 @@ mod scalar;
 pub(crate) use fields::fields;
 pub use fields::{
     Entries, FromNode, Hertz, Literal, Metres, OneOrMore, OtherKeys, Quantity, Ratio, Reader,
-    Seconds, Words, quoted, span_of_key, span_of_value, unknown_unit,
+    Seconds, Words, quoted, span_of_value, unknown_unit,
 };
 pub use load::{Remark, load, load_as_written, remarks};
 
@@ -131,8 +131,8 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::problem::Problems;
-    use crate::source::Source;
+    use crate::problem::{Problem, Problems};
+    use crate::source::{Source, Spanned};
 
     fn read(text: &str) -> Node {
         let mut problems = Problems::default();
@@ -332,5 +332,97 @@ mod tests {
         fn any_text_is_survived(text in r#"[ \n\t:#'"\[\]{},&*!|>%@a0-9.\-?é]{0,40}"#) {
             survives(&text);
         }
+    }
+
+    fields! {
+        /// A table with a key of each kind.
+        struct Row: "a row" {
+            "name" name: Option<String> => "what it is called",
+            "length" length: Option<Spanned<Metres>>,
+            "list" list: Vec<f64>,
+            "names" names: OneOrMore<String>,
+            "inner" inner: Option<Inner>,
+            "share" share: Ratio = Ratio(0.5),
+        } also {
+            span: Span = span_of_value,
+        }
+    }
+
+    fields! {
+        /// A map below it.
+        #[derive(PartialEq)]
+        struct Inner: "`{key}`" or Free {
+            "side" side: Side,
+        }
+    }
+
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    enum Side {
+        Left,
+        Right,
+    }
+
+    impl Words for Side {
+        const WORDS: &'static [(&'static str, Self)] =
+            &[("left", Self::Left), ("right", Self::Right)];
+    }
+
+    fn row(text: &str) -> (Option<Row>, Vec<(&'static str, String, Option<String>)>) {
+        let mut problems = Problems::default();
+        let source = Source::new("t", text);
+        let tree = load(&source, &mut problems).expect("YAML");
+        let row = Reader { with: (), problems: &mut problems }.file(&tree);
+        let told = |problem: &Problem| {
+            let at = problem.at.as_ref().map(ToString::to_string).unwrap_or_default();
+            (problem.code, at, problem.help.clone())
+        };
+        (row, problems.0.iter().map(told).collect())
+    }
+
+    #[test]
+    fn fields_are_read_by_their_kinds() {
+        let (row, told) = row(
+            "name: ' x '\nlength: 2 km\nlist: [1, 2.5]\nnames: a\ninner: {side: left, other: 1}\nshare: 20 %\n",
+        );
+        let row = row.expect("a row");
+        assert_eq!(told, []);
+        assert_eq!(row.name.as_deref(), Some("x"));
+        assert_eq!(row.length.map(|length| length.value), Some(Metres(2000.0)));
+        assert_eq!((row.list, row.names.0), (vec![1.0, 2.5], vec!["a".to_string()]));
+        assert_eq!((row.inner, row.share), (Some(Inner { side: Side::Left }), Ratio(0.2)));
+        assert_eq!(Row::KEYS, ["name", "length", "list", "names", "inner", "share"]);
+    }
+
+    #[test]
+    fn every_fault_is_told_with_its_place() {
+        let some = |help: &str| Some(help.to_string());
+        let (read, told) = row(
+            "nmae: x\nside: left\nlength: 2\nlist: [a]\nnames: [[], b]\ninner: {side: lft, sid: 1}\nshare: 5 kg\n",
+        );
+        assert_eq!(
+            told,
+            [
+                ("unknown-key", "t:1:1".into(), some("did you mean `name`?")),
+                (
+                    "unknown-key",
+                    "t:2:1".into(),
+                    some("`side` stands in `inner`: `inner: {side: left}`")
+                ),
+                ("key-missing", "t:1:1".into(), some("write `name: ...`")),
+                ("unit-missing", "t:3:9".into(), some("write `2 m`, if that is meant")),
+                ("wrong-kind", "t:4:8".into(), None),
+                ("wrong-kind", "t:5:9".into(), None),
+                ("unknown-key", "t:6:20".into(), some("did you mean `side`?")),
+                ("unknown-word", "t:6:15".into(), some("did you mean `left`?")),
+                ("wrong-number", "t:7:8".into(), None),
+            ]
+        );
+        // What is right is read all the same.
+        let read = read.expect("a row");
+        assert_eq!(
+            (read.names.0, read.inner, read.share),
+            (vec!["b".to_string()], None, Ratio(0.5))
+        );
+        assert_eq!(row("[]").1, [("wrong-kind", "t:1:1".into(), None)]);
     }
 }

@@ -15,6 +15,7 @@ use super::{Campaign, RecordKind};
 use crate::problem::Problem;
 use crate::source::Spanned;
 use crate::units::Dimension;
+use crate::units::number::significant;
 use crate::yaml::{Node, Value};
 
 /// The key of `campaign.yaml` that names the table of cut records.
@@ -128,11 +129,14 @@ fn extent(table: &Table, name: &Cell) -> Result<(&'static str, f64, f64), Vec<Pr
 }
 
 fn bytes(record: &Record, format: Format) -> Result<Vec<u8>, Problem> {
-    let rounded = |value: f64| format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value) + 0.0;
     let columns = record.columns.iter().map(|column| FileColumn {
         heading: format!("{} [{}]", column.name, column.unit),
         values: Values::Numbers(
-            column.values.iter().map(|value| rounded(column.unit.from_si(*value))).collect(),
+            column
+                .values
+                .iter()
+                .map(|value| significant(column.unit.from_si(*value), DIGITS))
+                .collect(),
         ),
         digits: None,
     });

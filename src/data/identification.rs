@@ -81,7 +81,7 @@ impl<C> FromNode<C> for Report {
         let mut report = Self::default();
         if !matches!(node.value, Value::Map(_) | Value::Null) {
             let what = format!("`{REPORT_KEY}`");
-            reader.problems.push(node.is_not(&what, "a map of keys and values"));
+            reader.tell(node.is_not(&what, "a map of keys and values"));
         }
         for (key, node) in node.entries() {
             report.entry(key, node, reader.problems);

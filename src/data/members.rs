@@ -116,7 +116,7 @@ impl FromNode<Opening<'_>> for Folders {
         if node.items().is_empty() && node.entries().is_empty() {
             let says = format!("`{}` names no folder", key.text);
             let help = format!("`{0}: {0}`, or a list of folders", key.text);
-            reader.problems.push(Problem::error("no-records", says).at(&node.span).help(help));
+            reader.tell(Problem::error("no-records", says).at(&node.span).help(help));
         }
         reader.are_different(&found, &key.text);
         let one = found.len() == 1;
@@ -149,7 +149,7 @@ impl Reader<'_, Opening<'_>> {
             } else {
                 continue;
             };
-            self.problems.push(problem.also(&first.span, "the first"));
+            self.tell(problem.also(&first.span, "the first"));
         }
     }
 }

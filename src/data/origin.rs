@@ -4,6 +4,7 @@
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
+use crate::units::number::significant;
 use crate::yaml::{FromNode, Key, Literal, Node, Reader, fields};
 
 /// Name of the file.
@@ -96,7 +97,7 @@ impl OriginEffect {
 impl OriginParameter {
     /// Three significant digits for a sentence; the file has all digits.
     fn in_words(&self) -> String {
-        let rounded: f64 = format!("{:.2e}", self.value).parse().unwrap_or(self.value);
+        let rounded = significant(self.value, 3);
         match self.unit.as_str() {
             "-" => rounded.to_string(),
             unit => format!("{rounded} {unit}"),
@@ -155,6 +156,7 @@ fields! {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::problem::Problems;
     use crate::source::Source;
     use crate::yaml;
 
@@ -252,7 +254,8 @@ mod tests {
                     && problems
                         .0
                         .iter()
-                        .all(|problem| problem.code == "wrong-kind" && problem.at.is_some()),
+                        .all(|problem| ["wrong-kind", "key-missing"].contains(&problem.code)
+                            && problem.at.is_some()),
                 "{text}"
             );
         }

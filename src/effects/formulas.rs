@@ -22,11 +22,11 @@ impl Reader<'_, '_> {
                     "`{}` cannot be combined with `signals`, which defines the channels itself",
                     key.text
                 );
-                self.problems.push(Problem::error("contradiction", says).at(&key.span));
+                self.tell(Problem::error("contradiction", says).at(&key.span));
             }
         }
         if signals.entries().is_empty() {
-            self.problems.push(signals.is_not("`signals`", "a map of channels and expressions"));
+            self.tell(signals.is_not("`signals`", "a map of channels and expressions"));
             return None;
         }
         for parameter in parameters
@@ -54,11 +54,11 @@ impl Reader<'_, '_> {
                     format!("the channel `{}` has no unit in this catalogue", key.text),
                 );
                 let known = channels.iter().map(|(channel, _)| channel.as_str());
-                self.problems.push(problem.at(&key.span).suggest(&key.text, known));
+                self.tell(problem.at(&key.span).suggest(&key.text, known));
                 continue;
             };
             let Some(text) = written.scalar_text() else {
-                self.problems.push(written.is_not("an expression", "text"));
+                self.tell(written.is_not("an expression", "text"));
                 continue;
             };
             let text =

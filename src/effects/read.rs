@@ -148,7 +148,7 @@ fn read_below(
             let known = effects.iter().map(|effect| effect.name.as_str());
             let says = format!("there is no effect `{}` to remove", key.text);
             let problem = Problem::error("unknown-effect", says).at(&key.span);
-            reader.problems.push(problem.suggest(&key.text, known));
+            reader.tell(problem.suggest(&key.text, known));
         }
         effects.retain(|effect| effect.name != key.text);
         if !removed {
@@ -246,7 +246,7 @@ impl Reader<'_, '_> {
                     .flat_map(|group| std::iter::once(&group.name).chain(&group.channels));
                 let says = format!("`{name}` is neither a group nor a channel of a group");
                 let problem = Problem::error("unknown-channel", says).at(at);
-                self.problems.push(problem.suggest(&name, known.map(String::as_str)));
+                self.tell(problem.suggest(&name, known.map(String::as_str)));
             }
         }
         channels
@@ -304,7 +304,7 @@ impl Reader<'_, '_> {
         let Some((_, wanted)) = model.iter().find(|(known, _)| known == parameter) else {
             let says = format!("the model has no parameter `{parameter}`");
             let problem = Problem::error("unknown-parameter", says).at(span);
-            self.problems.push(problem.suggest(parameter, model.iter().map(|(known, _)| *known)));
+            self.tell(problem.suggest(parameter, model.iter().map(|(known, _)| *known)));
             return None;
         };
         let wanted = Unit::parse(wanted).ok()?;

@@ -22,6 +22,7 @@ use crate::data::write::{
 use crate::foreign::File;
 use crate::problem::Problem;
 use crate::source::{Span, Spanned};
+use crate::units::number::significant;
 use crate::yaml::{Key, Literal, Node, Value, Words};
 
 /// Significant digits of a channel: those of a 32-bit number, and more than any sensor resolves.
@@ -48,7 +49,7 @@ pub fn write_record(
             .values
             .all()?
             .iter()
-            .map(|value| rounded(column.unit.from_si(*value), digits))
+            .map(|value| significant(column.unit.from_si(*value), digits))
             .collect();
         let heading = format!("{} [{}]", column.name, column.unit);
         let column = FileColumn { heading, values: Numbers(values), digits: None };
@@ -94,11 +95,6 @@ pub fn record_bytes(columns: &[Column], format: Format) -> Result<Vec<u8>, Probl
     let mut bytes = Vec::new();
     write_record(columns, format, None, &mut bytes)?;
     Ok(bytes)
-}
-
-/// The number with so many digits; adding zero removes the sign of a zero.
-fn rounded(value: f64, digits: usize) -> f64 {
-    format!("{value:.*e}", digits - 1).parse().unwrap_or(value) + 0.0
 }
 
 /// A file that is read, by the path in the mapping.
@@ -391,7 +387,7 @@ mod tests {
                     let values = Numbers(
                         values
                             .iter()
-                            .map(|value| rounded(unit(text).from_si(*value), digits))
+                            .map(|value| significant(unit(text).from_si(*value), digits))
                             .collect(),
                     );
                     FileColumn { heading: format!("{name} [{}]", unit(text)), values, digits: None }

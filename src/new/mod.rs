@@ -18,6 +18,7 @@ use crate::problem::{Problem, Problems};
 use crate::source::Source;
 use crate::syntax;
 use crate::units::Unit;
+use crate::units::number::significant;
 use allowances::allowances;
 use catalogue::{Entry, entries};
 use records::{DISTANCE, Pair, Roles, Series, TIME, roles};
@@ -270,14 +271,14 @@ fn sections(
                     mean(piece.values.windows(2).map(|pair| (pair[1] - pair[0]).abs() * piece.rate))
                 }
             });
-            row.push(three_digits(mean));
+            row.push(significant(mean, 3).to_string());
         }
         // A harmonic motion of this amplitude has this rms value.
         let amplitude = of(&first).map_or(0.0, |piece| {
             let middle = mean(piece.values.iter().copied());
             (2.0 * mean(piece.values.iter().map(|value| (value - middle).powi(2)))).sqrt()
         });
-        row.push(three_digits(amplitude));
+        row.push(significant(amplitude, 3).to_string());
         rows.push(row);
     }
     (table_csv(&rows), covariates)
@@ -286,10 +287,6 @@ fn sections(
 fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     let count = values.len().max(1) as f64;
     values.sum::<f64>() / count
-}
-
-fn three_digits(value: f64) -> String {
-    format!("{value:.2e}").parse::<f64>().unwrap_or(value).to_string()
 }
 
 /// The records of all sections: what is compared on both sides, and what the simulator is given.

@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::data::record::{Wanted, read_headings, read_record};
 use crate::metrics::resample::interpolate;
 use crate::problem::{Problem, Problems};
+use crate::units::number::significant;
 use crate::units::{Dimension, Unit};
 
 pub const TIME: &str = "time";
@@ -78,12 +79,10 @@ impl Series {
 
     /// The same with other times, by linear interpolation.
     fn at(&self, time: Vec<f64>) -> Self {
+        // Interpolated values have no more digits than a measurement can have.
         let of = |values: &[f64]| {
-            interpolate(&self.time, values, &time)
-                .unwrap_or_default()
-                .into_iter()
-                .map(nine_digits)
-                .collect()
+            let values = interpolate(&self.time, values, &time).unwrap_or_default();
+            values.into_iter().map(|value| significant(value, 9)).collect()
         };
         let channels = self
             .channels
@@ -104,11 +103,6 @@ impl Series {
         let count = ((last - first) / step * (1.0 + 1e-12)).floor() as usize;
         self.at((0..=count).map(|n| (first + n as f64 * step).min(last)).collect())
     }
-}
-
-/// Interpolated values have no more digits than a measurement can have.
-fn nine_digits(value: f64) -> f64 {
-    format!("{value:.8e}").parse().unwrap_or(value)
 }
 
 impl Pair {

@@ -2,6 +2,7 @@
 
 use super::records::{Pair, Roles, Series};
 use crate::diagnose::features::layout::{Piece, Spectrum};
+use crate::units::number::significant;
 
 /// Shares of the power of the measured channels below the lowest and the highest frequency that
 /// count.
@@ -173,7 +174,7 @@ fn edges((low, high): (f64, f64), least: f64) -> Vec<f64> {
 /// Rounded to two significant digits.
 #[must_use]
 pub fn two_digits(value: f64) -> f64 {
-    format!("{value:.1e}").parse().unwrap_or(value)
+    significant(value, 2)
 }
 
 /// Starts and ends have a thousandth of a second or a millimetre.

@@ -73,6 +73,12 @@ pub fn split<'a>(text: &'a str, expected: &Unit) -> Result<(f64, &'a str), Refus
     Ok((number, bare.unwrap_or(unit)))
 }
 
+/// A number with so many significant digits; a zero has no sign.
+#[must_use]
+pub fn significant(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value) + 0.0
+}
+
 /// ` (in kN)`, or nothing for a dimensionless number.
 fn place(expected: &Unit) -> String {
     if expected.text == "-" { String::new() } else { format!(" (in {expected})") }

@@ -100,8 +100,11 @@ macro_rules! fields {
     (@value $reader:ident $node:ident $key:literal = $default:expr) => {
         $reader.optional($node, $key).or_else(|| Some($default))
     };
-    (@value $reader:ident $node:ident $key:literal $(=> $missing:literal)?) => {
-        $reader.value($node, $key, concat!("" $(, $missing)?))
+    (@value $reader:ident $node:ident $key:literal => $missing:literal) => {
+        $reader.value($node, $key, $missing)
+    };
+    (@value $reader:ident $node:ident $key:literal) => {
+        $reader.value($node, $key, "")
     };
 }
 pub(crate) use fields;
@@ -118,14 +121,19 @@ pub enum OtherKeys {
 }
 
 impl<C> Reader<'_, C> {
+    /// Tells a problem.
+    pub fn tell(&mut self, problem: Problem) {
+        self.problems.push(problem);
+    }
+
     /// Tells a problem at a place.
     pub fn fault(&mut self, code: &'static str, says: impl Into<String>, at: &Span) {
-        self.problems.push(Problem::error(code, says).at(at));
+        self.tell(Problem::error(code, says).at(at));
     }
 
     /// The value of a result; a problem is told.
     pub fn keep<T>(&mut self, result: Result<T, Problem>) -> Option<T> {
-        result.map_err(|problem| self.problems.push(problem)).ok()
+        result.map_err(|problem| self.tell(problem)).ok()
     }
 
     /// A whole file, of which nothing stands above.
@@ -151,7 +159,7 @@ impl<C> Reader<'_, C> {
             let colon = if what.is_empty() { "" } else { ": " };
             let says = format!("`{key}` is missing{colon}{what}");
             let problem = Problem::error("key-missing", says).at(&map.span.part(0..0));
-            self.problems.push(problem.help(format!("write `{key}: ...`")));
+            self.tell(problem.help(format!("write `{key}: ...`")));
         }
         absent
     }
@@ -166,7 +174,7 @@ impl<C> Reader<'_, C> {
         others: OtherKeys,
     ) -> bool {
         let Value::Map(entries) = &node.value else {
-            self.problems.push(node.is_not(what, "a map of keys and values"));
+            self.tell(node.is_not(what, "a map of keys and values"));
             return false;
         };
         let known = || inner.iter().map(|(key, _)| *key);
@@ -178,7 +186,7 @@ impl<C> Reader<'_, C> {
             let lower = name.to_lowercase();
             let slip = known().find(|known| strsim::damerau_levenshtein(&lower, known) <= 1);
             let above = inner.iter().find(|(_, below)| below.contains(&name));
-            self.problems.push(match (others, slip, above) {
+            self.tell(match (others, slip, above) {
                 (OtherKeys::Refused, _, Some((map, _))) => problem.help(format!(
                     "`{name}` stands in `{map}`: `{map}: {{{name}: {}}}`",
                     value.raw
@@ -220,11 +228,6 @@ pub fn span_of_value<C>(_: &mut Reader<'_, C>, _: &Key, node: &Node) -> Span {
     node.span.clone()
 }
 
-/// The place of a key, for a field that is no key.
-pub fn span_of_key<C>(_: &mut Reader<'_, C>, key: &Key, _: &Node) -> Span {
-    key.span.clone()
-}
-
 /// Help for a value that begins with a brace, which is a map for YAML.
 pub fn quoted(key: &str, value: &str) -> String {
     format!("a value that begins with `{{` needs quotes: `{key}: \"{value}\"`")
@@ -245,7 +248,7 @@ impl<C> FromNode<C> for String {
             // `{section}` alone is a map for YAML.
             let braces = matches!(node.entries(), [(_, value)] if value.value == Value::Null);
             let help = braces.then(|| quoted(&key.text, node.span.text()));
-            reader.problems.push(problem.help_if(help));
+            reader.tell(problem.help_if(help));
         }
         text.map(str::to_string)
     }
@@ -265,7 +268,7 @@ impl<C> Reader<'_, C> {
     /// What was read of a node; that nothing was is told with what it must `be`.
     fn read<T>(&mut self, key: &Key, node: &Node, be: &str, read: Option<T>) -> Option<T> {
         if read.is_none() {
-            self.problems.push(node.is_not(&format!("`{}`", key.text), be));
+            self.tell(node.is_not(&format!("`{}`", key.text), be));
         }
         read
     }
@@ -307,6 +310,8 @@ impl<C, T: FromNode<C>> FromNode<C> for Spanned<T> {
 
 /// A value that may be missing; a faulty one is told, and missing as well.
 impl<C, T: FromNode<C>> FromNode<C> for Option<T> {
+    const INNER: &'static [&'static str] = T::INNER;
+
     fn from_node(reader: &mut Reader<'_, C>, key: &Key, node: &Node) -> Option<Self> {
         Some(T::from_node(reader, key, node))
     }
@@ -320,7 +325,7 @@ impl<C, T: FromNode<C>> FromNode<C> for Option<T> {
 impl<C, T: FromNode<C>> FromNode<C> for Vec<T> {
     fn from_node(reader: &mut Reader<'_, C>, key: &Key, node: &Node) -> Option<Self> {
         if !matches!(node.value, Value::List(_) | Value::Null) {
-            reader.problems.push(node.is_not(&format!("`{}`", key.text), "a list"));
+            reader.tell(node.is_not(&format!("`{}`", key.text), "a list"));
         }
         Some(node.items().iter().filter_map(|item| T::from_node(reader, key, item)).collect())
     }
@@ -355,7 +360,7 @@ impl<C, T: FromNode<C>> FromNode<C> for Entries<T> {
     fn from_node(reader: &mut Reader<'_, C>, key: &Key, node: &Node) -> Option<Self> {
         if !matches!(node.value, Value::Map(_)) {
             let problem = node.is_not(&format!("`{}`", key.text), "a map of names and values");
-            reader.problems.push(problem);
+            reader.tell(problem);
         }
         let mut read = |(key, node): &(Key, Node)| {
             T::from_node(reader, key, node).map(|value| (key.clone(), value))
@@ -404,7 +409,7 @@ impl<C, T: Words> FromNode<C> for T {
         if value.is_none() {
             let problem = Problem::error(T::CODE, format!("`{}` cannot be `{text}`", key.text));
             let known = T::WORDS.iter().map(|(word, _)| *word);
-            reader.problems.push(problem.at(&node.span).suggest(&text, known));
+            reader.tell(problem.at(&node.span).suggest(&text, known));
         }
         value
     }

@@ -110,8 +110,7 @@ impl FromNode<Opening<'_>> for Vehicles {
         };
         if states.is_empty() {
             let problem = Problem::error("wrong-kind", "`vehicle` names no file").at(&node.span);
-            reader.problems
-                .push(problem.help("`vehicle: vehicle.yaml`, or a file for each state: `vehicle: {tare: tare.yaml, laden: laden.yaml}`"));
+            reader.tell(problem.help("`vehicle: vehicle.yaml`, or a file for each state: `vehicle: {tare: tare.yaml, laden: laden.yaml}`"));
         }
         let mut found = Vec::new();
         for (state, file) in states {
@@ -129,7 +128,7 @@ fn vehicle(reader: &mut Reader<'_, Opening<'_>>, key: &Key, node: &Node) -> Opti
     if matches!(vehicle.value, Value::Map(_) | Value::Null) {
         return Some(vehicle);
     }
-    reader.problems.push(vehicle.is_not("a vehicle", "a map of keys and values"));
+    reader.tell(vehicle.is_not("a vehicle", "a map of keys and values"));
     None
 }
 
@@ -176,7 +175,7 @@ pub(super) struct Parameters(pub Vec<Parameter>);
 impl FromNode<Opening<'_>> for Parameters {
     fn from_node(reader: &mut Reader<'_, Opening<'_>>, _: &Key, node: &Node) -> Option<Self> {
         if !matches!(node.value, Value::Map(_) | Value::Null) {
-            reader.problems.push(node.is_not("`parameters`", "a map of names and values"));
+            reader.tell(node.is_not("`parameters`", "a map of names and values"));
         }
         for (key, value) in node.entries() {
             // What the campaign lacks was meant, whatever the protocol calls its parameters.
@@ -184,10 +183,10 @@ impl FromNode<Opening<'_>> for Parameters {
             if campaign_key && reader.with.tree.is_none_or(|tree| tree.get(&key.text).is_none()) {
                 let says = format!("`{}` stands among the parameters of the protocol", key.text);
                 let problem = Problem::error("unknown-key", says).at(&key.span);
-                reader.problems.push(problem.help(at_the_margin(&key.text)));
+                reader.tell(problem.help(at_the_margin(&key.text)));
             } else if value.scalar_text().is_none() {
                 let what = format!("the parameter `{}`", key.text);
-                reader.problems.push(value.is_not(&what, "a single value"));
+                reader.tell(value.is_not(&what, "a single value"));
             }
         }
         let entries = node.entries().iter().cloned();

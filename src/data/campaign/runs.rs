@@ -96,18 +96,18 @@ impl FromNode<Opening<'_>> for Runs {
         const EXAMPLE: &str = "for instance: `runs: {R1: {measurement: R1/measurement.parquet, simulation: R1/simulation.parquet}}`";
         if node.entries().is_empty() {
             let problem = node.is_not(&format!("`{RUNS}`"), "a map of names and runs");
-            reader.problems.push(problem.help(EXAMPLE));
+            reader.tell(problem.help(EXAMPLE));
         }
         let held = Held::default();
         let mut runs = Vec::new();
         for (key, node) in node.entries() {
             let name = Spanned::new(key.text.trim().to_string(), key.span.clone());
             if let Err(problem) = check_file_name(&name.value, &name.span) {
-                reader.problems.push(Problem { code: "name-invalid", ..problem });
+                reader.tell(Problem { code: "name-invalid", ..problem });
             } else if !matches!(&node.value, Value::Map(_)) {
                 let problem =
                     node.is_not(&format!("the run `{}`", name.value), "a map of its files");
-                reader.problems.push(problem.help(EXAMPLE));
+                reader.tell(problem.help(EXAMPLE));
             } else {
                 runs.extend(run(reader, name, key, node, &held));
             }
@@ -139,7 +139,7 @@ fn run(
     if files.iter().all(Option::is_none) && reader.problems.errors() == before {
         let says = format!("the run `{}` names no file", name.value);
         let problem = Problem::error("no-records", says).at(&node.span);
-        reader.problems.push(problem.help("name its files: `measurement`, `simulation`, `track`"));
+        reader.tell(problem.help("name its files: `measurement`, `simulation`, `track`"));
     }
     let known = std::array::from_fn(|_| Known::with(held));
     let correct_drift = written.drift == OnDrift::Correct;
@@ -164,9 +164,7 @@ impl FromNode<Opening<'_>> for RunFile {
                 Format::Parquet.ending()
             );
             let problem = Problem::error("format-not-read", says).at(&written.span);
-            reader
-                .problems
-                .push(problem.help("write it as Parquet, or copy it to the campaign's folder"));
+            reader.tell(problem.help("write it as Parquet, or copy it to the campaign's folder"));
             return None;
         }
         Some(Self(written))

@@ -291,7 +291,10 @@ fn by_content(looks: &[Look], need: &ChannelNeed, convention: &Convention) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::problem::Problems;
     use crate::run::needs::Users;
+    use crate::source::Source;
+    use crate::yaml::{self, Reader};
 
     fn look(name: &str, unit: &str, mean: f64) -> Look {
         Look {
@@ -369,7 +372,6 @@ mod tests {
 
     #[test]
     fn axes_without_a_unit_are_known_by_name() {
-        let names = |list: &[&str]| list.iter().map(ToString::to_string).collect::<Vec<_>>();
         let convention = convention_of(
             "convention: c\nnames: {time: [Zeit, t], distance: [Weg, s], speed: v}\n",
         );

@@ -2,6 +2,7 @@
 
 use crate::foreign::Table;
 use crate::units::Unit;
+use crate::units::number::significant;
 
 /// A channel of a file with its figures, in the unit of the file.
 #[derive(Clone, Debug)]
@@ -101,6 +102,5 @@ impl Look {
 
 /// Four digits.
 pub fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-    format!("{}", rounded + 0.0)
+    significant(value, 4).to_string()
 }

@@ -66,7 +66,7 @@ impl<C> FromNode<C> for Channels {
         }
         let Value::Map(entries) = &node.value else {
             let help = format!("write `channels: {AS_NAMED}` if every channel keeps its name");
-            reader.problems.push(node.is_not("`channels`", "a map of channels").help(help));
+            reader.tell(node.is_not("`channels`", "a map of channels").help(help));
             return None;
         };
         let maps: Vec<ChannelMap> = entries
@@ -88,7 +88,7 @@ impl<C> FromNode<C> for Channels {
                     "`{}` is mapped twice: to `{}` and to `{}`",
                     map.terms[0].name.value, first.name.value, map.name.value
                 );
-                reader.problems.push(
+                reader.tell(
                     Problem::error("mapped-twice", says)
                         .at(&map.terms[0].name.span)
                         .also(&first.terms[0].name.span, "the first"),
@@ -136,7 +136,7 @@ impl<C> FromNode<C> for ChannelMap {
                 stated.value.dimension.in_words(),
                 written.value.dimension.in_words()
             );
-            reader.problems.push(
+            reader.tell(
                 Problem::error("unit-mismatch", says)
                     .at(&written.span)
                     .also(&stated.span, "in the file"),
@@ -166,7 +166,7 @@ impl<C> FromNode<C> for Offset {
         let (number, unit) = reader.keep(split)?;
         if unit.is_empty() {
             let problem = Problem::error("unit-missing", "the offset has no unit").at(&node.span);
-            reader.problems.push(problem.help(format!("write it, for instance `{text} kN`")));
+            reader.tell(problem.help(format!("write it, for instance `{text} kN`")));
             return None;
         }
         let unit = reader.unit(unit, &node.span)?;

@@ -84,8 +84,7 @@ pub(super) fn time(reader: &mut Reader<'_, &Sections>, side: &Node, at: &Span) -
         let says = format!("a drift of {drift} is more than {MOST_DRIFT}");
         let problem = Problem::error("out-of-range", says).at(node.span_of("drift"));
         reader
-            .problems
-            .push(problem.help("write it in parts per million: `50 ppm`; another rate is `rate`"));
+            .tell(problem.help("write it in parts per million: `50 ppm`; another rate is `rate`"));
     }
     if let (Some(Hertz(rate)), Some(from)) = (time.rate, time.from.0.first()) {
         let says = format!(
@@ -151,7 +150,7 @@ fn way(
             false => ("contradiction", "`distance` is stated in several ways"),
         };
         let problem = Problem::error(code, says).at(&node.span);
-        reader.problems.push(problem.help("write one of `from`, `from speed` and `from trigger`"));
+        reader.tell(problem.help("write one of `from`, `from speed` and `from trigger`"));
         return None;
     };
     for (what, belongs) in [
@@ -163,7 +162,7 @@ fn way(
             let says = format!("`{what}` has no meaning for a distance with `{way}`");
             let help = "write `offset` to add a length to the channel".to_string();
             let problem = Problem::error("contradiction", says).at(&other.span);
-            reader.problems.push(Problem { help: (what == "start").then_some(help), ..problem });
+            reader.tell(Problem { help: (what == "start").then_some(help), ..problem });
         }
     }
     // The channel is read as any other, with the keys that it takes.
@@ -182,7 +181,7 @@ fn way(
     if node.get("every").is_none() {
         let says = "`every` is missing: the length from pulse to pulse";
         let problem = Problem::error("key-missing", says).at(&node.span);
-        reader.problems.push(problem.help("write `every: 0.5 m`"));
+        reader.tell(problem.help("write `every: 0.5 m`"));
     }
     let Spanned { value: Metres(every), span } = every.as_ref()?;
     if *every <= 0.0 {
@@ -196,7 +195,7 @@ impl<C> FromNode<C> for Match {
     fn from_node(reader: &mut Reader<'_, C>, key: &Key, node: &Node) -> Option<Self> {
         const HELP: &str = "write `match: {curvature: NAME, within: 20 m}`: a column of the track file and a channel";
         if !matches!(node.value, Value::Map(_)) {
-            reader.problems.push(node.is_not("`match`", "a map").help(HELP));
+            reader.tell(node.is_not("`match`", "a map").help(HELP));
             return None;
         }
         let channels = node.entries().iter().filter(|(key, _)| key.text != "within");
@@ -205,7 +204,7 @@ impl<C> FromNode<C> for Match {
         let within: Option<Metres> = reader.optional(node, "within");
         if channels.is_empty() || node.get("within").is_none() {
             let says = "`match` needs a column of the track file with its channel, and `within`";
-            reader.problems.push(Problem::error("key-missing", says).at(&key.span).help(HELP));
+            reader.tell(Problem::error("key-missing", says).at(&key.span).help(HELP));
         }
         let Metres(within) = within.filter(|_| !channels.is_empty())?;
         Some(Self { channels, within, span: key.span.clone() })

@@ -84,7 +84,7 @@ pub fn read(source: &Arc<Source>, folder: &Path, problems: &mut Problems) -> Opt
         .collect();
     if written.measurement.is_none() && written.simulation.is_none() {
         let says = "the mapping has neither `measurement` nor `simulation`";
-        reader.problems.push(
+        reader.tell(
             Problem::error("key-missing", says)
                 .at(&source.span(0..0))
                 .help("state where the records of a side are: `files`"),
@@ -183,6 +183,6 @@ fn check_campaign(entries: &[(Key, Node)], reader: &mut Reader<'_>) {
         } else {
             "remove it".into()
         };
-        reader.problems.push(Problem::error("unknown-key", says).at(&key.span).help(help));
+        reader.tell(Problem::error("unknown-key", says).at(&key.span).help(help));
     }
 }

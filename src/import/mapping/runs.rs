@@ -71,7 +71,7 @@ pub(super) fn read(reader: &mut Reader<'_>, tree: &Node) -> Option<(Runs, Sectio
             .unzip(),
         _ => {
             let be = "a list of names, or a map of names and facts";
-            reader.problems.push(node.is_not(&format!("`{RUNS}`"), be).help(EXAMPLE));
+            reader.tell(node.is_not(&format!("`{RUNS}`"), be).help(EXAMPLE));
             Default::default()
         }
     };
@@ -88,20 +88,20 @@ pub(super) fn read(reader: &mut Reader<'_>, tree: &Node) -> Option<(Runs, Sectio
 fn facts_of_run(reader: &mut Reader<'_>, name: &str, node: &Node) -> Vec<(Key, Node)> {
     if !matches!(node.value, Value::Map(_) | Value::Null) {
         let problem = node.is_not(&format!("the run `{name}`"), "a map of what holds for it");
-        reader.problems.push(problem.help("for instance: `{country: DE, line: north}`"));
+        reader.tell(problem.help("for instance: `{country: DE, line: north}`"));
     }
     for (key, value) in node.entries() {
         if RecordKind::ALL.iter().any(|kind| kind.key() == key.text) {
             let says = format!("`{}` of a run is written by the import", key.text);
             let problem = Problem::error("unknown-key", says).at(&key.span);
-            reader.problems.push(
+            reader.tell(
                 problem.help("the path of its file stands in `files` of the side, with `{run}`"),
             );
         } else if key.text == DRIFT {
             OnDrift::from_node(reader, key, value);
         } else if value.scalar_text().is_none() {
             let problem = value.is_not(&format!("`{}` of a run", key.text), "a single value");
-            reader.problems.push(problem);
+            reader.tell(problem);
         }
     }
     node.entries().to_vec()
@@ -127,14 +127,12 @@ impl FromNode<&Sections> for Drift {
             let says =
                 format!("a window of {window} m is too short for a shift of up to {within} m");
             let problem = Problem::error("out-of-range", says).at(node.span_of("window"));
-            reader
-                .problems
-                .push(problem.help(format!("at least {} m are needed", SHORTEST * within)));
+            reader.tell(problem.help(format!("at least {} m are needed", SHORTEST * within)));
         }
         if reader.with.word != "run" && !reader.with.names.is_empty() {
             let says = "a drift is looked for along runs, and this mapping imports sections";
             let problem = Problem::error("contradiction", says).at(&key.span);
-            reader.problems.push(
+            reader.tell(
                 problem.help("name the runs in `runs`; the shift of single sections is `offsets`"),
             );
         }

@@ -96,7 +96,7 @@ pub(super) fn read(reader: &mut Reader<'_>, tree: &Node, folder: &Path) -> Optio
     let Some((key, node)) = tree.entry("sections") else {
         let says = "`sections` is missing: the table of sections, or their names";
         let problem = Problem::error("key-missing", says).at(&tree.span.part(0..0));
-        reader.problems.push(problem.help("write `sections: sections.csv`, or `sections: [S01, S02]` where whole records are evaluated"));
+        reader.tell(problem.help("write `sections: sections.csv`, or `sections: [S01, S02]` where whole records are evaluated"));
         return None;
     };
     let before = reader.problems.errors();
@@ -147,7 +147,7 @@ pub(super) fn check_placeholders(reader: &mut Reader<'_, &Sections>, written: &S
         };
         let problem = Problem::error("unknown-placeholder", says).at(&written.span);
         let known = std::iter::once(word).chain(sections.columns());
-        reader.problems.push(problem.suggest(name, known));
+        reader.tell(problem.suggest(name, known));
     }
 }
 
@@ -156,7 +156,7 @@ pub(super) fn check_column(reader: &mut Reader<'_, &Sections>, name: &str, span:
     if !reader.with.has_column(name) {
         let says = format!("the table of sections has no column `{name}`");
         let problem = Problem::error("unknown-column", says).at(span);
-        reader.problems.push(problem.suggest(name, reader.with.columns()));
+        reader.tell(problem.suggest(name, reader.with.columns()));
     }
 }
 
@@ -167,7 +167,7 @@ pub(super) fn known(reader: &mut Reader<'_, &Sections>, name: &str, span: &Span)
         let problem =
             Problem::error("unknown-section", format!("there is no {word} `{name}`")).at(span);
         let names = names.iter().map(|known| known.value.as_str());
-        reader.problems.push(problem.suggest(name, names));
+        reader.tell(problem.suggest(name, names));
     }
 }
 

@@ -110,7 +110,7 @@ pub(super) fn read(
         let word = sections.word;
         let says =
             format!("every {word} is read from `{}`, each as its own stretch of it", files.value);
-        reader.problems.push(Problem::warning("one-file", says).at(&files.span).help(format!(
+        reader.tell(Problem::warning("one-file", says).at(&files.span).help(format!(
             "write `{{{word}}}` where the name of the {word} stands in the path or in `table`"
         )));
     }
@@ -124,13 +124,13 @@ pub(super) fn read(
     {
         let says = "the table of sections has a column `offset` as well, and both would be added";
         let problem = Problem::error("offset-twice", says).at(&offsets.span);
-        reader.problems.push(problem.help("remove one of them"));
+        reader.tell(problem.help("remove one of them"));
     }
     if let Some(drift) = &written.drift {
         if kind == RecordKind::Simulation {
             let says = "`drift` stands with the measurement, whose distance is corrected";
             let problem = Problem::error("contradiction", says).at(&drift.span);
-            reader.problems.push(problem.help("move it to `measurement`"));
+            reader.tell(problem.help("move it to `measurement`"));
         }
         if written.distance.is_none() {
             let says = "`drift` needs a distance, and none is stated: `distance`";
@@ -140,7 +140,7 @@ pub(super) fn read(
     if node.get("channels").is_none() {
         let says = "`channels` is missing: what each channel of the campaign is in the file";
         let help = format!("write `channels: {AS_NAMED}` if every channel keeps its name");
-        reader.problems.push(Problem::error("key-missing", says).at(&key.span).help(help));
+        reader.tell(Problem::error("key-missing", says).at(&key.span).help(help));
     }
     let channels = written.channels?;
     for Spanned { value: name, span } in channels.maps().iter().flat_map(|maps| {
@@ -149,7 +149,7 @@ pub(super) fn read(
         let problem =
             Problem::error("axis-among-channels", format!("`{name}` stands among the channels"));
         let help = format!("write `{name}:` beside `channels:`");
-        reader.problems.push(problem.at(span).help(help));
+        reader.tell(problem.at(span).help(help));
     }
     Some(Side {
         kind,
@@ -199,7 +199,7 @@ impl FromNode<&Sections> for Turned {
             _ => {
                 let says = "`turned` must be `all`, a list of sections, or a column with words";
                 let problem = Problem::error("wrong-kind", says).at(&span);
-                reader.problems.push(
+                reader.tell(
                     problem.help("write `turned: [S01, S02]`, or `turned: {leading end: B}`"),
                 );
                 None

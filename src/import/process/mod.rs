@@ -23,6 +23,7 @@ use crate::data::RecordKind;
 use crate::foreign::Table;
 use crate::problem::{Problem, Severity};
 use crate::source::Spanned;
+use crate::units::number::significant;
 use crate::units::{Dimension, Unit};
 use clock::{Clock, Grid, How, clock, grid, on_grid};
 use distance::Source;
@@ -552,6 +553,5 @@ fn few(mut faults: Vec<Problem>) -> Vec<Problem> {
 
 /// Six digits, for sentences.
 pub fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    format!("{rounded}")
+    significant(value, 6).to_string()
 }

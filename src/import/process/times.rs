@@ -8,6 +8,7 @@ use crate::foreign::Table;
 use crate::import::mapping::{ChannelMap, Distance};
 use crate::problem::Problem;
 use crate::source::{Span, Spanned};
+use crate::units::number::significant;
 use crate::yaml::Hertz;
 
 /// Most samples that are made for each one of the file. Interpolation adds nothing to a record but
@@ -179,8 +180,7 @@ fn extent(times: &[f64]) -> String {
 
 /// Three digits: more of a step would be rounding.
 fn step_in_words(step: f64) -> String {
-    let rounded: f64 = format!("{step:.2e}").parse().unwrap_or(step);
-    format!("{rounded}")
+    significant(step, 3).to_string()
 }
 
 /// The rows of a record and its rate.

@@ -183,7 +183,7 @@ impl Reader<'_, &Path> {
             (None, None) => {
                 let problem =
                     Problem::error("key-missing", "`command` is missing").at(&tree.span.part(0..0));
-                return self.problems.push(
+                return self.tell(
                     problem.help("a simulator is a `command`, or a function in a `python` file"),
                 );
             }
@@ -223,7 +223,7 @@ impl Reader<'_, &Path> {
             };
             let help =
                 "the command is not split by a shell: write `[program, --option, \"{out}\"]`";
-            self.problems.push(Problem::error("wrong-kind", says).at(&node.span).help(help));
+            self.tell(Problem::error("wrong-kind", says).at(&node.span).help(help));
         }
         node.items().iter().filter_map(|item| Word::read(item, allowed, self.problems)).collect()
     }
@@ -285,14 +285,14 @@ impl Reader<'_, &Path> {
                 "placeholder-missing",
                 "the command does not contain the path of the record to be written",
             );
-            self.problems.push(problem.at(&node.span).help("add a word with `{out}`"));
+            self.tell(problem.at(&node.span).help("add a word with `{out}`"));
         }
         if !set.is_empty() && !command.iter().any(|word| word.is(Hole::Set)) {
             let problem = Problem::error(
                 "placeholder-missing",
                 "the command has no placeholder for the words of `set`",
             );
-            self.problems.push(
+            self.tell(
                 problem
                     .at(&node.span)
                     .help("add the word `{set}`, without other text in that word"),
@@ -322,7 +322,7 @@ impl Reader<'_, &Path> {
             let problem =
                 Problem::error("no-such-program", format!("the system finds no program `{name}`"))
                     .at(at);
-            self.problems.push(
+            self.tell(
                 problem.help(format!("write `./{name}` for a program in the folder of this file")),
             );
         }
