@@ -314,12 +314,6 @@ pub fn acts(c: char) -> bool {
         || matches!(c, '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-impl From<Problem> for Problems {
-    fn from(problem: Problem) -> Self {
-        Self(vec![problem])
-    }
-}
-
 /// A reader that ends at its first problem, in one that collects them.
 impl From<Problem> for Vec<Problem> {
     fn from(problem: Problem) -> Self {

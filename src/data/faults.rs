@@ -44,6 +44,6 @@ impl<'a> Faults<'a> {
     }
 
     pub fn add_to(self, problems: &mut Problems) {
-        self.into_vec().into_iter().for_each(|problem| problems.push(problem));
+        problems.add(self.into_vec());
     }
 }

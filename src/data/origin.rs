@@ -227,16 +227,26 @@ mod tests {
             origin.effects_in_words(" = "),
             "friction = 0.23 and sensor_gain = 0.812 on Y_3R in zone 3, 4 and payload (a = 3500 kg, b = -0.1 m)"
         );
-        let odd = Literal("name: \u{7}\n".into());
-        let imported = Some(Imported { mapping: odd, ..Imported::default() });
-        let least = Origin {
-            program: "x".into(),
-            command: "y".into(),
-            campaign: "z".into(),
-            imported,
-            ..Origin::default()
-        };
-        assert_eq!(read(&least.text()).0, Some(least));
+        for odd in [
+            "name: \u{7}\n",
+            "",
+            "\n",
+            "a\n\n\n",
+            "\n\n a\n",
+            "no",
+            "\u{feff}a: \u{2028}\n",
+            "a\tb \n \n",
+        ] {
+            let imported = Some(Imported { mapping: Literal(odd.into()), ..Imported::default() });
+            let least = Origin {
+                program: "x".into(),
+                command: "y".into(),
+                campaign: "z".into(),
+                imported,
+                ..Origin::default()
+            };
+            assert_eq!(read(&least.text()).0, Some(least));
+        }
     }
 
     #[test]

@@ -87,7 +87,7 @@ pub fn import(
             some.par_iter().map(|job| work(job, mapping, needs, format, progress)).collect();
         for job in done {
             let Done { source, texts, problems } = job;
-            problems.into_iter().for_each(|problem| faults.push(problem));
+            faults.add(problems);
             let Some(source) = source else { continue };
             for (made, text) in texts {
                 // After a fault nothing is written; the rest is read for its faults.
@@ -102,7 +102,7 @@ pub fn import(
                     .position(|name| name.value == made.section)
                     .unwrap_or(0);
                 accounts.insert((made.kind, number), account(&made, &source));
-                made.warnings.into_iter().for_each(|problem| warnings.push(problem));
+                warnings.add(made.warnings);
             }
             if !sources.contains(&source) {
                 sources.push(source);

@@ -47,7 +47,7 @@ pub fn import(
         {
             match of_side(mapping, side, needs, &name.value, &store) {
                 Ok(one) => made.push(one),
-                Err(problems) => problems.into_iter().for_each(|problem| all.faults.push(problem)),
+                Err(problems) => all.faults.add(problems),
             }
             progress(&name.value);
         }
@@ -77,7 +77,7 @@ pub fn import(
                 write_record(&made.columns, format, Some(&store), sink)
             })?;
             all.accounts.push(account(&made, &source));
-            made.warnings.into_iter().for_each(|problem| all.warnings.push(problem));
+            all.warnings.add(made.warnings);
             if !all.sources.contains(&source) {
                 all.sources.push(source);
             }

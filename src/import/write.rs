@@ -258,7 +258,7 @@ pub fn add_campaign(
         campaign: mapping.name.value.clone(),
         sources: sources.chain(of_copies).collect(),
         imported: Some(Imported {
-            mapping: Literal(mapping.source.text.clone()),
+            mapping: Literal(mapping.source.text.replace("\r\n", "\n")),
             channels: channels(mapping),
             records,
         }),

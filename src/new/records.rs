@@ -118,7 +118,7 @@ impl Pair {
     ) -> Option<Self> {
         let mut one = |path: &Path| {
             let read = series(path, told);
-            read.map_err(|found| found.into_iter().for_each(|problem| problems.push(problem))).ok()
+            read.map_err(|found| problems.add(found)).ok()
         };
         let (simulated, measured) = (one(simulated), one(measured));
         let (mut simulated, measured) = (simulated?, measured?);

@@ -379,7 +379,7 @@ fn profile(path: &Path, shown: &str, problems: &mut Problems) -> Option<ProfileT
     let record = match read_record(path, shown, &wanted) {
         Ok(record) => record,
         Err(found) => {
-            found.into_iter().for_each(|problem| problems.push(problem));
+            problems.add(found);
             return None;
         }
     };

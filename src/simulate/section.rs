@@ -137,7 +137,7 @@ fn column(
     problems: &mut Problems,
 ) -> Vec<Option<f64>> {
     table.numbers_named(name, dimension).unwrap_or_else(|found| {
-        found.into_iter().for_each(|problem| problems.push(problem));
+        problems.add(found);
         Vec::new()
     })
 }

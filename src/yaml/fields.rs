@@ -260,7 +260,8 @@ pub struct Literal(pub String);
 
 impl<C> FromNode<C> for Literal {
     fn from_node(reader: &mut Reader<'_, C>, key: &Key, node: &Node) -> Option<Self> {
-        String::from_node(reader, key, node).map(|_| Self(node.raw.clone()))
+        let text = node.is_scalar().then(|| Self(node.raw.clone()));
+        reader.read(key, node, "text", text)
     }
 }
 

@@ -198,9 +198,7 @@ fn agree_side(
             None => problem,
         });
     }
-    left_out_of(side, &left_out, "not mapped")
-        .into_iter()
-        .for_each(|problem| problems.push(problem));
+    problems.add(left_out_of(side, &left_out, "not mapped"));
     let others = maps.iter().chain(side.distance.iter().filter_map(|distance| match distance {
         Distance::Channel(map) => Some(map),
         Distance::Speed { .. } | Distance::Trigger { .. } => None,
