@@ -509,7 +509,10 @@ fn unusable_campaigns() {
         (
             "no name",
             |campaign| replace(&campaign.join("campaign.yaml"), "name: Tiny\n", ""),
-            &["error[key-missing]: `name` is missing: what the campaign is called", "campaign.yaml:1:1"],
+            &[
+                "error[key-missing]: `name` is missing: what the campaign is called",
+                "campaign.yaml:1:1",
+            ],
         ),
         (
             "no vehicle file",
