@@ -124,7 +124,7 @@ fn origin_info(origin: &Origin, files: &[FileHash]) -> OriginInfo {
         .iter()
         .filter(|fitted| files.iter().any(|file| file.sha256 == fitted.sha256))
         .count();
-    let parts = [origin.program.as_str(), origin.command.as_str()];
+    let parts = [origin.program.0.as_str(), origin.command.0.as_str()];
     let made_by = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ");
     let effects = match origin.effects.len() {
         0 => "without effects added".to_string(),
@@ -146,7 +146,7 @@ fn origin_info(origin: &Origin, files: &[FileHash]) -> OriginInfo {
         let files = origin.sources.len();
         format!(
             "The records were imported from {files} files of other systems by {}; see How the records were made",
-            origin.program
+            origin.program.0
         )
     } else {
         format!(

@@ -17,11 +17,11 @@ fields! {
     #[derive(Default, PartialEq, Serialize, Deserialize)]
     pub struct Origin: "an origin" or Ignored {
         /// Program and version.
-        "program" program: String = String::new(),
+        "program" program: Literal = Literal::default(),
         /// `simulate`, `diagnose` or `import`.
-        "command" command: String = String::new(),
+        "command" command: Literal = Literal::default(),
         /// Name of the campaign whose simulation was first changed.
-        "campaign" campaign: String = String::new(),
+        "campaign" campaign: Literal = Literal::default(),
         #[serde(skip_serializing_if = "Option::is_none")]
         "simulator" simulator: Option<String>,
         /// Effects in the simulated records, in the order in which they were added.
@@ -189,9 +189,9 @@ mod tests {
         };
         let file = |path: &str| OriginFile { path: path.into(), sha256: "00ff".repeat(16) };
         let origin = Origin {
-            program: "fishplate 0.1.0".into(),
-            command: "diagnose".into(),
-            campaign: "Coach: first".into(),
+            program: Literal("fishplate 0.1.0".into()),
+            command: Literal("diagnose".into()),
+            campaign: Literal("Coach: first".into()),
             simulator: Some("x: y".into()),
             effects: vec![
                 effect("friction", &[("friction", 0.230_417, "-")]),
@@ -238,13 +238,7 @@ mod tests {
             "a\tb \n \n",
         ] {
             let imported = Some(Imported { mapping: Literal(odd.into()), ..Imported::default() });
-            let least = Origin {
-                program: "x".into(),
-                command: "y".into(),
-                campaign: "z".into(),
-                imported,
-                ..Origin::default()
-            };
+            let least = Origin { program: Literal("x".into()), imported, ..Origin::default() };
             assert_eq!(read(&least.text()).0, Some(least));
         }
     }

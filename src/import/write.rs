@@ -253,9 +253,9 @@ pub fn add_campaign(
         .iter()
         .map(|source| OriginFile { path: source.path.clone(), sha256: source.sha256.clone() });
     let origin = Origin {
-        program: concat!("fishplate ", env!("CARGO_PKG_VERSION")).to_string(),
-        command: "import".into(),
-        campaign: mapping.name.value.clone(),
+        program: Literal(concat!("fishplate ", env!("CARGO_PKG_VERSION")).to_string()),
+        command: Literal("import".into()),
+        campaign: Literal(mapping.name.value.clone()),
         sources: sources.chain(of_copies).collect(),
         imported: Some(Imported {
             mapping: Literal(mapping.source.text.replace("\r\n", "\n")),

@@ -6,6 +6,7 @@ use crate::data::{Campaign, RecordKind};
 use crate::disk;
 use crate::effects::{Applied, Catalogue};
 use crate::problem::Problem;
+use crate::yaml::Literal;
 
 /// Maximum size of a record in bytes.
 const LARGEST: u64 = 1 << 30;
@@ -71,12 +72,12 @@ impl Made<'_> {
                 before.fitted_to.iter().filter(|file| !fitted_to.contains(file)).cloned().collect();
             fitted_to.extend(earlier);
         }
-        let first =
-            campaign.origin.as_ref().map(|origin| &origin.campaign).filter(|name| !name.is_empty());
+        let before = campaign.origin.as_ref().map(|origin| &origin.campaign.0);
+        let first = before.filter(|name| !name.is_empty());
         Ok(Origin {
-            program: concat!("fishplate ", env!("CARGO_PKG_VERSION")).to_string(),
-            command: self.command.to_string(),
-            campaign: first.unwrap_or(&campaign.name).clone(),
+            program: Literal(concat!("fishplate ", env!("CARGO_PKG_VERSION")).to_string()),
+            command: Literal(self.command.to_string()),
+            campaign: Literal(first.unwrap_or(&campaign.name).clone()),
             simulator: self.simulator.map(str::to_string),
             effects,
             fitted_to,

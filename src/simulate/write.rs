@@ -70,7 +70,7 @@ pub fn write_campaign(
     if let Some(made) = made {
         let whole = made.origin(campaign, &copied)?;
         // The name contains only effects that are still in the new simulation.
-        name.clone_from(&whole.campaign);
+        name.clone_from(&whole.campaign.0);
         if !whole.effects.is_empty() {
             name = format!("{name}, with {}", whole.effects_in_words(" "));
         }

@@ -61,45 +61,46 @@ pub struct Match {
 
 impl Time {
     /// A time of which the file says all.
-    fn from_file(from: Vec<Spanned<String>>, span: Span) -> Self {
+    pub(super) fn from_file(from: Vec<Spanned<String>>, span: Span) -> Self {
         let from = OneOrMore(from);
         Self { from, unit: None, rate: None, shift: None, drift: Ratio(0.0), span }
     }
 }
 
 /// `time: NAME`, a list of names, or a map with more.
-pub(super) fn time(reader: &mut Reader<'_, &Sections>, side: &Node, at: &Span) -> Time {
-    let Some((key, node)) = side.entry("time") else {
-        return Time::from_file(Vec::new(), at.clone());
-    };
-    if !matches!(node.value, Value::Map(_)) {
-        let names: Option<OneOrMore<_>> = OneOrMore::from_node(reader, key, node);
-        return Time::from_file(names.map_or_else(Vec::new, |names| names.0), node.span.clone());
+#[derive(Clone, Debug)]
+pub(super) struct SideTime(pub Time);
+
+impl FromNode<&Sections> for SideTime {
+    fn from_node(reader: &mut Reader<'_, &Sections>, key: &Key, node: &Node) -> Option<Self> {
+        if !matches!(node.value, Value::Map(_)) {
+            let OneOrMore(names) = OneOrMore::from_node(reader, key, node)?;
+            return Some(Self(Time::from_file(names, node.span.clone())));
+        }
+        let time = Time::from_node(reader, key, node)?;
+        let Ratio(drift) = time.drift;
+        if drift.abs() > MOST_DRIFT {
+            let says = format!("a drift of {drift} is more than {MOST_DRIFT}");
+            let problem = Problem::error("out-of-range", says).at(node.span_of("drift"));
+            reader.tell(
+                problem.help("write it in parts per million: `50 ppm`; another rate is `rate`"),
+            );
+        }
+        if let (Some(Hertz(rate)), Some(from)) = (time.rate, time.from.0.first()) {
+            let says = format!(
+                "the time is from the channel `{}`, and a rate of {rate} Hz is stated",
+                from.value
+            );
+            reader.fault("contradiction", says, &from.span);
+        }
+        if let Some(Spanned { value: unit, span }) = &time.unit
+            && unit.dimension != Dimension::TIME
+        {
+            let says = format!("the time is in {unit}, which is {}", unit.dimension.in_words());
+            reader.fault("unit-mismatch", says, span);
+        }
+        Some(Self(time))
     }
-    let Some(time) = Time::from_node(reader, key, node) else {
-        return Time::from_file(Vec::new(), node.span.clone());
-    };
-    let Ratio(drift) = time.drift;
-    if drift.abs() > MOST_DRIFT {
-        let says = format!("a drift of {drift} is more than {MOST_DRIFT}");
-        let problem = Problem::error("out-of-range", says).at(node.span_of("drift"));
-        reader
-            .tell(problem.help("write it in parts per million: `50 ppm`; another rate is `rate`"));
-    }
-    if let (Some(Hertz(rate)), Some(from)) = (time.rate, time.from.0.first()) {
-        let says = format!(
-            "the time is from the channel `{}`, and a rate of {rate} Hz is stated",
-            from.value
-        );
-        reader.fault("contradiction", says, &from.span);
-    }
-    if let Some(Spanned { value: unit, span }) = &time.unit
-        && unit.dimension != Dimension::TIME
-    {
-        let says = format!("the time is in {unit}, which is {}", unit.dimension.in_words());
-        reader.fault("unit-mismatch", says, span);
-    }
-    time
 }
 
 fields! {
@@ -123,16 +124,18 @@ fields! {
 const OF_CHANNEL: [&str; 4] = ["unit", "factor", "offset", "table"];
 
 /// The distance, and its match with the track file.
-pub(super) fn distance(
-    reader: &mut Reader<'_, &Sections>,
-    side: &Node,
-) -> Option<(Option<Distance>, Option<Match>)> {
-    let (key, node) = side.entry("distance")?;
-    if !matches!(node.value, Value::Map(_)) {
-        return Some((ChannelMap::from_node(reader, key, node).map(Distance::Channel), None));
+#[derive(Clone, Debug)]
+pub(super) struct SideDistance(pub Option<Distance>, pub Option<Match>);
+
+impl FromNode<&Sections> for SideDistance {
+    fn from_node(reader: &mut Reader<'_, &Sections>, key: &Key, node: &Node) -> Option<Self> {
+        if !matches!(node.value, Value::Map(_)) {
+            let channel = ChannelMap::from_node(reader, key, node);
+            return Some(Self(channel.map(Distance::Channel), None));
+        }
+        let written = Written::from_node(reader, key, node)?;
+        Some(Self(way(reader, key, node, &written), written.matched))
     }
-    let written = Written::from_node(reader, key, node)?;
-    Some((way(reader, key, node, &written), written.matched))
 }
 
 fn way(

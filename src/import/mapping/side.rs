@@ -1,7 +1,7 @@
 //! One side of the campaign: the measurement or the simulation.
 
 use super::channels::{AS_NAMED, Channels};
-use super::distance::{self, Distance, Match, Time};
+use super::distance::{Distance, Match, SideDistance, SideTime, Time};
 use super::runs::Drift;
 use super::sections::{self, Sections};
 use super::stated::Stated;
@@ -48,8 +48,8 @@ fields! {
         "table" table: Option<Spanned<String>>,
         "format" format: Options = Options::default(),
         "units" units: Entries<Unit>,
-        "time" time: Option<Node>,
-        "distance" distance: Option<Node>,
+        "time" time: Option<SideTime>,
+        "distance" distance: Option<SideDistance>,
         "rate" rate: Option<Spanned<Hertz>>,
         "channels" channels: Option<Channels>,
         "offsets" offsets: Option<Spanned<Stated<Metres>>>,
@@ -105,7 +105,7 @@ pub(super) fn read(
         && fixed(files)
         && written.table.as_ref().is_none_or(fixed)
         && sections.names.len() > 1
-        && written.distance.is_none()
+        && node.get("distance").is_none()
     {
         let word = sections.word;
         let says =
@@ -114,8 +114,9 @@ pub(super) fn read(
             "write `{{{word}}}` where the name of the {word} stands in the path or in `table`"
         )));
     }
-    let time = distance::time(reader, node, &key.span);
-    let (distance, matched) = distance::distance(reader, node).unwrap_or_default();
+    let time = written.time.map(|time| time.0);
+    let time = time.unwrap_or_else(|| Time::from_file(Vec::new(), key.span.clone()));
+    let SideDistance(distance, matched) = written.distance.unwrap_or(SideDistance(None, None));
     if let Some(rate) = written.rate.as_ref().filter(|rate| rate.value.0 <= 0.0) {
         reader.fault("out-of-range", "the rate must be above zero", &rate.span);
     }
@@ -132,7 +133,7 @@ pub(super) fn read(
             let problem = Problem::error("contradiction", says).at(&drift.span);
             reader.tell(problem.help("move it to `measurement`"));
         }
-        if written.distance.is_none() {
+        if node.get("distance").is_none() {
             let says = "`drift` needs a distance, and none is stated: `distance`";
             reader.fault("contradiction", says, &drift.span);
         }

@@ -180,6 +180,7 @@ impl Reader<'_, &Path> {
     /// A command or a Python function, with the keys that belong to it.
     fn one_way(&mut self, tree: &Node) {
         let others = match (tree.get("command"), tree.get("python")) {
+            (None, None) if !matches!(tree.value, Value::Map(_)) => return,
             (None, None) => {
                 let problem =
                     Problem::error("key-missing", "`command` is missing").at(&tree.span.part(0..0));
