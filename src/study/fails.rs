@@ -57,8 +57,9 @@ impl Fails {
             columns[from..to].iter().for_each(|column| self.one(row, *column));
             return;
         }
-        let singles = columns[from..first * STEP].iter().chain(&columns[last * STEP..to]);
-        singles.for_each(|column| self.one(row, *column));
+        for part in [from..first * STEP, last * STEP..to] {
+            columns[part].iter().for_each(|column| self.one(row, *column));
+        }
         let start = row as usize * self.words;
         let set = |cut: usize| &self.from[cut * self.words..(cut + 1) * self.words];
         let words = self.bits[start..start + self.words].iter_mut();

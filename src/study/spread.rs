@@ -61,7 +61,7 @@ fn swept(blocks: &[Block], form: Form, mut limit: Option<&mut Limit<'_>>) -> Opt
     let mut margin =
         if flat { MARGIN.0 } else { MARGIN.1 } * (MARGIN_FOR / sample.len() as f64).powf(0.6);
     loop {
-        let mut sweep = Sweep::new(&sample, margin, form);
+        let mut sweep = Sweep::new(&sample, margin, count, form);
         for block in blocks {
             groups(block, |sorted| {
                 sorted.rows.iter().for_each(|row| sweep.row(sorted, row));
@@ -87,8 +87,10 @@ struct Sweep {
 }
 
 impl Sweep {
-    fn new(sample: &[f64], margin: f64, form: Form) -> Self {
-        let mut windows: [Window; WINDOWS] = Default::default();
+    fn new(sample: &[f64], margin: f64, count: u64, form: Form) -> Self {
+        // The windows of the quartiles hold twice the margin; no memory is taken before it is used.
+        let room = (2.5 * margin * count as f64) as usize;
+        let mut windows: [Window; WINDOWS] = std::array::from_fn(|_| Window::with_room(room));
         for (window, share) in windows.iter_mut().zip([0.25, 0.5, 0.75]) {
             (window.low, window.high) = (at(sample, share - margin), at(sample, share + margin));
         }

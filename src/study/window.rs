@@ -18,6 +18,11 @@ pub struct Window {
 }
 
 impl Window {
+    /// With room for so many values.
+    pub fn with_room(values: usize) -> Self {
+        Self { kept: vec![0.0; values], ..Self::default() }
+    }
+
     /// Counts and stores the values of a row.
     #[inline(always)]
     pub fn look(&mut self, row: &Row, q: &[f64], y: &[f64]) {
@@ -52,18 +57,24 @@ impl Window {
         if rank < self.below || next >= upto_kept + at_high {
             return None;
         }
-        let mut value = |rank: u64| {
-            if rank < upto_low {
-                self.low
-            } else if rank >= upto_kept {
-                self.high
-            } else {
-                let kept = &mut self.kept[..self.length];
-                *kept.select_nth_unstable_by((rank - upto_low) as usize, f64::total_cmp).1
-            }
+        let kept =
+            |rank: u64| (upto_low..upto_kept).contains(&rank).then(|| (rank - upto_low) as usize);
+        let beyond = |rank: u64| if rank < upto_low { self.low } else { self.high };
+        let numbers = &mut self.kept[..self.length];
+        // The number of a place, and the least of those that follow.
+        let mut selected = |place: usize| {
+            let (_, value, above) = numbers.select_nth_unstable_by(place, f64::total_cmp);
+            (*value, above.iter().copied().fold(f64::INFINITY, f64::min))
         };
-        let found = value(rank);
-        Some((found, if next == rank { found } else { value(next) }))
+        Some(match (kept(rank), kept(next)) {
+            (Some(place), Some(_)) => {
+                let (value, above) = selected(place);
+                (value, if next == rank { value } else { above })
+            }
+            (Some(place), None) => (selected(place).0, beyond(next)),
+            (None, Some(place)) => (beyond(rank), selected(place).0),
+            (None, None) => (beyond(rank), beyond(next)),
+        })
     }
 
     /// Number of values that meet a condition that holds below the window and fails above it.
