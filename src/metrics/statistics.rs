@@ -98,7 +98,7 @@ pub struct Line {
 /// Regression of y on x. `None` for fewer than two points, signals of different length, or x
 /// without scatter.
 pub fn regression(x: &[f64], y: &[f64]) -> Option<Line> {
-    let moments = Moments::of(x, y)?;
+    let moments = Products::of(x, y)?;
     if moments.xx == 0.0 {
         return None;
     }
@@ -109,7 +109,7 @@ pub fn regression(x: &[f64], y: &[f64]) -> Option<Line> {
 /// Pearson's correlation, in [-1, 1]. `None` for fewer than two points, signals of different
 /// length, or one of them without scatter.
 pub fn correlation(x: &[f64], y: &[f64]) -> Option<f64> {
-    let moments = Moments::of(x, y)?;
+    let moments = Products::of(x, y)?;
     if moments.xx == 0.0 || moments.yy == 0.0 {
         return None;
     }
@@ -118,7 +118,7 @@ pub fn correlation(x: &[f64], y: &[f64]) -> Option<f64> {
 }
 
 /// Sums of squares and products about the means.
-struct Moments {
+struct Products {
     mean_x: f64,
     mean_y: f64,
     xx: f64,
@@ -126,7 +126,7 @@ struct Moments {
     xy: f64,
 }
 
-impl Moments {
+impl Products {
     fn of(x: &[f64], y: &[f64]) -> Option<Self> {
         if x.len() != y.len() || x.len() < 2 {
             return None;

@@ -18,7 +18,7 @@ pub struct Counted {
 
 /// What selections say of one limit.
 #[derive(Debug)]
-pub struct OfLimit {
+pub struct LimitCount {
     pub spread: Option<Spread>,
     /// Number of selections that do not meet it.
     pub failing: u64,
@@ -41,7 +41,7 @@ impl Counted {
     pub fn new(
         case: &Case,
         share: Share,
-        limits: Vec<OfLimit>,
+        limits: Vec<LimitCount>,
         numbers: &Numbers,
         methods: Vec<String>,
     ) -> Self {

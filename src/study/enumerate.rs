@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use rayon::prelude::*;
 
 use super::case::{Case, Quantity};
-use super::counted::{Counted, Numbers, OfLimit};
+use super::counted::{Counted, LimitCount, Numbers};
 use super::fails::Fails;
 use super::halves::Halves;
 use super::overall::{OverAll, over_all, too_few};
@@ -84,7 +84,7 @@ pub fn marked(case: &Case) -> (Counted, Fails) {
     let of_limit = |found: OverAll| {
         let worst = found.worst.filter(|_| found.failing > 0);
         let worst = worst.map(|((row, column), value)| (halves.selection(row, column), value));
-        OfLimit { spread: found.spread.map(Spread::from), failing: found.failing, worst }
+        LimitCount { spread: found.spread.map(Spread::from), failing: found.failing, worst }
     };
     let limits = statistics.into_iter().flatten().map(of_limit).collect();
     let numbers = Numbers {

@@ -56,7 +56,7 @@ pub fn flips(before: Marked<'_>, after: Marked<'_>, settings: &Settings) -> Resu
 }
 
 fn drawn(one: &Case, two: &Case, settings: &Settings) -> Flips {
-    let (before, after) = (Judge::of(one), Judge::of(two));
+    let (before, after) = (Judge::new(one), Judge::new(two));
     let none = || Changes { before: &before, after: &after, lost: 0, gained: 0 };
     let (found, all) = draw_until(one, settings, none);
     Flips {

@@ -9,7 +9,7 @@ use crate::result::Verdict;
 /// the smallest. Every zone keeps the number of sections that a selection takes. `None` if the
 /// search finds no such set.
 pub fn set(case: &Case, verdict: Verdict) -> Option<Vec<usize>> {
-    let judge = Judge::of(case);
+    let judge = Judge::new(case);
     let found = match verdict {
         // It is sufficient that one limit fails: each is tried, and the shortest set is kept.
         Verdict::Validated => (0..case.measures().count())

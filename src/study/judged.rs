@@ -121,7 +121,7 @@ pub struct Judge<'a> {
 
 impl<'a> Judge<'a> {
     /// Forms the sums of all limits.
-    pub fn of(case: &'a Case) -> Self {
+    pub fn new(case: &'a Case) -> Self {
         let usable = case.usable();
         let sums = case.measures().map(|(_, measure)| {
             let summed = measure.summed()?;

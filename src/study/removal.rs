@@ -28,7 +28,7 @@ pub fn smallest(case: &Case, verdict: Verdict) -> Removal {
         larger: None,
     };
     let mut search = Search {
-        judge: Judge::of(case),
+        judge: Judge::new(case),
         members: case.members().collect(),
         verdict,
         left: if slow { MOST_TRIED_FROM_VALUES } else { MOST_TRIED },

@@ -3,7 +3,7 @@
 
 use super::Settings;
 use super::case::{Case, Measure};
-use super::counted::{Counted, Numbers, OfLimit};
+use super::counted::{Counted, LimitCount, Numbers};
 use super::grid::Additive;
 use super::judged::Judge;
 use super::known::{self, known};
@@ -21,12 +21,12 @@ struct Drawn<'a> {
     judge: &'a Judge<'a>,
     validated: u64,
     numbers: Numbers,
-    limits: Vec<Limit>,
+    limits: Vec<DrawnLimit>,
 }
 
 /// Results of one limit.
 #[derive(Clone, Default)]
-struct Limit {
+struct DrawnLimit {
     /// Selections that do not meet it.
     failing: u64,
     values: Vec<f64>,
@@ -41,7 +41,7 @@ impl<'a> Drawn<'a> {
             quantities: vec![(0, 0); case.quantities.len()],
             sections: vec![(0, 0); case.sections.len()],
         };
-        let limits = vec![Limit::default(); case.measures().count()];
+        let limits = vec![DrawnLimit::default(); case.measures().count()];
         Self { judge, validated: 0, numbers, limits }
     }
 }
@@ -100,7 +100,7 @@ fn add(mine: &mut (u64, u64), other: (u64, u64)) {
 
 /// Draws selections until the interval has the required width.
 pub fn some(case: &Case, settings: &Settings) -> Counted {
-    let judge = Judge::of(case);
+    let judge = Judge::new(case);
     let (drawn, all) = draw_until(case, settings, || Drawn::none(&judge));
     let interval = wilson(drawn.validated, all);
     let share = Share {
@@ -113,10 +113,10 @@ pub fn some(case: &Case, settings: &Settings) -> Counted {
     };
     let known = known(case);
     let of_limit =
-        |(((_, measure), limit), known): (((usize, &Measure), Limit), &Option<Spread>)| {
+        |(((_, measure), limit), known): (((usize, &Measure), DrawnLimit), &Option<Spread>)| {
             let drawn = limit.worst.filter(|_| limit.failing > 0).map(|(_, selection)| selection);
             let value = |selection: &[usize]| measure.over(selection.iter().copied());
-            OfLimit {
+            LimitCount {
                 spread: known.or_else(|| estimated(&limit.values)),
                 failing: limit.failing,
                 worst: worst_known(case, measure).or(drawn).map(|selection| {

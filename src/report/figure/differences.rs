@@ -123,7 +123,7 @@ pub fn draw(
         canvas.lines("level", line.pen, lines);
     }
     frame.spine(canvas);
-    let pairs = Pairs::of(quantity);
+    let pairs = Pairs::new(quantity);
     for pair in &quantity.values {
         let at = frame.at(slots.place(&pair.section, &pair.signal), pair.difference);
         pairs.draw(canvas, pair, marks.mark(pair), at, 1.8);

@@ -72,7 +72,7 @@ pub fn frequency(quantity: &QuantityResult, zones: &Zones) -> String {
         let font = Font::middle(TICK).color(MUTED);
         canvas.text("limit", (frame.x.at(*limit), top - 5.0), &font);
     }
-    let pairs = Pairs::of(quantity);
+    let pairs = Pairs::new(quantity);
     for (at, (name, values)) in curves.iter().enumerate() {
         curve(&mut canvas, &frame, values, look(at, name), &pairs);
     }

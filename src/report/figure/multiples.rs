@@ -114,7 +114,7 @@ fn one(
     }
     let lines = limits.iter().map(|limit| frame.across(*limit));
     canvas.lines("limit", Pen { width: 0.7, ..LIMIT }, lines);
-    let pairs = Pairs::of(quantity);
+    let pairs = Pairs::new(quantity);
     for pair in quantity.values.iter().filter(|pair| pair.difference.is_finite()) {
         let section = sections.get_index_of(pair.section.as_str()).unwrap_or_default();
         let at = frame.at(section as f64, pair.difference);

@@ -15,7 +15,7 @@ pub(super) struct Pairs<'a> {
 
 impl<'a> Pairs<'a> {
     /// With the decimals that tell the differences apart.
-    pub fn of(quantity: &'a QuantityResult) -> Self {
+    pub fn new(quantity: &'a QuantityResult) -> Self {
         let differences = quantity.values.iter().map(|pair| pair.difference);
         Self::with_decimals_of(quantity, differences)
     }
