@@ -104,3 +104,36 @@ impl Summed {
         Some(value * self.scale).filter(|value| value.is_finite())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::statistics::{Divisor, mean, rms, standard_deviation};
+    use super::*;
+
+    /// Over any members, what the statistics of their values are.
+    #[test]
+    fn sums_give_the_statistics_of_the_values() {
+        let members = [vec![3.0, 3.5], vec![], vec![-1.0], vec![2.0, 9.0, 4.0]];
+        for some in [&[0, 1, 2, 3][..], &[0, 3], &[2, 0], &[3]] {
+            let values: Vec<f64> = some.iter().flat_map(|&at| members[at].clone()).collect();
+            for (moment, wanted) in [
+                (Moment::Mean, mean(&values)),
+                (Moment::Deviation { ddof: 1.0 }, standard_deviation(&values, Divisor::Sample)),
+                (Moment::RootMeanSquare, rms(&values)),
+            ] {
+                let summed = Summed::new(moment, 0.5, &members);
+                let all = summed.total(0..4);
+                let others = summed.total((0..4).filter(|at| !some.contains(at)));
+                for total in [summed.total(some.iter().copied()), all.minus(others)] {
+                    let found = summed.value(total).zip(wanted);
+                    assert!(found.is_some_and(|(a, b)| (a - 0.5 * b).abs() < 1e-12), "{found:?}");
+                }
+            }
+        }
+        let scatter = Summed::new(Moment::Deviation { ddof: 1.0 }, 1.0, &members);
+        assert_eq!(
+            (scatter.value(scatter.total([2])), scatter.value(scatter.total([1]))),
+            (None, None)
+        );
+    }
+}

@@ -127,3 +127,22 @@ impl Fails {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whole sets and single columns together are the columns between two positions.
+    #[test]
+    fn ranges_of_an_order_are_marked() {
+        let order: Vec<u32> = (0..331_u32).map(|k| k * 97 % 331).collect();
+        for (from, to) in [(0, 331), (0, 0), (5, 60), (63, 65), (64, 128), (1, 330), (200, 331)] {
+            let (mut fails, mut single) = (Fails::new(2, 331), Fails::new(2, 331));
+            fails.order(&order);
+            fails.between(1, &order, from, to);
+            order[from..to].iter().for_each(|column| single.one(1, *column));
+            assert_eq!(fails.words(), single.words(), "{from} to {to}");
+            assert_eq!(fails.count(), (to - from) as u64);
+        }
+    }
+}

@@ -48,3 +48,15 @@ pub fn at(sample: &[f64], share: f64) -> f64 {
 fn wrapped(x: f64) -> f64 {
     if x >= 1.0 { x - 1.0 } else { x }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_places_of_the_sample() {
+        let sample: Vec<f64> = (0..100).map(f64::from).collect();
+        let found = [-0.01, 0.0, 0.305, 0.999, 1.0].map(|share| at(&sample, share));
+        assert_eq!(found, [f64::NEG_INFINITY, 0.0, 30.0, 99.0, f64::INFINITY]);
+    }
+}

@@ -98,3 +98,35 @@ fn keep(numbers: &mut [f64], wanted: impl Fn(f64) -> bool) -> usize {
     }
     length
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of numbers with many equal ones: wherever the bounds are, ranks inside are those of the
+    /// sorted numbers, others are refused.
+    #[test]
+    fn ranks_are_those_of_sorted_numbers() {
+        let numbers: Vec<f64> = (0..600).map(|k| f64::from(k * 7919 % 211) / 10.0 - 9.0).collect();
+        let mut sorted = numbers.clone();
+        sorted.sort_unstable_by(f64::total_cmp);
+        for (low, high) in [(-30.0, 30.0), (-4.0, 2.5), (0.0, 0.0), (1.05, 1.06), (3.0, 90.0)] {
+            for rank in 0..599 {
+                for next in [rank, rank + 1] {
+                    let mut window = Window { low, high, ..Window::with_room(3) };
+                    for part in numbers.chunks(77) {
+                        window.look(&Row::default(), part, &vec![0.0; part.len()]);
+                    }
+                    let (value, above) = (sorted[rank], sorted[next]);
+                    let inside = low <= value && above <= high;
+                    let found = window.ranked(rank as u64, next as u64);
+                    assert_eq!(found, inside.then_some((value, above)), "{low} {high} {rank}");
+                    if inside {
+                        let below = sorted.iter().filter(|number| **number <= value).count();
+                        assert_eq!(window.counted(|number| number <= value), below as u64);
+                    }
+                }
+            }
+        }
+    }
+}
