@@ -44,15 +44,18 @@ pub fn sections<'a>(
     progress: Progress<'_>,
 ) -> Result<Study, Problems> {
     let campaigns = campaigns.into();
-    let evaluated = evaluate(&compiled.plan, &compiled.graph, campaigns, &Shifts::NONE, progress)?
-        .swap_remove(0);
-    let vehicle = evaluated.facts.items(&compiled.plan);
-    sections_of(
-        compiled,
-        &evaluated,
-        campaign_info(&compiled.plan, campaigns, evaluated.files.clone(), vehicle),
-        settings,
-    )
+    let evaluated = unshifted(compiled, campaigns, progress)?;
+    sections_of(compiled, &evaluated, campaign_of(compiled, campaigns, &evaluated), settings)
+}
+
+/// Every record as it is, without an offset.
+fn unshifted(
+    compiled: &Compiled,
+    campaigns: Campaigns<'_>,
+    progress: Progress<'_>,
+) -> Result<Evaluated, Problems> {
+    let Compiled { plan, graph, .. } = compiled;
+    Ok(evaluate(plan, graph, campaigns, &Shifts::NONE, progress)?.swap_remove(0))
 }
 
 /// The same of sections that were evaluated before.
@@ -124,13 +127,17 @@ fn joined(
 ) -> Study {
     Study {
         protocol: protocol_info(compiled),
-        campaign: campaign_info(
-            &compiled.plan,
-            campaigns,
-            evaluated.files.clone(),
-            evaluated.facts.items(&compiled.plan),
-        ),
+        campaign: campaign_of(compiled, campaigns, evaluated),
         notes: evaluated.notes.clone(),
         found,
     }
+}
+
+fn campaign_of(
+    compiled: &Compiled,
+    campaigns: Campaigns<'_>,
+    evaluated: &Evaluated,
+) -> CampaignInfo {
+    let vehicle = evaluated.facts.items(&compiled.plan);
+    campaign_info(&compiled.plan, campaigns, evaluated.files.clone(), vehicle)
 }

@@ -2,7 +2,7 @@
 
 use super::rule::Rule;
 use super::scale::Scale;
-use super::{Settings, case_of, joined};
+use super::{Settings, case_of, joined, unshifted};
 use crate::certify::{Compiled, compile};
 use crate::check::family::Family;
 use crate::check::plan::{Parameter, Plan, SetBy};
@@ -10,7 +10,7 @@ use crate::check::{Override, Overrides};
 use crate::data::Campaigns;
 use crate::problem::{Problem, Problems};
 use crate::result::study::{AtValue, Found, ParameterStudy, Selected, Study, Varied};
-use crate::run::{Evaluated, Progress, Shifts, evaluate};
+use crate::run::{Evaluated, Progress};
 use crate::source::Source;
 use crate::study::marked;
 use crate::syntax::document::Text;
@@ -47,7 +47,6 @@ pub fn parameters<'a>(
     progress: Progress<'_>,
 ) -> Result<Study, Problems> {
     let campaigns = campaigns.into();
-    let plan = &compiled.plan;
     // All values are compiled before any is evaluated, so that an invalid one is reported at once.
     let mut compiled_values = Vec::new();
     let mut problems = Problems::default();
@@ -65,8 +64,7 @@ pub fn parameters<'a>(
         return Err(problems);
     }
     let quiet = |_: &str| {};
-    let evaluated =
-        evaluate(plan, &compiled.graph, campaigns, &Shifts::NONE, &quiet)?.swap_remove(0);
+    let evaluated = unshifted(compiled, campaigns, &quiet)?;
     progress("baseline");
     let base = at_value(&evaluated, compiled, settings, "baseline", true);
     let mut parameters = Vec::new();
@@ -80,8 +78,7 @@ pub fn parameters<'a>(
                 found.push(AtValue { value: shown, ..base.clone() });
                 continue;
             }
-            let evaluated = evaluate(&other.plan, &other.graph, campaigns, &Shifts::NONE, &quiet)?
-                .swap_remove(0);
+            let evaluated = unshifted(&other, campaigns, &quiet)?;
             found.push(at_value(&evaluated, &other, settings, &shown, false));
         }
         parameters.push(Varied {
