@@ -34,7 +34,7 @@ fn pool(counts: &[usize]) -> Pool {
         estimate: Pooled::Statistic(named(name), 1),
         at_least: false,
         title: name.into(),
-        scope: "all".into(),
+        scope: fishplate::result::Scope::default(),
         positions: Vec::new(),
         inside: vec![true; all],
         bounds: vec![bound],

@@ -14,8 +14,8 @@ use crate::data::hash::{Hasher, sha256};
 use crate::graph::{self, Graph};
 use crate::problem::Problems;
 use crate::result::{
-    CampaignInfo, Certification, ChannelInfo, DataItem, FileHash, FilterInfo, OriginInfo,
-    ParameterInfo, ProtocolFile, ProtocolInfo,
+    CampaignInfo, Certification, ChannelInfo, DataItem, FORMAT, FileHash, FilterInfo, Kind,
+    OriginInfo, ParameterInfo, ProtocolFile, ProtocolInfo, THIS,
 };
 use crate::run::{self, Outcome, Progress, Settings};
 use crate::syntax::document::Block;
@@ -93,7 +93,10 @@ pub fn certification(compiled: &Compiled, about: &About, outcome: Outcome) -> Ce
     let mut notes = outcome.notes;
     notes.extend(campaign.origin.as_ref().map(|origin| format!("{}.", origin.says)));
     Certification {
+        fishplate: THIS.into(),
+        format: FORMAT,
         protocol: protocol_info(compiled),
+        verdict_text: Kind::of(&judged.quantities).verdict_words(judged.verdict).into(),
         verdict: judged.verdict,
         own_word: judged.own_word,
         verdict_note: campaign.origin.as_ref().and_then(OriginInfo::note),
@@ -134,7 +137,9 @@ pub fn protocol_info(compiled: &Compiled) -> ProtocolInfo {
     let files: Vec<ProtocolFile> = family
         .sources
         .iter()
-        .map(|source| ProtocolFile {
+        .enumerate()
+        .map(|(at, source)| ProtocolFile {
+            attached: ProtocolFile::attachment(at, &source.file_name()),
             name: source.file_name(),
             sha256: sha256(source.text.as_bytes()),
             text: source.text.clone(),

@@ -10,11 +10,10 @@ use crate::provenance::carried::REPORT_PDF;
 use crate::provenance::statement;
 use crate::report::pdf::Attachment;
 use crate::report::study::Document;
-use crate::report::{self, attached, figure, html, json, tables, typst, view};
-use crate::result::Certification;
+use crate::report::{self, attached, figure, html, tables, typst, view};
 use crate::result::comparison::Comparison;
-use crate::result::diagnosis::Diagnosis;
 use crate::result::study::Study;
+use crate::result::{self, Certification};
 
 /// Paths and contents.
 pub type Files = Vec<(String, Vec<u8>)>;
@@ -37,7 +36,7 @@ const REPORT_HTML: &str = "report.html";
 /// A table, a template or a text cannot be written.
 pub fn certification(found: &Certification, reports: Reports) -> Result<Files, Problems> {
     let (results, tables) = rayon::join(
-        || json::results(found),
+        || result::text(found),
         || tables::tables(found).map_err(|error| error.to_string()),
     );
     let mut files = in_folder(tables)?;
@@ -45,8 +44,7 @@ pub fn certification(found: &Certification, reports: Reports) -> Result<Files, P
         let data = view::view(found);
         let figures = figure::figures(found);
         let pdf = || {
-            let names = attached::protocol_names(found);
-            let attachments = attached::attachments(found, &results, &names);
+            let attachments = attached::attachments(found, &results);
             Ok(typst::typeset(&data, &figures, &attachments)?.bytes)
         };
         files.extend(both(reports, pdf, || html::html(&data, &figures))?);
@@ -62,7 +60,7 @@ pub fn study(found: &Study, reports: Reports) -> Result<Files, Problems> {
     let mut files =
         in_folder(report::study::tables::tables(found).map_err(|error| error.to_string()))?;
     let (data, figures) = (report::study::document(found), report::study::figures(found));
-    let numbers = report::study::json::study(found);
+    let numbers = result::text(found);
     files.extend(document(
         ("study.json", "Every number of this study"),
         numbers,
@@ -78,7 +76,7 @@ pub fn study(found: &Study, reports: Reports) -> Result<Files, Problems> {
 pub fn comparison(found: &Comparison, reports: Reports) -> Result<Files, Problems> {
     let mut files =
         in_folder(report::comparison::tables::tables(found).map_err(|error| error.to_string()))?;
-    let numbers = report::comparison::json(found);
+    let numbers = result::text(found);
     if !reports.pdf && !reports.html {
         files.push((COMPARISON.0.into(), numbers.into_bytes()));
         return Ok(files);
@@ -98,16 +96,11 @@ pub fn diagnosis(outcome: &Outcome, reports: Reports) -> Result<Files, Problems>
         (report::diagnosis::document(found, &outcome.before), report::diagnosis::figures(found));
     document(
         ("diagnosis.json", "Every number of this diagnosis"),
-        diagnosis_json(found),
+        result::text(found),
         &data,
         &figures,
         reports,
     )
-}
-
-/// The text of `diagnosis.json`.
-pub fn diagnosis_json(diagnosis: &Diagnosis) -> String {
-    serde_json::to_string_pretty(diagnosis).unwrap_or_default() + "\n"
 }
 
 /// A document as report.pdf with its numbers attached, as report.html, and the numbers as `name`.

@@ -9,7 +9,7 @@ use fishplate::check::{Override, Overrides, family};
 use fishplate::data::Campaign;
 use fishplate::library;
 use fishplate::problem::Problems;
-use fishplate::report::json;
+use fishplate::result::text;
 use fishplate::result::{Certification, Verdict};
 use fishplate::run::Settings;
 use fishplate::source::Source;
@@ -137,7 +137,7 @@ fn sensible(found: &Certification) {
     } else {
         assert!(!found.reasons.is_empty(), "no reason for the verdict");
     }
-    let text = json::results(found);
+    let text = text(found);
     assert!(serde_json::from_str::<serde_json::Value>(&text).is_ok(), "{text}");
 }
 

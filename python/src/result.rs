@@ -15,7 +15,8 @@ use fishplate::data::write::Outputs;
 use fishplate::deliver::{self, Files, Reports};
 use fishplate::disk::SetKind;
 use fishplate::problem::{Problem, Problems};
-use fishplate::report::{figure, json, tables};
+use fishplate::report::{figure, tables};
+use fishplate::result::text;
 use fishplate::result::{Certification, PairValue, QuantityResult, StatisticResult, Verdict};
 use fishplate::run::Settings;
 
@@ -80,7 +81,7 @@ impl Result {
     /// The bytes of results.json.
     fn json<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         let found = Arc::clone(&self.found);
-        PyBytes::new(py, py.detach(|| json::results(&found)).as_bytes())
+        PyBytes::new(py, py.detach(|| text(&found)).as_bytes())
     }
 
     /// One row for each statistic of each quantity.
@@ -103,8 +104,8 @@ impl Result {
         };
         Table::new(vec![
             ("quantity", text(&|q, _| Some(q.id.clone()))),
-            ("statistic", text(&|_, s| Some(s.name.clone()))),
-            ("scope", text(&|_, s| Some(s.scope.clone()))),
+            ("statistic", text(&|_, s| Some(s.name.to_string()))),
+            ("scope", text(&|_, s| Some(s.scope.to_string()))),
             ("unit", text(&|_, s| Some(s.unit.clone()))),
             ("pairs", count(&|s| s.count)),
             ("n", count(&|s| s.n)),
@@ -140,7 +141,7 @@ impl Result {
             ("section", text(&|_, v| Some(v.section.clone()))),
             ("zone", text(&|_, v| v.zone.clone())),
             ("signal", text(&|_, v| Some(v.signal.clone()))),
-            ("record", text(&|_, v| v.record.clone())),
+            ("record", text(&|_, v| v.record.as_ref().map(ToString::to_string))),
             ("simulated", number(&|v| v.simulated)),
             ("measured", number(&|v| v.measured)),
             ("difference", number(&|v| Some(v.difference))),
@@ -239,7 +240,7 @@ impl Result {
                 let cells = [
                     &quantity.id,
                     &s.title,
-                    &s.scope,
+                    &s.scope.to_string(),
                     &s.n.to_string(),
                     &value,
                     &limit,

@@ -10,8 +10,8 @@ use crate::data::identification::Stated;
 use crate::data::origin::{ImportedRecord, Origin};
 use crate::data::{Campaigns, qualified};
 use crate::result::{
-    CampaignInfo, CampaignMember, DataItem, FileHash, FittedTo, ImportedOne, ImportedSide,
-    OriginInfo, ReportItem,
+    CampaignInfo, CampaignMember, DataItem, FileHash, FittedTo, Identification, ImportedOne,
+    ImportedSide, OriginInfo, ReportItem,
 };
 use crate::yaml::{Node, Value};
 
@@ -90,7 +90,7 @@ impl About {
                 files,
                 vehicle: self.vehicle.clone(),
                 facts: only.facts.clone(),
-                report: only.report.clone(),
+                report: Identification(only.report.clone()),
             };
         }
         let member = |member: &Member| CampaignMember {
@@ -98,7 +98,7 @@ impl About {
             name: member.name.clone(),
             sections: member.sections,
             origin: origin(member),
-            report: member.report.clone(),
+            report: Identification(member.report.clone()),
         };
         let members: Vec<CampaignMember> = self.members.iter().map(member).collect();
         let of = |member: &Member| {
@@ -111,7 +111,7 @@ impl About {
             files,
             vehicle: self.vehicle.clone(),
             facts: pool::facts(self.members.iter().map(of)),
-            report: pool::report(&members),
+            report: Identification(pool::report(&members)),
             members,
         }
     }

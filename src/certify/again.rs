@@ -63,7 +63,8 @@ pub struct Setting {
 }
 
 impl Setting {
-    fn of(ParameterInfo { name, value, set_by, .. }: ParameterInfo) -> Self {
+    /// What a report states of a parameter.
+    pub fn of(ParameterInfo { name, value, set_by, .. }: ParameterInfo) -> Self {
         Self { name, value, set_by }
     }
 }

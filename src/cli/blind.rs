@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use clap::Args;
 use rayon::prelude::*;
 
-use super::diagnose::{Asked, json};
+use super::diagnose::Asked;
 use super::inputs::prepare;
 use super::output::{Console, Done, Ended, Exit};
 use super::places::{REPORT, check_folder, same};
@@ -26,6 +26,7 @@ use crate::problem::{Problem, Problems};
 use crate::report::blind as report;
 use crate::report::html;
 use crate::result::blind::Case;
+use crate::result::text;
 
 /// Maximum size of a truth file in bytes.
 const LARGEST_TRUTH: u64 = 1 << 20;
@@ -93,7 +94,7 @@ impl Blinded {
             let says = "none of the campaigns could be diagnosed";
             return Err(Problem::error("no-diagnosis", says).into());
         }
-        let text = serde_json::to_string_pretty(&scored).unwrap_or_default() + "\n";
+        let text = text(&scored);
         let chapters = report::chapters(&scored);
         let page = html::chapters_html("Diagnoses against withheld truths", &chapters);
         let page = page.map_err(Ended::unfinished)?;
@@ -146,7 +147,7 @@ impl Blinded {
             return Ok(without(&name, fault));
         };
         diagnosed.fetch_add(1, Ordering::Relaxed);
-        let diagnosis = json(&outcome.diagnosis);
+        let diagnosis = text(&outcome.diagnosis);
         let mut outputs = out.lock().unwrap_or_else(PoisonError::into_inner);
         outputs.add(&format!("{name}/diagnosis.json"), diagnosis.as_bytes())?;
         drop(outputs);

@@ -18,7 +18,6 @@ use crate::certify::Compiled;
 use crate::data::hash::sha256;
 use crate::data::write::Outputs;
 use crate::data::{Campaign, RecordKind};
-pub use crate::deliver::diagnosis_json as json;
 use crate::deliver::{self, Reports};
 use crate::diagnose::answer::verdict::remark;
 use crate::diagnose::inputs::{Inputs, Reference};
@@ -176,7 +175,7 @@ impl Diagnose {
 
 /// 0 if the gap is explained, or if there is no significant gap.
 pub fn exit(diagnosis: &Diagnosis) -> Exit {
-    match diagnosis.verdict {
+    match &*diagnosis.verdict {
         "explained" | "no significant gap" => Exit::Done,
         _ => Exit::DoesNotHold,
     }

@@ -18,6 +18,7 @@ mod places;
 mod protocols;
 mod reduce;
 mod report;
+pub mod schema;
 mod sections;
 mod sign;
 mod simulate;
@@ -212,9 +213,15 @@ enum Command {
         #[arg(value_name = "NAME")]
         name: Option<String>,
     },
-    /// Print the JSON Schema of the YAML form, for editors.
-    #[command(after_help = "Example:\n  fishplate schema > protocol.schema.json")]
-    Schema,
+    /// Print the JSON Schema of the YAML form, for editors, or of a file of results.
+    #[command(
+        after_help = "Examples:\n  fishplate schema > protocol.schema.json\n  fishplate schema --of results"
+    )]
+    Schema {
+        /// Whose schema.
+        #[arg(long, value_enum, default_value_t = schema::Of::Protocol)]
+        of: schema::Of,
+    },
     /// Print shell completions.
     #[command(
         after_help = "Example:\n  fishplate completions bash > /etc/bash_completion.d/fishplate"
@@ -286,11 +293,7 @@ pub fn run_with(words: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Explain(explain) => explain.run(&console),
         Command::Diff { before, after } => protocols::diff(&before, &after, &console),
         Command::Protocols { name } => protocols::list(name.as_deref(), &console),
-        Command::Schema => console.print(
-            &(serde_json::to_string_pretty(&crate::syntax::schema::json_schema())
-                .unwrap_or_default()
-                + "\n"),
-        ),
+        Command::Schema { of } => schema::print(of, &console),
         Command::Completions { shell } => {
             let mut bytes = Vec::new();
             clap_complete::generate(

@@ -12,7 +12,8 @@ use crate::problem::{Problem, Problems};
 use crate::provenance::carried::REPORT_PDF;
 use crate::provenance::signature::{self, SecretKey, secret_key};
 use crate::provenance::statement;
-use crate::report::{estimates, findings, number};
+use crate::report::estimates::{self, OfLimit};
+use crate::report::{findings, number};
 use crate::result::{Certification, QuantityResult, StatisticResult, Verdict};
 use crate::run::Settings;
 
@@ -192,15 +193,10 @@ fn statistics(found: &Certification, console: &Console) -> String {
         let open = quantity.holds.is_none() && quantity.reason.is_some();
         for (index, statistic) in estimates::single(quantity).into_iter().enumerate() {
             let name = if index == 0 { quantity.id.as_str() } else { "" };
-            let scope = if statistic.scope == "all" {
-                String::new()
-            } else {
-                format!(", {}", statistic.scope)
-            };
             let unit = if index == 0 { quantity.unit.as_str() } else { "" };
             out += &format!(
                 "{name:width$}  {unit:>8}  {:<26} {:>5}  {:>4}  {:>12}  {:>12}  {:>8}  {}\n",
-                format!("{}{scope}", statistic.title),
+                format!("{}{}", statistic.title, statistic.scope.suffix()),
                 statistic.count,
                 statistic.n,
                 shown(statistic.value),
@@ -238,8 +234,8 @@ fn estimated(found: &Certification, console: &Console) -> String {
     let ids = longest(&mut limits.iter().map(|(quantity, _)| quantity.id.chars().count()), 8);
     let titles =
         longest(&mut limits.iter().map(|(_, limit)| limit.results[0].title.chars().count()), 8);
-    let places =
-        longest(&mut limits.iter().map(|(_, limit)| limit.decisive().scope.chars().count()), 10);
+    let place = |limit: &OfLimit<'_>| limit.decisive().scope.to_string();
+    let places = longest(&mut limits.iter().map(|(_, limit)| place(limit).chars().count()), 10);
     let mut out = format!(
         "{:ids$}  {:>8}  {:titles$}  {:>12}  {:>12}  {:>9}  {:places$}  groups met\n",
         "quantity", "unit", "estimate", "largest", "limit", "|v|/limit", "where"
@@ -255,7 +251,7 @@ fn estimated(found: &Certification, console: &Console) -> String {
             shown(decisive.value),
             shown(decisive.limit),
             ratio(decisive),
-            if decisive.value.is_some() { decisive.scope.as_str() } else { "-" },
+            if decisive.value.is_some() { place(limit) } else { "-".into() },
             limit.holding(),
             verdict(limit.holds(), limit.results.iter().any(|one| one.marginal), console)
         );

@@ -111,7 +111,7 @@ fn told(carried: &Carried, checks: &[Check], campaign: bool, most: usize, color:
         visible(&results.campaign.name),
         visible(&results.protocol.name),
         visible(&results.protocol.sha256),
-        visible(results.verdict_in_words()),
+        visible(results.own_word.as_ref().unwrap_or(&results.verdict_text)),
         visible(&results.fishplate)
     );
     for check in checks {

@@ -213,12 +213,7 @@ fn cell(
             Verdict::NotAssessable => None,
         },
         decided_by: worst.map(|(quantity, statistic)| {
-            let scope = if statistic.scope == "all" {
-                String::new()
-            } else {
-                format!(", {}", statistic.scope)
-            };
-            format!("{}, {}{scope}", quantity.id, statistic.title)
+            format!("{}, {}{}", quantity.id, statistic.title, statistic.scope.suffix())
         }),
         ratio: worst.and_then(|(_, statistic)| statistic.normalised),
         sections_used: evaluated.sections().filter(|(_, fault)| fault.is_none()).count(),

@@ -2,7 +2,7 @@
 
 use crate::certify::Compiled;
 use crate::check::plan::{EstimateKind, Evaluation, Limit, Plan, Quantity, Records};
-use crate::result::{QuantityResult, StatisticResult};
+use crate::result::{QuantityResult, StatisticName, StatisticResult};
 use crate::run::{Evaluated, Judged};
 
 /// The metric of a limit, or of a quantity without one.
@@ -38,7 +38,7 @@ fn named(quantity: &Quantity, title: Option<&str>, each: bool) -> String {
 /// The metric of a result.
 pub fn of(plan: &Plan, quantity: usize, statistic: &StatisticResult) -> String {
     plan.quantities.get(quantity).map_or_else(String::new, |quantity| {
-        named(quantity, Some(&statistic.title), statistic.name == "each")
+        named(quantity, Some(&statistic.title), statistic.name == StatisticName::Each)
     })
 }
 
@@ -105,7 +105,8 @@ pub fn numbers(plan: &Plan, judged: &Judged) -> Vec<Number> {
 fn signed(statistic: &StatisticResult) -> Option<f64> {
     let ratio = statistic.normalised?;
     // The worst of several values may be of either sign.
-    let sign = if statistic.name != "each" && statistic.value? < 0.0 { -1.0 } else { 1.0 };
+    let sign =
+        if statistic.name != StatisticName::Each && statistic.value? < 0.0 { -1.0 } else { 1.0 };
     Some(sign * ratio)
 }
 

@@ -61,6 +61,7 @@ use crate::check::family::Family;
 use crate::data::Campaign;
 use crate::problem::Problems;
 use crate::result::comparison::{Compared, Comparison, OnCampaign, Work};
+use crate::result::{FORMAT, THIS};
 use crate::run::find;
 use crate::run::trial::{Disturbance, Kind, Trial};
 use crate::run::{Counts, Progress};
@@ -169,7 +170,8 @@ impl Prepared {
         let protocols = self.compared();
         let hashes: String = protocols.iter().map(|one| format!("{}\n", one.sha256)).collect();
         Comparison {
-            fishplate: env!("CARGO_PKG_VERSION").into(),
+            fishplate: THIS.into(),
+            format: FORMAT,
             protocols,
             campaigns: campaigns
                 .iter()

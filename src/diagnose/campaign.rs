@@ -12,7 +12,6 @@ use crate::certify::{Compiled, certify};
 use crate::data::Campaign;
 use crate::data::origin::OriginEffect;
 use crate::data::record::Format;
-use crate::data::text::UNREADABLE;
 use crate::data::write::Outputs;
 use crate::diagnose::features::observations::Observations;
 use crate::diagnose::features::observed::Observed;
@@ -103,10 +102,7 @@ pub fn diagnose(
     let settings = RunSettings { traces: 0 };
     let before = certify(compiled, inputs.campaign, settings, &quiet)?;
     // The records were read before by `find`: both must compare the same sections.
-    let unread = |section: &&crate::result::SectionResult| {
-        section.reason.as_ref().is_some_and(|reason| reason.contains(UNREADABLE))
-    };
-    if let Some(section) = before.sections.iter().find(unread) {
+    if let Some(section) = before.sections.iter().find(|section| section.unreadable) {
         let says = format!(
             "section {} could not be read again: {}",
             section.section,

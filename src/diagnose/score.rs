@@ -10,6 +10,7 @@ use crate::effects::{Action, Applied, CHANNEL, Catalogue, Confined};
 use crate::metrics::interval::wilson;
 use crate::result::blind::{Blind, BySize, Calibration, Case, Places, Score};
 use crate::result::diagnosis::{Cause, Diagnosis, NamedEffect};
+use crate::result::{FORMAT, THIS};
 
 /// One effect of a truth.
 #[derive(Clone, Debug, PartialEq)]
@@ -222,7 +223,7 @@ pub fn case(
             && truth.effects.len() == cause.effects.len()
             && truth.effects.iter().all(|one| cause.effects.iter().any(|named| one.is(named)))
     };
-    let answered = matches!(diagnosis.verdict, "explained" | "ambiguous");
+    let answered = matches!(&*diagnosis.verdict, "explained" | "ambiguous");
     let causes: &[Cause] = if answered { &diagnosis.causes } else { &[] };
     let set: Vec<&Cause> = causes.iter().filter(|cause| cause.in_ambiguity_set).collect();
     let first = causes.first();
@@ -402,7 +403,8 @@ pub fn blind(cases: Vec<Case>) -> Blind {
     });
     let calibration = bins.collect();
     Blind {
-        fishplate: env!("CARGO_PKG_VERSION"),
+        fishplate: THIS.into(),
+        format: FORMAT,
         scores,
         confusion,
         by_detectability,

@@ -5,8 +5,8 @@ use indexmap::IndexMap;
 use std::sync::Arc;
 
 use super::{
-    FindNodes, Graph, InputNode, Joint, LimitNodes, Node, NodeId, Operation, PlausibilityNodes,
-    PositionNodes, QuantityNodes, SignalNodes, ValueNodes,
+    FindNodes, Graph, InputNode, Joint, Label, LimitNodes, Node, NodeId, Operation,
+    PlausibilityNodes, PositionNodes, QuantityNodes, SignalNodes, ValueNodes,
 };
 use crate::check::evaluate::{shape, words};
 use crate::check::plan::{
@@ -78,9 +78,10 @@ impl Builder {
         inputs: Vec<NodeId>,
         dimension: Dimension,
         from: &Span,
-        label: String,
+        label: impl Into<Label>,
         kind: String,
     ) -> NodeId {
+        let label = label.into();
         let what = match &operation {
             Operation::Read { column } => format!("read {column} {kind}"),
             Operation::Constant(expr) => format!("constant {}", shape(expr)),
@@ -93,7 +94,7 @@ impl Builder {
             | Operation::Estimate(_)
             | Operation::Report(_)
             | Operation::Limit(_) => {
-                format!("{kind} {label} {}", from.start)
+                format!("{kind} {} {}", label.text, from.start)
             }
             _ => kind.clone(),
         };
@@ -271,7 +272,7 @@ impl Builder {
     fn named(&self, node: NodeId) -> String {
         match (&self.nodes[node].operation, self.nodes[node].inputs.first()) {
             (Operation::Step(_), Some(&input)) => format!("{} filtered", self.grouped(input)),
-            _ => self.nodes[node].label.clone(),
+            _ => self.nodes[node].label.text.clone(),
         }
     }
 
@@ -337,7 +338,7 @@ impl Builder {
                 vec![node],
                 dimension,
                 from,
-                "samples of the section".into(),
+                "samples of the section".to_owned(),
                 "cut".into(),
             );
         }
@@ -495,14 +496,14 @@ impl Builder {
         let rows: Vec<NodeId> = signals.iter().map(|signal| signal.compare).collect();
         let limit = |limit: &Arc<Limit>| {
             let (title, name) = (&limit.estimate.title, &limit.estimate.name);
-            let label = format!("{}: {title}{}", quantity.id, of_rows(&limit.scope));
+            let label = Label::of(&quantity.id, format!("{title}{}", of_rows(&limit.scope)));
             let kind = format!("estimate {index}");
             let estimate = Operation::Estimate(Arc::clone(limit));
             let others = limit.estimate.others().into_iter().chain(limit.bound.others());
             let rows = rows.iter().copied().chain(self.rows_of_others(plan, others)).collect();
             let estimate =
                 self.add(estimate, rows, quantity.unit.dimension, &limit.span, label, kind);
-            let label = format!("{}: {name} {}", quantity.id, limit.words);
+            let label = Label::of(&quantity.id, format!("{name} {}", limit.words));
             let operation = Operation::Limit(Arc::clone(limit));
             let limit = self.add(
                 operation,
@@ -517,8 +518,8 @@ impl Builder {
         let limits = quantity.limits.iter().map(limit).collect();
         let report = |report: &Arc<Report>| {
             let others = self.rows_of_others(plan, report.estimate.others().into_iter());
-            let label =
-                format!("{}: {}{}", quantity.id, report.estimate.title, of_rows(&report.scope));
+            let what = format!("{}{}", report.estimate.title, of_rows(&report.scope));
+            let label = Label::of(&quantity.id, what);
             let rows = rows.iter().copied().chain(others).collect();
             let operation = Operation::Report(Arc::clone(report));
             self.add(
@@ -575,7 +576,9 @@ impl Builder {
                 (Vec::new(), None, before)
             }
         };
-        let label = format!("{} {name}: {}", quantity.id, quantity.words.comparison);
+        let what = quantity.words.comparison.clone();
+        let text = format!("{} {name}: {what}", quantity.id);
+        let label = Label { text, ..Label::of(&quantity.id, what) };
         let operation = Operation::Compare(Arc::clone(&quantity.evaluation));
         let compare = self.add(
             operation,
@@ -602,7 +605,9 @@ impl Builder {
             return ValueNodes { node: input.node, inputs };
         }
         let of: Vec<NodeId> = inputs.iter().map(|input| input.node).collect();
-        let label = format!("{} of {}", words(&value.expr), quantity.positions[number].name);
+        let what = words(&value.expr);
+        let text = format!("{what} of {}", quantity.positions[number].name);
+        let label = Label { text, subject: None, what };
         let operation = Operation::Value(Arc::new(value.expr.clone()));
         let kind = format!("value {index}");
         let node = self.add(operation, of, quantity.unit.dimension, &value.expr.span, label, kind);

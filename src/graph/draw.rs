@@ -107,27 +107,19 @@ fn cards(graph: &Graph) -> Vec<Card> {
 }
 
 fn label(graph: &Graph, members: &[NodeId]) -> String {
-    let labels: Vec<&str> = members.iter().map(|&id| graph.nodes[id].label.as_str()).collect();
-    match graph.nodes[members[0]].operation {
-        Operation::Read { .. } | Operation::Arithmetic(_) => shortened(&labels.join(", ")),
-        Operation::Estimate(_) | Operation::Report(_) | Operation::Limit(_) => {
-            let (quantity, _) = labels[0].split_once(": ").unwrap_or(("", labels[0]));
-            let mut rest: Vec<&str> = labels
-                .iter()
-                .map(|label| label.split_once(": ").map_or(*label, |(_, rest)| rest))
-                .collect();
+    let labels = || members.iter().map(|&id| &graph.nodes[id].label);
+    let first = &graph.nodes[members[0]];
+    match (&first.operation, &first.label.subject) {
+        (Operation::Read { .. } | Operation::Arithmetic(_), _) => {
+            shortened(&labels().map(|label| label.text.as_str()).collect::<Vec<_>>().join(", "))
+        }
+        (_, Some(quantity)) => {
+            let mut all: Vec<&str> = labels().map(|label| label.what.as_str()).collect();
             // A limit `for each zone` is one line.
-            rest.dedup();
-            format!("{quantity}: {}", rest.join("; "))
+            all.dedup();
+            format!("{quantity}: {}", all.join("; "))
         }
-        Operation::Compare(_) => {
-            let (head, how) = labels[0].split_once(": ").unwrap_or((labels[0], ""));
-            format!("{}: {how}", head.split(' ').next().unwrap_or(head))
-        }
-        Operation::Value(_) => {
-            labels[0].rsplit_once(" of ").map_or(labels[0], |(what, _)| what).to_string()
-        }
-        _ => labels[0].to_string(),
+        (_, None) => first.label.what.clone(),
     }
 }
 

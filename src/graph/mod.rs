@@ -76,11 +76,34 @@ pub struct Node {
     pub track: bool,
     /// The first rule that needed it.
     pub from: Span,
-    /// In words: `low-pass 20 Hz, order 4, zero-phase, as-applied`.
-    pub label: String,
+    pub label: Label,
     /// Nodes with the same operation at different positions have the same class. They are drawn as
     /// one box.
     pub class: usize,
+}
+
+/// What a node does, in words.
+#[derive(Clone, Debug)]
+pub struct Label {
+    /// `low-pass 20 Hz, order 4, zero-phase, as-applied`
+    pub text: String,
+    /// What a drawing shows where it draws several nodes as one box: the quantity, and what is done
+    /// at any position.
+    pub subject: Option<String>,
+    pub what: String,
+}
+
+impl From<String> for Label {
+    fn from(text: String) -> Self {
+        Self { what: text.clone(), subject: None, text }
+    }
+}
+
+impl Label {
+    /// What is done for a quantity.
+    pub fn of(quantity: &str, what: String) -> Self {
+        Self { text: format!("{quantity}: {what}"), subject: Some(quantity.to_owned()), what }
+    }
 }
 
 #[derive(Clone, Debug)]

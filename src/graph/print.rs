@@ -21,7 +21,7 @@ pub fn text(graph: &Graph) -> String {
             out,
             "n{id:<4} {:<9} {} [{}]{inputs}  ({})",
             node.operation.stage().in_words(),
-            node.label,
+            node.label.text,
             node.dimension,
             place(node)
         );
@@ -38,7 +38,7 @@ pub fn dot(graph: &Graph) -> String {
         let label = format!(
             "{}\\n{}",
             node.operation.stage().in_words(),
-            node.label.replace('\\', "\\\\").replace('"', "\\\"")
+            node.label.text.replace('\\', "\\\\").replace('"', "\\\"")
         );
         let _ = writeln!(out, "  n{id} [label=\"{label}\"];");
     }
@@ -61,7 +61,7 @@ pub fn json(graph: &Graph) -> serde_json::Value {
             serde_json::json!({
                 "id": id,
                 "stage": node.operation.stage().in_words(),
-                "does": node.label,
+                "does": node.label.text,
                 "inputs": node.inputs,
                 "dimension": node.dimension.to_string(),
                 "from": {"file": node.from.source.name, "line": line, "column": column},

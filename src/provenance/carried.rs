@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use serde::Deserialize;
 use serde_json::Value;
 
+use super::before;
 use super::pdf::Attachments;
-use super::results::Results;
-use crate::certify::{Compiled, again};
+use crate::certify::{Compiled, Setting, again};
 use crate::check::family::Family;
 use crate::data::hash::sha256;
 use crate::data::text::{decode, read_bytes};
@@ -15,6 +16,7 @@ use crate::disk;
 use crate::library;
 use crate::problem::{Problem, Problems};
 use crate::report::attached;
+use crate::result::{Certification, ProtocolFile};
 use crate::source::Source;
 
 /// Maximum size of a report in bytes; a report with 13 sections has two million.
@@ -46,7 +48,7 @@ pub struct Carried {
     /// The text of the results.
     pub text: String,
     pub value: Value,
-    pub results: Results,
+    pub results: Certification,
     /// Whether results.json in the folder differs from that attached to the PDF.
     pub other_results: bool,
     /// The files of the protocol that are attached to the PDF, in the order of the results.
@@ -140,7 +142,7 @@ fn of_pdf(path: &Path, shown: &str) -> Result<Carried, Problem> {
     let (text, value, results) = read(&bytes, &format!("{shown}: {}", attached::RESULTS))?;
     let mut protocol = Vec::new();
     for (at, named) in results.protocol.files.iter().enumerate() {
-        protocol.push(attachments.read(&attached::protocol_name(at, &named.name), PROTOCOL)?);
+        protocol.push(attachments.read(&ProtocolFile::attachment(at, &named.name), PROTOCOL)?);
     }
     Ok(Carried {
         shown: shown.into(),
@@ -155,7 +157,7 @@ fn of_pdf(path: &Path, shown: &str) -> Result<Carried, Problem> {
     })
 }
 
-fn read(bytes: &[u8], shown: &str) -> Result<(String, Value, Results), Problem> {
+fn read(bytes: &[u8], shown: &str) -> Result<(String, Value, Certification), Problem> {
     let unreadable = |says: String| {
         Problem::error(
             "results-unreadable",
@@ -168,7 +170,12 @@ fn read(bytes: &[u8], shown: &str) -> Result<(String, Value, Results), Problem> 
         return Err(unreadable(format!("more than {VALUES} values")));
     }
     let value: Value = serde_json::from_str(text).map_err(|error| unreadable(error.to_string()))?;
-    let results = Results::of(&value).map_err(unreadable)?;
+    let mut current = value.clone();
+    if before::states_no_format(&value) {
+        before::upgrade(&mut current);
+    }
+    let results =
+        Certification::deserialize(current).map_err(|error| unreadable(error.to_string()))?;
     Ok((text.to_string(), value, results))
 }
 
@@ -214,8 +221,20 @@ impl Carried {
         })
     }
 
+    /// Results of now, in the form of those that are carried.
+    pub fn comparable(&self, now: &Certification) -> Value {
+        // Serialisation of plain values cannot fail.
+        let mut now = serde_json::to_value(now).unwrap_or_default();
+        if before::states_no_format(&self.value) {
+            before::downgrade(&mut now);
+        }
+        now
+    }
+
     /// Compiles the protocol with the parameters in the results.
     pub fn compiled(&self, sources: &[Arc<Source>], problems: &mut Problems) -> Option<Compiled> {
-        again(sources, &self.results.protocol.parameters, problems)
+        let settings: Vec<Setting> =
+            self.results.protocol.parameters.iter().cloned().map(Setting::of).collect();
+        again(sources, &settings, problems)
     }
 }

@@ -5,11 +5,11 @@
 //! [`statement`] describes the files of a report in a standard format, and [`signature`] signs
 //! files.
 
+mod before;
 pub mod carried;
 pub mod check;
 pub mod compare;
 mod pdf;
-pub mod results;
 pub mod signature;
 pub mod statement;
 pub mod trace;

@@ -4,15 +4,14 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use super::carried::Carried;
-use super::results::{File, Pair, Place, Quantity, Statistic};
 use crate::certify::Compiled;
 use crate::data::Campaigns;
 use crate::graph::{Node, Operation};
 use crate::problem::{Problem, Problems};
 use crate::report::number::significant;
-use crate::result::took_part;
-use crate::run::find;
+use crate::result::{FileHash, PairValue, QuantityResult, RecordName, RulePlace, StatisticResult};
 use crate::run::single::{Side, single};
+use crate::run::{find, replay};
 use crate::source::Span;
 use crate::units::Unit;
 
@@ -65,7 +64,7 @@ pub fn trace(
                 graph,
                 Campaigns::from(&opened),
                 index,
-                (asked.section, pair.record.as_deref()),
+                (asked.section, pair.record.as_ref()),
             )?)
         }
         _ => None,
@@ -86,7 +85,7 @@ pub fn trace(
         );
     }
     let mut agrees = true;
-    let read = |file: &File| {
+    let read = |file: &FileHash| {
         again
             .as_ref()
             .is_some_and(|again| again.records.iter().any(|side| side.file.path == file.path))
@@ -95,7 +94,7 @@ pub fn trace(
         compiled.plan.quantities[index.0].evaluation.pairing()?.within()
     });
     // A run is the record of many sections: it stands once.
-    let mut files: Vec<&File> = Vec::new();
+    let mut files: Vec<&FileHash> = Vec::new();
     for file in records(carried, pair, within.map(|side| side.kind().key()), &read) {
         if files.iter().all(|known| known.path != file.path) {
             files.push(file);
@@ -132,7 +131,10 @@ fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= (super::compare::SHARE * a.abs().max(b.abs())).max(super::compare::NEAR)
 }
 
-fn find<'a>(carried: &'a Carried, asked: Asked<'_>) -> Result<(&'a Quantity, &'a Pair), Problem> {
+fn find<'a>(
+    carried: &'a Carried,
+    asked: Asked<'_>,
+) -> Result<(&'a QuantityResult, &'a PairValue), Problem> {
     let results = &carried.results;
     let quantity = results
         .quantities
@@ -162,9 +164,9 @@ fn find<'a>(carried: &'a Carried, asked: Asked<'_>) -> Result<(&'a Quantity, &'a
             format!("section {} is not used: {reason}", section.section),
         ));
     }
-    let here: Vec<&Pair> =
+    let here: Vec<&PairValue> =
         quantity.values.iter().filter(|pair| pair.section == asked.section).collect();
-    let of_signal: Vec<&Pair> =
+    let of_signal: Vec<&PairValue> =
         here.iter().filter(|pair| pair.signal == asked.signal).copied().collect();
     if of_signal.is_empty() {
         let says = format!(
@@ -174,9 +176,10 @@ fn find<'a>(carried: &'a Carried, asked: Asked<'_>) -> Result<(&'a Quantity, &'a
         return Err(Problem::error("no-such-signal", says)
             .suggest(asked.signal, here.iter().map(|pair| pair.signal.as_str())));
     }
-    let names: Vec<&str> = of_signal.iter().filter_map(|pair| pair.record.as_deref()).collect();
+    let name = |pair: &PairValue| pair.record.as_ref().map(ToString::to_string);
+    let names: Vec<String> = of_signal.iter().filter_map(|pair| name(pair)).collect();
     let found = match asked.record {
-        Some(record) => of_signal.iter().find(|pair| pair.record.as_deref() == Some(record)),
+        Some(record) => of_signal.iter().find(|pair| name(pair).as_deref() == Some(record)),
         None if names.len() > 1 => {
             let says = format!("{} has {} records of this section", quantity.id, names.len());
             let help = format!("name one with `--record`: {}", names.join("; "));
@@ -187,7 +190,7 @@ fn find<'a>(carried: &'a Carried, asked: Asked<'_>) -> Result<(&'a Quantity, &'a
     found.map(|pair| (quantity, *pair)).ok_or_else(|| {
         let record = asked.record.unwrap_or_default();
         let says = format!("{} has no record `{record}` in section {}", quantity.id, asked.section);
-        Problem::error("no-such-record", says).suggest(record, names)
+        Problem::error("no-such-record", says).suggest(record, names.iter().map(String::as_str))
     })
 }
 
@@ -195,7 +198,7 @@ fn suffix(unit: &str) -> String {
     if unit == "-" { String::new() } else { format!(" {unit}") }
 }
 
-fn head(quantity: &Quantity, pair: &Pair) -> String {
+fn head(quantity: &QuantityResult, pair: &PairValue) -> String {
     let unit = suffix(&quantity.unit);
     let zone = pair.zone.as_ref().map_or_else(String::new, |zone| format!(" (zone {zone})"));
     let record =
@@ -220,13 +223,13 @@ fn place(span: &Span) -> String {
     format!("{}:{}", span.source.file_name(), span.line())
 }
 
-fn said(place: Option<&Place>) -> String {
-    place.map_or_else(String::new, |place| format!("  ({}:{})", place.file, place.line))
+fn said(place: &RulePlace) -> String {
+    format!("  ({}:{})", place.file, place.line)
 }
 
-fn rule(out: &mut String, compiled: &Compiled, quantity: &Quantity, index: usize) {
+fn rule(out: &mut String, compiled: &Compiled, quantity: &QuantityResult, index: usize) {
     let plan = &compiled.plan.quantities[index];
-    let _ = writeln!(out, "\nrule{}", said(quantity.rule.as_ref()));
+    let _ = writeln!(out, "\nrule{}", said(&quantity.rule));
     let rows = [
         ("of", &plan.words.of),
         ("filter", &plan.words.filter),
@@ -248,18 +251,19 @@ fn operations(
     index: (usize, usize),
     section: &str,
 ) -> Result<(), String> {
-    let recorded = carried.results.recorded(&compiled.plan)?;
-    let nodes =
-        crate::run::replay::operations(&compiled.plan, &compiled.graph, &recorded, index, section)?;
+    let results = &carried.results;
+    let nodes = replay::operations(&compiled.plan, &compiled.graph, results, index, section)?;
     let node = |id: &usize| &compiled.graph.nodes[*id];
-    let width = nodes.iter().map(|id| node(id).label.chars().count()).max().unwrap_or(0).min(60);
+    let width =
+        nodes.iter().map(|id| node(id).label.text.chars().count()).max().unwrap_or(0).min(60);
     let _ = writeln!(out, "\noperations in order, each with the first rule that requires it");
     for id in &nodes {
         let Node { operation, label, from, .. } = node(id);
         let _ = writeln!(
             out,
-            "  {:<8} {label:<width$}  ({})",
+            "  {:<8} {:<width$}  ({})",
             operation.stage().in_words(),
+            label.text,
             place(from)
         );
     }
@@ -284,20 +288,17 @@ fn operations(
 /// compute it again.
 fn records<'a>(
     carried: &'a Carried,
-    pair: &'a Pair,
+    pair: &'a PairValue,
     within: Option<&'static str>,
-    read: &'a dyn Fn(&File) -> bool,
-) -> impl Iterator<Item = &'a File> {
-    let took_part = move |kind: &str, name: Option<&str>| match (
-        within,
-        pair.record.as_deref().and_then(|of| of.split_once(", ")),
-    ) {
-        (Some(within), Some((first, second))) => {
-            kind == within && name.is_some_and(|name| name == first || name == second)
+    read: &'a dyn Fn(&FileHash) -> bool,
+) -> impl Iterator<Item = &'a FileHash> {
+    let took_part = move |kind: &str, name: Option<&str>| match (within, &pair.record) {
+        (Some(within), Some(pair @ RecordName::Pair(..))) => {
+            kind == within && name.is_some_and(|name| pair.has(name))
         }
-        _ => took_part(pair.record.as_deref(), kind == "simulation", name),
+        (_, record) => RecordName::took_part(record.as_ref(), kind == "simulation", name),
     };
-    let of = move |file: &&File, kind: &str| {
+    let of = move |file: &&FileHash, kind: &str| {
         file.record.as_ref().is_some_and(|record| {
             let own = record.section == pair.section && took_part(kind, record.name.as_deref());
             record.kind == kind && (own || read(file))
@@ -312,8 +313,8 @@ fn records<'a>(
 /// Describes one record; returns whether it is unchanged and gives the same value.
 fn record(
     out: &mut String,
-    file: &File,
-    pair: &Pair,
+    file: &FileHash,
+    pair: &PairValue,
     side: Option<&Side>,
     compiled: Option<(&Compiled, (usize, usize))>,
 ) -> bool {
@@ -333,7 +334,7 @@ fn record(
     for (node, value, samples) in &side.reduced {
         let node = &compiled.graph.nodes[*node];
         let shown = in_unit(*value, node, [&plan.unit, &plan.signal_unit]);
-        let _ = writeln!(out, "  {:<10} {shown}, of {samples} values", node.label);
+        let _ = writeln!(out, "  {:<10} {shown}, of {samples} values", node.label.text);
     }
     let before = match side.column {
         Some(crate::check::plan::Side::Simulated) => pair.simulated,
@@ -361,18 +362,14 @@ fn in_unit(value: f64, node: &Node, units: [&Unit; 2]) -> String {
     }
 }
 
-fn statistics(out: &mut String, carried: &Carried, quantity: &Quantity, pair: &Pair) {
+fn statistics(out: &mut String, carried: &Carried, quantity: &QuantityResult, pair: &PairValue) {
     let _ = writeln!(out, "\nenters");
     // Of groups told apart by more than the zone, the estimates of the section's zone are listed.
-    let zone = pair.zone.as_ref().map(|zone| format!("zone {zone}"));
-    let of_zone = |scope: &str| {
-        scope.split(", ").next().filter(|first| first.starts_with("zone ")).map(str::to_string)
+    let own = |statistic: &&StatisticResult| {
+        statistic.scope.zones.len() != 1 || statistic.scope.has_zone(pair.zone.as_deref())
     };
-    let other =
-        |statistic: &&Statistic| of_zone(&statistic.scope).is_some_and(|of| Some(of) != zone);
-    for statistic in quantity.statistics.iter().filter(|statistic| !other(statistic)) {
-        let scope =
-            if statistic.scope == "all" { String::new() } else { format!(", {}", statistic.scope) };
+    for statistic in quantity.statistics.iter().filter(own) {
+        let scope = statistic.scope.suffix();
         let unit = suffix(&statistic.unit);
         let shown = |value: Option<f64>| {
             value
@@ -393,11 +390,15 @@ fn statistics(out: &mut String, carried: &Carried, quantity: &Quantity, pair: &P
             statistic.count,
             shown(statistic.limit),
             statistic.limit_text,
-            said(statistic.rule.as_ref())
+            said(&statistic.rule)
         );
         if let Some(reason) = &statistic.reason {
             let _ = writeln!(out, "    {reason}");
         }
     }
-    let _ = writeln!(out, "verdict of the report: {}", carried.results.verdict_in_words());
+    let _ = writeln!(
+        out,
+        "verdict of the report: {}",
+        carried.results.own_word.as_ref().unwrap_or(&carried.results.verdict_text)
+    );
 }

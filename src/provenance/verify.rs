@@ -13,15 +13,11 @@ use crate::data::fingerprint::fingerprint;
 use crate::data::hash::sha256;
 use crate::data::{Campaign, Campaigns};
 use crate::problem::{Problem, Problems};
-use crate::report::{attached, figure, json, typst, view};
-use crate::result::Certification;
-use crate::result::Kind;
+use crate::report::{attached, figure, typst, view};
+use crate::result::{self, Certification, Kind, THIS};
 use crate::run::find;
 use crate::run::replay::replay;
 use crate::run::{Progress, Settings};
-
-/// Version of this program in messages.
-const THIS: &str = env!("CARGO_PKG_VERSION");
 
 /// Checks of the report alone; returns also its compiled protocol, if possible.
 pub fn alone(carried: &Carried, given: Option<&Family>) -> (Vec<Check>, Option<Compiled>) {
@@ -51,8 +47,9 @@ pub fn alone(carried: &Carried, given: Option<&Family>) -> (Vec<Check>, Option<C
         ));
         return (checks, None);
     };
-    let found =
-        compare(&carried.value["protocol"], &json::protocol(&protocol_info(&compiled)), "protocol");
+    let again = Certification { protocol: protocol_info(&compiled), ..carried.results.clone() };
+    let again = carried.comparable(&again);
+    let found = compare(&carried.value["protocol"], &again["protocol"], "protocol");
     checks.push(Check::of(
         "protocol rules",
         format!(
@@ -83,7 +80,7 @@ fn form(carried: &Carried) -> Check {
         );
         return Check::not_checked("form", says);
     }
-    let again = json::text(&carried.value);
+    let again = result::text(&carried.value);
     if again == carried.text {
         return Check::agrees("form", "results.json has the form in which the program writes it");
     }
@@ -147,10 +144,7 @@ fn protocol_text(carried: &Carried, texts: &[&str]) -> Check {
 /// Checks that statistics, verdict and reasons follow from the printed values.
 fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
     const NAME: &str = "statistics";
-    let replayed = carried
-        .results
-        .recorded(&compiled.plan)
-        .and_then(|recorded| replay(&compiled.plan, &compiled.graph, &recorded));
+    let replayed = replay(&compiled.plan, &compiled.graph, &carried.results);
     let replayed = match replayed {
         Ok(replayed) => replayed,
         Err(says) => {
@@ -164,26 +158,23 @@ fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
     let value = |key: &str| carried.value.get(key).unwrap_or(&Value::Null);
     let mut details: Vec<String> = replayed.contradictions;
     let mut numbers = 0;
-    let verdict = Kind::of(&replayed.judged.quantities).verdict_words(replayed.judged.verdict);
-    // A protocol that names no verdict has no such key.
-    let verdicts = match replayed.judged.verdicts.as_slice() {
-        [] => Value::Null,
-        verdicts => serde_json::json!(verdicts),
+    let judged = replayed.judged;
+    let again = Certification {
+        verdict_text: Kind::of(&judged.quantities).verdict_words(judged.verdict).into(),
+        verdict: judged.verdict,
+        own_word: judged.own_word,
+        reasons: judged.reasons,
+        verdicts: judged.verdicts,
+        quantities: judged.quantities,
+        zones: judged.zones,
+        application: replayed.application,
+        ..carried.results.clone()
     };
-    let application = match replayed.application.as_slice() {
-        [] => Value::Null,
-        application => serde_json::json!(application),
-    };
-    for (key, again) in [
-        ("verdict", serde_json::json!(verdict)),
-        ("verdict_word", serde_json::json!(replayed.judged.own_word)),
-        ("reasons", serde_json::json!(replayed.judged.reasons)),
-        ("verdicts", verdicts),
-        ("quantities", json::quantities(&replayed.judged.quantities)),
-        ("zones", json::zones(&replayed.judged.zones)),
-        ("application", application),
-    ] {
-        let found = compare(value(key), &again, key);
+    let again = carried.comparable(&again);
+    for key in
+        ["verdict", "verdict_word", "reasons", "verdicts", "quantities", "zones", "application"]
+    {
+        let found = compare(value(key), again.get(key).unwrap_or(&Value::Null), key);
         numbers += found.numbers;
         details.extend(found.differences.iter().map(|one| told(one, "follows from the values")));
     }
@@ -355,9 +346,7 @@ fn place<'a>(
 
 /// Compares all numbers of the report with those of a new evaluation, and then the pages.
 fn compared(carried: &Carried, found: &Certification, plots: usize, inputs: bool) -> Vec<Check> {
-    let results = json::results(found);
-    // The program's own results can be parsed.
-    let Ok(mut now) = serde_json::from_str::<Value>(&results) else { return Vec::new() };
+    let mut now = carried.comparable(found);
     let mut before = carried.value.clone();
     for value in [&mut before, &mut now] {
         if let Some(entries) = value.as_object_mut() {
@@ -385,7 +374,7 @@ fn compared(carried: &Carried, found: &Certification, plots: usize, inputs: bool
     let same = inputs && numbers.outcome == Outcome::Agrees;
     let mut checks = vec![numbers];
     if let Some(pdf) = &carried.pdf {
-        checks.push(pages(carried, pdf, found, (&results, plots), same));
+        checks.push(pages(carried, pdf, found, (&result::text(found), plots), same));
     }
     checks
 }
@@ -409,8 +398,7 @@ fn pages(
     if !same {
         return Check::not_checked(NAME, "inputs or numbers differ already");
     }
-    let names = attached::protocol_names(found);
-    let attachments = attached::attachments(found, results, &names);
+    let attachments = attached::attachments(found, results);
     match typst::typeset(&view::view(found), &figure::figures(found), &attachments) {
         Err(problems) => Check::not_possible(
             NAME,

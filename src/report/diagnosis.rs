@@ -36,7 +36,7 @@ pub fn document(found: &Diagnosis, before: &Certification) -> Document {
     chapters.extend(signals(found));
     chapters.push(chapter("seen", "Detectable effects", detectable(found)));
     chapters.push(how(found));
-    let class = match found.verdict {
+    let class = match &*found.verdict {
         "explained" | "no significant gap" => "good",
         "ambiguous" => "open",
         _ => "bad",
@@ -199,7 +199,7 @@ fn invariants(all: &[Invariant], named: bool) -> Table {
                 number::NONE.to_owned()
             }
         };
-        let mut cells = vec![one.name.clone(), one.parity.to_owned(), number(one.before)];
+        let mut cells = vec![one.name.clone(), one.parity.to_string(), number(one.before)];
         cells.extend(named.then(|| number(one.after)));
         cells.extend([number(one.allowed), off(one.before, one.allowed)]);
         cells.extend(named.then(|| off(one.after, one.allowed_after)));
@@ -337,7 +337,12 @@ fn shapes(all: &[Shape]) -> Table {
             ratio(shape.crest),
             share(shape.alike_by_frequency),
             share(shape.alike_by_wavelength),
-            shape.keeps_to.or(shape.reason).unwrap_or(number::NONE).to_owned(),
+            shape
+                .keeps_to
+                .as_deref()
+                .or(shape.reason.as_deref())
+                .unwrap_or(number::NONE)
+                .to_owned(),
         ]
     });
     let caption = "Dynamic content as recorded, measured over simulated, with 90 % intervals by resampling the sections; and the share of the \

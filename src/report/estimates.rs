@@ -85,7 +85,7 @@ pub fn limits(quantity: &QuantityResult) -> Vec<OfLimit<'_>> {
 pub fn condensed(quantity: &QuantityResult) -> Vec<OfLimit<'_>> {
     let mut limits = limits(quantity);
     limits.retain(|limit| {
-        quantity.from.is_some() || limit.by_group() && !limit.results[0].group.is_empty()
+        quantity.from.is_some() || limit.by_group() && !limit.results[0].scope.keys.is_empty()
     });
     limits
 }
@@ -112,31 +112,16 @@ pub fn representatives(quantity: &QuantityResult) -> Vec<&StatisticResult> {
         .collect()
 }
 
-/// The zones that a result is of; none where it is of all.
-pub fn zones(one: &StatisticResult) -> Vec<&str> {
-    if let Some((_, zone)) = one.group.iter().find(|(key, _)| key == "zone") {
-        return vec![zone];
-    }
-    let Some(rest) = one.scope.strip_prefix("zones ").or_else(|| one.scope.strip_prefix("zone "))
-    else {
-        return Vec::new();
-    };
-    let several = one.scope.starts_with("zones ");
-    // After the zones, the scope names keys and conditions, which have more than one word.
-    let zones = rest.split(", ").take_while(|word| !word.contains(' '));
-    zones.take(if several { usize::MAX } else { 1 }).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::result::{RulePlace, Sample};
+    use crate::result::{RulePlace, Sample, Scope, StatisticName};
 
-    fn result(scope: &str, holds: Option<bool>, normalised: Option<f64>) -> StatisticResult {
+    fn result(zone: &str, holds: Option<bool>, normalised: Option<f64>) -> StatisticResult {
         StatisticResult {
-            name: "mean".into(),
+            name: StatisticName::Mean,
             title: "mean".into(),
-            scope: scope.into(),
+            scope: Scope::zone(zone),
             group: Vec::new(),
             count: 1,
             n: 1,
@@ -168,11 +153,11 @@ mod tests {
         ];
         let limit = OfLimit { results: all.iter().collect() };
         assert_eq!(
-            (limit.decisive().scope.as_str(), limit.holds(), limit.holding().as_str()),
+            (limit.decisive().scope.zones[0].as_str(), limit.holds(), limit.holding().as_str()),
             ("b", Some(false), "1 of 4; 2 not assessed")
         );
         let open = OfLimit { results: vec![&all[2], &all[0]] };
-        assert_eq!((open.decisive().scope.as_str(), open.holds()), ("a", None));
+        assert_eq!((open.decisive().scope.zones[0].as_str(), open.holds()), ("a", None));
     }
 
     #[test]
@@ -187,21 +172,5 @@ mod tests {
             |results: Vec<&StatisticResult>| OfLimit { results }.reason().map(str::to_string);
         assert_eq!(reason(vec![&holds, &open]).as_deref(), Some("cant_deficiency does not vary"));
         assert_eq!((reason(vec![&open, &fails]), reason(vec![&holds])), (None, None));
-    }
-
-    #[test]
-    fn zones_are_read_from_the_scope() {
-        let zones_of = |scope: &str| zones(&result(scope, None, None)).join("+");
-        assert_eq!(
-            [
-                "all",
-                "zone 3",
-                "zones 2, 3",
-                "zones 2, 3, wheelset 1",
-                "zone 4, direction is straight"
-            ]
-            .map(zones_of),
-            ["", "3", "2+3", "2+3", "4"]
-        );
     }
 }

@@ -13,7 +13,6 @@ pub mod figure;
 pub mod findings;
 pub mod found;
 pub mod html;
-pub mod json;
 pub mod number;
 pub mod pdf;
 pub mod sides;

@@ -1,11 +1,13 @@
 //! Scores of diagnoses against withheld truths: plain data, in the form of `blind.json`.
 
 use indexmap::IndexMap;
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Blind {
-    pub fishplate: &'static str,
+    pub fishplate: String,
+    pub format: u32,
     pub cases: Vec<Case>,
     pub scores: Vec<Score>,
     /// Number of cases by truth and by the effect named first.
@@ -18,7 +20,7 @@ pub struct Blind {
 
 /// Single effects with a detectability from `from` to the next bin: number, number named first, and
 /// the interval of the share (Wilson, 95 %).
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct BySize {
     pub from: f64,
     pub cases: usize,
@@ -29,7 +31,7 @@ pub struct BySize {
 
 /// First causes of similar probability: mean probability, number of correct ones, and the interval
 /// of the share (Wilson, 95 %).
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Calibration {
     pub said: f64,
     pub cases: usize,
@@ -39,7 +41,7 @@ pub struct Calibration {
 }
 
 /// Result of one campaign.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Case {
     pub campaign: String,
     pub kind: String,
@@ -74,7 +76,7 @@ pub struct Case {
 }
 
 /// Number of true places, of reported places, and of both.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Places {
     pub truly: usize,
     pub told: usize,
@@ -82,11 +84,42 @@ pub struct Places {
 }
 
 /// A share of cases, or of places, with its interval (Wilson, 95 %), or a median.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Score {
     pub name: String,
     pub cases: usize,
     pub value: Option<f64>,
     pub low: Option<f64>,
     pub high: Option<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::result::text;
+
+    #[test]
+    fn scores_are_read_as_they_are_written() {
+        let blind = Blind {
+            fishplate: "0.1.0".into(),
+            format: 1,
+            cases: vec![
+                Case { campaign: "B01".into(), detectability: Some(7.25), ..Case::default() },
+                Case { cells: Some(Places { truly: 3, told: 2, both: 1 }), ..Case::default() },
+            ],
+            scores: vec![Score {
+                name: "named".into(),
+                cases: 3,
+                value: Some(2.0 / 3.0),
+                low: None,
+                high: Some(0.1 + 0.2),
+            }],
+            confusion: [("friction".to_string(), [("none".to_string(), 1)].into())].into(),
+            by_detectability: vec![BySize { from: 3.0, cases: 2, named: 1, low: 0.1, high: 0.9 }],
+            calibration: vec![Calibration { said: 0.5, cases: 2, right: 1, low: 0.1, high: 0.9 }],
+        };
+        let written = text(&blind);
+        let read: Blind = serde_json::from_str(&written).expect("the same form");
+        assert_eq!(text(&read), written);
+    }
 }

@@ -1,13 +1,15 @@
 //! Result of a comparison of protocols over campaigns.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use super::FileHash;
+use super::{FileHash, Scope};
 
 /// Every number of a comparison; the keys of `comparison.json`.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Comparison {
     pub fishplate: String,
+    pub format: u32,
     pub protocols: Vec<Compared>,
     pub campaigns: Vec<OnCampaign>,
     pub verdicts: Vec<Cell>,
@@ -27,7 +29,7 @@ pub struct Comparison {
 }
 
 /// A protocol of the comparison.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Compared {
     pub name: String,
     pub title: String,
@@ -37,12 +39,11 @@ pub struct Compared {
     pub metrics: Vec<String>,
     /// Criterion of its overall verdict.
     pub criterion: String,
-    #[serde(skip)]
     pub files: Vec<super::ProtocolFile>,
 }
 
 /// A campaign of the comparison.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct OnCampaign {
     pub name: String,
     pub sections: usize,
@@ -50,7 +51,7 @@ pub struct OnCampaign {
 }
 
 /// The verdict of a protocol on a campaign.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Cell {
     pub campaign: String,
     pub protocol: String,
@@ -67,16 +68,16 @@ pub struct Cell {
 }
 
 /// One limit of one protocol on one campaign.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Ratio {
     pub campaign: String,
     pub protocol: String,
     pub metric: String,
     pub quantity: String,
-    #[serde(skip)]
     pub symbol: String,
     pub estimate: String,
-    pub scope: String,
+    #[serde(flatten)]
+    pub scope: Scope,
     pub unit: String,
     pub value: Option<f64>,
     pub limit: Option<f64>,
@@ -87,7 +88,7 @@ pub struct Ratio {
 }
 
 /// The largest ratio of a section, of a metric or of a protocol.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Score {
     pub campaign: String,
     pub section: String,
@@ -100,7 +101,7 @@ pub struct Score {
 }
 
 /// Agreement of two protocols, or of two metrics of one protocol.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Agreement {
     /// `protocols` or `metrics`.
     pub of: String,
@@ -122,7 +123,7 @@ pub struct Agreement {
 }
 
 /// How far a metric moves with a disturbance.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Sensitivity {
     pub metric: String,
     pub protocol: String,
@@ -145,14 +146,14 @@ pub struct Sensitivity {
     pub by_campaign: Vec<OfCampaign>,
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OfCampaign {
     pub campaign: String,
     pub values: Vec<Option<f64>>,
 }
 
 /// What a metric can be applied to, found by trying.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Applicability {
     pub protocol: String,
     pub metric: String,
@@ -175,7 +176,7 @@ pub struct Applicability {
 }
 
 /// How many of some tries gave a result.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Tried {
     pub gave: usize,
     pub of: usize,
@@ -189,7 +190,7 @@ impl Tried {
 }
 
 /// A rule that differs between two protocols, and what it does to a verdict by itself.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Difference {
     /// The subject: `quantity Y_max, limit std`; `all rules` for all changes together.
     pub rule: String,
@@ -211,7 +212,7 @@ pub struct Difference {
 }
 
 /// What sharing saved.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Work {
     pub records_read: usize,
     /// As often as protocols asked for them.

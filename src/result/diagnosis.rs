@@ -1,18 +1,22 @@
 //! Result of a diagnosis: plain data, in the form of `diagnosis.json`.
 
 pub use super::shrink::{HeldOut, QuantityShrink, Shrink, Touched};
-use indexmap::IndexMap;
-use serde::Serialize;
+use std::borrow::Cow;
 
-use super::Verdict;
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Verdict, zones};
 
 /// A diagnosis.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Diagnosis {
-    pub fishplate: &'static str,
+    pub fishplate: String,
+    pub format: u32,
     pub campaign: String,
     /// `explained`, `ambiguous`, `unexplained` or `no significant gap`.
-    pub verdict: &'static str,
+    pub verdict: Cow<'static, str>,
     /// The verdict in sentences.
     pub says: Vec<String>,
     pub fit: Fit,
@@ -56,7 +60,6 @@ pub struct Diagnosis {
     /// input gives the same bytes.
     pub seconds: f64,
     /// Whether sections may be mirrored: left and right curves.
-    #[serde(skip)]
     pub mirrored: bool,
     /// Signals of the sections with the largest gap, for figures.
     #[serde(skip)]
@@ -65,7 +68,7 @@ pub struct Diagnosis {
 
 /// What the search names in campaigns drawn on the basis of this one, with known effects. The
 /// consistency checks are left out.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Calibration {
     /// Single effects that are named, and nothing else.
     pub single: Share,
@@ -82,14 +85,14 @@ pub struct Calibration {
 }
 
 /// A number of cases among others.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Share {
     pub count: usize,
     pub of: usize,
 }
 
 /// Chi-squared of what is left with the answer, against noise, tolerances and model discrepancy.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Fit {
     /// Near 1 where these describe what is left.
     pub chi2_per_feature: f64,
@@ -123,21 +126,22 @@ pub struct Panel {
 }
 
 /// A faulty channel.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Fault {
     /// `dropout` or `clipping`.
-    pub fault: &'static str,
+    pub fault: Cow<'static, str>,
     pub channel: String,
     pub sections: Vec<String>,
     pub says: String,
 }
 
 /// A cell of the gap.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Where {
     pub quantity: String,
     pub signals: Vec<String>,
-    #[serde(serialize_with = "as_numbers")]
+    #[serde(with = "zones")]
+    #[schemars(with = "Vec<zones::InFile>")]
     pub zones: Vec<String>,
     pub sections: Vec<String>,
     pub wavelength_or_band: String,
@@ -157,11 +161,11 @@ pub struct Where {
 
 /// A sum of quasi-static values that only some causes can change: mean over the sections, simulated
 /// - measured.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Invariant {
     pub name: String,
     /// Whether the deviation has the same sign in all sections, or changes sign with the curve.
-    pub parity: &'static str,
+    pub parity: Cow<'static, str>,
     pub unit: String,
     pub before: f64,
     /// With the effects added.
@@ -174,7 +178,7 @@ pub struct Invariant {
 
 /// Trend of a difference over a column of the section table: generalised least squares on that
 /// column alone.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Trend {
     pub quantity: String,
     pub position: String,
@@ -192,7 +196,7 @@ pub struct Trend {
 }
 
 /// Change of the size of an effect over the range of a covariate, with a 90 % interval.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Drift {
     pub effect: String,
     pub signals: Vec<String>,
@@ -213,7 +217,7 @@ pub struct Drift {
 /// Change of simulated - measured over the range of a covariate, with a 90 % interval. Levels in
 /// their unit, turned to one direction if they change sign with the curve; bands as the ratio of
 /// the rms, simulated / measured - 1.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Slope {
     pub change: f64,
     pub low: f64,
@@ -227,7 +231,7 @@ pub struct Slope {
 }
 
 /// Difference of the dynamic content of a group of channels, over all sections.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Shape {
     pub quantity: String,
     pub signals: Vec<String>,
@@ -239,9 +243,9 @@ pub struct Shape {
     pub crest: Ratio,
     /// The scaling of the differences of spectra between sections, if significant: `frequency` or
     /// `wavelength`.
-    pub keeps_to: Option<&'static str>,
+    pub keeps_to: Option<Cow<'static, str>>,
     /// The reason if `keeps_to` is missing.
-    pub reason: Option<&'static str>,
+    pub reason: Option<Cow<'static, str>>,
     /// Share of their variance that is common to all sections, compared at equal frequency, and at
     /// equal wavelength.
     pub alike_by_frequency: Option<f64>,
@@ -251,7 +255,7 @@ pub struct Shape {
 }
 
 /// A ratio with its 90 % interval by resampling sections.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Ratio {
     pub value: f64,
     pub low: f64,
@@ -259,7 +263,7 @@ pub struct Ratio {
 }
 
 /// The most significant difference of the spectra.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Strongest {
     /// Ratio of amplitudes, measured / simulated.
     pub ratio: f64,
@@ -272,7 +276,7 @@ pub struct Strongest {
 }
 
 /// Effects that together are a possible cause.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Cause {
     pub rank: usize,
     pub effects: Vec<NamedEffect>,
@@ -283,13 +287,12 @@ pub struct Cause {
     pub says: String,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct NamedEffect {
     pub name: String,
     pub title: String,
     pub parameters: IndexMap<String, Value>,
     /// Channels on which it acts.
-    #[serde(skip)]
     pub channels: Vec<String>,
     pub confined_to: Option<IndexMap<String, serde_json::Value>>,
     /// How it is added: by which simulator, or by an operation on the signals.
@@ -388,7 +391,7 @@ fn flat(value: &serde_json::Value) -> String {
 }
 
 /// A parameter with its 90 % interval.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Value {
     pub value: serde_json::Value,
     pub unit: String,
@@ -399,7 +402,7 @@ pub struct Value {
 }
 
 /// An effect that improves the overall fit but is contradicted by a part of the data.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Vetoed {
     pub name: String,
     pub size: f64,
@@ -408,7 +411,7 @@ pub struct Vetoed {
     pub says: String,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Detectable {
     pub effect: String,
     pub parameter: String,
@@ -424,7 +427,7 @@ pub struct Detectable {
 }
 
 /// An effect that is close to being named.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Nearest {
     pub effect: String,
     pub says: String,
@@ -434,7 +437,7 @@ pub struct Nearest {
 }
 
 /// Settings of the diagnosis.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct How {
     pub catalogue: String,
     pub simulator: String,
@@ -446,13 +449,6 @@ pub struct How {
     pub threshold: f64,
     pub chi_squared_before: f64,
     pub chi_squared_after: f64,
-}
-
-/// Writes names that are integers as numbers.
-fn as_numbers<S: serde::Serializer>(names: &[String], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(names.iter().map(|name| {
-        name.parse::<i64>().map_or_else(|_| name.as_str().into(), serde_json::Value::from)
-    }))
 }
 
 #[cfg(test)]

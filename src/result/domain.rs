@@ -1,6 +1,7 @@
 //! What sections cover, and wanted operation inside and outside of it.
 
 use indexmap::IndexMap;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::RulePlace;
@@ -9,7 +10,7 @@ use super::RulePlace;
 ///
 /// Distances are Euclidean, with every coordinate divided by its range over the sections of the
 /// group.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DomainResult {
     /// Name of the domain in the protocol.
     pub domain: String,
@@ -37,7 +38,7 @@ pub struct DomainResult {
 }
 
 /// Range of a coordinate over the sections of a group; no numbers without sections.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CoordinateRange {
     pub name: String,
     pub unit: String,
@@ -45,7 +46,7 @@ pub struct CoordinateRange {
     pub high: Option<f64>,
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DomainSection {
     pub section: String,
     /// In the order of the coordinates, in their units.
@@ -55,7 +56,7 @@ pub struct DomainSection {
 }
 
 /// A point of wanted operation. Lists are in the order of the coordinates, in their units.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WantedPoint {
     pub point: String,
     pub values: Vec<f64>,

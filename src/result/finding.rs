@@ -1,9 +1,10 @@
 //! Plausibility findings of the data, with the value found and the expected value.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A finding for the attention of the assessor.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Finding {
     /// Kind of finding: the name of the protocol's rule, or a code of the program in kebab case.
     pub code: String,
@@ -29,7 +30,7 @@ pub struct Finding {
 }
 
 /// Influence of a finding on the verdict.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Consequence {
     /// Reported only.

@@ -1,12 +1,13 @@
 //! Sections that were found in runs, and what was rejected.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What the search for sections gave.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FoundSections {
     /// Which of several campaigns.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub campaign: Option<String>,
     /// Distance between two places that were tried, in `axis_unit`.
     pub step: f64,
@@ -17,7 +18,7 @@ pub struct FoundSections {
 }
 
 /// The search in one run.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FoundInRun {
     pub run: String,
     /// The part of the run that all its records cover.
@@ -31,12 +32,12 @@ pub struct FoundInRun {
     /// Stretches of places next to each other that were rejected for the same reason.
     pub stretches: Vec<Stretch>,
     /// Shift of the measurement against the simulation along the run, where it can be estimated.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drift: Option<Drift>,
 }
 
 /// What would have to be added to the distance of the measurement, along a run.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Drift {
     /// At the sections that were found.
     pub points: Vec<DriftPoint>,
@@ -49,7 +50,7 @@ pub struct Drift {
 }
 
 /// The shift at a section, in `axis_unit`, with its 95 % interval.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DriftPoint {
     pub section: String,
     pub start: f64,
@@ -61,7 +62,7 @@ pub struct DriftPoint {
 }
 
 /// The shift in the middle of a window, in `axis_unit` of the simulation, with its 95 % interval.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CoursePoint {
     pub at: f64,
     pub shift: f64,
@@ -70,14 +71,14 @@ pub struct CoursePoint {
     pub correlation: f64,
 }
 
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Rejected {
     pub reason: String,
     pub places: usize,
 }
 
 /// Places next to each other where no section begins, for the same reason.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Stretch {
     pub from: f64,
     pub to: f64,

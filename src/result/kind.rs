@@ -1,11 +1,12 @@
 //! What a protocol is about, which follows from its quantities, and the words of its verdict.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{Certification, QuantityResult, Verdict};
 
 /// What a protocol is about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Kind {
     /// Quantities compare simulated with measured records.
     Validation,
@@ -69,7 +70,7 @@ impl QuantityResult {
 }
 
 /// The verdict of a protocol in its words.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct VerdictWords {
     pub good: String,
     pub bad: String,

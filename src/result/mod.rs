@@ -13,11 +13,13 @@ mod kind;
 pub mod origin;
 mod quantity;
 pub mod report;
+mod scope;
 mod shrink;
 mod spread;
 pub mod study;
 pub mod verdict;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
 pub use domain::{CoordinateRange, DomainResult, DomainSection, WantedPoint};
@@ -25,35 +27,58 @@ pub use finding::{Consequence, Finding};
 pub use kind::{Kind, VerdictWords};
 pub use origin::{FittedTo, ImportedOne, ImportedSide, OriginInfo};
 pub use quantity::{
-    LimitFactor, Outside, PairValue, QuantityResult, RegressionAt, RegressionFigure,
-    RegressionPoint, Reported, Sample, StatisticResult,
+    Count, Figures, GroupRegression, GroupResult, LimitFactor, Outside, PairValue, QuantityResult,
+    RegressionAt, RegressionFigure, RegressionPoint, Reported, Sample, StatisticResult,
 };
-pub use report::ReportItem;
+pub use report::{Identification, ReportItem};
+pub use scope::{RecordName, Scope, StatisticName, zones};
 pub use spread::{ClassSpread, Furthest, OfRecord, Spread};
 pub use verdict::{Outcome, Verdict, VerdictResult};
 
-/// All results of a certification, in the order of the protocol and of the campaign.
-#[derive(Clone, Debug, Serialize)]
+/// Version of the program that writes results.
+pub const THIS: &str = env!("CARGO_PKG_VERSION");
+/// The form of the files of results. Those of the first versions state none.
+pub const FORMAT: u32 = 1;
+
+/// A result as the text of its file: indented, ending in a line break.
+pub fn text(result: &impl Serialize) -> String {
+    // Serialisation of plain values cannot fail.
+    serde_json::to_string_pretty(result).unwrap_or_default() + "\n"
+}
+
+/// All results of a certification, in the order of the protocol and of the campaign, in the form
+/// of `results.json`.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Certification {
+    pub fishplate: String,
+    pub format: u32,
     pub protocol: ProtocolInfo,
     pub campaign: CampaignInfo,
-    /// The overall verdict.
+    /// The overall verdict in the words of the report.
+    #[serde(rename = "verdict")]
+    pub verdict_text: String,
+    #[serde(rename = "verdict_data")]
     pub verdict: Verdict,
     /// The same in the protocol's own words, if it has some: `accepted`.
+    #[serde(rename = "verdict_word", default, skip_serializing_if = "Option::is_none")]
     pub own_word: Option<String>,
     /// Note on the verdict if the simulation was changed after the comparison.
     pub verdict_note: Option<String>,
     /// Why the verdict is not "validated"; empty if it is.
     pub reasons: Vec<String>,
     /// The verdicts with a name.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub verdicts: Vec<VerdictResult>,
     pub quantities: Vec<QuantityResult>,
     pub sections: Vec<SectionResult>,
     /// Numbers of the data of the sections used, which the protocol reports.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub reported: Vec<Reported>,
     /// How sections were found in runs; empty if a table of sections states them.
+    #[serde(rename = "found_sections", default, skip_serializing_if = "Vec::is_empty")]
     pub found: Vec<found::FoundSections>,
     /// The sections that were kept, where the protocol reduces them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reduction: Option<study::Reduction>,
     /// Empty if the protocol has no zones.
     pub zones: Vec<ZoneResult>,
@@ -61,53 +86,70 @@ pub struct Certification {
     pub domain: Vec<DomainRange>,
     /// Wanted operation inside and outside what the sections cover; empty if the protocol does not
     /// ask.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub application: Vec<DomainResult>,
-    /// Plots of the most relevant sections.
-    pub traces: Vec<Trace>,
     /// Plausibility findings, in the order of the protocol's rules and of the sections.
     pub findings: Vec<Finding>,
     /// Remarks that do not change the verdict (a short filter margin, a converted unit).
     pub notes: Vec<String>,
+    /// Plots of the most relevant sections: signals of the records, which the file names.
+    #[serde(skip)]
+    pub traces: Vec<Trace>,
 }
 
 /// The rules that were applied.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ProtocolInfo {
     pub name: String,
     pub title: String,
+    pub sha256: String,
+    pub parameters: Vec<ParameterInfo>,
+    /// Differences in meaning from the parent, rule by rule; empty without a parent.
+    pub deviations: Vec<Deviation>,
+    /// The files of the protocol: the protocol first, then its parent, and so on.
+    pub files: Vec<ProtocolFile>,
     /// Standard and edition the protocol follows, if it names one.
     pub edition: Option<String>,
     pub source: Option<String>,
     pub scope: Option<String>,
     pub notes: Vec<String>,
-    pub sha256: String,
-    /// The files of the protocol: the protocol first, then its parent, and so on.
-    pub files: Vec<ProtocolFile>,
-    /// Differences in meaning from the parent, rule by rule; empty without a parent.
-    pub deviations: Vec<Deviation>,
-    pub parameters: Vec<ParameterInfo>,
     pub filters: Vec<FilterInfo>,
     /// Measured and simulated channels that the protocol declares.
     pub channels: Vec<ChannelInfo>,
     /// Number of nodes of the processing graph.
     pub graph_nodes: usize,
-    /// The processing graph drawn, one SVG text.
-    pub graph_svg: String,
     /// Criterion of the overall verdict, in a sentence.
     pub verdict_rule: String,
     /// The overall verdict in the protocol's own words, or in those of its kind.
     pub verdict_words: VerdictWords,
+    /// The processing graph drawn, one SVG text; it follows from the files.
+    #[serde(skip)]
+    pub graph_svg: String,
 }
 
-#[derive(Clone, Debug, Serialize)]
+/// A file of a protocol.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ProtocolFile {
     pub name: String,
     pub sha256: String,
+    /// Name of the attachment of the report that has its text.
+    pub attached: String,
+    #[serde(skip)]
     pub text: String,
 }
 
+impl ProtocolFile {
+    /// Name of an attached file of the protocol; number 0 is the protocol, 1 its parent, and so
+    /// on. The number distinguishes files of the same name from different folders.
+    pub fn attachment(at: usize, name: &str) -> String {
+        let plain = |sign: char| sign.is_ascii_alphanumeric() || matches!(sign, '.' | '-' | '_');
+        let plain: String = name.chars().map(|sign| if plain(sign) { sign } else { '_' }).collect();
+        format!("protocol-{}-{plain}", at + 1)
+    }
+}
+
 /// A rule that differs from the parent.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Deviation {
     /// Subject of the rule: `quantity ay_max, limit std`.
     pub rule: String,
@@ -117,7 +159,7 @@ pub struct Deviation {
     pub after: Option<String>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ParameterInfo {
     pub name: String,
     pub title: String,
@@ -127,11 +169,11 @@ pub struct ParameterInfo {
     /// `default`, `campaign` or `command line`.
     pub set_by: String,
     /// Why the value is to be confirmed.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unconfirmed: Option<String>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ChannelInfo {
     pub name: String,
     pub title: String,
@@ -140,7 +182,7 @@ pub struct ChannelInfo {
     pub note: String,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct FilterInfo {
     pub name: String,
     pub title: String,
@@ -149,27 +191,28 @@ pub struct FilterInfo {
     pub source: Option<String>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct CampaignInfo {
     /// Of a pool: the short names of its campaigns.
     pub name: String,
     /// The campaigns of a pool; empty where there is one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub members: Vec<CampaignMember>,
     /// Every input file with its hash, in the order read.
     pub files: Vec<FileHash>,
     /// Vehicle data: first those used by the protocol, then all others.
     pub vehicle: Vec<DataItem>,
-    /// Other keys of campaign.yaml, in their order.
-    pub facts: Vec<DataItem>,
     /// Origin of the simulated records, where stated.
     pub origin: Option<OriginInfo>,
     /// Identification of the report, stated or not.
-    #[serde(serialize_with = "as_tree")]
-    pub report: Vec<ReportItem>,
+    #[serde(flatten)]
+    pub report: Identification,
+    /// Other keys of campaign.yaml, in their order.
+    pub facts: Vec<DataItem>,
 }
 
 /// One of several campaigns that were evaluated as one.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct CampaignMember {
     /// What it is called in results.
     pub short_name: String,
@@ -177,15 +220,11 @@ pub struct CampaignMember {
     /// Its sections, or whole records.
     pub sections: usize,
     pub origin: Option<OriginInfo>,
-    #[serde(serialize_with = "as_tree")]
-    pub report: Vec<ReportItem>,
+    #[serde(flatten)]
+    pub report: Identification,
 }
 
-fn as_tree<S: serde::Serializer>(items: &[ReportItem], to: S) -> Result<S::Ok, S::Error> {
-    report::tree(items).serialize(to)
-}
-
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct FileHash {
     pub path: String,
     pub sha256: String,
@@ -195,28 +234,18 @@ pub struct FileHash {
 }
 
 /// Identification of a record.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct RecordOf {
     /// `measurement`, `simulation` or `track`.
     pub kind: String,
     pub section: String,
     /// Where the campaign has several of the kind.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
 }
 
-/// Whether a record took part in a value: by the record that the value names, `simpack` or
-/// `simpack, run1`, and the name of the record.
-pub fn took_part(value: Option<&str>, simulated: bool, name: Option<&str>) -> bool {
-    let (Some(value), Some(name)) = (value, name) else { return true };
-    match value.split_once(", ") {
-        Some((first, second)) => name == if simulated { first } else { second },
-        None => name == value,
-    }
-}
-
 /// Place of a rule in the protocol.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct RulePlace {
     /// One of the names in [`ProtocolInfo::files`].
     pub file: String,
@@ -225,7 +254,7 @@ pub struct RulePlace {
 }
 
 /// A named value of the campaign or the vehicle, as text.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DataItem {
     pub name: String,
     pub value: String,
@@ -235,24 +264,29 @@ pub struct DataItem {
     /// The campaign states no unit: `unit` is that of the protocol.
     pub unit_assumed: bool,
     /// Whose it is, where there are several vehicles or campaigns.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub of: Option<String>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct SectionResult {
     /// Which of several campaigns, and which of several vehicles.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub campaign: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub vehicle: Option<String>,
     /// Of a pool with the campaign: `series 2/S01`.
     pub section: String,
     /// The first section of its site; repeats have the same site.
     pub site: String,
+    #[serde(with = "zones")]
+    #[schemars(with = "Option<zones::InFile>")]
     pub zone: Option<String>,
     pub used: bool,
     pub reason: Option<String>,
+    /// A file of it could not be read.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub unreadable: bool,
     /// Length in `axis_unit`.
     pub length: f64,
     pub start: f64,
@@ -264,7 +298,7 @@ pub struct SectionResult {
 }
 
 /// One requirement on a section.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct CheckResult {
     pub name: String,
     pub title: String,
@@ -274,8 +308,10 @@ pub struct CheckResult {
     pub says: String,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct ZoneResult {
+    #[serde(with = "zones")]
+    #[schemars(with = "zones::InFile")]
     pub zone: String,
     pub title: String,
     /// The zone's condition in words.
@@ -316,12 +352,12 @@ pub fn usable_sections(sections: usize, sites: usize) -> String {
 }
 
 /// Range of a numeric section column over the sections used.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct DomainRange {
     pub name: String,
     pub unit: String,
-    /// `all` or the zone.
-    pub scope: String,
+    #[serde(flatten)]
+    pub scope: Scope,
     pub low: f64,
     pub high: f64,
     /// Number of sections with a value.
@@ -330,7 +366,7 @@ pub struct DomainRange {
 
 /// Simulated and measured signal of one section, filtered as specified for the quantity, thinned
 /// for plotting.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Trace {
     pub quantity: String,
     pub section: String,
@@ -364,7 +400,7 @@ fn unbounded_above<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> 
     Ok(Option::deserialize(from)?.unwrap_or(f64::NEG_INFINITY))
 }
 
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Curve {
     pub x: Vec<f64>,
     pub y: Vec<f64>,

@@ -1,9 +1,10 @@
 //! Origin of simulated records, for a report.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Origin of the simulated records of a campaign, where stated.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OriginInfo {
     /// `fishplate 0.1.0, diagnose`
     pub made_by: String,
@@ -16,12 +17,12 @@ pub struct OriginInfo {
     /// Number of these that are measured records of this campaign, byte by byte.
     pub fitted_to_these: usize,
     /// How imported records were made; empty if none was imported.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub imported: Vec<ImportedSide>,
 }
 
 /// The imported records of one side.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct ImportedSide {
     /// `measurement` or `simulation`; of several campaigns with the campaign.
     pub side: String,
@@ -31,7 +32,7 @@ pub struct ImportedSide {
 }
 
 /// How one record was made.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct ImportedOne {
     pub section: String,
     pub file: String,
@@ -43,7 +44,7 @@ pub struct ImportedOne {
     pub steps: Vec<String>,
 }
 
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct FittedTo {
     pub path: String,
     pub sha256: String,

@@ -1,18 +1,41 @@
 //! Results of one quantity: values, statistics, regressions.
 
-use serde::Serialize;
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use super::{RulePlace, Spread};
+use super::scope::map;
+use super::{RecordName, RulePlace, Scope, Spread, StatisticName, zones};
 
 /// One quantity of the protocol: its processing, its values and its verdict.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct QuantityResult {
     pub id: String,
     pub title: String,
-    /// Symbol for tables, if the protocol gives one (`(Y/Q)max`), else the id.
-    pub symbol: String,
     /// Unit of the compared values; `-` for a dimensionless number.
     pub unit: String,
+    /// Number of values.
+    pub pairs: usize,
+    /// Number of sites of the values.
+    pub n: usize,
+    #[serde(flatten)]
+    pub figures: Figures,
+    /// All criteria are met; `None` if not assessable.
+    pub holds: Option<bool>,
+    /// Why it is not assessable.
+    pub reason: Option<String>,
+    /// Place of its definition in the protocol.
+    pub rule: RulePlace,
+    pub statistics: Vec<StatisticResult>,
+    /// Of an assessment: its statistics once more, with what their groups have in common.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub groups: Option<Vec<GroupResult>>,
+    /// Estimates without a limit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub reported: Vec<Reported>,
+    pub values: Vec<PairValue>,
+    /// Symbol for tables, if the protocol gives one (`(Y/Q)max`), else the id.
+    pub symbol: String,
     /// Signals in words: `Y at wheelsets 1, 3`.
     pub of: String,
     /// Filter in words, or `none`.
@@ -39,18 +62,40 @@ pub struct QuantityResult {
     pub repeats: bool,
     /// How far several records of one side are apart.
     pub spread: Option<Spread>,
-    pub statistics: Vec<StatisticResult>,
-    /// Estimates without a limit.
-    pub reported: Vec<Reported>,
-    /// Number of sites of the values.
-    pub n: usize,
-    pub values: Vec<PairValue>,
-    /// All criteria are met; `None` if not assessable.
-    pub holds: Option<bool>,
-    /// Why it is not assessable.
-    pub reason: Option<String>,
-    /// Place of its definition in the protocol.
-    pub rule: RulePlace,
+}
+
+/// What represents a quantity in a file: mean and standard deviation of all its values, or the
+/// statistic closest to its limit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Figures {
+    Moments {
+        mean: Option<f64>,
+        std: Option<f64>,
+        limit_mean: Option<f64>,
+        limit_std: Option<f64>,
+        normalised_mean: Option<f64>,
+        normalised_std: Option<f64>,
+    },
+    /// Of the records of one side.
+    Assessed {
+        assessed: String,
+        statistic: Option<StatisticName>,
+        value: Option<f64>,
+        limit: Option<f64>,
+    },
+    Metric {
+        metric: String,
+        statistic: Option<StatisticName>,
+        value: Option<f64>,
+        limit: Option<f64>,
+    },
+}
+
+impl Default for Figures {
+    fn default() -> Self {
+        Self::Metric { metric: String::new(), statistic: None, value: None, limit: None }
+    }
 }
 
 impl QuantityResult {
@@ -58,19 +103,59 @@ impl QuantityResult {
     pub fn decides_nothing(&self) -> bool {
         self.statistics.is_empty() && self.holds == Some(true)
     }
+
+    /// With what its file states beside its statistics and values.
+    #[must_use]
+    pub fn completed(mut self) -> Self {
+        self.pairs = self.values.len();
+        let mean = self.overall(&StatisticName::Mean);
+        let std = self.overall(&StatisticName::StandardDeviation);
+        self.figures = if self.has_sides && (mean.is_some() || std.is_some()) {
+            Figures::Moments {
+                mean: mean.and_then(|mean| mean.value),
+                std: std.and_then(|std| std.value),
+                limit_mean: mean.and_then(|mean| mean.limit),
+                limit_std: std.and_then(|std| std.limit),
+                normalised_mean: mean.and_then(|mean| mean.normalised),
+                normalised_std: std.and_then(|std| std.normalised),
+            }
+        } else {
+            let share = |statistic: &StatisticResult| statistic.normalised.unwrap_or(-1.0);
+            let worst = self.statistics.iter().max_by(|a, b| share(a).total_cmp(&share(b)));
+            let statistic = worst.map(|worst| worst.name.clone());
+            let value = worst.and_then(|worst| worst.value);
+            let limit = worst.and_then(|worst| worst.limit);
+            match self.from.clone() {
+                Some(assessed) => Figures::Assessed { assessed, statistic, value, limit },
+                None => {
+                    Figures::Metric { metric: self.comparison.clone(), statistic, value, limit }
+                }
+            }
+        };
+        self.groups =
+            self.from.as_ref().map(|_| self.statistics.iter().map(GroupResult::of).collect());
+        self
+    }
+
+    /// A statistic of all its values.
+    pub fn overall(&self, name: &StatisticName) -> Option<&StatisticResult> {
+        self.statistics.iter().find(|statistic| statistic.is_overall(name))
+    }
 }
 
 /// One statistic over pairs of section and signal, and its limit.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct StatisticResult {
     /// `mean`, `std`, `p95`, `each`, ...
-    pub name: String,
+    pub name: StatisticName,
     /// In words: `mean`, `standard deviation (n-1)`, `95 % value`, `each value`.
     pub title: String,
-    /// Pairs included: `all`, `zone 1`.
-    pub scope: String,
-    /// The same by key and member: `zone` `1`, `wheelset` `2`.
-    #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "as_map")]
+    /// Pairs included.
+    #[serde(flatten)]
+    pub scope: Scope,
+    /// Each key with its member, one zone first; empty where the zone alone tells groups apart.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", with = "map")]
+    #[schemars(with = "IndexMap<String, String>")]
     pub group: Vec<(String, String)>,
     /// Number of pairs.
     pub count: usize,
@@ -89,17 +174,16 @@ pub struct StatisticResult {
     /// |value| / limit.
     pub normalised: Option<f64>,
     /// Mean and standard deviation of the values of the group, in the unit of the quantity.
-    #[serde(skip)]
     pub sample: Sample,
     /// Of an estimate that is a regression with one regressor.
-    #[serde(skip)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub regression: Option<Box<RegressionFigure>>,
     /// Of an estimate that is a share of the values: where it divides them, in the unit of the
     /// quantity.
-    #[serde(skip)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub divided_at: Option<f64>,
     /// Of an estimate with regressions: regressors that are read outside their data.
-    #[serde(skip)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub outside: Vec<Outside>,
     pub holds: Option<bool>,
     /// Factors of the limit that depend on vehicle data.
@@ -111,35 +195,124 @@ pub struct StatisticResult {
     pub rule: RulePlace,
 }
 
+impl StatisticResult {
+    /// Whether it is this statistic, of all values of its quantity.
+    pub fn is_overall(&self, name: &StatisticName) -> bool {
+        self.name == *name && self.scope.is_all()
+    }
+}
+
+/// A statistic of one group of an assessed quantity.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct GroupResult {
+    /// Each key with its member, one zone first.
+    #[serde(with = "map")]
+    #[schemars(with = "IndexMap<String, String>")]
+    pub keys: Vec<(String, String)>,
+    pub estimate: StatisticName,
+    /// Number of values.
+    pub values: usize,
+    pub n: usize,
+    /// Mean and standard deviation of the values, in the unit of the quantity.
+    #[serde(flatten)]
+    pub sample: Sample,
+    pub value: Option<f64>,
+    pub low: Option<f64>,
+    pub high: Option<f64>,
+    pub limit: Option<f64>,
+    pub ratio: Option<f64>,
+    pub holds: Option<bool>,
+    pub reason: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub regression: Option<GroupRegression>,
+}
+
+/// The line of a regression with one regressor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct GroupRegression {
+    pub regressor: String,
+    /// Of the regressor.
+    pub unit: String,
+    pub intercept: f64,
+    pub slope: f64,
+    pub target: f64,
+}
+
+impl GroupResult {
+    fn of(statistic: &StatisticResult) -> Self {
+        let line = |figure: &RegressionFigure| GroupRegression {
+            regressor: figure.regressor.clone(),
+            unit: figure.regressor_unit.clone(),
+            intercept: figure.intercept,
+            slope: figure.slope,
+            target: figure.target,
+        };
+        Self {
+            keys: statistic.scope.owned_members(),
+            estimate: statistic.name.clone(),
+            values: statistic.count,
+            n: statistic.n,
+            sample: statistic.sample,
+            value: statistic.value,
+            low: statistic.interval.map(|(low, _)| low),
+            high: statistic.interval.map(|(_, high)| high),
+            limit: statistic.limit,
+            ratio: statistic.normalised,
+            holds: statistic.holds,
+            reason: statistic.reason.clone(),
+            regression: statistic.regression.as_deref().map(line),
+        }
+    }
+}
+
 /// An estimate without a limit, of one group of values or of sections.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reported {
-    /// `mean`, the name of an estimate, or an expression as written.
-    pub name: String,
-    pub title: String,
-    /// `all`, `zone 1, wheelset 2`.
-    pub scope: String,
+    /// Each key with its member, one zone first.
+    #[serde(with = "map")]
+    #[schemars(with = "IndexMap<String, String>")]
+    pub keys: Vec<(String, String)>,
     /// Which of their values or sections, in the words of the protocol.
+    #[serde(rename = "where")]
     pub condition: Option<String>,
-    /// Each key with its member; of a zone alone, the zone.
-    #[serde(serialize_with = "as_map")]
-    pub group: Vec<(String, String)>,
-    /// Number of values, or of sections.
-    pub count: usize,
+    #[serde(rename = "estimate")]
+    pub name: StatisticName,
+    pub title: String,
+    /// Of which values or sections, whatever the condition.
+    #[serde(flatten)]
+    pub scope: Scope,
+    #[serde(flatten)]
+    pub count: Count,
     /// Number of independent units.
     pub n: usize,
     pub unit: String,
     pub value: Option<f64>,
     /// 95 % confidence interval, as in [`StatisticResult::interval`].
-    pub interval: Option<(f64, f64)>,
+    pub low: Option<f64>,
+    pub high: Option<f64>,
     /// Why there is no value.
     pub reason: Option<String>,
     /// Place of the report in the protocol.
     pub rule: RulePlace,
 }
 
+/// The number of what an estimate is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Count {
+    Values(usize),
+    Sections(usize),
+}
+
+impl Count {
+    pub fn number(self) -> usize {
+        let (Self::Values(number) | Self::Sections(number)) = self;
+        number
+    }
+}
+
 /// What the values of a group are like; `None` where there are too few.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Sample {
     pub mean: Option<f64>,
     /// With the divisor n - 1.
@@ -147,7 +320,7 @@ pub struct Sample {
 }
 
 /// A regressor that is read outside the data of its group.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Outside {
     /// The regressor in the words of the protocol.
     pub regressor: String,
@@ -159,7 +332,7 @@ pub struct Outside {
 }
 
 /// A regression of values over one regressor, ready to draw.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RegressionFigure {
     /// The regressor in the words of the protocol.
     pub regressor: String,
@@ -179,7 +352,7 @@ pub struct RegressionFigure {
 }
 
 /// A value over its regressor.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RegressionPoint {
     pub section: String,
     pub zone: Option<String>,
@@ -189,7 +362,7 @@ pub struct RegressionPoint {
 }
 
 /// The fitted line and its bound at one place.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RegressionAt {
     pub x: f64,
     pub fitted: f64,
@@ -197,7 +370,7 @@ pub struct RegressionAt {
 }
 
 /// A factor of a limit that depends on vehicle data.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LimitFactor {
     pub by: f64,
     /// `vehicle category is freight`
@@ -205,7 +378,8 @@ pub struct LimitFactor {
 }
 
 /// One section and signal.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(into = "PairInFile", from = "PairInFile")]
 pub struct PairValue {
     /// Which of several campaigns.
     pub campaign: Option<String>,
@@ -216,7 +390,7 @@ pub struct PairValue {
     /// Which of the quantity's values, in words, where it has several.
     pub taken: Option<String>,
     /// Which record, where the campaign has several of a side.
-    pub record: Option<String>,
+    pub record: Option<RecordName>,
     pub simulated: Option<f64>,
     pub measured: Option<f64>,
     /// What estimates are taken of: the difference; of a quantity without sides its metric, or the
@@ -230,15 +404,75 @@ impl PairValue {
     /// The signal, and which value and record it is where there are several: `SigmaY_1, p99.85`.
     #[must_use]
     pub fn label(&self) -> String {
-        [Some(&self.signal), self.taken.as_ref(), self.record.as_ref()]
+        let record = self.record.as_ref().map(ToString::to_string);
+        [Some(self.signal.clone()), self.taken.clone(), record]
             .into_iter()
             .flatten()
-            .cloned()
             .collect::<Vec<_>>()
             .join(", ")
     }
 }
 
-fn as_map<S: serde::Serializer>(pairs: &[(String, String)], to: S) -> Result<S::Ok, S::Error> {
-    to.collect_map(pairs.iter().map(|(key, value)| (key, value)))
+/// A value as it stands in files: a difference with both sides, or a value by itself.
+#[derive(Serialize, Deserialize, JsonSchema)]
+struct PairInFile {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    campaign: Option<String>,
+    section: String,
+    #[serde(with = "zones")]
+    #[schemars(with = "Option<zones::InFile>")]
+    zone: Option<String>,
+    signal: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    taken: Option<String>,
+    #[serde(flatten)]
+    record: Option<RecordName>,
+    #[serde(flatten)]
+    number: NumberInFile,
+    samples: usize,
+}
+
+/// See [`PairInFile`].
+#[derive(Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+enum NumberInFile {
+    Difference { simulated: Option<f64>, measured: Option<f64>, difference: f64 },
+    Value { value: f64 },
+}
+
+impl From<PairValue> for PairInFile {
+    fn from(pair: PairValue) -> Self {
+        let PairValue { simulated, measured, difference, .. } = pair;
+        let number = if simulated.is_some() || measured.is_some() {
+            NumberInFile::Difference { simulated, measured, difference }
+        } else {
+            NumberInFile::Value { value: difference }
+        };
+        let PairValue { campaign, section, zone, signal, taken, record, samples, .. } = pair;
+        Self { campaign, section, zone, signal, taken, record, number, samples }
+    }
+}
+
+impl From<PairInFile> for PairValue {
+    fn from(file: PairInFile) -> Self {
+        let (simulated, measured, difference) = match file.number {
+            NumberInFile::Difference { simulated, measured, difference } => {
+                (simulated, measured, difference)
+            }
+            NumberInFile::Value { value } => (None, None, value),
+        };
+        let PairInFile { campaign, section, zone, signal, taken, record, samples, .. } = file;
+        Self {
+            campaign,
+            section,
+            zone,
+            signal,
+            taken,
+            record,
+            simulated,
+            measured,
+            difference,
+            samples,
+        }
+    }
 }

@@ -1,11 +1,12 @@
 //! Identification of a report, as stated by the campaign.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use serde_json::{Map, Value};
 
 /// An item that an assessor expects in a report.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct ReportItem {
     /// Path in the block `report` of the campaign: its key, preceded by the key of the enclosing
     /// map, if any.
@@ -17,9 +18,42 @@ pub struct ReportItem {
     pub value: Option<String>,
 }
 
+/// What identifies a report.
+///
+/// In files `report` has the structure of the campaign, and `report_data` is the list of items.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(into = "InFile", from = "InFile")]
+pub struct Identification(pub Vec<ReportItem>);
+
+/// See [`Identification`].
+#[derive(Serialize, Deserialize, JsonSchema)]
+struct InFile {
+    report: Value,
+    report_data: Vec<ReportItem>,
+}
+
+impl From<Identification> for InFile {
+    fn from(Identification(report_data): Identification) -> Self {
+        Self { report: tree(&report_data), report_data }
+    }
+}
+
+impl From<InFile> for Identification {
+    fn from(file: InFile) -> Self {
+        Self(file.report_data)
+    }
+}
+
+impl std::ops::Deref for Identification {
+    type Target = [ReportItem];
+
+    fn deref(&self) -> &[ReportItem] {
+        &self.0
+    }
+}
+
 /// All items in the structure of the campaign; missing ones are `null`.
-#[must_use]
-pub fn tree(items: &[ReportItem]) -> Value {
+fn tree(items: &[ReportItem]) -> Value {
     let mut root = Map::new();
     for item in items {
         let mut at = &mut root;

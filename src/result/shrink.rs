@@ -1,11 +1,12 @@
 //! How far the named effects reduce the gap on data that the fit did not see.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::Verdict;
 
 /// Reduction of the gap on sections excluded from the fit.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Shrink {
     pub measure: String,
     pub before: f64,
@@ -25,7 +26,7 @@ pub struct Shrink {
 }
 
 /// Data that the fit did not see.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct HeldOut {
     /// Whether the campaign names them; otherwise the gap is told by cross-validation alone.
     pub named: bool,
@@ -42,7 +43,7 @@ pub struct HeldOut {
 }
 
 /// Reduction of the gap in the quantities that the effects change.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Touched {
     pub quantities: Vec<String>,
     pub before: f64,
@@ -56,7 +57,7 @@ pub struct Touched {
     pub variance_explained: f64,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 pub struct QuantityShrink {
     pub id: String,
     pub normalised_std_before: Option<f64>,

@@ -1,10 +1,11 @@
 //! How far several records of one side are from each other: simulations by several codes, or runs
 //! of a measurement.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// The records of a quantity, each compared with what is central of all of them.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Spread {
     /// What is central: `mean`, `median`.
     pub center: String,
@@ -13,7 +14,7 @@ pub struct Spread {
 }
 
 /// The values of one class of sections.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ClassSpread {
     /// `None`: all sections.
     pub zone: Option<String>,
@@ -33,7 +34,7 @@ pub struct ClassSpread {
 }
 
 /// The deviations of one record from what is central of all.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OfRecord {
     pub record: String,
     pub values: usize,
@@ -48,7 +49,7 @@ pub struct OfRecord {
 }
 
 /// A value with its place.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Furthest {
     pub value: f64,
     pub section: String,

@@ -1,11 +1,12 @@
 //! Verdicts: the overall one, and those with a name.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::RulePlace;
 
 /// The overall verdict, whatever its words.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Verdict {
     #[serde(rename = "validated")]
     Validated,
@@ -26,7 +27,7 @@ impl Verdict {
 }
 
 /// What a verdict came to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Outcome {
     #[serde(rename = "holds")]
     Holds,
@@ -70,7 +71,7 @@ impl Outcome {
 }
 
 /// A verdict with a name.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct VerdictResult {
     pub name: String,
     pub title: String,

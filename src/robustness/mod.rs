@@ -68,7 +68,7 @@ pub fn sections_of(
     let (case, reduction) = case_of(evaluated, &compiled.plan, settings).map_err(too_few)?;
     let found = SelectionStudy { reduction, ..selections(&case, &settings.selections) };
     let notes = evaluated.notes.iter().chain(&found.lacking).cloned().collect();
-    Ok(Study { protocol: protocol_info(compiled), campaign, notes, found: Found::Sections(found) })
+    Ok(Study::new(protocol_info(compiled), campaign, notes, Found::Sections(found)))
 }
 
 /// A study counts limits of selections: the overall verdict must rest on limits alone.
@@ -122,15 +122,11 @@ fn joined(
     evaluated: &Evaluated,
     found: Found,
 ) -> Study {
-    Study {
-        protocol: protocol_info(compiled),
-        campaign: campaign_info(
-            &compiled.plan,
-            campaigns,
-            evaluated.files.clone(),
-            evaluated.facts.items(&compiled.plan),
-        ),
-        notes: evaluated.notes.clone(),
-        found,
-    }
+    let campaign = campaign_info(
+        &compiled.plan,
+        campaigns,
+        evaluated.files.clone(),
+        evaluated.facts.items(&compiled.plan),
+    );
+    Study::new(protocol_info(compiled), campaign, evaluated.notes.clone(), found)
 }

@@ -9,7 +9,7 @@ use crate::check::plan::{Parameter, Plan, SetBy};
 use crate::check::{Override, Overrides};
 use crate::data::Campaigns;
 use crate::problem::{Problem, Problems};
-use crate::result::study::{AtValue, Found, ParameterStudy, Selected, Study, Varied};
+use crate::result::study::{AtValue, Found, Largest, ParameterStudy, Selected, Study, Varied};
 use crate::run::{Evaluated, Progress, Shifts, evaluate};
 use crate::source::Source;
 use crate::study::marked;
@@ -224,13 +224,15 @@ fn at_value(
     let largest = statistics
         .iter()
         .filter_map(|statistic| {
-            statistic
-                .normalised
-                .map(|share| (format!("{} of {}", statistic.name, statistic.symbol), share))
+            statistic.normalised.map(|normalised| {
+                (format!("{} of {}", statistic.name, statistic.symbol), normalised)
+            })
         })
-        .max_by(|a, b| a.1.total_cmp(&b.1));
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(statistic, normalised)| Largest { statistic, normalised });
     let study = case_of(evaluated, &compiled.plan, settings)
-        .map(|(case, _)| marked(&case, &settings.selections).0);
+        .map(|(case, _)| marked(&case, &settings.selections).0.counted);
+    let share = study.as_ref().ok().map(|study| &study.share);
     AtValue {
         value: value.to_owned(),
         is_base,
@@ -239,7 +241,9 @@ fn at_value(
         statistics,
         largest,
         combinations: study.as_ref().map_or(0.0, |study| study.combinations),
-        share: study.as_ref().ok().map(|study| study.share),
+        share: share.map(|share| share.share),
+        exact: share.map(|share| share.exact),
+        interval: share.and_then(|share| share.interval),
         reason: study.err(),
     }
 }

@@ -5,7 +5,9 @@ use crate::certify::Compiled;
 use crate::check::plan::Plan;
 use crate::data::Campaigns;
 use crate::problem::Problems;
-use crate::result::study::{AtOffset, Estimated, Found, Study, SyncStudy};
+use crate::result::study::{
+    AtOffset, Estimated, Flipped, Found, LostSection, Offset, Study, SyncStudy,
+};
 use crate::result::{Verdict, VerdictWords};
 use crate::run::{Evaluated, Progress, Shifts, evaluate};
 use crate::study::case::Case;
@@ -120,12 +122,19 @@ fn at_offset(
         flips(before, Marked { case, fails: fails.as_ref() }, &settings.selections)
     });
     AtOffset {
-        offset,
+        offset: if plan.axis.unit.text == "m" {
+            Offset::Metres(offset)
+        } else {
+            Offset::Other(offset)
+        },
         verdict: judged.verdict,
         reasons: judged.reasons,
         selected,
-        flips,
-        study: counted.map(|(_, (study, _))| study),
+        flips: flips.map_or_else(|reason| Flipped::Impossible { reason }, Flipped::Compared),
+        quantities: counted
+            .as_ref()
+            .map_or_else(|_| Vec::new(), |(_, (study, _))| study.quantities.clone()),
+        selections: counted.map(|(_, (study, _))| study.counted).into(),
         changes: Vec::new(),
         lost: Vec::new(),
     }
@@ -186,10 +195,11 @@ fn of_limit(reason: &str) -> Vec<&str> {
     words
 }
 
-fn lost(base: &Evaluated, at: &Evaluated, plan: &Plan) -> Vec<(String, String)> {
+fn lost(base: &Evaluated, at: &Evaluated, plan: &Plan) -> Vec<LostSection> {
     let (before, now) = (base.pool(plan).sections, at.pool(plan).sections);
     let gone = before.into_iter().zip(now).filter(|(before, now)| before.used && !now.used);
-    gone.map(|(_, now)| (now.name, now.reason.unwrap_or_default())).collect()
+    gone.map(|(_, now)| LostSection { section: now.name, reason: now.reason.unwrap_or_default() })
+        .collect()
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use crate::catalog::Statistic;
 use crate::metrics::moments::Moment;
 use crate::metrics::percentile::{Method, percentile};
-use crate::result::usable_sections;
+use crate::result::{Scope, StatisticName, usable_sections};
 use crate::run::pool::{Estimator, Pool, Pooled, PooledLimit, PooledMinimum, PooledQuantity, Rule};
 
 /// Tolerance for rounding where a value equals its limit, which counts as met. Relative to the
@@ -50,9 +50,9 @@ pub struct Quantity {
 /// A statistic and its limit.
 #[derive(Clone, Debug)]
 pub struct Measure {
-    pub name: String,
+    pub name: StatisticName,
     pub title: String,
-    pub scope: String,
+    pub scope: Scope,
     pub limit: f64,
     pub at_least: bool,
     pub kind: Kind,
@@ -329,7 +329,7 @@ fn measure(pooled: &PooledQuantity, limit: &PooledLimit) -> Measure {
             .collect()
     };
     Measure {
-        name,
+        name: name.into(),
         title: limit.title.clone(),
         scope: limit.scope.clone(),
         limit: if each { 1.0 } else { limit.bounds[0] },

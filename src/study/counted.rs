@@ -2,6 +2,7 @@
 //! influence of each section.
 
 use super::case::Case;
+use crate::result::StatisticName;
 use crate::result::study::{
     Importance, QuantitySpread, Share, Spread, StatisticSpread, WorstSelection,
 };
@@ -59,9 +60,10 @@ impl Counted {
                     scope: measure.scope.clone(),
                     limit: measure.limit,
                     at_least: measure.at_least,
-                    spread: found.spread,
-                    failing: share_of(found.failing),
                     overall: measure.over(usable.iter().copied()),
+                    failing: share_of(found.failing),
+                    reason: found.spread.is_none().then(|| "not defined for any selection".into()),
+                    spread: found.spread,
                 });
                 worst.extend(found.worst.map(|(sections, normalised)| WorstSelection {
                     quantity: quantity.id.clone(),
@@ -72,7 +74,13 @@ impl Counted {
                     sections: sections.iter().map(name).collect(),
                 }));
             }
+            let of = |name: &StatisticName| {
+                let all = |one: &&StatisticSpread| one.name == *name && one.scope.is_all();
+                statistics.iter().find(all).and_then(|one| one.spread)
+            };
             quantities.push(QuantitySpread {
+                mean: of(&StatisticName::Mean),
+                std: of(&StatisticName::StandardDeviation),
                 id: quantity.id.clone(),
                 title: quantity.title.clone(),
                 symbol: quantity.symbol.clone(),

@@ -73,14 +73,7 @@ pub fn marked(case: &Case) -> (Counted, Fails) {
     apply(case, &mut verdicts);
     let combinations = halves.rows.count as u64 * halves.columns.count as u64;
     let validated = combinations - verdicts.any.count();
-    let share = Share {
-        validated,
-        looked_at: combinations,
-        share: validated as f64 / combinations as f64,
-        exact: true,
-        interval: None,
-        seed: None,
-    };
+    let share = Share::exact(validated, combinations);
     let of_limit = |found: OverAll| {
         let worst = found.worst.filter(|_| found.failing > 0);
         let worst = worst.map(|((row, column), value)| (halves.selection(row, column), value));

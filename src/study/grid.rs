@@ -12,7 +12,7 @@ use super::case::{Case, Kind, Measure};
 use super::halves::Form;
 use crate::metrics::fourier;
 use crate::metrics::moments::Moment;
-use crate::result::study::Spread;
+use crate::result::study::{Intervals, Spread};
 
 /// Largest and smallest number of grid cells.
 const CELLS: (usize, usize) = (1 << 20, 1 << 12);
@@ -129,7 +129,7 @@ impl Additive {
             count: combinations,
             exact: false,
             within: Some(within),
-            intervals: None,
+            intervals: Intervals::default(),
         })
     }
 

@@ -3,7 +3,7 @@
 
 use super::groups::Block;
 use super::halves::Form;
-use crate::result::study::Spread;
+use crate::result::study::{Intervals, Spread};
 
 /// From values in any order with their counts; `None` if there are none.
 pub fn weighted(list: &[(f64, f64)]) -> Option<Listed> {
@@ -60,7 +60,7 @@ impl From<Listed> for Spread {
             count: listed.count,
             exact: true,
             within: None,
-            intervals: None,
+            intervals: Intervals::default(),
         }
     }
 }

@@ -47,7 +47,7 @@ pub mod spread;
 pub mod verdicts;
 mod window;
 
-use crate::result::study::{SelectionStudy, Stratum};
+use crate::result::study::{Counted, SelectionStudy, Stratum};
 use case::Case;
 use fails::Fails;
 pub use reduce::reduced;
@@ -97,10 +97,15 @@ pub fn marked(case: &Case, settings: &Settings) -> (SelectionStudy, Option<Fails
     };
     let usable = case.usable();
     let (verdict, _) = case.judge(&usable);
+    let strata: Vec<Stratum> = case.strata.iter().map(|stratum| named(case, stratum)).collect();
+    let by_zone = |count: fn(&Stratum) -> usize| {
+        strata.iter().map(|stratum| (stratum.zone.clone(), count(stratum))).collect()
+    };
     let found = SelectionStudy {
-        strata: case.strata.iter().map(|stratum| named(case, stratum)).collect(),
-        combinations,
-        share: counted.share,
+        counted: Counted { combinations, share: counted.share },
+        sections_per_zone: by_zone(|stratum| stratum.sections.len()),
+        taken_per_zone: by_zone(|stratum| stratum.take),
+        strata,
         verdict,
         lacking: lacking(case),
         quantities: counted.quantities,

@@ -3,7 +3,7 @@
 use statrs::distribution::{Binomial, DiscreteCDF};
 
 use crate::metrics::percentile::{Method, percentiles};
-use crate::result::study::Spread;
+use crate::result::study::{Intervals, Spread};
 
 /// Order statistics estimated from a random sample; nothing for an empty sample.
 pub fn estimated(values: &[f64]) -> Option<Spread> {
@@ -15,8 +15,7 @@ pub fn estimated(values: &[f64]) -> Option<Spread> {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     let intervals = [0.25, 0.5, 0.75].map(|share| interval(&sorted, share));
-    let intervals =
-        intervals.iter().all(Option::is_some).then(|| intervals.map(Option::unwrap_or_default));
+    let all = intervals.iter().all(Option::is_some);
     Some(Spread {
         min,
         q1,
@@ -27,7 +26,7 @@ pub fn estimated(values: &[f64]) -> Option<Spread> {
         count: values.len() as f64,
         exact: false,
         within: None,
-        intervals,
+        intervals: if all { intervals.into() } else { Intervals::default() },
     })
 }
 

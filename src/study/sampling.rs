@@ -104,12 +104,12 @@ pub fn some(case: &Case, settings: &Settings) -> Counted {
     let (drawn, all) = draw_until(case, settings, || Drawn::none(&judge));
     let interval = wilson(drawn.validated, all);
     let share = Share {
-        validated: drawn.validated,
-        looked_at: all,
-        share: drawn.validated as f64 / all as f64,
+        validated_of_all: None,
+        reason: Some("not all selections were evaluated".into()),
         exact: false,
         interval: Some(interval),
         seed: Some(settings.seed),
+        ..Share::exact(drawn.validated, all)
     };
     let known = known(case);
     let of_limit =

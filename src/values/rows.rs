@@ -11,13 +11,15 @@ use arrow_schema::{ArrowError, Field, Schema};
 
 use super::Values;
 use crate::check::plan::{DatumKind, Evaluation, Plan, Quantity, Scalar};
-use crate::result::{FileHash, took_part};
+use crate::result::{FileHash, RecordName};
 use crate::run::{Row, SectionValues, Unit};
 
 const QUANTITY: &str = "quantity";
 const SECTION: &str = "section";
 const SIGNAL: &str = "signal";
 const RECORD: &str = "record";
+/// The names in `record`, of which there may be two.
+const RECORDS: [&str; 2] = ["first_record", "second_record"];
 const SAMPLES: &str = "samples";
 /// Which of several values of a quantity.
 const WHICH: &str = "which";
@@ -25,8 +27,19 @@ const SIMULATED_SI: &str = "simulated_si";
 const MEASURED_SI: &str = "measured_si";
 const VALUE_SI: &str = "value_si";
 /// Columns that rows are made of again.
-pub const OWN: [&str; 9] =
-    [QUANTITY, SECTION, SIGNAL, RECORD, SAMPLES, WHICH, SIMULATED_SI, MEASURED_SI, VALUE_SI];
+pub const OWN: [&str; 11] = [
+    QUANTITY,
+    SECTION,
+    SIGNAL,
+    RECORD,
+    RECORDS[0],
+    RECORDS[1],
+    SAMPLES,
+    WHICH,
+    SIMULATED_SI,
+    MEASURED_SI,
+    VALUE_SI,
+];
 
 /// A row with all it belongs to.
 struct Placed<'a> {
@@ -67,7 +80,7 @@ pub fn table(plan: &Plan, values: &Values) -> Result<RecordBatch, ArrowError> {
             places.iter().find(|(name, _)| name == place).map(|(_, member)| member)
         });
     }
-    all.text(RECORD, |row| row.row.record.as_deref());
+    all.text(RECORD, |row| row.row.record.as_ref().map(ToString::to_string));
     all.text("run", |row| row.label.run.as_deref());
     all.text("site", |row| Some(&row.unit.site_name));
     all.text("state", |row| row.label.state.as_deref());
@@ -99,6 +112,13 @@ pub fn table(plan: &Plan, values: &Values) -> Result<RecordBatch, ArrowError> {
         "source_sha256",
         Arc::new(sources(&rows).into_iter().map(Some).collect::<StringArray>()),
     );
+    for (at, name) in RECORDS.into_iter().enumerate() {
+        all.text(name, |row| match (&row.row.record, at) {
+            (Some(RecordName::Single(name) | RecordName::Pair(name, _)), 0)
+            | (Some(RecordName::Pair(_, name)), _) => Some(name),
+            _ => None,
+        });
+    }
     all.count(WHICH, |row| row.row.which);
     all.number(SIMULATED_SI, |row| row.row.simulated);
     all.number(MEASURED_SI, |row| row.row.measured);
@@ -122,8 +142,8 @@ fn sources(rows: &[Placed<'_>]) -> Vec<Arc<str>> {
             let record = file.record.as_ref();
             record.is_some_and(|of| {
                 of.kind != "track"
-                    && took_part(
-                        row.row.record.as_deref(),
+                    && RecordName::took_part(
+                        row.row.record.as_ref(),
                         of.kind == "simulation",
                         of.name.as_deref(),
                     )
@@ -226,8 +246,8 @@ fn add(
             table.column_by_name(name).and_then(|column| column.as_primitive_opt::<UInt64Type>());
         found.ok_or_else(|| format!("it has no column `{name}` of counts"))
     };
-    let (quantities, names, signals, records) =
-        (texts(QUANTITY)?, texts(SECTION)?, texts(SIGNAL)?, texts(RECORD)?);
+    let (quantities, names, signals) = (texts(QUANTITY)?, texts(SECTION)?, texts(SIGNAL)?);
+    let (first, second) = (texts(RECORDS[0])?, texts(RECORDS[1])?);
     let (simulated, measured, values) =
         (numbers(SIMULATED_SI)?, numbers(MEASURED_SI)?, numbers(VALUE_SI)?);
     let (samples, which) = (counts(SAMPLES)?, counts(WHICH)?);
@@ -260,13 +280,14 @@ fn add(
         if which >= several {
             return Err(wrong());
         }
+        let record = |names: &StringArray| names.is_valid(row).then(|| names.value(row).into());
         let none =
             || format!("row {}: the section `{name}` is not one of this part", before + row + 1);
         let place = *places.get(name).ok_or_else(none)?;
         sections[place].1.rows[index].push(Row {
             position,
             which,
-            record: records.is_valid(row).then(|| records.value(row).into()),
+            record: RecordName::joined(record(first).as_ref(), record(second).as_ref()),
             simulated: number(simulated),
             measured: number(measured),
             value,

@@ -2,8 +2,9 @@
 //! wheelset, an estimate and a prediction for each zone and wheelset, and a limit of every value.
 
 use fishplate::result::{
-    Certification, Curve, PairValue, QuantityResult, RegressionAt, RegressionFigure,
-    RegressionPoint, RulePlace, Sample, StatisticResult, Verdict,
+    Certification, Curve, Figures, PairValue, QuantityResult, RecordName, RegressionAt,
+    RegressionFigure, RegressionPoint, RulePlace, Sample, Scope, StatisticName, StatisticResult,
+    Verdict,
 };
 
 use super::coach;
@@ -42,7 +43,7 @@ fn quantity(found: &Certification) -> QuantityResult {
                     section: section.section.clone(),
                     zone: section.zone.clone(),
                     signal: format!("SigmaY_{wheelset}"),
-                    record: Some(record.into()),
+                    record: Some(RecordName::Single(record.into())),
                     simulated: None,
                     measured: None,
                     difference: 20.0 + (at % 7) as f64 + shift,
@@ -60,9 +61,9 @@ fn quantity(found: &Certification) -> QuantityResult {
         }
     }
     statistics.push(StatisticResult {
-        name: "each".into(),
+        name: StatisticName::Each,
         title: "each value".into(),
-        scope: "all".into(),
+        scope: Scope::default(),
         group: Vec::new(),
         count: values.len(),
         value: Some(26.5),
@@ -94,6 +95,9 @@ fn quantity(found: &Certification) -> QuantityResult {
         reported: Vec::new(),
         spread: None,
         against: None,
+        pairs: 0,
+        figures: Figures::default(),
+        groups: None,
         statistics,
         n: 30,
         values,
@@ -138,10 +142,14 @@ fn estimate(name: &str, zone: &str, wheelset: &str, values: &[PairValue]) -> Sta
         })
     });
     StatisticResult {
-        name: name.into(),
+        name: name.to_string().into(),
         title: format!("{name} of a further section"),
+        scope: Scope {
+            zones: vec![zone.into()],
+            keys: vec![("wheelset".into(), wheelset.into())],
+            condition: None,
+        },
         group: vec![("zone".into(), zone.into()), ("wheelset".into(), wheelset.into())],
-        scope,
         count: 16,
         n: 8,
         unit: "kN".into(),

@@ -3,6 +3,9 @@
 //! and mean nothing.
 
 use fishplate::result::*;
+use fishplate::result::{
+    FORMAT, Figures, Identification, ProtocolFile, Scope, StatisticName, THIS,
+};
 
 /// A name that would be markup in Typst, HTML or a template, if it were not treated as data.
 pub const HOSTILE: &str = "#panic(\"x\") *bold* $a_1$ <script>alert(1)</script> {{ 7 * 7 }} {% raw %} \\u{41} @ref `code` [x] // y";
@@ -82,6 +85,9 @@ pub fn certification() -> Certification {
         .push(format!("z̈*rms is not assessable: channel {LONG} has samples that are no numbers"));
     let traces = (0..6).map(|at| trace(at, &quantities[at], &mut noise)).collect();
     Certification {
+        fishplate: THIS.into(),
+        format: FORMAT,
+        verdict_text: "not validated".into(),
         protocol: protocol(),
         campaign: campaign(&sections),
         verdict: Verdict::NotValidated,
@@ -203,6 +209,9 @@ fn application() -> Vec<DomainResult> {
 /// A certification without anything in it.
 pub fn empty() -> Certification {
     Certification {
+        fishplate: THIS.into(),
+        format: FORMAT,
+        verdict_text: "not assessable".into(),
         protocol: ProtocolInfo {
             name: "empty".into(),
             title: String::new(),
@@ -227,7 +236,7 @@ pub fn empty() -> Certification {
             files: Vec::new(),
             vehicle: Vec::new(),
             facts: Vec::new(),
-            report: Vec::new(),
+            report: Identification::default(),
             origin: None,
         },
         verdict: Verdict::NotAssessable,
@@ -285,6 +294,7 @@ fn sections(noise: &mut Noise) -> Vec<SectionResult> {
                 of: None,
             };
             SectionResult {
+                unreadable: false,
                 campaign: None,
                 vehicle: None,
                 section: if at == 12 {
@@ -372,10 +382,10 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
     let std = (values.iter().map(|pair| (pair.difference - mean).powi(2)).sum::<f64>() / (n - 1.0))
         .sqrt();
     let statistic = |name: &str, title: &str, value: f64, limit: f64, text: &str| StatisticResult {
-        group: Vec::new(),
-        name: name.into(),
+        name: name.to_string().into(),
         title: title.into(),
-        scope: "all".into(),
+        scope: Scope::default(),
+        group: Vec::new(),
         count: values.len(),
         n: values.len() / 2,
         unit: kind.unit.into(),
@@ -415,6 +425,9 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
         clause: Some("Table 1, row 5".into()),
         source: Some("Götz and Polach, Verification and validation of simulations in a rail vehicle certification context, 2018".into()),
         notes: if kind.id == "Y_qst" { vec!["Signs: positive differences mean a larger simulated magnitude.".into()] } else { Vec::new() },
+        pairs: 0,
+        figures: Figures::default(),
+        groups: None,
         has_sides: true,
         holds: Some(statistics.iter().all(|one| one.holds == Some(true))),
         statistics,
@@ -432,7 +445,6 @@ fn make_unassessable(quantity: &mut QuantityResult) {
     quantity.reason = Some(format!("channel {LONG} has samples that are no numbers"));
     for statistic in &mut quantity.statistics {
         *statistic = StatisticResult {
-            group: Vec::new(),
             count: 0,
             n: 0,
             value: None,
@@ -468,10 +480,10 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
         .collect();
     let statistics = (1..=4)
         .map(|zone| StatisticResult {
-            group: Vec::new(),
-            name: "p95".into(),
+            name: StatisticName::Percentile(95.0),
             title: "95 % value".into(),
-            scope: format!("zone {zone}"),
+            scope: Scope::zone(&zone.to_string()),
+            group: Vec::new(),
             count: 16,
             n: 8,
             unit: "-".into(),
@@ -510,6 +522,9 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
         source: None,
         notes: Vec::new(),
         has_sides: false,
+        pairs: 0,
+        figures: Figures::default(),
+        groups: None,
         statistics,
         n: values.len() / 2,
         values,
@@ -552,7 +567,7 @@ fn domain() -> Vec<DomainRange> {
     let range = |name: &str, unit: &str, scope: &str, low: f64, high: f64| DomainRange {
         name: name.into(),
         unit: unit.into(),
-        scope: scope.into(),
+        scope: if scope == "all" { Scope::default() } else { Scope::zone(scope) },
         low,
         high,
         count: 31,
@@ -647,7 +662,7 @@ fn campaign(sections: &[SectionResult]) -> CampaignInfo {
             item("assumed_friction", "0.4", Some("-"), false),
             item("simulation_ran_on", "nominal track, measured irregularities", None, false),
         ],
-        report: report(),
+        report: Identification(report()),
     }
 }
 
@@ -663,6 +678,7 @@ fn protocol() -> ProtocolInfo {
     let file = |name: &str, text: String| ProtocolFile {
         name: name.into(),
         sha256: "ab".repeat(32),
+        attached: ProtocolFile::attachment(0, name),
         text,
     };
     ProtocolInfo {

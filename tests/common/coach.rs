@@ -3,9 +3,10 @@
 //! are made up.
 
 use fishplate::result::{
-    CampaignInfo, Certification, CheckResult, Curve, DataItem, Deviation, DomainRange, FileHash,
-    FilterInfo, PairValue, ParameterInfo, ProtocolFile, ProtocolInfo, QuantityResult, RulePlace,
-    Sample, SectionResult, StatisticResult, Trace, Verdict, ZoneResult,
+    CampaignInfo, Certification, CheckResult, Curve, DataItem, Deviation, DomainRange, FORMAT,
+    Figures, FileHash, FilterInfo, Identification, PairValue, ParameterInfo, ProtocolFile,
+    ProtocolInfo, QuantityResult, RulePlace, Sample, Scope, SectionResult, StatisticResult, THIS,
+    Trace, Verdict, ZoneResult,
 };
 
 /// A vehicle's name that would run if it were taken for markup.
@@ -124,6 +125,9 @@ pub fn certification() -> Certification {
     let quantities: Vec<QuantityResult> =
         MADE.iter().map(|made| quantity(made, &sections, &mut noise)).collect();
     Certification {
+        fishplate: THIS.into(),
+        format: FORMAT,
+        verdict_text: "not validated".into(),
         protocol: protocol(),
         campaign: campaign(),
         verdict: Verdict::NotValidated,
@@ -200,6 +204,7 @@ fn sections(noise: &mut Noise) -> Vec<SectionResult> {
             let used = number != 20;
             let name = if number == 12 { BREAKOUT.to_owned() } else { format!("S{number:02}") };
             sections.push(SectionResult {
+                unreadable: false,
                 campaign: None,
                 vehicle: None,
                 section: name,
@@ -321,6 +326,9 @@ fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> Quant
         source: Some("Polach et al. 2014, Table 1".into()),
         notes: if id == "Y_max" { vec![format!("Assumed: {EXPRESSION}")] } else { Vec::new() },
         has_sides: true,
+        pairs: 0,
+        figures: Figures::default(),
+        groups: None,
         statistics,
         n: values.len() / 2,
         values,
@@ -337,10 +345,10 @@ fn statistics(values: &[PairValue], unit: &str, limit: f64) -> Vec<StatisticResu
         .sqrt();
     let one =
         |name: &str, title: &str, value: f64, limit: f64, half: f64, text: &str| StatisticResult {
-            group: Vec::new(),
-            name: name.into(),
+            name: name.to_string().into(),
             title: title.into(),
-            scope: "all".into(),
+            scope: Scope::default(),
+            group: Vec::new(),
             count: values.len(),
             n: values.len() / 2,
             unit: unit.into(),
@@ -417,7 +425,7 @@ fn domain(sections: &[SectionResult]) -> Vec<DomainRange> {
             ranges.push(DomainRange {
                 name: name.into(),
                 unit: unit.into(),
-                scope: scope.into(),
+                scope: if scope == "all" { Scope::default() } else { Scope::zone(scope) },
                 low: values.iter().copied().fold(f64::INFINITY, f64::min),
                 high: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
                 count: values.len(),
@@ -497,7 +505,7 @@ fn campaign() -> CampaignInfo {
             item("sampling_rate", "300", Some("Hz")),
             item("assumed_friction", "0.4", Some("-")),
         ],
-        report: Vec::new(),
+        report: Identification::default(),
     }
 }
 
@@ -513,10 +521,11 @@ fn protocol() -> ProtocolInfo {
         files: vec![
             ProtocolFile {
                 name: "annex_t_variant.fp".into(),
+                attached: "protocol-1-annex_t_variant.fp".into(),
                 sha256: "ab".repeat(32),
                 text: format!("variant of annex_t\n\nquantity ay_max {{\n\tlimit std 0.40 m/s^2  # {SCRIPT}\n}}\n"),
             },
-            ProtocolFile { name: "annex_t.fp".into(), sha256: "cd".repeat(32), text: "protocol annex_t\n".repeat(60) },
+            ProtocolFile { name: "annex_t.fp".into(), sha256: "cd".repeat(32), attached: "protocol-2-annex_t.fp".into(), text: "protocol annex_t\n".repeat(60) },
         ],
         deviations: vec![
             Deviation { rule: "quantity ay_max, limit std".into(), before: Some("0.8 m/s^2".into()), after: Some("0.4 m/s^2".into()) },

@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
 use fishplate::catalog::Statistic;
+use fishplate::result::Scope;
 use fishplate::result::study::Spread;
 use fishplate::run::pool::{Pooled, PooledLimit, PooledQuantity, Section, Zone};
 use fishplate::study::case::Case;
@@ -19,7 +20,7 @@ pub fn limit(statistic: &str, bound: f64, ddof: usize, sections: usize) -> Poole
         estimate: Pooled::Statistic(statistic, ddof),
         at_least: false,
         title: statistic.title(ddof),
-        scope: "all".into(),
+        scope: Scope::default(),
         inside: vec![true; sections],
         positions: Vec::new(),
         bounds,
@@ -102,6 +103,6 @@ pub fn sorted(mut values: Vec<f64>) -> Option<Spread> {
         count: values.len() as f64,
         exact: true,
         within: None,
-        intervals: None,
+        intervals: Default::default(),
     })
 }

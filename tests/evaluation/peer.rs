@@ -49,7 +49,7 @@ fn statistic<'a>(quantity: &'a QuantityResult, name: &str) -> &'a StatisticResul
     quantity
         .statistics
         .iter()
-        .find(|statistic| statistic.name == name)
+        .find(|statistic| statistic.name.to_string() == name)
         .unwrap_or_else(|| panic!("{}: {name}", quantity.id))
 }
 

@@ -129,14 +129,11 @@ fn estimates_of_zones_and_wheelsets() {
             let (name, zone, group) =
                 (format!("{}{suffix}", text("quantity")), text("zone"), text("group"));
             let place = format!("{protocol} {name} zone {zone} {group}");
-            let of_zone = |scope: &str| {
-                scope.split(", ").next().is_some_and(|first| first == format!("zone {zone}"))
-            };
             let mut results = quantity(&found, &name).statistics.iter().filter(|result| {
-                let of_group =
-                    result.group.iter().any(|(key, member)| key != "zone" && member == group);
+                let of_group = result.scope.keys.iter().any(|(_, member)| member == group);
                 of_group
-                    && (of_zone(&result.scope) || result.name.ends_with(&format!("_zone_{zone}")))
+                    && (result.scope.zones == [zone]
+                        || result.name.to_string().ends_with(&format!("_zone_{zone}")))
             });
             let (Some(result), None) = (results.next(), results.next()) else {
                 panic!("{place}: not one estimate")
@@ -158,7 +155,7 @@ fn estimates_of_zones_and_wheelsets() {
         {
             assert_eq!(
                 result.regression.is_some(),
-                !result.scope.starts_with("zone 1"),
+                result.scope.zones != ["1"],
                 "{} {}",
                 result.title,
                 result.scope
@@ -184,11 +181,10 @@ fn a_test_with_too_few_sections_is_not_assessable() {
 #[test]
 fn limits_by_vehicle() {
     let limit = |found: &Certification, name: &str, zone: &str| {
-        let of_zone = |scope: &str| scope.starts_with(&format!("zone {zone}"));
         quantity(found, name)
             .statistics
             .iter()
-            .find(|result| of_zone(&result.scope))
+            .find(|result| result.scope.zones == [zone])
             .and_then(|result| result.limit)
             .expect("a limit")
     };
@@ -332,7 +328,7 @@ fn annex_t_with_confidence() {
                 quantity
                     .statistics
                     .iter()
-                    .find(|result| result.name == name)
+                    .find(|result| result.name.to_string() == name)
                     .and_then(|result| result.value)
                     .expect(name)
             };

@@ -131,12 +131,13 @@ fn limits() {
     let ids: Vec<&str> = found.quantities.iter().map(|quantity| quantity.id.as_str()).collect();
     assert_eq!(ids, wanted.map(|(id, _)| id));
     for (quantity, (id, std)) in found.quantities.iter().zip(wanted) {
-        let limits: Vec<(&str, f64)> = quantity
+        let limits: Vec<(String, f64)> = quantity
             .statistics
             .iter()
-            .map(|statistic| (statistic.name.as_str(), statistic.limit.expect("a limit")))
+            .map(|statistic| (statistic.name.to_string(), statistic.limit.expect("a limit")))
             .collect();
-        let [("std", first), ("mean", second)] = limits[..] else { panic!("{id}: {limits:?}") };
+        let [(std_name, first), (mean, second)] = &limits[..] else { panic!("{id}: {limits:?}") };
+        assert_eq!([std_name, mean], ["std", "mean"], "{id}");
         assert!((first / std - 1.0).abs() < 1e-12, "{id}: {first}");
         assert!((second / (std * 2.0 / 3.0) - 1.0).abs() < 1e-12, "{id}: {second}");
         // Twelve sections; four wheels, else two wheelsets or two running gears.

@@ -51,7 +51,9 @@ fn of_group<'a>(
         group.iter().any(|(known, member)| known == key && member == of)
     };
     quantity.statistics.iter().find(|one| {
-        one.name == name && has(&one.group, "zone", zone) && has(&one.group, "wheelset", wheelset)
+        one.name.to_string() == name
+            && one.scope.has_zone(Some(zone))
+            && has(&one.scope.keys, "wheelset", wheelset)
     })
 }
 
@@ -172,8 +174,9 @@ fn groups_partition_the_values() {
     );
     let found = certified(&protocol, &root().join("examples/coach-good"));
     let values = &found.quantities[0].values;
-    let of =
-        |name: &str| statistics(&found).iter().filter(|one| one.name == name).collect::<Vec<_>>();
+    let of = |name: &str| {
+        statistics(&found).iter().filter(|one| one.name.to_string() == name).collect::<Vec<_>>()
+    };
     let counted = |name: &str| of(name).iter().map(|one| one.count).sum::<usize>();
     assert_eq!((of("p50").len(), counted("p50")), (4, values.len()));
     assert_eq!((of("p60").len(), counted("p60")), (13, values.len()));
@@ -181,7 +184,7 @@ fn groups_partition_the_values() {
         values.iter().filter(|value| matches!(value.zone.as_deref(), Some("2" | "3"))).count();
     assert_eq!((of("p70").len(), counted("p70")), (2, zones_2_3));
     // Zone 1 is straight: a group that the condition empties vanishes.
-    let scopes: Vec<&str> = of("p80").iter().map(|one| one.scope.as_str()).collect();
+    let scopes: Vec<String> = of("p80").iter().map(|one| one.scope.to_string()).collect();
     assert_eq!(
         scopes,
         [
@@ -211,8 +214,10 @@ fn a_group_that_should_be_there_is_missed() {
     );
     let found = certified(&protocol, &root().join("examples/coach-good"));
     assert_eq!(found.verdict, Verdict::NotAssessable);
-    let missed =
-        statistics(&found).iter().find(|one| one.scope == "zone 2, wheelset 2").expect("the group");
+    let missed = statistics(&found)
+        .iter()
+        .find(|one| one.scope.to_string() == "zone 2, wheelset 2")
+        .expect("the group");
     assert_eq!((missed.value, missed.reason.as_deref()), (None, Some("no value is available")));
 }
 
@@ -232,7 +237,7 @@ fn too_few_values_are_a_reason() {
     let of = |word: &str| {
         statistics(&found)
             .iter()
-            .find(|one| one.name.starts_with(word))
+            .find(|one| one.name.to_string().starts_with(word))
             .and_then(|one| one.reason.clone())
             .expect("a reason")
     };
@@ -262,7 +267,7 @@ fn a_study_takes_estimates_and_repeats() {
     let case = Case::of(&pool, None).expect("a case");
     let found = selections(&case, &StudySettings::default());
     // Zones of 3, 3, 3 and 4 sections, 3 of each.
-    assert_eq!(found.combinations, 4.0);
+    assert_eq!(found.counted.combinations, 4.0);
     let value = |sections: &[usize]| {
         let values: Vec<f64> =
             sections.iter().flat_map(|&at| case.quantities[0].values[at].iter().copied()).collect();
@@ -379,10 +384,10 @@ fn order_and_units_change_nothing() {
         let found = certified(&of(unit, keys), &campaign);
         let mut all = Vec::new();
         for one in statistics(&found) {
-            let mut group = one.group.clone();
+            let mut group = one.scope.keys.clone();
             group.sort();
             let (value, limit) = (one.value.expect("a value"), one.limit.expect("a limit"));
-            all.push((one.name.clone(), group, value, limit, one.holds));
+            all.push((one.name.to_string(), group, value, limit, one.holds));
         }
         all.sort_by(|a, b| (&a.0, &a.1).cmp(&(&b.0, &b.1)));
         all
@@ -416,7 +421,7 @@ fn a_limit_does_not_vanish() {
     let of = |name: &str| {
         statistics(&found)
             .iter()
-            .find(|one| one.name == name)
+            .find(|one| one.name.to_string() == name)
             .unwrap_or_else(|| panic!("{name} is missing"))
     };
     assert_eq!(of("p60").reason.as_deref(), Some("no value is available"));
@@ -566,7 +571,9 @@ fn value_of(
         .find(|known| known.id == quantity)
         .unwrap_or_else(|| panic!("no quantity {quantity}"));
     let is = |value: &&PairValue| {
-        value.section == section && value.signal == signal && value.record.as_deref() == record
+        value.section == section
+            && value.signal == signal
+            && value.record.as_ref().map(ToString::to_string).as_deref() == record
     };
     let value = of
         .values
@@ -671,7 +678,8 @@ fn misfits_are_judged_by_repeats_and_model() {
             .expect("a quantity");
         assert_eq!(quantity.statistics.len(), 2, "one for each model");
         for one in &quantity.statistics {
-            let (_, record) = one.group.iter().find(|(key, _)| key == "record").expect("a record");
+            let (_, record) =
+                one.scope.keys.iter().find(|(key, _)| key == "record").expect("a record");
             agree(one.value.expect("a share"), &of[record], &format!("share of {name}, {record}"));
             agree(one.divided_at.expect("an index"), &of["index"], &format!("index of {name}"));
         }

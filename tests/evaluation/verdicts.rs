@@ -13,7 +13,8 @@ use fishplate::data::Campaign;
 use fishplate::graph::Operation;
 use fishplate::library;
 use fishplate::problem::Problems;
-use fishplate::report::{html, json, typst, view};
+use fishplate::report::{html, typst, view};
+use fishplate::result::text;
 use fishplate::result::{Certification, Outcome, Verdict, VerdictResult};
 use fishplate::run::Settings;
 use fishplate::source::Source;
@@ -305,7 +306,7 @@ fn reports_have_the_verdicts_and_lines_for_the_judgement() {
     let pdf = typst::typeset(&data, &[], &[])
         .unwrap_or_else(|problems| panic!("{}", problems.render(false)));
     assert!(pdf.warnings.0.is_empty(), "{}", pdf.warnings.render(false));
-    let results: serde_json::Value = serde_json::from_str(&json::results(&found)).expect("JSON");
+    let results: serde_json::Value = serde_json::from_str(&text(&found)).expect("JSON");
     assert_eq!(
         (results["verdict"].as_str(), results["verdict_word"].as_str()),
         (Some("requirements met"), Some("accepted"))

@@ -68,7 +68,9 @@ fn statistic<'a>(
     scope: &str,
 ) -> &'a StatisticResult {
     let quantity = quantity(found, id);
-    let same = |statistic: &&StatisticResult| statistic.name == name && statistic.scope == scope;
+    let same = |statistic: &&StatisticResult| {
+        statistic.name.to_string() == name && statistic.scope.to_string() == scope
+    };
     quantity.statistics.iter().find(same).unwrap_or_else(|| panic!("{:?}", quantity.statistics))
 }
 

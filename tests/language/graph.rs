@@ -96,7 +96,7 @@ fn every_node_is_used() {
         );
         let idle: Vec<&str> = (0..graph.nodes.len())
             .filter(|id| !used.contains(id))
-            .map(|id| graph.nodes[id].label.as_str())
+            .map(|id| graph.nodes[id].label.text.as_str())
             .collect();
         assert!(idle.is_empty(), "{name}: {idle:?}");
     }
@@ -144,7 +144,7 @@ fn a_filter_runs_once_for_each_channel() {
             .nodes
             .iter()
             .filter(|node| {
-                matches!(node.operation, Operation::Step(_)) && node.label.starts_with(word)
+                matches!(node.operation, Operation::Step(_)) && node.label.text.starts_with(word)
             })
             .count()
     };

@@ -16,8 +16,8 @@ use fishplate::data::write::Values;
 use fishplate::data::{Campaign, RecordKind};
 use fishplate::prepare::{Protocol, prepare_opened};
 use fishplate::problem::Problems;
-use fishplate::report::json::results;
 use fishplate::result::Certification;
+use fishplate::result::text as results;
 use fishplate::run::Settings;
 
 fn folder(example: &str) -> std::path::PathBuf {

@@ -5,7 +5,7 @@
 use crate::common::xml::{Tag, balanced, tags};
 use crate::common::{assessment, certification as odd, coach};
 use fishplate::report::{figure, typst, view};
-use fishplate::result::{Certification, Curve, QuantityResult, StatisticResult};
+use fishplate::result::{Certification, Curve, QuantityResult, StatisticName, StatisticResult};
 
 fn named(found: &Certification, name: &str) -> String {
     let figures = figure::figures(found);
@@ -58,7 +58,9 @@ fn overview_puts_statistics_at_their_share_of_the_limit() {
     let means: Vec<f64> = found
         .quantities
         .iter()
-        .flat_map(|quantity| quantity.statistics.iter().filter(|one| one.name == "mean"))
+        .flat_map(|quantity| {
+            quantity.statistics.iter().filter(|one| one.name == StatisticName::Mean)
+        })
         .map(|one| one.value.unwrap() / one.limit.unwrap())
         .collect();
     let drawn = shapes(&svg, "mark");

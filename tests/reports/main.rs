@@ -17,3 +17,4 @@ mod report_html;
 mod report_pdf;
 mod report_view;
 mod reports;
+mod result_files;

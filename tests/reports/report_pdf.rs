@@ -184,7 +184,7 @@ fn an_archive_can_keep_it() {
 #[test]
 fn a_report_without_a_date_of_issue_bears_none() {
     let mut found = certification::certification();
-    found.campaign.report.clear();
+    found.campaign.report.0.clear();
     let pdf = rendered(&found);
     for word in
         ["ModDate", "CreationDate", "xmp:CreateDate", "xmp:ModifyDate", "stEvt:when", "0001-01-01"]

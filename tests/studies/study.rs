@@ -142,7 +142,7 @@ fn the_reference_program_says_the_same() {
         assert_eq!(Some(found.share.validated), expected["validated"].as_u64());
         for quantity in &found.quantities {
             for statistic in &quantity.statistics {
-                let expected = &expected["quantities"][&quantity.id][&statistic.name];
+                let expected = &expected["quantities"][&quantity.id][statistic.name.to_string()];
                 let spread = statistic.spread.expect("values");
                 for (key, value) in [
                     ("min", spread.min),
@@ -313,7 +313,7 @@ fn one_bad_section_is_the_one_to_remove() {
     assert_eq!(found.verdict, Verdict::NotValidated);
     assert_eq!(found.removal.map(|removal| removal.sets), Some(vec![vec!["S06".to_owned()]]));
     // One of four selections of its zone is without it.
-    assert_eq!(found.share.share, 0.25);
+    assert_eq!(found.counted.share.share, 0.25);
     let bad = found.sections.iter().find(|one| one.section == "S06").expect("a section");
     assert_eq!((bad.with, bad.without), (Some(0.0), Some(1.0)));
     assert!(found.worst[0].sections.contains(&"S06".to_string()));

@@ -3,7 +3,7 @@
 
 use fishplate::catalog::Statistic;
 use fishplate::metrics::random::SplitMix64;
-use fishplate::result::Verdict;
+use fishplate::result::{Scope, Verdict};
 use fishplate::run::pool::{Pool, Pooled, PooledLimit, PooledQuantity, Rule, Section, Zone};
 use fishplate::study::case::Case;
 use fishplate::study::flips::{Marked, flips};
@@ -25,7 +25,7 @@ fn case(seed: u64, rule: Rule, unused: &[usize]) -> Case {
         estimate: Pooled::Statistic(Statistic::named(name).expect("a statistic"), 1),
         at_least: false,
         title: name.into(),
-        scope: "all".into(),
+        scope: Scope::default(),
         positions: Vec::new(),
         inside: vec![true; all],
         bounds: vec![bound],
@@ -145,7 +145,7 @@ fn intervals_of_drawn_quartiles_hold_the_counted_ones() {
                 drawn.statistics[0].spread.expect("values"),
                 exact.statistics[0].spread.expect("values"),
             );
-            let intervals = drawn.intervals.expect("a large sample");
+            let intervals = drawn.intervals.all().map(|interval| interval.expect("a large sample"));
             for ((low, high), value) in intervals.iter().zip([exact.q1, exact.median, exact.q3]) {
                 all += 1;
                 held += usize::from(*low <= value && value <= *high);

@@ -83,7 +83,7 @@ fn quartiles_of_means_of_1e16_selections_are_where_whole_numbers_put_them() {
         )
     };
     let found = selections(&case, &Settings { width: 0.005, ..Settings::default() });
-    assert_eq!(found.combinations, all as f64);
+    assert_eq!(found.counted.combinations, all as f64);
     let spread = found.quantities[0].statistics[0].spread.expect("values");
     let within = spread.within.expect("bounds");
     assert!(!spread.exact && within < 1e-4, "{within}");
@@ -120,13 +120,17 @@ fn quartiles_of_means_of_1e16_selections_are_where_whole_numbers_put_them() {
     // What is left is drawn, until the interval is as narrow as wanted, and the report says which
     // is which.
     assert!(
-        !found.share.exact
+        !found.counted.share.exact
             && found.quantities[2].statistics[0]
                 .spread
                 .is_some_and(|spread| !spread.exact && spread.intervals.is_some())
     );
-    let (low, high) = found.share.interval.expect("an interval");
-    assert!(high - low <= 0.005 && found.share.looked_at > 32_768, "{:?}", found.share);
+    let (low, high) = found.counted.share.interval.expect("an interval");
+    assert!(
+        high - low <= 0.005 && found.counted.share.looked_at > 32_768,
+        "{:?}",
+        found.counted.share
+    );
     assert!(
         found.methods.iter().any(|says| says.contains("no wider than 0.005")),
         "{:?}",
@@ -154,7 +158,7 @@ fn drawing_ends_somewhere() {
     let case =
         case(&[30; 2], &[3; 2], &[("std", 0.6)], Rule::EveryLimit, |_, _| vec![even(&mut random)]);
     let found = selections(&case, &Settings { most: 0.0, width: 1e-6, seed: 1 });
-    assert_eq!(found.share.looked_at, 1 << 22);
+    assert_eq!(found.counted.share.looked_at, 1 << 22);
     assert!(found.methods[0].contains("more than the required 0.000001"), "{:?}", found.methods);
 }
 

@@ -12,8 +12,9 @@ use crate::diagnose::selection::guards::View;
 use crate::diagnose::uncertainty::whiten::dot;
 use crate::effects::{Applied, Catalogue, Confined, Gauss, Signals};
 use crate::problem::Problem;
+use crate::result::StatisticName::{Mean, StandardDeviation};
 use crate::result::diagnosis::{QuantityShrink, Shrink, Touched};
-use crate::result::{Certification, QuantityResult};
+use crate::result::{Certification, QuantityResult, StatisticName};
 use crate::simulate::{Simulator, simulate};
 
 /// The chosen effects with the sizes of the members.
@@ -186,10 +187,10 @@ pub fn compare(
         let own = removed(before, after, &[at], seed);
         QuantityShrink {
             id: was.id.clone(),
-            normalised_std_before: normalised(was, "std"),
-            normalised_std_after: normalised(is, "std"),
-            normalised_mean_before: normalised(was, "mean"),
-            normalised_mean_after: normalised(is, "mean"),
+            normalised_std_before: normalised(was, &StandardDeviation),
+            normalised_std_after: normalised(is, &StandardDeviation),
+            normalised_mean_before: normalised(was, &Mean),
+            normalised_mean_after: normalised(is, &Mean),
             variance_explained: explained(from, to, 0.0),
             noise_floor: noise.filter(|_| from > 0.0).map(|_| floor / from),
             variance_explained_above_noise: noise.and_then(|_| explained(from, to, floor)),
@@ -259,7 +260,7 @@ fn removed(
 /// Sum of squared differences, each divided by the limit of their standard deviation; 0 without
 /// such a limit.
 fn squares(quantity: &QuantityResult) -> f64 {
-    let limit = limit_of(quantity, "std").filter(|limit| *limit > 0.0);
+    let limit = limit_of(quantity, &StandardDeviation).filter(|limit| *limit > 0.0);
     limit.map_or(0.0, |limit| {
         quantity.values.iter().map(|value| (value.difference / limit).powi(2)).sum()
     })
@@ -268,7 +269,9 @@ fn squares(quantity: &QuantityResult) -> f64 {
 /// Root mean square change of a quantity's differences, divided by the limit of their standard
 /// deviation.
 fn change(before: &QuantityResult, after: &QuantityResult) -> f64 {
-    let Some(limit) = limit_of(before, "std").filter(|limit| *limit > 0.0) else { return 0.0 };
+    let Some(limit) = limit_of(before, &StandardDeviation).filter(|limit| *limit > 0.0) else {
+        return 0.0;
+    };
     let squares: f64 = before
         .values
         .iter()
@@ -278,19 +281,19 @@ fn change(before: &QuantityResult, after: &QuantityResult) -> f64 {
     (squares / before.values.len().max(1) as f64).sqrt() / limit
 }
 
-fn limit_of(quantity: &QuantityResult, name: &str) -> Option<f64> {
+fn limit_of(quantity: &QuantityResult, name: &StatisticName) -> Option<f64> {
     quantity
         .statistics
         .iter()
-        .find(|statistic| statistic.name.starts_with(name))
+        .find(|statistic| statistic.name == *name)
         .and_then(|statistic| statistic.limit)
 }
 
-fn normalised(quantity: &QuantityResult, name: &str) -> Option<f64> {
+fn normalised(quantity: &QuantityResult, name: &StatisticName) -> Option<f64> {
     quantity
         .statistics
         .iter()
-        .find(|statistic| statistic.name.starts_with(name))
+        .find(|statistic| statistic.name == *name)
         .and_then(|statistic| statistic.normalised)
         .map(f64::abs)
 }
@@ -336,7 +339,7 @@ fn measure(of: &Certification, quantities: &[usize], names: &[String], drawn: &[
         let std =
             (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
         for (value, limit) in
-            [(mean.abs(), limit_of(quantity, "mean")), (std, limit_of(quantity, "std"))]
+            [(mean.abs(), limit_of(quantity, &Mean)), (std, limit_of(quantity, &StandardDeviation))]
         {
             if let Some(limit) = limit.filter(|limit| *limit > 0.0) {
                 sum += (value / limit).powi(2);

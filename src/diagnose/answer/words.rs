@@ -13,8 +13,8 @@ use crate::diagnose::levels::words::TOLD;
 use crate::diagnose::run::{Found, chi, deviations};
 use crate::diagnose::selection::lack::unexplained;
 use crate::diagnose::selection::suspects::Suspect;
-use crate::result::Verdict as OfProtocol;
 use crate::result::diagnosis::{Cause, Diagnosis, Fault, HeldOut, How, Nearest, Shrink, Vetoed};
+use crate::result::{FORMAT, THIS, Verdict as OfProtocol};
 use crate::simulate::Units;
 
 /// The verdict of the protocol without the effects and, where effects are named, with them.
@@ -167,9 +167,10 @@ pub fn diagnosis(
         );
     }
     Diagnosis {
-        fishplate: env!("CARGO_PKG_VERSION"),
+        fishplate: THIS.into(),
+        format: FORMAT,
         campaign: inputs.campaign.name.clone(),
-        verdict: verdict.word(),
+        verdict: verdict.word().into(),
         says,
         fit,
         mirrored: inputs.settings.mirror.is_some(),

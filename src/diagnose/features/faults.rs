@@ -23,7 +23,7 @@ pub fn faults(sections: &[Observed], channels: &[String]) -> Vec<Fault> {
             match found.iter_mut().find(|known| known.channel == *channel && known.fault == fault) {
                 Some(known) => known.sections.push(observed.section.name().to_string()),
                 None => found.push(Fault {
-                    fault,
+                    fault: fault.into(),
                     channel: channel.clone(),
                     sections: vec![observed.section.name().to_string()],
                     says: format!("{channel} {says}"),

@@ -91,7 +91,7 @@ pub fn invariants(settings: &Settings, found: &Found, units: &Units) -> Vec<Inva
                 .find(|(known, _)| members.first().is_some_and(|(channel, _)| channel == known));
             all.push(Invariant {
                 name: name.clone(),
-                parity,
+                parity: parity.into(),
                 unit: unit.map_or_else(|| "-".into(), |(_, unit)| unit.text.clone()),
                 before: -mean(&found.allowed.alone.difference),
                 after: -mean(&rest),
@@ -124,7 +124,7 @@ fn off(one: &Invariant) -> f64 {
 #[must_use]
 pub fn worst(all: &[Invariant]) -> Option<String> {
     let one = all.iter().max_by(|a, b| off(a).total_cmp(&off(b))).filter(|one| off(one) > WORTH)?;
-    let (after, unit, parity) = (one.after, &one.unit, one.parity);
+    let (after, unit, parity) = (one.after, &one.unit, &one.parity);
     Some(format!(
         "The sum of forces with the largest deviation is `{}`: {after:.2} {unit}, {:.1} times the allowed value, {parity}.",
         one.name,
@@ -156,7 +156,7 @@ mod tests {
     fn what_the_causes_take_less_than_half_of_stays() {
         let one = |before: f64, after: f64| Invariant {
             name: "sum".into(),
-            parity: PARITIES[0].0,
+            parity: PARITIES[0].0.into(),
             unit: "kN".into(),
             before,
             after,

@@ -207,8 +207,8 @@ fn shape(
         rms,
         peak,
         crest,
-        keeps_to: scaling.keeps_to.as_ref().ok().copied(),
-        reason: scaling.keeps_to.err(),
+        keeps_to: scaling.keeps_to.ok().map(Into::into),
+        reason: scaling.keeps_to.err().map(Into::into),
         alike_by_frequency: scaling.alike.map(|alike| alike.0),
         alike_by_wavelength: scaling.alike.map(|alike| alike.1),
         strongest: scaling.strongest.map(|strongest| Strongest {
@@ -308,7 +308,7 @@ fn in_words(shape: &Shape) -> String {
     let turns = strongest
         .per_wheel_turn
         .and_then(|turns| TURNS.into_iter().find(|whole| (turns / whole - 1.0).abs() < WHOLE));
-    match (shape.keeps_to, strongest.wavelength) {
+    match (shape.keeps_to.as_deref(), strongest.wavelength) {
         (Some("frequency"), _) => format!(
             "The difference of the spectra of the {} scales with frequency, as a mode of the vehicle does; it is largest at {:.1} Hz, {more}.",
             shape.quantity, strongest.frequency
@@ -366,12 +366,12 @@ mod tests {
     fn a_mode_keeps_to_its_frequency_and_a_wheel_to_its_circumference() {
         let speeds = |at: usize| 16.0 + 2.0 * at as f64;
         let mode = shape_of(&sections(speeds, |_| 9.0, 1.0));
-        assert_eq!(mode.keeps_to, Some("frequency"), "{mode:?}");
+        assert_eq!(mode.keeps_to.as_deref(), Some("frequency"), "{mode:?}");
         let strongest = mode.strongest.expect("one line");
         assert!((strongest.frequency / 9.0 - 1.0).abs() < 0.06, "{strongest:?}");
         let wheel =
             shape_of(&sections(speeds, |speed| speed / (std::f64::consts::TAU * 0.46), 1.0));
-        assert_eq!(wheel.keeps_to, Some("wavelength"), "{wheel:?}");
+        assert_eq!(wheel.keeps_to.as_deref(), Some("wavelength"), "{wheel:?}");
         let turns =
             wheel.strongest.and_then(|strongest| strongest.per_wheel_turn).expect("a wheel");
         assert!((turns - 1.0).abs() < 0.06, "{turns}");
@@ -381,10 +381,13 @@ mod tests {
     #[test]
     fn speeds_that_are_alike_cannot_tell() {
         let shape = shape_of(&sections(|_| 30.0, |_| 9.0, 1.0));
-        assert_eq!((shape.keeps_to, shape.reason), (None, Some("speeds are too similar")));
+        assert_eq!(
+            (shape.keeps_to.as_deref(), shape.reason.as_deref()),
+            (None, Some("speeds are too similar"))
+        );
         let shape = shape_of(&sections(|at| 16.0 + 2.0 * at as f64, |_| 9.0, 0.0));
         assert_eq!(
-            (shape.keeps_to, shape.reason),
+            (shape.keeps_to.as_deref(), shape.reason.as_deref()),
             (None, Some("no significant difference of the spectra"))
         );
     }

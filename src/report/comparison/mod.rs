@@ -11,7 +11,7 @@ use crate::report::number;
 use crate::report::study::{Document, Item, Table};
 use crate::report::view::{self, Fact, Finding};
 use crate::result::comparison::{Comparison, Sensitivity};
-use crate::result::{CampaignInfo, FileHash, Kind, ProtocolInfo, VerdictWords};
+use crate::result::{CampaignInfo, FileHash, Identification, Kind, ProtocolInfo, VerdictWords};
 
 /// The comparison as printed in both reports.
 pub fn document(found: &Comparison) -> Document {
@@ -100,7 +100,7 @@ fn inputs(found: &Comparison) -> CampaignInfo {
         vehicle: Vec::new(),
         facts: Vec::new(),
         origin: None,
-        report: Vec::new(),
+        report: Identification::default(),
     }
 }
 
@@ -135,12 +135,6 @@ pub fn figures(found: &Comparison) -> Vec<(String, String)> {
             (format!("sensitivity-{at}"), figure::sensitivity(name, &curves))
         })
         .collect()
-}
-
-/// The whole comparison as `comparison.json`, ending in a line break.
-pub fn json(found: &Comparison) -> String {
-    // Serialisation of plain values cannot fail.
-    serde_json::to_string_pretty(found).unwrap_or_default() + "\n"
 }
 
 fn table(caption: &str, head: Vec<crate::report::study::Head>, rows: Vec<Vec<String>>) -> Item {

@@ -35,7 +35,7 @@ pub fn tables(found: &Comparison) -> Result<Vec<(String, Vec<u8>)>, csv::Error> 
             one.metric.clone(),
             one.quantity.clone(),
             one.estimate.clone(),
-            one.scope.clone(),
+            one.scope.to_string(),
             one.unit.clone(),
             number(one.value),
             number(one.limit),

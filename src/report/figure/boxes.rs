@@ -7,6 +7,7 @@ use super::legend::{Entry, Legend};
 use super::ratios::Ratios;
 use super::style::{BLUE, Color, INK, LIMIT, MUTED, Mark, Pen, SHADE, VERMILION, WIDTH};
 use crate::report::number;
+use crate::result::StatisticName;
 use crate::result::study::{QuantitySpread, Spread, StatisticSpread};
 
 /// Heights of the plotting area and of its labels, in points.
@@ -66,10 +67,10 @@ impl Of {
     }
 
     /// Whether a statistic of this name is among them.
-    pub fn has(self, statistic: &str) -> bool {
+    pub fn has(self, statistic: &StatisticName) -> bool {
         match statistic {
-            "mean" => self == Self::Means,
-            "std" => self == Self::Deviations,
+            StatisticName::Mean => self == Self::Means,
+            StatisticName::StandardDeviation => self == Self::Deviations,
             _ => self == Self::Others,
         }
     }
@@ -108,10 +109,7 @@ fn panel(quantities: &[QuantitySpread], of: Of) -> Panel<'_> {
         if of == Of::Others {
             label = format!("{label} {}", statistic.name);
         }
-        if statistic.scope != "all" {
-            label = format!("{label}, {}", statistic.scope);
-        }
-        label
+        label + &statistic.scope.suffix()
     };
     let boxes: Vec<_> = statistics
         .filter(|(_, statistic)| of.has(&statistic.name))

@@ -9,7 +9,7 @@ use super::style::{
     text_width,
 };
 use crate::report::number;
-use crate::result::study::{AtValue, ParameterStudy};
+use crate::result::study::{AtValue, Largest, ParameterStudy};
 use crate::result::{Verdict, VerdictWords};
 
 /// Heights of a row and of the line between parameters, in points.
@@ -37,7 +37,7 @@ pub fn choices(study: &ParameterStudy, words: &VerdictWords) -> String {
     let rows: usize = study.parameters.iter().map(|parameter| parameter.values.len()).sum();
     let top = legend.height() + 14.0;
     let height = rows as f64 * ROW + study.parameters.len() as f64 * GAP;
-    let largest = |at: &AtValue| at.largest.as_ref().map(|(_, value)| *value);
+    let largest = |at: &AtValue| at.largest.as_ref().map(|largest| largest.normalised);
     let all =
         study.parameters.iter().flat_map(|parameter| parameter.values.iter().filter_map(largest));
     let high = all.clone().fold(1.1, f64::max).min(4.0);
@@ -79,13 +79,13 @@ pub fn choices(study: &ParameterStudy, words: &VerdictWords) -> String {
 fn row(canvas: &mut Canvas, frame: &Frame, (at, verdict): (&AtValue, &str), y: f64) {
     let share = at.share.map_or_else(
         || number::NONE.to_owned(),
-        |share| format!("{} %", number::fixed(100.0 * share.share, 2)),
+        |share| format!("{} %", number::fixed(100.0 * share, 2)),
     );
     canvas.line((frame.left(), y), (frame.right(), y), GRID, 0.4);
     let value = cut(&at.value, SMALL, NAMES - 16.0);
     canvas.text(&value, (NAMES - 5.0, y), &Font::right(SMALL).bold(at.is_base));
     canvas.text(&share, (WIDTH - 2.0, y), &Font::right(SMALL));
-    if let Some((which, value)) = &at.largest {
+    if let Some(Largest { statistic: which, normalised: value }) = &at.largest {
         let title =
             format!("{}: {which} {} of its limit, {}", at.value, number::fixed(*value, 3), verdict);
         canvas.group(&Group::mark(&title), |canvas| {

@@ -5,12 +5,12 @@ use indexmap::IndexMap;
 use super::axis::{self, Range};
 use super::canvas::{Canvas, Font, Group};
 use super::frame::Frame;
-use super::levels::{Levels, speaks_of};
+use super::levels::Levels;
 use super::pair_mark::Pairs;
 use super::style::{GRID, MUTED, SHADE, SMALL, TEXT, TICK, WIDTH, cut, text_width};
 use super::zones::Marks;
 use crate::report::number;
-use crate::result::QuantityResult;
+use crate::result::{QuantityResult, Scope};
 
 /// Maximum number of ticks of the y axis.
 pub const TICKS: usize = 6;
@@ -69,8 +69,8 @@ impl<'a> Slots<'a> {
     }
 
     /// The slots of consecutive sections of a scope.
-    fn within(&self, scope: &str) -> impl Iterator<Item = (f64, f64)> {
-        let runs = self.runs(|zone| speaks_of(scope, zone)).into_iter();
+    fn within(&self, scope: &Scope) -> impl Iterator<Item = (f64, f64)> {
+        let runs = self.runs(|zone| scope.has_zone(zone)).into_iter();
         runs.filter(|(inside, ..)| *inside).map(|(_, from, to)| (from, to))
     }
 }

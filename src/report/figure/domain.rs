@@ -46,7 +46,7 @@ pub fn domain(ranges: &[DomainRange], sections: &[SectionResult], zones: &Zones)
     let labels = panels
         .iter()
         .flat_map(|panel| &panel.scopes)
-        .map(|range| text_width(&scope(range), TICK))
+        .map(|range| text_width(&range.scope.to_string(), TICK))
         .fold(16.0, f64::max)
         .min(70.0);
     let mut y = top;
@@ -65,14 +65,6 @@ pub fn domain(ranges: &[DomainRange], sections: &[SectionResult], zones: &Zones)
         canvas.text("no condition with numbers", (0.0, 12.0), &font);
     }
     canvas.finish()
-}
-
-fn scope(range: &DomainRange) -> String {
-    if range.scope == "all" {
-        "all".to_owned()
-    } else {
-        format!("zone {}", range.scope.trim_start_matches("zone "))
-    }
 }
 
 /// One condition: its ranges, and the values of the sections.
@@ -142,13 +134,13 @@ impl<'a> Panel<'a> {
             let says = format!(
                 "{}, {}: {} to {}, {} sections",
                 self.name,
-                scope(range),
+                range.scope,
                 number::significant(range.low, 6),
                 number::significant(range.high, 6),
                 range.count
             );
             let font = Font::right(TICK).color(MUTED);
-            canvas.text(&cut(&scope(range), TICK, labels), (from - 4.0, y), &font);
+            canvas.text(&cut(&range.scope.to_string(), TICK, labels), (from - 4.0, y), &font);
             let group = Group { title: Some(&says), zone, ..Group::class("range") };
             canvas.group(&group, |canvas| {
                 let ends = [range.low, range.high].map(|end| frame.x.at(end));
@@ -185,7 +177,7 @@ fn draw_section(
 }
 
 fn zones_of(range: &DomainRange) -> Option<&str> {
-    (range.scope != "all").then(|| range.scope.trim_start_matches("zone "))
+    range.scope.zones.first().map(String::as_str)
 }
 
 /// The first two conditions with at least three common sections and more than two values each.

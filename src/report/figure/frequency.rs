@@ -11,7 +11,7 @@ use super::pair_mark::Pairs;
 use super::style::{self, Color, LIMIT, MUTED, Mark, Pen, TICK, WIDTH};
 use super::zones::Zones;
 use crate::report::number;
-use crate::result::{PairValue, QuantityResult, StatisticResult};
+use crate::result::{PairValue, QuantityResult, StatisticName, StatisticResult};
 
 const HEIGHT: f64 = 140.0;
 /// Most limits that are drawn one by one; of more, the smallest and the largest.
@@ -23,10 +23,12 @@ const FEWEST: usize = 5;
 /// Whether it is drawn: of an assessed quantity, and of a metric with a limit of the distribution
 /// of its values.
 pub fn has_frequency(quantity: &QuantityResult) -> bool {
-    let percentile =
-        |name: &str| name.strip_prefix('p').is_some_and(|percent| percent.parse::<f64>().is_ok());
-    let of_distribution =
-        || quantity.statistics.iter().any(|one| one.divided_at.is_some() || percentile(&one.name));
+    let of_distribution = || {
+        quantity
+            .statistics
+            .iter()
+            .any(|one| one.divided_at.is_some() || matches!(one.name, StatisticName::Percentile(_)))
+    };
     quantity.values.len() >= FEWEST
         && (quantity.from.is_some() || !quantity.has_sides && of_distribution())
 }
@@ -34,10 +36,11 @@ pub fn has_frequency(quantity: &QuantityResult) -> bool {
 /// Values in increasing order, each at the share of values of its curve that do not exceed it.
 pub fn frequency(quantity: &QuantityResult, zones: &Zones) -> String {
     let several = quantity.values.iter().any(|value| value.record.is_some());
-    let mut curves: IndexMap<&str, Vec<&PairValue>> = IndexMap::new();
+    let mut curves: IndexMap<String, Vec<&PairValue>> = IndexMap::new();
     for value in &quantity.values {
-        let of = if several { &value.record } else { &value.zone };
-        curves.entry(of.as_deref().unwrap_or_default()).or_default().push(value);
+        let record = value.record.as_ref().map(ToString::to_string);
+        let of = if several { record } else { value.zone.clone() };
+        curves.entry(of.unwrap_or_default()).or_default().push(value);
     }
     let look =
         |at: usize, name: &str| if several { style::look(at) } else { zones.mark(Some(name)) };
@@ -46,7 +49,7 @@ pub fn frequency(quantity: &QuantityResult, zones: &Zones) -> String {
         values.sort_by(|a, b| a.difference.total_cmp(&b.difference));
         let of = match (several, name.is_empty()) {
             (_, true) => "values".to_owned(),
-            (true, _) => (*name).to_owned(),
+            (true, _) => name.clone(),
             (false, _) => format!("zone {name}"),
         };
         let count = number::count(values.len() as u64);

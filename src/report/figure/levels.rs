@@ -3,7 +3,7 @@
 use super::legend::Entry;
 use super::style::{BLUE, DASH_DOT, DASHED, DOTTED, LIMIT, LIMITS, Pen, SHADE, VERMILION, color};
 use crate::report::{estimates, number};
-use crate::result::{QuantityResult, StatisticResult};
+use crate::result::{QuantityResult, Scope, StatisticName, StatisticResult};
 
 /// Most limits that are told apart by their dashes, each with an entry of the legend.
 const NAMED: usize = LIMITS.len();
@@ -13,8 +13,8 @@ const NAMED: usize = LIMITS.len();
 pub struct Level {
     pub value: f64,
     pub pen: Pen,
-    /// `all`, or a zone.
-    pub scope: String,
+    /// Over which zones.
+    pub scope: Scope,
 }
 
 /// A background between two values over some of the sections.
@@ -22,7 +22,7 @@ pub struct Level {
 pub struct Band {
     pub low: f64,
     pub high: f64,
-    pub scope: String,
+    pub scope: Scope,
 }
 
 /// Lines and backgrounds with their legend.
@@ -54,9 +54,11 @@ impl Levels {
                 .filter(|one| one.unit == quantity.unit && one.divided_at.is_none())
             {
                 let shown = Shown { two_sided, same };
-                match statistic.name.as_str() {
-                    "mean" => levels.mean(statistic, shown),
-                    "std" => levels.deviation(statistic, center(quantity, statistic), shown),
+                match statistic.name {
+                    StatisticName::Mean => levels.mean(statistic, shown),
+                    StatisticName::StandardDeviation => {
+                        levels.deviation(statistic, center(quantity, statistic), shown)
+                    }
                     _ => levels.other(statistic, shown),
                 }
             }
@@ -74,10 +76,9 @@ impl Levels {
             .iter()
             .filter(|statistic| statistic.unit == quantity.unit && statistic.divided_at.is_none())
         {
-            let zones = estimates::zones(statistic);
-            for scope in if zones.is_empty() { vec!["all"] } else { zones } {
+            for scope in scopes(statistic) {
                 for value in statistic.limit.iter().flat_map(|limit| both(0.0, *limit, two_sided)) {
-                    levels.draw(Level { value, pen: LIMIT, scope: scope.to_owned() });
+                    levels.draw(Level { value, pen: LIMIT, scope: scope.clone() });
                 }
             }
         }
@@ -121,7 +122,7 @@ impl Levels {
     fn line(&mut self, statistic: &StatisticResult, values: &[f64], pen: Pen, text: String) {
         for scope in scopes(statistic) {
             for value in values {
-                self.draw(Level { value: *value, pen, scope: scope.to_owned() });
+                self.draw(Level { value: *value, pen, scope: scope.clone() });
             }
         }
         self.explain(Entry::line(pen, text));
@@ -156,11 +157,7 @@ impl Levels {
 
     fn deviation(&mut self, statistic: &StatisticResult, center: f64, with: Shown) {
         if let Some(value) = statistic.value.filter(|_| over_sections(statistic)) {
-            let band = |scope: &str| Band {
-                low: center - value,
-                high: center + value,
-                scope: scope.to_owned(),
-            };
+            let band = |scope: Scope| Band { low: center - value, high: center + value, scope };
             self.bands.extend(scopes(statistic).into_iter().map(band));
             self.explain(Entry::ground(
                 SHADE,
@@ -176,8 +173,9 @@ impl Levels {
     }
 
     fn other(&mut self, statistic: &StatisticResult, with: Shown) {
-        if let Some(value) =
-            statistic.value.filter(|_| statistic.name != "each" && over_sections(statistic))
+        if let Some(value) = statistic
+            .value
+            .filter(|_| statistic.name != StatisticName::Each && over_sections(statistic))
         {
             let pen = Pen { color: color(2), width: 1.1, dash: DASH_DOT };
             self.line(statistic, &[value], pen, says(statistic, &shown(statistic, value)));
@@ -205,18 +203,19 @@ struct Shown {
 /// First words of a limit in the legend.
 const LIMIT_OF: &str = "limit of ";
 
-/// The sections that a result is drawn over: its zones, or all.
-fn scopes(statistic: &StatisticResult) -> Vec<&str> {
-    let zones = estimates::zones(statistic);
-    if zones.is_empty() { vec!["all"] } else { zones }
+/// The sections that a result is drawn over: each of its zones, or all.
+fn scopes(statistic: &StatisticResult) -> Vec<Scope> {
+    match statistic.scope.zones.as_slice() {
+        [] => vec![Scope::default()],
+        zones => zones.iter().map(|zone| Scope::zone(zone)).collect(),
+    }
 }
 
 /// Whether the values of a result are all those of its sections. The result of a record or of a
 /// position is not drawn: there is one for each in the same place.
 fn over_sections(statistic: &StatisticResult) -> bool {
-    statistic.scope == "all"
-        || statistic.group.iter().all(|(key, _)| key == "zone")
-            && !estimates::zones(statistic).is_empty()
+    let Scope { zones, keys, .. } = &statistic.scope;
+    statistic.scope.is_all() || keys.is_empty() && !zones.is_empty()
 }
 
 /// The mean of the same scope, around which a standard deviation is drawn.
@@ -224,22 +223,13 @@ fn center(quantity: &QuantityResult, of: &StatisticResult) -> f64 {
     let stated = quantity
         .statistics
         .iter()
-        .find(|one| one.name == "mean" && one.scope == of.scope && over_sections(of));
+        .find(|one| one.name == StatisticName::Mean && one.scope == of.scope && over_sections(of));
     stated.and_then(|one| one.value).unwrap_or_else(|| {
-        let scopes = scopes(of);
-        let within = quantity
-            .values
-            .iter()
-            .filter(|pair| scopes.iter().any(|scope| speaks_of(scope, pair.zone.as_deref())));
+        let within = quantity.values.iter().filter(|pair| of.scope.has_zone(pair.zone.as_deref()));
         let (sum, count) =
             within.fold((0.0, 0_u32), |(sum, count), pair| (sum + pair.difference, count + 1));
         if count == 0 { 0.0 } else { sum / f64::from(count) }
     })
-}
-
-/// Whether a scope (`all`, `zone 3`) contains a zone.
-pub fn speaks_of(scope: &str, zone: Option<&str>) -> bool {
-    scope == "all" || zone.is_some_and(|zone| scope.strip_prefix("zone ").unwrap_or(scope) == zone)
 }
 
 fn both(center: f64, limit: f64, two_sided: bool) -> Vec<f64> {
@@ -261,7 +251,7 @@ fn shown(statistic: &StatisticResult, value: f64) -> String {
 
 /// A statistic and its value; without value if it differs between zones.
 fn says(statistic: &StatisticResult, value: &str) -> String {
-    if statistic.scope == "all" {
+    if statistic.scope.is_all() {
         format!("{} {value}", statistic.title)
     } else {
         format!("{} by {}", statistic.title, by(statistic))
@@ -270,7 +260,7 @@ fn says(statistic: &StatisticResult, value: &str) -> String {
 
 /// The limit of a statistic; without its number if it differs between groups.
 fn says_of_limit(statistic: &StatisticResult, Shown { two_sided, same }: Shown) -> String {
-    let one = statistic.scope == "all" || same && !statistic.group.is_empty();
+    let one = statistic.scope.is_all() || same && !statistic.scope.keys.is_empty();
     let limit = statistic
         .limit
         .filter(|_| one)
@@ -284,12 +274,14 @@ fn says_of_limit(statistic: &StatisticResult, Shown { two_sided, same }: Shown) 
 
 /// What the groups of a statistic are: `zone`, `record`, `record and wheelset`.
 fn by(statistic: &StatisticResult) -> String {
-    let keys: Vec<&str> = statistic.group.iter().map(|(key, _)| key.as_str()).collect();
-    match (keys.as_slice(), estimates::zones(statistic).is_empty()) {
-        ([], true) => "condition".into(),
-        ([], false) => "zone".into(),
-        ([all @ .., last], _) if !all.is_empty() => format!("{} and {last}", all.join(", ")),
-        ([one, ..], _) => (*one).into(),
+    if statistic.scope.keys.is_empty() && !statistic.scope.zones.is_empty() {
+        return "zone".into();
+    }
+    let keys: Vec<&str> = statistic.scope.members().into_iter().map(|(key, _)| key).collect();
+    match keys.as_slice() {
+        [] => "condition".into(),
+        [key] => (*key).into(),
+        [all @ .., last] => format!("{} and {last}", all.join(", ")),
     }
 }
 
@@ -300,10 +292,10 @@ mod tests {
 
     fn of_record(record: &str, limit: f64) -> StatisticResult {
         StatisticResult {
-            name: "each".into(),
+            name: StatisticName::Each,
             title: "each value".into(),
-            scope: format!("record {record}"),
-            group: vec![("record".into(), record.into())],
+            scope: Scope { keys: vec![("record".into(), record.into())], ..Scope::default() },
+            group: Vec::new(),
             count: 1,
             n: 1,
             unit: "kN".into(),
@@ -333,9 +325,9 @@ mod tests {
         [of_record("A", 2.0), of_record("B", 2.0)]
             .iter()
             .for_each(|one| levels.other(one, with(true)));
-        let drawn: Vec<(f64, &str)> =
-            levels.lines.iter().map(|line| (line.value, line.scope.as_str())).collect();
-        assert_eq!(drawn, [(-2.0, "all"), (2.0, "all")]);
+        let drawn: Vec<(f64, bool)> =
+            levels.lines.iter().map(|line| (line.value, line.scope.is_all())).collect();
+        assert_eq!(drawn, [(-2.0, true), (2.0, true)]);
         assert_eq!(
             levels.legend.iter().map(|entry| entry.text.as_str()).collect::<Vec<_>>(),
             ["limit of each value ±2.00"]

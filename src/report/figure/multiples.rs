@@ -12,7 +12,7 @@ use super::style::{GRID, LIMIT, MUTED, Pen, SMALL, TEXT, WIDTH, cut, text_width}
 use super::zones::{Marks, Zones};
 use crate::report::brief::{Line, Matrix, Numbered};
 use crate::report::number;
-use crate::result::QuantityResult;
+use crate::result::{QuantityResult, StatisticName};
 
 /// Lines of diagrams that fit a page.
 pub const LINES: usize = 10;
@@ -80,10 +80,11 @@ fn words(line: &Line<'_>) -> String {
 /// The limits that are values of the quantity.
 fn limits(quantity: &QuantityResult) -> Vec<f64> {
     let two_sided = quantity.values.iter().any(|pair| pair.difference < 0.0);
-    let of_values = quantity
-        .statistics
-        .iter()
-        .filter(|one| one.unit == quantity.unit && one.name != "std" && one.divided_at.is_none());
+    let of_values = quantity.statistics.iter().filter(|one| {
+        one.unit == quantity.unit
+            && one.name != StatisticName::StandardDeviation
+            && one.divided_at.is_none()
+    });
     let mut all: Vec<f64> = of_values
         .filter_map(|one| one.limit)
         .flat_map(|limit| if two_sided { vec![-limit, limit] } else { vec![limit] })

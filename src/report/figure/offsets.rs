@@ -8,8 +8,8 @@ use super::legend::{Entry, Legend};
 use super::ratios::Ratios;
 use super::style::{BLUE, Mark, WIDTH, look};
 use crate::report::number;
-use crate::result::VerdictWords;
 use crate::result::study::{AtOffset, SyncStudy};
+use crate::result::{StatisticName, VerdictWords};
 
 const PANEL: f64 = 118.0;
 const LABELS: f64 = 26.0;
@@ -25,18 +25,18 @@ pub fn selection(study: &SyncStudy) -> String {
         let Some(first) = study.offsets.iter().find(|at| !at.selected.is_empty()) else {
             return Vec::new();
         };
-        let wanted =
-            first.selected.iter().enumerate().filter(|(_, one)| (one.name == "mean") == mean);
+        let wanted = first
+            .selected
+            .iter()
+            .enumerate()
+            .filter(|(_, one)| (one.name == StatisticName::Mean) == mean);
         wanted
             .map(|(at, one)| {
-                let scope =
-                    if one.scope == "all" { String::new() } else { format!(", {}", one.scope) };
-                let word = if one.name == "mean" || one.name == "std" {
-                    String::new()
-                } else {
-                    format!(" {}", one.name)
+                let word = match &one.name {
+                    StatisticName::Mean | StatisticName::StandardDeviation => String::new(),
+                    other => format!(" {other}"),
                 };
-                (at, format!("{}{word}{scope}", one.symbol))
+                (at, format!("{}{word}{}", one.symbol, one.scope.suffix()))
             })
             .collect()
     };
@@ -60,7 +60,7 @@ pub fn selection(study: &SyncStudy) -> String {
 }
 
 fn name(study: &SyncStudy, at: &AtOffset) -> String {
-    number::with_unit(&number::significant(at.offset, 4), &study.axis_unit)
+    number::with_unit(&number::significant(at.offset.value(), 4), &study.axis_unit)
 }
 
 fn panel(
@@ -100,11 +100,14 @@ fn panel(
 
 /// The share of selections for which the verdict holds as a function of the offset.
 pub fn shares(study: &SyncStudy, words: &VerdictWords) -> String {
-    let found = study.offsets.iter().filter_map(|at| Some((at.offset, at.study.as_ref().ok()?)));
+    let found = study
+        .offsets
+        .iter()
+        .filter_map(|at| Some((at.offset.value(), at.selections.counted().ok()?)));
     let points: Vec<(f64, f64)> =
         found.map(|(offset, found)| (offset, 100.0 * found.share.share)).collect();
     let (y, ticks) = ((0.0, 103.0), 6);
-    let x = axis::over(study.offsets.iter().map(|at| at.offset));
+    let x = axis::over(study.offsets.iter().map(|at| at.offset.value()));
     let frame = Frame::new(x, y, (axis::room(y, ticks), WIDTH - 10.0), (8.0, 128.0));
     let mut canvas = Canvas::new(WIDTH, 158.0);
     frame.y_axis(&mut canvas, ticks, &format!("selections {} [%]", words.good));

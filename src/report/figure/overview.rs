@@ -11,7 +11,7 @@ use super::style::{
 };
 use super::symbol::symbol;
 use crate::report::{estimates, number};
-use crate::result::{QuantityResult, StatisticResult};
+use crate::result::{QuantityResult, StatisticName, StatisticResult};
 
 /// Maximum number of statistics of a quantity on separate lines; more share one line.
 const LINES: usize = 3;
@@ -100,8 +100,8 @@ impl Series {
     /// An estimate of all values, or of groups, is one series, wherever its decisive group is.
     fn key(quantity: &QuantityResult, statistic: &StatisticResult) -> (String, String) {
         let grouped =
-            quantity.from.is_some() || !statistic.group.is_empty() || statistic.scope == "all";
-        (statistic.title.clone(), if grouped { String::new() } else { statistic.scope.clone() })
+            quantity.from.is_some() || !statistic.scope.keys.is_empty() || statistic.scope.is_all();
+        (statistic.title.clone(), if grouped { String::new() } else { statistic.scope.to_string() })
     }
 
     fn nth(&self, quantity: &QuantityResult, statistic: &StatisticResult) -> usize {
@@ -131,7 +131,7 @@ fn range(quantities: &[&QuantityResult]) -> Range {
             .iter()
             .filter(|quantity| quantity.from.is_none())
             .flat_map(|quantity| shown(quantity))
-            .any(|one| one.name == "mean");
+            .any(|one| one.name == StatisticName::Mean);
     (if has_sign { -high } else { 0.0 }, high)
 }
 

@@ -75,7 +75,8 @@ pub fn regression(
     let rows = groups.len().div_ceil(abreast);
     let top = legend.height() + 6.0;
     let narrow = (WIDTH - 4.0) / abreast as f64 - GUTTER;
-    let scopes: Vec<&str> = groups.iter().map(|(statistic, _)| statistic.scope.as_str()).collect();
+    let scopes: Vec<String> =
+        groups.iter().map(|(statistic, _)| statistic.scope.to_string()).collect();
     let head = if scopes.iter().all(|scope| text_width(scope, TICK) <= narrow - AXIS) {
         HEAD
     } else {
@@ -120,7 +121,7 @@ pub fn regression(
 }
 
 /// The name of each diagram in two lines of a width; the first holds as many parts as fit.
-fn names(scopes: &[&str], wide: f64) -> Vec<[String; 2]> {
+fn names(scopes: &[String], wide: f64) -> Vec<[String; 2]> {
     let split = |scope: &str| -> [String; 2] {
         if text_width(scope, TICK) <= wide {
             return [String::new(), scope.to_owned()];

@@ -4,7 +4,7 @@ use indexmap::IndexSet;
 
 use super::legend::Entry;
 use super::style::{Color, Mark, look};
-use crate::result::{Certification, PairValue};
+use crate::result::{Certification, PairValue, RecordName};
 
 /// The zones of a campaign in the order of the protocol.
 #[derive(Clone, Debug, Default)]
@@ -42,18 +42,18 @@ impl Zones {
 pub struct Marks<'a> {
     zones: &'a Zones,
     /// Empty where there is one record of each side.
-    records: IndexSet<&'a str>,
+    records: IndexSet<&'a RecordName>,
 }
 
 impl<'a> Marks<'a> {
     /// Of the values of one quantity or of several.
     pub fn of(values: impl Iterator<Item = &'a PairValue>, zones: &'a Zones) -> Self {
-        Self { zones, records: values.filter_map(|value| value.record.as_deref()).collect() }
+        Self { zones, records: values.filter_map(|value| value.record.as_ref()).collect() }
     }
 
     /// Shape and colour of a value.
     pub fn mark(&self, value: &PairValue) -> (Mark, Color) {
-        match value.record.as_deref().and_then(|record| self.records.get_index_of(record)) {
+        match value.record.as_ref().and_then(|record| self.records.get_index_of(record)) {
             Some(n) => look(n),
             None => self.zones.mark(value.zone.as_deref()),
         }
@@ -64,7 +64,11 @@ impl<'a> Marks<'a> {
         if self.records.is_empty() {
             return self.zones.legend(values.map(|value| value.zone.as_deref()));
         }
-        self.records.iter().enumerate().map(|(n, record)| Entry::mark(look(n), *record)).collect()
+        self.records
+            .iter()
+            .enumerate()
+            .map(|(n, record)| Entry::mark(look(n), record.to_string()))
+            .collect()
     }
 }
 

@@ -2,7 +2,6 @@
 //! same data.
 
 mod document;
-pub mod json;
 mod parameters;
 mod sections;
 mod sync;
@@ -130,9 +129,7 @@ pub fn figures(study: &Study) -> Vec<(String, String)> {
                 ("shares".into(), figure::shares(found, words)),
             ];
             for (at, offset) in found.offsets.iter().enumerate() {
-                if let Ok(study) = &offset.study {
-                    drawn.extend(boxes(&study.quantities, &format!("{BOXES}-{at}")));
-                }
+                drawn.extend(boxes(&offset.quantities, &format!("{BOXES}-{at}")));
             }
             drawn
         }

@@ -1,7 +1,7 @@
 //! Text of the study of parameters.
 
 use super::document::{Chapter, Head, Item, Table};
-use super::{Opening, share};
+use super::{Opening, share_with};
 use crate::report::number;
 use crate::report::sides::capital;
 use crate::report::view::Fact;
@@ -45,7 +45,10 @@ pub fn opening(found: &ParameterStudy, words: &VerdictWords) -> Opening {
             ("Baseline verdict".to_owned(), words.word(found.base.verdict).to_owned()),
             (
                 format!("Selections: {}", words.good),
-                found.base.share.as_ref().map_or_else(|| number::NONE.to_owned(), share),
+                found.base.share.map_or_else(
+                    || number::NONE.to_owned(),
+                    |share| share_with(share, found.base.interval),
+                ),
             ),
         ]
         .map(|(name, value)| Fact { name, value })
@@ -61,10 +64,13 @@ pub fn chapters(found: &ParameterStudy, words: &VerdictWords) -> Vec<Chapter> {
             words.word(at.verdict).to_owned(),
             at.largest.as_ref().map_or_else(
                 || number::NONE.to_owned(),
-                |(_, value)| number::beside(*value, 1.0, 3),
+                |largest| number::beside(largest.normalised, 1.0, 3),
             ),
-            at.largest.as_ref().map_or_else(String::new, |(which, _)| which.clone()),
-            at.share.as_ref().map_or_else(|| at.reason.clone().unwrap_or_default(), share),
+            at.largest.as_ref().map_or_else(String::new, |largest| largest.statistic.clone()),
+            at.share.map_or_else(
+                || at.reason.clone().unwrap_or_default(),
+                |share| share_with(share, at.interval),
+            ),
         ]
     };
     let rows = found
@@ -126,8 +132,7 @@ fn statistics(parameter: &Varied) -> Item {
     head.extend(values.iter().map(|at| Head::number(&at.value)));
     let first = values.iter().find(|at| !at.statistics.is_empty());
     let rows = first.map_or(&[][..], |at| &at.statistics).iter().map(|one| {
-        let scope = if one.scope == "all" { String::new() } else { format!(", {}", one.scope) };
-        let mut row = vec![one.symbol.clone(), format!("{}{scope}", one.name)];
+        let mut row = vec![one.symbol.clone(), format!("{}{}", one.name, one.scope.suffix())];
         row.extend(values.iter().map(|at| {
             let same = at.statistics.iter().find(|other| {
                 other.id == one.id && other.name == one.name && other.scope == one.scope

@@ -19,7 +19,7 @@ fn fact(name: &str, value: String) -> Fact {
 }
 
 pub fn opening(found: &SelectionStudy, words: &VerdictWords) -> Opening {
-    let all = found.share.share;
+    let all = found.counted.share.share;
     let agrees = match found.verdict {
         Verdict::Validated => all,
         _ => 1.0 - all,
@@ -37,24 +37,24 @@ pub fn opening(found: &SelectionStudy, words: &VerdictWords) -> Opening {
         _ => None,
     };
     let of = all_of(found);
-    let looked = if found.share.exact && found.combinations <= 1.0 {
+    let looked = if found.counted.share.exact && found.counted.combinations <= 1.0 {
         "There is one selection.".to_owned()
-    } else if found.share.exact {
-        format!("All {} selections were evaluated.", number::large(found.combinations))
+    } else if found.counted.share.exact {
+        format!("All {} selections were evaluated.", number::large(found.counted.combinations))
     } else {
         format!(
             "Of {} selections, {} were drawn at random; the interval is a 95 % confidence interval.",
-            number::large(found.combinations),
-            number::count(found.share.looked_at)
+            number::large(found.counted.combinations),
+            number::count(found.counted.share.looked_at)
         )
     };
     let lacking = found.lacking.as_ref().map_or_else(String::new, |lacking| format!(" {lacking}"));
     Opening {
         headline: Finding::new(
             holds,
-            &share(&found.share),
-            &share(&found.share),
-            &share(&found.share),
+            &share(&found.counted.share),
+            &share(&found.counted.share),
+            &share(&found.counted.share),
         ),
         sentence: format!(
             "of the selections have the verdict '{}'. The verdict on all {of} together is '{}'. The verdict {same}. {looked}{lacking}",
@@ -62,13 +62,13 @@ pub fn opening(found: &SelectionStudy, words: &VerdictWords) -> Opening {
             words.word(found.verdict)
         ),
         facts: vec![
-            fact("Selections", number::large(found.combinations)),
+            fact("Selections", number::large(found.counted.combinations)),
             fact(
                 &capital(&words.good),
-                if found.share.exact {
-                    number::count(found.share.validated)
+                if found.counted.share.exact {
+                    number::count(found.counted.share.validated)
                 } else {
-                    share(&found.share)
+                    share(&found.counted.share)
                 },
             ),
             fact("All sections", words.word(found.verdict).to_owned()),
@@ -167,12 +167,12 @@ fn spread(quantities: &[QuantitySpread], of: &str) -> Vec<Item> {
         })
     };
     // Columns with the same content in every row are omitted.
-    let scopes = statistics().any(|(_, statistic)| statistic.scope != "all");
+    let scopes = statistics().any(|(_, statistic)| !statistic.scope.is_all());
     let spreads: Vec<Spread> = statistics().filter_map(|(_, statistic)| statistic.spread).collect();
     let rows: Vec<Vec<String>> = statistics()
         .map(|(quantity, statistic)| {
-            let mut row = vec![quantity.symbol.clone(), statistic.name.clone()];
-            row.extend(scopes.then(|| statistic.scope.clone()));
+            let mut row = vec![quantity.symbol.clone(), statistic.name.to_string()];
+            row.extend(scopes.then(|| statistic.scope.to_string()));
             row.push(statistic.overall.map_or_else(|| number::NONE.into(), shown));
             match &statistic.spread {
                 Some(spread) => row.extend(numbers(spread)),
@@ -206,7 +206,7 @@ fn shown(value: f64) -> String {
 /// interval.
 fn numbers(spread: &Spread) -> Vec<String> {
     let within = |at: usize| {
-        let half = spread.intervals.map(|all| 0.5 * (all[at].1 - all[at].0));
+        let half = spread.intervals.all()[at].map(|(low, high)| 0.5 * (high - low));
         half.map_or_else(String::new, |half| format!(" ± {}", number::significant(half, 1)))
     };
     let mut row = vec![shown(spread.min)];
@@ -287,14 +287,9 @@ fn failing(found: &SelectionStudy) -> Vec<Item> {
                 .iter()
                 .take(MOST_ROWS)
                 .map(|worst| {
-                    let scope = if worst.scope == "all" {
-                        String::new()
-                    } else {
-                        format!(", {}", worst.scope)
-                    };
                     vec![
                         worst.symbol.clone(),
-                        format!("{}{scope}", worst.title),
+                        format!("{}{}", worst.title, worst.scope.suffix()),
                         number::beside(worst.normalised, 1.0, 3),
                         worst.sections.join(", "),
                     ]

@@ -6,7 +6,7 @@ use crate::report::number;
 use crate::report::sides::capital;
 use crate::report::view::Fact;
 use crate::result::VerdictWords;
-use crate::result::study::{AtOffset, SyncStudy};
+use crate::result::study::{AtOffset, LostSection, SyncStudy};
 
 fn shown(found: &SyncStudy, offset: f64) -> String {
     number::with_unit(&number::significant(offset, 4), &found.axis_unit)
@@ -16,17 +16,17 @@ pub fn opening(found: &SyncStudy, words: &VerdictWords) -> Opening {
     let shares: Vec<f64> = found
         .offsets
         .iter()
-        .filter_map(|at| at.study.as_ref().ok().map(|study| study.share.share))
+        .filter_map(|at| Some(at.selections.counted().ok()?.share.share))
         .collect();
     let (low, high) =
         shares.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), share| {
             (low.min(*share), high.max(*share))
         });
-    let base = found.offsets.iter().find(|at| at.offset == 0.0);
+    let base = found.offsets.iter().find(|at| at.offset.value() == 0.0);
     let same = base.is_none_or(|base| found.offsets.iter().all(|at| at.verdict == base.verdict));
     let (first, last) = (
-        found.offsets.first().map_or(0.0, |at| at.offset),
-        found.offsets.last().map_or(0.0, |at| at.offset),
+        found.offsets.first().map_or(0.0, |at| at.offset.value()),
+        found.offsets.last().map_or(0.0, |at| at.offset.value()),
     );
     let facts = [
         ("Offsets".to_owned(), format!("{} to {}", shown(found, first), shown(found, last))),
@@ -75,10 +75,11 @@ pub fn chapters(found: &SyncStudy, words: &VerdictWords) -> Vec<Chapter> {
     ];
     let mut items = Vec::new();
     for (at, offset) in found.offsets.iter().enumerate() {
-        if let Ok(study) = &offset.study {
-            let words = format!(", offset {}", shown(found, offset.offset));
-            items.push(Item::Heading { text: format!("Offset {}", shown(found, offset.offset)) });
-            items.extend(sections::boxes(&study.quantities, &format!("{BOXES}-{at}"), &words));
+        if offset.selections.counted().is_ok() {
+            let shown = shown(found, offset.offset.value());
+            items.push(Item::Heading { text: format!("Offset {shown}") });
+            let words = format!(", offset {shown}");
+            items.extend(sections::boxes(&offset.quantities, &format!("{BOXES}-{at}"), &words));
         }
     }
     chapters.push(Chapter {
@@ -91,21 +92,21 @@ pub fn chapters(found: &SyncStudy, words: &VerdictWords) -> Vec<Chapter> {
 
 fn shares(found: &SyncStudy, words: &VerdictWords) -> Vec<Item> {
     let row = |at: &AtOffset| {
-        let (validated, selections) = match &at.study {
-            Ok(study) => (share(&study.share), number::large(study.combinations)),
+        let (validated, selections) = match at.selections.counted() {
+            Ok(counted) => (share(&counted.share), number::large(counted.combinations)),
             Err(_) => (number::NONE.to_owned(), number::NONE.to_owned()),
         };
         let of = |share: f64, interval| super::share_with(share, interval);
-        let (lost, gained) = match &at.flips {
-            Ok(flips) => {
+        let (lost, gained) = match at.flips.compared() {
+            Some(flips) => {
                 (of(flips.lost, flips.lost_interval), of(flips.gained, flips.gained_interval))
             }
-            Err(_) => (number::NONE.to_owned(), number::NONE.to_owned()),
+            None => (number::NONE.to_owned(), number::NONE.to_owned()),
         };
         let changes =
             if at.changes.is_empty() { number::NONE.to_owned() } else { at.changes.join("; ") };
         vec![
-            shown(found, at.offset),
+            shown(found, at.offset.value()),
             validated,
             lost,
             gained,
@@ -148,10 +149,10 @@ fn shares(found: &SyncStudy, words: &VerdictWords) -> Vec<Item> {
         .iter()
         // What stands in brackets are the sections that are lost, which a table of their own lists.
         .filter_map(|at| {
-            let reason = at.study.as_ref().err()?;
+            let reason = at.selections.counted().err()?;
             Some(format!(
                 "Offset {}: {}",
-                shown(found, at.offset),
+                shown(found, at.offset.value()),
                 reason.split(" (").next().unwrap_or(reason)
             ))
         })
@@ -161,7 +162,7 @@ fn shares(found: &SyncStudy, words: &VerdictWords) -> Vec<Item> {
         items.push(Item::List { entries: none });
     }
     let rows: Vec<Vec<String>> =
-        found.offsets.iter().flat_map(|at| lost(at, &shown(found, at.offset))).collect();
+        found.offsets.iter().flat_map(|at| lost(at, &shown(found, at.offset.value()))).collect();
     if !rows.is_empty() {
         items.push(Item::Table {
             table: Table {
@@ -179,7 +180,7 @@ fn shares(found: &SyncStudy, words: &VerdictWords) -> Vec<Item> {
 fn lost(at: &AtOffset, offset: &str) -> Vec<Vec<String>> {
     let rule = |reason: &str| reason.split(": ").next().unwrap_or(reason).to_owned();
     let mut rules: Vec<(String, Vec<&str>, &str)> = Vec::new();
-    for (section, reason) in &at.lost {
+    for LostSection { section, reason } in &at.lost {
         match rules.iter_mut().find(|(known, ..)| *known == rule(reason)) {
             Some((_, sections, _)) => sections.push(section),
             None => rules.push((rule(reason), vec![section], reason)),
@@ -195,12 +196,11 @@ fn lost(at: &AtOffset, offset: &str) -> Vec<Vec<String>> {
 
 fn one(found: &SyncStudy) -> Vec<Item> {
     let mut head = vec![Head::text("Quantity"), Head::short("Statistic")];
-    head.extend(found.offsets.iter().map(|at| Head::number(&shown(found, at.offset))));
+    head.extend(found.offsets.iter().map(|at| Head::number(&shown(found, at.offset.value()))));
     let first = found.offsets.iter().find(|at| !at.selected.is_empty());
     let rows =
         first.map_or(&[][..], |at| &at.selected).iter().enumerate().map(|(statistic, one)| {
-            let scope = if one.scope == "all" { String::new() } else { format!(", {}", one.scope) };
-            let mut row = vec![one.symbol.clone(), format!("{}{scope}", one.name)];
+            let mut row = vec![one.symbol.clone(), format!("{}{}", one.name, one.scope.suffix())];
             row.extend(found.offsets.iter().map(|at| {
                 let value = at.selected.get(statistic).and_then(|one| one.normalised);
                 value.map_or_else(|| number::NONE.to_owned(), |value| number::beside(value, 1.0, 2))

@@ -55,8 +55,8 @@ fn spread(quantities: &[QuantitySpread]) -> Vec<Row> {
         .map(|(quantity, statistic)| {
             let mut row = vec![
                 quantity.id.clone(),
-                statistic.name.clone(),
-                statistic.scope.clone(),
+                statistic.name.to_string(),
+                statistic.scope.to_string(),
                 statistic.limit.to_string(),
             ];
             row.push(number(statistic.overall));
@@ -71,8 +71,7 @@ fn spread(quantities: &[QuantitySpread]) -> Vec<Row> {
                         spread.exact.to_string(),
                         number(spread.within),
                     ]);
-                    let ends = (0..3).map(|at| spread.intervals.map(|all| all[at]));
-                    row.extend(ends.flat_map(|ends| {
+                    row.extend(spread.intervals.all().into_iter().flat_map(|ends| {
                         [number(ends.map(|ends| ends.0)), number(ends.map(|ends| ends.1))]
                     }));
                 }
@@ -106,7 +105,7 @@ fn sections(found: &SelectionStudy) -> Result<Tables, csv::Error> {
             vec![
                 one.quantity.clone(),
                 one.title.clone(),
-                one.scope.clone(),
+                one.scope.to_string(),
                 one.normalised.to_string(),
                 one.sections.join(" "),
             ]
@@ -141,12 +140,12 @@ fn sections(found: &SelectionStudy) -> Result<Tables, csv::Error> {
 fn sync(found: &SyncStudy) -> Result<Tables, csv::Error> {
     let (mut offsets, mut all, mut one) = (Vec::new(), Vec::new(), Vec::new());
     for at in &found.offsets {
-        let offset = at.offset.to_string();
-        let (share, reason) = match &at.study {
-            Ok(study) => (study.share.share.to_string(), String::new()),
-            Err(reason) => (String::new(), reason.clone()),
+        let offset = at.offset.value().to_string();
+        let (share, reason) = match at.selections.counted() {
+            Ok(counted) => (counted.share.share.to_string(), String::new()),
+            Err(reason) => (String::new(), reason.to_owned()),
         };
-        let flips = at.flips.as_ref().ok();
+        let flips = at.flips.compared();
         let (lost, gained) =
             (number(flips.map(|flips| flips.lost)), number(flips.map(|flips| flips.gained)));
         offsets.push(vec![
@@ -158,19 +157,15 @@ fn sync(found: &SyncStudy) -> Result<Tables, csv::Error> {
             at.changes.join("; "),
             reason,
         ]);
-        if let Ok(study) = &at.study {
-            all.extend(
-                spread(&study.quantities)
-                    .into_iter()
-                    .map(|row| [vec![offset.clone()], row].concat()),
-            );
-        }
+        all.extend(
+            spread(&at.quantities).into_iter().map(|row| [vec![offset.clone()], row].concat()),
+        );
         one.extend(at.selected.iter().map(|one| {
             vec![
                 offset.clone(),
                 one.id.clone(),
-                one.name.clone(),
-                one.scope.clone(),
+                one.name.to_string(),
+                one.scope.to_string(),
                 number(one.normalised),
                 one.holds.to_string(),
             ]
@@ -224,8 +219,8 @@ fn parameters(found: &ParameterStudy) -> Result<Tables, csv::Error> {
                     parameter.name.clone(),
                     at.value.clone(),
                     one.id.clone(),
-                    one.name.clone(),
-                    one.scope.clone(),
+                    one.name.to_string(),
+                    one.scope.to_string(),
                     number(one.normalised),
                     one.holds.to_string(),
                 ]
@@ -261,9 +256,9 @@ fn value(name: &str, at: &AtValue) -> Row {
         at.value.clone(),
         at.is_base.to_string(),
         at.verdict.in_words().to_owned(),
-        at.largest.as_ref().map_or_else(String::new, |(which, _)| which.clone()),
-        number(at.largest.as_ref().map(|(_, value)| *value)),
-        number(at.share.map(|share| share.share)),
+        at.largest.as_ref().map_or_else(String::new, |largest| largest.statistic.clone()),
+        number(at.largest.as_ref().map(|largest| largest.normalised)),
+        number(at.share),
         at.reason.clone().unwrap_or_default(),
     ]
 }

@@ -51,7 +51,7 @@ pub(super) fn views(found: &Certification) -> Vec<ApplicationView> {
 }
 
 fn view((at, result): (usize, &DomainResult)) -> ApplicationView {
-    let title = if result.scope == "all" {
+    let title = if result.group.is_empty() {
         result.title.clone()
     } else {
         format!("{}: {}", result.title, result.scope)

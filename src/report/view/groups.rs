@@ -72,7 +72,7 @@ fn row(quantity: &QuantityResult, limit: &OfLimit<'_>) -> EstimateRow {
         estimate: number::formula(&decisive.title),
         holding: limit.holding(),
         place: if decisive.value.is_some() {
-            decisive.scope.clone()
+            decisive.scope.to_string()
         } else {
             number::NONE.to_owned()
         },
@@ -124,25 +124,17 @@ const GROUP: &str = "group";
 
 /// What tells the groups of a limit apart.
 fn heads(limit: &OfLimit<'_>) -> Vec<String> {
-    let heads =
-        |one: &StatisticResult| keys(one).into_iter().map(|(key, _)| key).collect::<Vec<_>>();
+    let heads = |one: &StatisticResult| {
+        one.scope.members().iter().map(|(key, _)| (*key).to_owned()).collect::<Vec<_>>()
+    };
     let first = heads(limit.results[0]);
     let alike = !first.is_empty() && limit.results.iter().all(|one| heads(one) == first);
     if alike { first } else { vec![GROUP.into()] }
 }
 
-/// Each key with its member; a group of one zone alone has no others.
-fn keys(one: &StatisticResult) -> Vec<(String, String)> {
-    match (one.group.is_empty(), estimates::zones(one).as_slice()) {
-        (false, _) => one.group.clone(),
-        (true, [zone]) => vec![("zone".to_owned(), (*zone).to_owned())],
-        _ => Vec::new(),
-    }
-}
-
 fn members(one: &StatisticResult, heads: &[String]) -> Vec<String> {
     if heads == [GROUP] {
-        return vec![name(&one.scope)];
+        return vec![name(&one.scope.to_string())];
     }
-    keys(one).iter().map(|(_, member)| name(member)).collect()
+    one.scope.members().iter().map(|(_, member)| name(member)).collect()
 }

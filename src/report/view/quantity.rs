@@ -12,7 +12,7 @@ use super::wording::limit_in_words;
 use super::{FigureView, Finding, name, summary};
 use crate::report::sides::Sides;
 use crate::report::{estimates, figure, number};
-use crate::result::{PairValue, QuantityResult, StatisticResult};
+use crate::result::{PairValue, QuantityResult, RecordName, StatisticName, StatisticResult};
 
 /// Number of worst pairs listed.
 const WORST: usize = 5;
@@ -190,7 +190,7 @@ fn statistic(found: &StatisticResult, quantity: &QuantityResult) -> StatisticVie
     let decimals = summary::decimals(found);
     StatisticView {
         title: number::formula(&found.title),
-        scope: number::formula(&found.scope),
+        scope: number::formula(&found.scope.to_string()),
         unit: number::unit(&found.unit),
         count: summary::pairs_and_n(found.count, found.n),
         value: summary::value(Some(found)),
@@ -211,7 +211,7 @@ fn worst(quantity: &QuantityResult, decimals: usize) -> (Vec<WorstPair>, Option<
         if quantity.from.is_some() { &[] } else { &quantity.statistics };
     let yardstick = stated
         .iter()
-        .find(|statistic| statistic.name == "std")
+        .find(|statistic| statistic.name == StatisticName::StandardDeviation)
         .or_else(|| stated.first())
         .filter(|statistic| statistic.unit == quantity.unit && statistic.divided_at.is_none())
         .and_then(|statistic| {
@@ -224,7 +224,7 @@ fn worst(quantity: &QuantityResult, decimals: usize) -> (Vec<WorstPair>, Option<
         .take(WORST)
         .map(|pair| WorstPair {
             section: name(&pair.section),
-            record: pair.record.as_deref().map(name).unwrap_or_default(),
+            record: pair.record.as_ref().map(shortened).unwrap_or_default(),
             zone: zone(pair),
             signal: name(&pair.signal),
             simulated: number::optional(pair.simulated, decimals),
@@ -237,16 +237,21 @@ fn worst(quantity: &QuantityResult, decimals: usize) -> (Vec<WorstPair>, Option<
     (rows, yardstick.map(|(statistic, _)| format!("limit of the {}", statistic.title)))
 }
 
+/// The name of a record, shortened for a table.
+fn shortened(record: &RecordName) -> String {
+    name(&record.to_string())
+}
+
 /// Sections and their records as rows, signals as columns, both in order of first occurrence. A
 /// position with several values of one record, which have a rule each, has several rows.
 fn blocks(quantity: &QuantityResult, decimals: usize) -> Vec<ValueBlock> {
     let signals = first_seen(quantity.values.iter().map(|pair| pair.signal.as_str()));
     let width = if quantity.has_sides { SIGNALS_WITH_SIDES } else { SIGNALS_WITHOUT_SIDES };
-    let mut rows: IndexMap<(&str, Option<&str>, usize), HashMap<&str, &PairValue>> =
+    let mut rows: IndexMap<(&str, Option<&RecordName>, usize), HashMap<&str, &PairValue>> =
         IndexMap::new();
-    let mut seen: HashMap<(&str, Option<&str>, &str), usize> = HashMap::new();
+    let mut seen: HashMap<(&str, Option<&RecordName>, &str), usize> = HashMap::new();
     for pair in &quantity.values {
-        let (section, record) = (pair.section.as_str(), pair.record.as_deref());
+        let (section, record) = (pair.section.as_str(), pair.record.as_ref());
         let nth = seen.entry((section, record, &pair.signal)).or_default();
         rows.entry((section, record, *nth)).or_default().insert(&pair.signal, pair);
         *nth += 1;
@@ -274,7 +279,7 @@ fn blocks(quantity: &QuantityResult, decimals: usize) -> Vec<ValueBlock> {
                 .filter(|(_, cells)| signals.iter().any(|signal| cells.contains_key(signal)))
                 .map(|((section, record, _), cells)| ValueRow {
                     section: name(section),
-                    record: record.map(name).unwrap_or_default(),
+                    record: record.map(shortened).unwrap_or_default(),
                     zone: cells.values().next().map(|pair| zone(pair)).unwrap_or_default(),
                     cells: signals
                         .iter()

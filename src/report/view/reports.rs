@@ -54,23 +54,21 @@ fn column(one: &Reported) -> Column<'_> {
 }
 
 fn keys(one: &Reported) -> Vec<&str> {
-    if one.group.is_empty() {
-        vec![GROUP]
-    } else {
-        one.group.iter().map(|(key, _)| key.as_str()).collect()
+    match one.scope.members() {
+        members if members.is_empty() => vec![GROUP],
+        members => members.into_iter().map(|(key, _)| key).collect(),
     }
 }
 
-fn members(one: &Reported) -> Vec<&str> {
-    if one.group.is_empty() {
-        vec![&one.scope]
-    } else {
-        one.group.iter().map(|(_, member)| member.as_str()).collect()
+fn members(one: &Reported) -> Vec<String> {
+    match one.scope.members() {
+        members if members.is_empty() => vec![one.scope.to_string()],
+        members => members.into_iter().map(|(_, member)| member.to_owned()).collect(),
     }
 }
 
 fn table(keys: &[&str], columns: &[Column<'_>], all: &[&Reported]) -> ReportTable {
-    let mut rows: IndexMap<Vec<&str>, Vec<&Reported>> = IndexMap::new();
+    let mut rows: IndexMap<Vec<String>, Vec<&Reported>> = IndexMap::new();
     for one in all.iter().filter(|one| columns.contains(&column(one))) {
         rows.entry(members(one)).or_default().push(one);
     }
@@ -119,7 +117,7 @@ fn table(keys: &[&str], columns: &[Column<'_>], all: &[&Reported]) -> ReportTabl
 }
 
 fn count(cells: &[&Reported]) -> String {
-    let counts = || cells.iter().map(|one| one.count as u64);
+    let counts = || cells.iter().map(|one| one.count.number() as u64);
     match (counts().min().unwrap_or_default(), counts().max().unwrap_or_default()) {
         (low, high) if low == high => number::count(high),
         (low, high) => format!("{} to {}", number::count(low), number::count(high)),

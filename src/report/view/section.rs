@@ -266,11 +266,7 @@ pub(super) fn domain(found: &Certification) -> Vec<DomainView> {
 
 fn domain_row(range: &DomainRange) -> DomainRow {
     DomainRow {
-        scope: if range.scope == "all" {
-            "all".to_owned()
-        } else {
-            format!("zone {}", range.scope.trim_start_matches("zone "))
-        },
+        scope: range.scope.to_string(),
         low: number::significant(range.low, 6),
         high: number::significant(range.high, 6),
         count: range.count.to_string(),

@@ -5,10 +5,7 @@ use serde::Serialize;
 
 use super::Finding;
 use crate::report::{estimates, number};
-use crate::result::{QuantityResult, StatisticResult};
-
-/// The scope of a statistic over all pairs of a quantity.
-const ALL: &str = "all";
+use crate::result::{QuantityResult, StatisticName, StatisticResult};
 
 /// A quantity as in EN 14363: limits, mean and standard deviation, and both divided by their
 /// limits.
@@ -70,8 +67,8 @@ pub(super) fn tables(quantities: &[QuantityResult]) -> (Vec<SummaryRow>, Vec<Fur
         if quantity.from.is_some() && !quantity.statistics.is_empty() {
             continue;
         }
-        let mean = overall(quantity, "mean");
-        let std = overall(quantity, "std");
+        let mean = quantity.overall(&StatisticName::Mean);
+        let std = quantity.overall(&StatisticName::StandardDeviation);
         // A quantity without statistics is listed with its reason. One without a limit that has
         // values stands in its chapter.
         let without_limit =
@@ -80,18 +77,13 @@ pub(super) fn tables(quantities: &[QuantityResult]) -> (Vec<SummaryRow>, Vec<Fur
             summary.push(summary_row(quantity, mean, std));
         }
         let single = estimates::single(quantity).into_iter();
-        let others = single.filter(|one| !is_overall(one, "mean") && !is_overall(one, "std"));
+        let others = single.filter(|one| {
+            !one.is_overall(&StatisticName::Mean)
+                && !one.is_overall(&StatisticName::StandardDeviation)
+        });
         further.extend(others.map(|statistic| further_row(quantity, statistic)));
     }
     (summary, further)
-}
-
-fn is_overall(statistic: &StatisticResult, name: &str) -> bool {
-    statistic.name == name && statistic.scope == ALL
-}
-
-fn overall<'a>(quantity: &'a QuantityResult, name: &str) -> Option<&'a StatisticResult> {
-    quantity.statistics.iter().find(|statistic| is_overall(statistic, name))
 }
 
 fn summary_row(
@@ -147,7 +139,7 @@ fn further_row(quantity: &QuantityResult, statistic: &StatisticResult) -> Furthe
         processing: quantity.processing.clone(),
         comparison: quantity.comparison.clone(),
         statistic: number::formula(&statistic.title),
-        scope: statistic.scope.clone(),
+        scope: statistic.scope.to_string(),
     }
 }
 

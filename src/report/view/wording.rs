@@ -154,8 +154,8 @@ pub(super) fn limit_in_words(found: &StatisticResult, quantity: &QuantityResult)
     let mut others = quantity
         .statistics
         .iter()
-        .map(|other| other.name.as_str())
-        .filter(|name| *name != found.name);
-    let words = others.find_map(of).unwrap_or_else(|| limit.to_owned());
+        .filter(|other| other.name != found.name)
+        .map(|other| other.name.to_string());
+    let words = others.find_map(|name| of(&name)).unwrap_or_else(|| limit.to_owned());
     number::formula(&rest.map_or_else(|| words.clone(), |rest| format!("{words}, {rest}")))
 }

@@ -7,7 +7,7 @@ use crate::check::plan::{self, Evaluation, Pairing, Plan, Records};
 use crate::data::Campaigns;
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
-use crate::result::{FileHash, took_part};
+use crate::result::{FileHash, RecordName};
 use crate::run::record::{Fault, NodeValue, Work};
 use crate::run::reduce::section::{original, records};
 use crate::run::reduce::{Prepared, wanted_of};
@@ -53,7 +53,7 @@ pub fn single<'a>(
     graph: &Graph,
     campaigns: impl Into<Campaigns<'a>>,
     (quantity, signal): (usize, usize),
-    (section, record): (&str, Option<&str>),
+    (section, record): (&str, Option<&RecordName>),
 ) -> Result<Single, Problems> {
     let prepared = Prepared::new(plan, graph, campaigns.into())?;
     let unit = prepared.basis.units.iter().find(|unit| unit.name == section).ok_or_else(|| {
@@ -74,7 +74,7 @@ pub fn single<'a>(
         problems
     })?;
     let (rows, records) = found;
-    let row = rows.iter().find(|row| row.record.as_deref() == record).ok_or_else(|| {
+    let row = rows.iter().find(|row| row.record.as_ref() == record).ok_or_else(|| {
         Problem::error("not-evaluated", format!("section {section} has no such value"))
     })?;
     let of = &plan.quantities[quantity].unit;
@@ -84,17 +84,21 @@ pub fn single<'a>(
     let of_all = matches!(evaluation, Evaluation::Values { records: Records::Spread { .. }, .. });
     // Of two records of one side, the first stands in the place of the simulation.
     let within = evaluation.pairing().and_then(Pairing::within);
-    let both = record.filter(|_| within.is_some()).and_then(|record| record.split_once(", "));
+    let both = match record {
+        Some(RecordName::Pair(first, second)) if within.is_some() => Some([first, second]),
+        _ => None,
+    };
     let place = |(place, one): &(plan::Side, RecordOfSide)| match both {
-        Some((first, _)) if one.name.as_deref() == Some(first) => plan::Side::Simulated,
+        Some([first, _]) if one.name.as_ref() == Some(first) => plan::Side::Simulated,
         Some(_) => plan::Side::Measured,
         None => *place,
     };
     let own = |(place, one): &(plan::Side, RecordOfSide)| match both {
-        Some((first, second)) => {
-            one.name.as_deref().is_some_and(|name| name == first || name == second)
+        Some(both) => one.name.as_ref().is_some_and(|name| both.contains(&name)),
+        None => {
+            let simulated = *place == plan::Side::Simulated;
+            of_all || RecordName::took_part(record, simulated, one.name.as_deref())
         }
-        None => of_all || took_part(record, *place == plan::Side::Simulated, one.name.as_deref()),
     };
     let side = |of_side: (plan::Side, RecordOfSide)| {
         let place = place(&of_side);
@@ -105,7 +109,9 @@ pub fn single<'a>(
         });
         let value = match place {
             _ if assessed => Some(row.value),
-            _ if of_all => row.simulated.filter(|_| one.name.as_deref() == record),
+            _ if of_all => {
+                row.simulated.filter(|_| one.name == record.map(RecordName::first).cloned())
+            }
             plan::Side::Simulated => row.simulated,
             plan::Side::Measured => row.measured,
         };

@@ -1,14 +1,13 @@
 //! Section checks of the protocol, on the track record or on the records of both sides.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 use super::plausibility::Questions;
 use crate::check::evaluate::flag;
 use crate::check::plan::{Check, Input, InputSide, Side};
 use crate::data::RecordKind;
 use crate::graph::{InputNode, NodeId};
-use crate::result::CheckResult;
+use crate::result::{CheckResult, RecordName};
 use crate::run::record::{Fault, Work};
 use crate::run::sections::{Known, Unit};
 use crate::run::values::{NodeValues, SectionValues, Sides, Two, one_record};
@@ -77,7 +76,7 @@ pub fn record_checks(sides: &Sides<'_>, values: &mut SectionValues) {
         if inputs.is_empty() || inputs.iter().all(|input| work.graph.nodes[input.node].track) {
             continue;
         }
-        let of_pair = |(record, two): (Option<Arc<str>>, Two<'_>)| {
+        let of_pair = |(record, two): (Option<RecordName>, Two<'_>)| {
             let inputs: Vec<Result<f64, String>> =
                 inputs.iter().map(|input| two.input(input, side)).collect();
             let found = checked(work, check, two.known, &inputs);

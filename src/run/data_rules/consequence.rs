@@ -68,6 +68,7 @@ pub fn take_over(
             }
         }
         unit.covered = unit.extent.or(values.extent);
+        unit.unreadable = values.problems.iter().any(|problem| problem.code == "file-unreadable");
         unit.checks.extend(values.checks.iter().cloned());
         if let Some(fault) = &values.fault {
             unit.refuse(fault.clone(), true);

@@ -156,7 +156,7 @@ impl Position<'_> {
                     findings.extend(self.finding(
                         sides.known,
                         &inputs,
-                        name.as_deref().map(str::to_string),
+                        name.map(|name| name.to_string()),
                     ));
                 }
             }

@@ -6,7 +6,8 @@ use indexmap::IndexMap;
 use crate::check::plan::{Coordinate, DatumKind, Domain, OnFault, Plan, Scalar};
 use crate::metrics::hull::{self, Nearest};
 use crate::result::{
-    Consequence, CoordinateRange, DomainRange, DomainResult, DomainSection, Finding, WantedPoint,
+    Consequence, CoordinateRange, DomainRange, DomainResult, DomainSection, Finding, Scope,
+    WantedPoint,
 };
 use crate::run::limit::rule_place;
 use crate::run::sections::wanted::{Point, value, word};
@@ -19,19 +20,16 @@ const OUTSIDE: &str = "outside-domain";
 const WITHOUT_HULL: &str = "no-domain";
 
 pub fn domain(plan: &Plan, units: &[Unit]) -> Vec<DomainRange> {
-    let mut scopes: Vec<(String, Option<&str>)> = vec![("all".into(), None)];
-    scopes.extend(
-        plan.zones.iter().map(|zone| (format!("zone {}", zone.name), Some(zone.name.as_str()))),
-    );
+    let mut scopes = vec![Scope::default()];
+    scopes.extend(plan.zones.iter().map(|zone| Scope::zone(&zone.name)));
     let mut found = Vec::new();
     for (index, datum) in plan.columns.iter().enumerate() {
         let DatumKind::Number(unit) = &datum.kind else { continue };
-        for (scope, zone) in &scopes {
+        for scope in &scopes {
             let values: Vec<f64> = units
                 .iter()
                 .filter(|section| {
-                    section.fault.is_none()
-                        && zone.is_none_or(|zone| section.zone.as_deref() == Some(zone))
+                    section.fault.is_none() && scope.has_zone(section.zone.as_deref())
                 })
                 .filter_map(|section| {
                     if let Ok(Scalar::Number(value)) = &section.columns[index] {
@@ -420,7 +418,7 @@ pub fn barred(results: &[DomainResult]) -> Vec<String> {
 }
 
 fn titled(result: &DomainResult) -> String {
-    if result.scope == "all" {
+    if result.group.is_empty() {
         result.title.clone()
     } else {
         format!("{}, {}", result.title, result.scope)

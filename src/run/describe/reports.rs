@@ -2,7 +2,7 @@
 
 use crate::check::plan::{EstimateKind, Plan, Report};
 use crate::graph::{Graph, NodeId, Operation};
-use crate::result::Reported;
+use crate::result::{Count, Reported};
 use crate::run::estimate::{Group, Grouped, Member, Part, count_independent, parts};
 use crate::run::limit::{Estimated, Judging, rule_place};
 use crate::run::sections::{Facts, Unit};
@@ -19,7 +19,10 @@ pub fn of_quantity(graph: &Graph, nodes: &[NodeId], judging: &Judging<'_>) -> Ve
         Operation::Report(report) => {
             let unit = report.estimate.unit.as_ref().unwrap_or(&judging.quantity.unit);
             let groups = judging.of_report(report);
-            groups.into_iter().map(|group| reported(judging.plan, report, unit, &group)).collect()
+            groups
+                .into_iter()
+                .map(|group| reported(judging.plan, report, unit, &group, Count::Values))
+                .collect()
         }
         _ => Vec::new(),
     };
@@ -54,6 +57,7 @@ pub fn of_sections<'a>(
                 report,
                 unit,
                 &Estimated { value, ..Estimated::empty(part, inside.unwrap_or_default()) },
+                Count::Sections,
             )
         };
         parts(plan, Grouped::sections(), &report.scope, &members, facts)
@@ -64,24 +68,31 @@ pub fn of_sections<'a>(
     plan.sections.reports.iter().flat_map(of).collect()
 }
 
-fn reported(plan: &Plan, report: &Report, unit: &units::Unit, group: &Estimated<'_>) -> Reported {
+fn reported(
+    plan: &Plan,
+    report: &Report,
+    unit: &units::Unit,
+    group: &Estimated<'_>,
+    count: fn(usize) -> Count,
+) -> Reported {
     let show = |value: f64| unit.from_si(value);
+    let mut scope = group.part.scope();
     let (value, reason) = match &group.value {
         Ok(value) => (value.map(show), None),
         Err(reason) => (None, Some(reason.clone())),
     };
-    let names = group.part.names();
     Reported {
-        name: report.estimate.name.clone(),
+        name: report.estimate.name.clone().into(),
         title: report.estimate.title.clone(),
-        scope: if names.is_empty() { "all".into() } else { names.join(", ") },
-        condition: report.scope.condition.as_ref().map(|(_, words)| words.clone()),
-        group: group.part.keys_with_zone(),
-        count: group.members.len(),
+        keys: scope.owned_members(),
+        condition: scope.condition.take(),
+        scope,
+        count: count(group.members.len()),
         n: count_independent(plan, &group.members),
         unit: unit.text.clone(),
         value,
-        interval: group.interval.map(|(low, high)| (show(low), show(high))),
+        low: group.interval.map(|(low, _)| show(low)),
+        high: group.interval.map(|(_, high)| show(high)),
         reason,
         rule: rule_place(&report.span),
     }

@@ -4,7 +4,7 @@ use indexmap::{IndexMap, IndexSet};
 
 use crate::check::plan::Center;
 use crate::metrics::statistics::{self, Divisor};
-use crate::result::{ClassSpread, Furthest, OfRecord, PairValue, Spread};
+use crate::result::{ClassSpread, Furthest, OfRecord, PairValue, RecordName, Spread};
 
 /// Ratio of two root mean squares up to which they count as equal, less 1: far above the rounding
 /// of doubles, far below any difference that a table shows.
@@ -26,10 +26,10 @@ pub fn spread(center: Center, values: &[PairValue]) -> Option<Spread> {
 fn class(zone: Option<&str>, values: &[PairValue]) -> Option<ClassSpread> {
     let values: Vec<&PairValue> =
         values.iter().filter(|value| zone.is_none() || value.zone.as_deref() == zone).collect();
-    let mut records: IndexMap<&str, Vec<&PairValue>> = IndexMap::new();
+    let mut records: IndexMap<Option<&RecordName>, Vec<&PairValue>> = IndexMap::new();
     let mut places: IndexMap<Place<'_>, Vec<f64>> = IndexMap::new();
     for value in values {
-        records.entry(value.record.as_deref().unwrap_or_default()).or_default().push(value);
+        records.entry(value.record.as_ref()).or_default().push(value);
         places
             .entry((&value.section, &value.signal, value.taken.as_deref()))
             .or_default()
@@ -69,12 +69,12 @@ fn at((section, signal, taken): Place<'_>, value: f64) -> Furthest {
     Furthest { value, section: section.to_string(), signal }
 }
 
-fn of_record(name: &str, values: &[&PairValue]) -> Option<OfRecord> {
+fn of_record(name: Option<&RecordName>, values: &[&PairValue]) -> Option<OfRecord> {
     let deviations: Vec<f64> = values.iter().map(|value| value.difference).collect();
     let largest =
         values.iter().rev().max_by(|a, b| a.difference.abs().total_cmp(&b.difference.abs()))?;
     Some(OfRecord {
-        record: name.to_string(),
+        record: name.map(ToString::to_string).unwrap_or_default(),
         values: values.len(),
         mean: statistics::mean(&deviations)?,
         std: std(&deviations),
@@ -107,7 +107,7 @@ mod tests {
             zone: zone.map(str::to_string),
             signal: "Y_1R".into(),
             taken: None,
-            record: Some(record.into()),
+            record: Some(RecordName::Single(record.into())),
             simulated: Some(difference),
             measured: Some(0.0),
             difference,

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::check::plan::{Evaluation, Plan, Records, Side};
 use crate::data::WhichRecord;
 use crate::graph::{Graph, NodeId};
-use crate::result::{Curve, QuantityResult, Trace, took_part};
+use crate::result::{Curve, QuantityResult, RecordName, Trace};
 use crate::run::data_rules::take_over;
 use crate::run::record::{NodeValue, Opened, Samples, Work, with_record};
 use crate::run::sections::{Extent, Unit as Section};
@@ -40,7 +40,8 @@ pub struct Kept {
     quantity: usize,
     unit: usize,
     signal: usize,
-    record: Option<String>,
+    #[serde(flatten)]
+    record: Option<RecordName>,
     pub found: Result<Trace, String>,
 }
 
@@ -82,7 +83,7 @@ pub fn traces(
             .iter()
             .position(|position| position.name == worst.signal);
         if let (Some(unit), Some(signal)) = (unit, signal) {
-            let pick = Pick { quantity: index, unit, signal, record: worst.record.as_deref() };
+            let pick = Pick { quantity: index, unit, signal, record: worst.record.as_ref() };
             picks.push((worst.difference.abs() / scale, pick));
         }
     }
@@ -106,7 +107,7 @@ pub fn traces(
             Signals::Kept(kept) => kept
                 .iter()
                 .find(|kept| {
-                    (kept.quantity, kept.unit, kept.signal, kept.record.as_deref()) == pick.key()
+                    (kept.quantity, kept.unit, kept.signal, kept.record.as_ref()) == pick.key()
                 })
                 .map_or_else(
                     || Err("its signals are not in the values".into()),
@@ -148,7 +149,7 @@ pub fn kept(work: &Work<'_>, sections: &[(usize, SectionValues)]) -> Vec<Kept> {
                     quantity: index,
                     unit: *number,
                     signal: row.position,
-                    record: row.record.as_deref(),
+                    record: row.record.as_ref(),
                 },
             ));
         }
@@ -164,7 +165,7 @@ pub fn kept(work: &Work<'_>, sections: &[(usize, SectionValues)]) -> Vec<Kept> {
             quantity: pick.quantity,
             unit: pick.unit,
             signal: pick.signal,
-            record: pick.record.map(str::to_string),
+            record: pick.record.cloned(),
             found: trace(work, *pick, &|unit, which, wanted| {
                 together.evaluated(unit, which, wanted)
             }),
@@ -181,11 +182,11 @@ struct Pick<'a> {
     unit: usize,
     signal: usize,
     /// The records that were compared, where there are several.
-    record: Option<&'a str>,
+    record: Option<&'a RecordName>,
 }
 
 impl<'a> Pick<'a> {
-    fn key(&self) -> (usize, usize, usize, Option<&'a str>) {
+    fn key(&self) -> (usize, usize, usize, Option<&'a RecordName>) {
         (self.quantity, self.unit, self.signal, self.record)
     }
 }
@@ -304,8 +305,9 @@ fn trace(work: &Work<'_>, pick: Pick<'_>, evaluate: Evaluate<'_>) -> Result<Trac
     let name = |which| work.campaign(unit).record_name(which).map(|name| name.as_ref());
     let curve = |unit: &Section, side: Side| {
         let all = work.campaign(unit).records(side.kind());
-        let which =
-            all.into_iter().find(|&which| took_part(record, side == Side::Simulated, name(which)));
+        let which = all
+            .into_iter()
+            .find(|&which| RecordName::took_part(record, side == Side::Simulated, name(which)));
         curve_of(
             unit,
             which.ok_or_else(|| format!("there is no {} record of it", side.in_words()))?,
@@ -340,7 +342,7 @@ fn trace(work: &Work<'_>, pick: Pick<'_>, evaluate: Evaluate<'_>) -> Result<Trac
             .campaign(unit)
             .records(of.side.kind())
             .into_iter()
-            .filter(|&which| name(which) != record)
+            .filter(|&which| name(which) != record.map(|record| record.first().as_ref()))
         {
             others.push((name(which).unwrap_or_default().to_string(), curve_of(unit, which)?.0));
         }
@@ -373,7 +375,7 @@ fn trace(work: &Work<'_>, pick: Pick<'_>, evaluate: Evaluate<'_>) -> Result<Trac
         end,
         measured,
         simulated,
-        record: record.map(str::to_string),
+        record: record.map(ToString::to_string),
         others,
     })
 }

@@ -4,7 +4,7 @@ use super::estimates::Group;
 use super::table::Member;
 use crate::check::plan::{EstimateKind, Expr, Fit, OfGroup, Taking};
 use crate::metrics::rounded;
-use crate::result::{Finding, Outside, QuantityResult};
+use crate::result::{Finding, Outside, QuantityResult, Scope};
 
 /// Code of the finding about regressions that are read outside their data.
 const EXTRAPOLATED: &str = "extrapolated";
@@ -68,7 +68,7 @@ impl Group<'_> {
 struct Read<'a> {
     quantity: &'a str,
     estimate: &'a str,
-    groups: Vec<&'a str>,
+    groups: Vec<&'a Scope>,
 }
 
 /// One finding for each target and range of data, with the estimates that are read there.
@@ -78,7 +78,7 @@ pub fn findings(quantities: &[QuantityResult]) -> Vec<Finding> {
         for statistic in &quantity.statistics {
             for outside in &statistic.outside {
                 let (id, title, group) =
-                    (quantity.id.as_str(), statistic.title.as_str(), statistic.scope.as_str());
+                    (quantity.id.as_str(), statistic.title.as_str(), &statistic.scope);
                 let new = || Read { quantity: id, estimate: title, groups: vec![group] };
                 let Some((_, reads)) = all.iter_mut().find(|(known, _)| *known == outside) else {
                     all.push((outside, vec![new()]));
@@ -109,10 +109,13 @@ fn finding(outside: &Outside, reads: &[Read<'_>]) -> Finding {
             (format!("{}: {} estimates are", quantities.join(", "), several.len()), &[][..])
         }
     };
-    let of_groups = if groups.is_empty() || groups == ["all"] {
-        String::new()
-    } else {
-        format!(" ({})", groups.join("; "))
+    let of_groups = match groups {
+        [] => String::new(),
+        [whole] if whole.is_all() => String::new(),
+        groups => {
+            let groups: Vec<String> = groups.iter().map(ToString::to_string).collect();
+            format!(" ({})", groups.join("; "))
+        }
     };
     let says = format!(
         "{of} read at {regressor} = {}{suffix}, {}{suffix} {side} the data, which reach from {} to {}{suffix}; that is {share:.0} % of their range{of_groups}",

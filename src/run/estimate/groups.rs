@@ -7,6 +7,7 @@ use indexmap::IndexSet;
 use super::table::Member;
 use crate::check::evaluate::flag;
 use crate::check::plan::{Key, Limit, Plan, Position, Quantity, Scalar, Scope};
+use crate::result;
 use crate::run::sections::{Facts, Unit};
 
 /// The group of rows of an estimate.
@@ -15,7 +16,7 @@ pub struct Part<'a> {
     scope: &'a Scope,
     /// The zones of the scope, or the zone of one section.
     zones: Vec<String>,
-    /// Each key with the member of the group and the printed name.
+    /// Each key with its printed name and the member of the group.
     keys: Vec<(&'a Key, String, String)>,
     /// Indices of its rows among those of the quantity, where keys define the groups.
     rows: Vec<usize>,
@@ -88,18 +89,20 @@ pub fn parts<'a>(
     if groups.is_empty() && scope.condition.is_none() { vec![whole] } else { groups }
 }
 
-/// The member of a key that a row belongs to, and its printed name.
+/// The printed name of a key, and its member that a row belongs to.
 pub(in crate::run) fn of_key(
     plan: &Plan,
     positions: &[Position],
     key: &Key,
     member: &Member<'_>,
 ) -> (String, String) {
-    let named = |of: &str, name: String| (name.clone(), format!("{of} {name}"));
+    let named = |key: &str, member: String| (key.to_owned(), member);
     match key {
         Key::Section => named("section", member.unit.name.clone()),
         Key::Site => named("site", member.unit.site_name.clone()),
-        Key::Record => named("record", member.row.record.as_deref().unwrap_or("1").to_string()),
+        Key::Record => {
+            named("record", member.row.record.as_ref().map_or("1".into(), ToString::to_string))
+        }
         Key::Place(place) => {
             let places =
                 positions.get(member.row.position).map_or(&[][..], |position| &position.places);
@@ -141,7 +144,7 @@ impl<'a> Part<'a> {
             let found: Vec<(String, String)> =
                 keys.iter().map(|key| of(&members[row], key)).collect();
             rows_of
-                .entry(found.iter().map(|(name, _)| name.clone()).collect())
+                .entry(found.iter().map(|(_, member)| member.clone()).collect())
                 .or_default()
                 .push(row);
             let by_section = keys
@@ -173,9 +176,9 @@ impl<'a> Part<'a> {
                 let choices: Vec<(String, String)> = section[at]
                     .clone()
                     .map_or_else(|| places[at].iter().cloned().collect(), |of| vec![of]);
-                let with = |group: &Self, (member, words): &(String, String)| {
+                let with = |group: &Self, (name, member): &(String, String)| {
                     let mut group = group.clone();
-                    group.keys.push((key, member.clone(), words.clone()));
+                    group.keys.push((key, name.clone(), member.clone()));
                     group
                 };
                 all = all
@@ -186,8 +189,7 @@ impl<'a> Part<'a> {
             groups.extend(all);
         }
         for group in &mut groups {
-            let names: Vec<String> =
-                group.keys.iter().map(|(_, member, _)| member.clone()).collect();
+            let names: Vec<String> = group.keys.iter().map(|(.., member)| member.clone()).collect();
             group.rows = rows_of.remove(&names).unwrap_or_default();
         }
         groups
@@ -199,45 +201,13 @@ impl<'a> Part<'a> {
         Self { scope: &limit.scope, zones, keys: Vec::new(), rows: Vec::new() }
     }
 
-    /// The group as text: `all`, `zones 2, 3`, `zone 1, wheelset 2`.
-    pub fn in_words(&self) -> String {
-        let condition = self.scope.condition.iter().map(|(_, words)| words.clone());
-        let words: Vec<String> = self.names().into_iter().chain(condition).collect();
-        if words.is_empty() { "all".into() } else { words.join(", ") }
-    }
-
-    /// The zones and keys as text: `zones 2, 3`, `wheelset 2`.
-    pub fn names(&self) -> Vec<String> {
-        let mut words: Vec<String> = Vec::new();
-        if !self.zones.is_empty() {
-            words.push(format!(
-                "{} {}",
-                if self.zones.len() == 1 { "zone" } else { "zones" },
-                self.zones.join(", ")
-            ));
+    /// The group as it stands in results.
+    pub fn scope(&self) -> result::Scope {
+        result::Scope {
+            zones: self.zones.clone(),
+            keys: self.keys.iter().map(|(_, name, of)| (name.clone(), of.clone())).collect(),
+            condition: self.scope.condition.as_ref().map(|(_, words)| words.clone()),
         }
-        words.extend(self.keys.iter().map(|(_, _, words)| words.clone()));
-        words
-    }
-
-    /// Each key with its member, the zone first; empty where only the zone defines the groups.
-    pub fn keys(&self) -> Vec<(String, String)> {
-        if self.keys.is_empty() { Vec::new() } else { self.keys_with_zone() }
-    }
-
-    /// Each key with its member, the zone first.
-    pub fn keys_with_zone(&self) -> Vec<(String, String)> {
-        let zone = match self.zones.as_slice() {
-            [one] => Some(("zone".to_string(), one.clone())),
-            _ => None,
-        };
-        let of_key = |(_, member, words): &(&Key, String, String)| {
-            (
-                words.strip_suffix(member.as_str()).unwrap_or(words).trim_end().to_string(),
-                member.clone(),
-            )
-        };
-        zone.into_iter().chain(self.keys.iter().map(of_key)).collect()
     }
 
     /// The rows of the group.
@@ -287,7 +257,7 @@ impl<'a> Part<'a> {
         let of_place =
             |key: &Key| if let Key::Place(place) = key { Some(place.clone()) } else { None };
         let asked: Vec<(String, &String)> =
-            self.keys.iter().filter_map(|(key, of, _)| Some((of_place(key)?, of))).collect();
+            self.keys.iter().filter_map(|(key, _, of)| Some((of_place(key)?, of))).collect();
         let at = |places: &[(String, String)], place: &str, of: &str| {
             places.iter().any(|(known, member)| known == place && member == of)
         };

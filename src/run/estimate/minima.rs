@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use super::groups::{Grouped, parts};
 use super::table::{Member, independent};
 use crate::check::plan::{Plan, Quantity};
+use crate::result::Scope;
 use crate::run::sections::Facts;
 use crate::run::values::Row;
 use crate::run::words::count;
@@ -12,8 +13,7 @@ use crate::run::words::count;
 /// A group with too few pairs.
 #[derive(Debug)]
 pub struct TooFew {
-    /// `zone 3, wheelset 1`
-    group: String,
+    group: Scope,
     says: String,
     /// Its rows, by where they are kept.
     rows: Vec<*const Row>,
@@ -69,7 +69,7 @@ pub fn too_few(
                 Err(reason) => (reason, Vec::new()),
             };
             let rows = inside.iter().map(|member| std::ptr::from_ref(member.row)).collect();
-            found.push(TooFew { group: part.in_words(), says, rows });
+            found.push(TooFew { group: part.scope(), says, rows });
         }
     }
     found

@@ -7,7 +7,7 @@ use crate::check::plan::{Estimate, EstimateKind, Limit, Plan, Quantity, Report, 
 use crate::check::values::Values;
 use crate::graph::{Graph, LimitNodes, Operation, QuantityNodes};
 use crate::metrics::statistics::{Divisor, mean, standard_deviation};
-use crate::result::{Outside, RegressionFigure, RulePlace, Sample, StatisticResult};
+use crate::result::{Outside, RegressionFigure, RulePlace, Sample, Scope, StatisticResult};
 use crate::run::estimate::{
     Closeness, Group, Grouped, Member, Part, Table, TooFew, count_independent, parts,
 };
@@ -215,7 +215,7 @@ impl<'a> Judging<'a> {
         match estimated {
             Ok(groups) => groups.iter().map(|group| self.of_group(limit, group)).collect(),
             Err(reason) => {
-                let mut result = self.empty(limit, "all".into(), Vec::new(), &[]);
+                let mut result = self.empty(limit, Scope::default(), &[]);
                 result.reason =
                     Some(format!("it cannot be determined whether the limit applies: {reason}"));
                 vec![Compared { result, fails: None }]
@@ -223,18 +223,12 @@ impl<'a> Judging<'a> {
         }
     }
 
-    fn empty(
-        &self,
-        limit: &'a Limit,
-        scope: String,
-        group: Vec<(String, String)>,
-        members: &[Member<'_>],
-    ) -> StatisticResult {
+    fn empty(&self, limit: &'a Limit, scope: Scope, members: &[Member<'_>]) -> StatisticResult {
         StatisticResult {
-            name: limit.estimate.name.clone(),
+            name: limit.estimate.name.clone().into(),
             title: limit.estimate.title.clone(),
+            group: if scope.keys.is_empty() { Vec::new() } else { scope.owned_members() },
             scope,
-            group,
             count: members.len(),
             n: count_independent(self.plan, members),
             unit: self.unit(limit).text.clone(),
@@ -262,8 +256,7 @@ impl<'a> Judging<'a> {
     }
 
     fn of_group(&self, limit: &'a Limit, group: &Estimated<'a>) -> Compared {
-        let mut result =
-            self.empty(limit, group.part.in_words(), group.part.keys(), &group.members);
+        let mut result = self.empty(limit, group.part.scope(), &group.members);
         result.factors = factors(self.plan, &self.facts.among(&group.members), limit);
         result.regression = group.regression.clone().map(Box::new);
         result.divided_at = group.divided_at.map(|value| self.quantity.unit.from_si(value));
@@ -394,7 +387,7 @@ pub fn rule_place(span: &Span) -> RulePlace {
 /// The sentence of a limit that is not met: `Y_qst: mean 4.33 kN exceeds the limit 3.33 kN by 30
 /// %`.
 fn sentence(quantity: &Quantity, limit: &Limit, result: &StatisticResult) -> String {
-    let scope = if result.scope == "all" { String::new() } else { format!(" ({})", result.scope) };
+    let scope = if result.scope.is_all() { String::new() } else { format!(" ({})", result.scope) };
     let unit = if result.unit == "-" { String::new() } else { format!(" {}", result.unit) };
     let (Some(value), Some(bound)) = (result.value, result.limit) else {
         return format!("{}: {}{scope} does not meet its limit", quantity.id, result.title);

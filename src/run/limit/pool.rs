@@ -11,6 +11,7 @@ use crate::check::plan::{
     Decision, EstimateKind, Kind, Limit, MinimumOfGroups, OfGroup, Plan, Quantity, Taking,
 };
 use crate::metrics::moments::{Moment, Moments};
+use crate::result::Scope;
 use crate::run::estimate::{Group, Grouped, Member, Part, Rows, Table, Used, members, parts};
 use crate::run::sections::{Facts, Known, Unit, Vehicle};
 use crate::run::values::{Row, SectionValues};
@@ -264,8 +265,7 @@ pub struct PooledLimit {
     pub at_least: bool,
     /// As printed: `standard deviation (n-1)`.
     pub title: String,
-    /// As printed: `all`, `zone 1`.
-    pub scope: String,
+    pub scope: Scope,
     pub inside: Vec<bool>,
     /// For each position of the quantity, whether the limit applies to its values; all where it
     /// states none.
@@ -451,7 +451,7 @@ fn of_part(
         estimate,
         at_least: limit.at_least,
         title: limit.estimate.title.clone(),
-        scope: part.in_words(),
+        scope: part.scope(),
         inside,
         positions,
         bounds,

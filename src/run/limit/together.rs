@@ -2,10 +2,12 @@
 //! bad one.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use super::limits::{Judging, compared};
 use crate::check::plan::{Chosen, Evaluation, Key, Limit, Pairing, Plan, Records, Side};
 use crate::graph::{Graph, QuantityNodes};
+use crate::result::RecordName;
 use crate::run::estimate::{Member, Table};
 
 /// Why limits that all simulations together meet do not decide the quantity: the first simulation
@@ -28,10 +30,14 @@ pub fn fails_alone(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) 
         _ => return None,
     };
     simulations.iter().find_map(|simulation| {
-        let own: Vec<Member<'_>> = members.iter().copied().filter(|member| of(member, simulation)).collect();
+        let own: Vec<Member<'_>> = members
+            .iter()
+            .copied()
+            .filter(|member| member.row.record.as_ref().map(RecordName::first) == Some(*simulation))
+            .collect();
         let fails = compared(graph, nodes, &Judging { members: &own, too_few: &[], ..*judging })
             .into_iter()
-            .filter(|compared| compared.result.group.iter().all(|(key, _)| key != "record"))
+            .filter(|compared| compared.result.scope.keys.iter().all(|(key, _)| key != "record"))
             .find_map(|compared| compared.fails)?;
         let fails = fails.strip_prefix(&format!("{}: ", quantity.id)).map(str::to_string).unwrap_or(fails);
         Some(format!(
@@ -42,18 +48,12 @@ pub fn fails_alone(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) 
     })
 }
 
-/// Whether a row is of the simulation: its record is `simulation`, or `simulation, run`.
-fn of(member: &Member<'_>, simulation: &str) -> bool {
-    let record = member.row.record.as_deref().unwrap_or_default();
-    record.split(", ").next() == Some(simulation)
-}
-
-fn names_of(members: &[Member<'_>]) -> BTreeSet<String> {
-    members.iter().filter_map(|member| member.row.record.as_deref().map(str::to_string)).collect()
+fn names_of<'a>(members: &[Member<'a>]) -> BTreeSet<&'a Arc<str>> {
+    members.iter().filter_map(|member| member.row.record.as_ref().map(RecordName::first)).collect()
 }
 
 /// The names of the simulations, if there are several.
-fn simulations(plan: &Plan, table: &Table<'_>) -> BTreeSet<String> {
+fn simulations<'a>(plan: &Plan, table: &Table<'a>) -> BTreeSet<&'a Arc<str>> {
     let mut names = BTreeSet::new();
     let quantities = plan
         .quantities
@@ -66,14 +66,17 @@ fn simulations(plan: &Plan, table: &Table<'_>) -> BTreeSet<String> {
         let mut seen: BTreeMap<(&str, usize, usize), u64> = BTreeMap::new();
         let mut differ = false;
         for member in members.iter().copied().flatten() {
-            let (Some(record), row) = (member.row.record.as_deref(), member.row) else { continue };
-            if let Some((simulation, _)) = record.split_once(", ") {
-                names.insert(simulation.to_string());
-            } else if let Some(value) = row.simulated {
-                let first = seen
-                    .entry((&member.unit.name, row.position, row.which))
-                    .or_insert(value.to_bits());
-                differ |= *first != value.to_bits();
+            match (&member.row.record, member.row.simulated) {
+                (Some(RecordName::Pair(simulation, _)), _) => {
+                    names.insert(simulation);
+                }
+                (Some(RecordName::Single(_)), Some(value)) => {
+                    let first = seen
+                        .entry((&member.unit.name, member.row.position, member.row.which))
+                        .or_insert(value.to_bits());
+                    differ |= *first != value.to_bits();
+                }
+                _ => {}
             }
         }
         if differ {

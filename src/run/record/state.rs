@@ -211,7 +211,7 @@ impl State<'_> {
     }
 
     fn fail(&mut self, id: NodeId, reason: &str) {
-        self.failed[id] = Some(format!("{reason} ({})", self.graph.nodes[id].label));
+        self.failed[id] = Some(format!("{reason} ({})", self.graph.nodes[id].label.text));
     }
 
     /// Computes a node. Where a step of a quantity is not possible, only this node has no value.
@@ -223,7 +223,7 @@ impl State<'_> {
         match self.one(id) {
             Ok(value) => self.values[id] = Some(value),
             Err(reason) if self.asks(id) => self.fail(id, &reason),
-            Err(reason) => return Err(format!("{reason} ({})", self.graph.nodes[id].label)),
+            Err(reason) => return Err(format!("{reason} ({})", self.graph.nodes[id].label.text)),
         }
         Ok(())
     }

@@ -44,6 +44,8 @@ pub struct Unit {
     pub fault: Option<String>,
     /// Whether the fault is in the data and not in a requirement.
     pub faulty: bool,
+    /// Whether a file of it could not be read.
+    pub unreadable: bool,
     /// Row of the table of sections.
     pub span: Option<Span>,
 }
@@ -82,6 +84,7 @@ impl Unit {
             checks: Vec::new(),
             fault: None,
             faulty: false,
+            unreadable: false,
             span: None,
         }
     }

@@ -356,6 +356,7 @@ pub fn results(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<SectionResult>
             zone: unit.zone.clone(),
             used: unit.fault.is_none(),
             reason: unit.fault.clone(),
+            unreadable: unit.unreadable,
             length: axis.from_si(end - start),
             start: axis.from_si(start),
             end: axis.from_si(end),

@@ -1,6 +1,6 @@
 //! A row of the table of values.
 
-use std::sync::Arc;
+use crate::result::RecordName;
 
 /// One value of a section.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,7 +10,7 @@ pub struct Row {
     /// Index into the quantity's values, of which several may apply.
     pub which: usize,
     /// The record, where the campaign has several of a side.
-    pub record: Option<Arc<str>>,
+    pub record: Option<RecordName>,
     /// The values compared, where rows compare numbers, SI.
     pub simulated: Option<f64>,
     pub measured: Option<f64>,
@@ -25,7 +25,7 @@ impl Row {
     pub const fn single(
         position: usize,
         which: usize,
-        record: Option<Arc<str>>,
+        record: Option<RecordName>,
         (value, samples): (f64, usize),
     ) -> Self {
         Self { position, which, record, simulated: None, measured: None, value, samples }

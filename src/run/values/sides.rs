@@ -14,7 +14,7 @@ use crate::check::plan::{
 use crate::data::WhichRecord;
 use crate::graph::{InputNode, Joint, NodeId, Operation, SignalNodes, ValueNodes};
 use crate::metrics::{pair, statistics};
-use crate::result::FileHash;
+use crate::result::{FileHash, RecordName};
 use crate::run::record::{NodeValue, Opened, Rate, Samples, Work};
 use crate::run::sections::{Extent, Known, Unit};
 
@@ -163,7 +163,7 @@ impl<'a> Sides<'a> {
 
     /// Every record of one side with every record of the other, with the names of those of which
     /// there are several.
-    pub fn pairs(&'a self) -> impl Iterator<Item = (Option<Arc<str>>, Two<'a>)> {
+    pub fn pairs(&'a self) -> impl Iterator<Item = (Option<RecordName>, Two<'a>)> {
         let of = |records: &'a [RecordOfSide]| -> Vec<(Option<&'a Arc<str>>, &'a NodeValues)> {
             if records.is_empty() {
                 return vec![(None, &NOT_READ)];
@@ -173,7 +173,7 @@ impl<'a> Sides<'a> {
         let (simulated, measured) = (of(self.simulated), of(self.measured));
         simulated.into_iter().flat_map(move |(s, simulated)| {
             let one = |(m, measured): &(Option<&Arc<str>>, &'a NodeValues)| {
-                (names(s, *m), self.two(simulated, measured))
+                (RecordName::joined(s, *m), self.two(simulated, measured))
             };
             measured.iter().map(one).collect::<Vec<_>>()
         })
@@ -187,7 +187,7 @@ impl<'a> Sides<'a> {
             let own = self.known.extent;
             let shift = extent.zip(own).map_or(0.0, |((first, _), (again, _))| first - again);
             self.measured.iter().zip(&original.records).map(move |(repeat, first)| Joined {
-                record: repeat.name.clone(),
+                record: repeat.name.clone().map(RecordName::Single),
                 two: Two { extent, shift, ..self.two(&repeat.found, &first.found) },
                 first: self.alone(repeat),
                 second: Two { known: &original.known, ..self.alone(first) },
@@ -208,7 +208,7 @@ impl<'a> Sides<'a> {
     /// Two records that are compared, and the names of those of which there are several.
     fn joined(&'a self, pairing: Pairing) -> Result<Vec<Joined<'a>>, String> {
         let pair = |first: &'a RecordOfSide, second: &'a RecordOfSide| Joined {
-            record: names(first.name.as_ref(), second.name.as_ref()),
+            record: RecordName::joined(first.name.as_ref(), second.name.as_ref()),
             two: self.two(&first.found, &second.found),
             first: self.alone(first),
             second: self.alone(second),
@@ -295,7 +295,12 @@ impl<'a> Sides<'a> {
             self.chosen(of).into_iter().map(move |record| {
                 let (two, side) = (self.alone(record), own(of.side));
                 let found = (two.value(value, side)?, samples(&two, side));
-                Ok::<_, String>(Row::single(position, which, record.name.clone(), found))
+                Ok::<_, String>(Row::single(
+                    position,
+                    which,
+                    record.name.clone().map(RecordName::Single),
+                    found,
+                ))
             })
         };
         let compared = |row: Row, difference: &Expr, (s, m): (f64, f64)| -> Result<Row, String> {
@@ -349,19 +354,11 @@ impl<'a> Sides<'a> {
 /// Two records that are compared.
 struct Joined<'a> {
     /// The names of those of which there are several.
-    record: Option<Arc<str>>,
+    record: Option<RecordName>,
     two: Two<'a>,
     /// Each by itself.
     first: Two<'a>,
     second: Two<'a>,
-}
-
-/// `simpack`, and of several on both sides `simpack, run1`.
-fn names(first: Option<&Arc<str>>, second: Option<&Arc<str>>) -> Option<Arc<str>> {
-    match (first, second) {
-        (Some(first), Some(second)) => Some(format!("{first}, {second}").into()),
-        (one, other) => one.or(other).cloned(),
-    }
 }
 
 fn one_record(side: Side) -> String {

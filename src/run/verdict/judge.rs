@@ -7,8 +7,8 @@ use super::verdicts;
 use crate::check::plan::{Chosen, Evaluation, Pairing, Plan, Quantity, Records, Zone};
 use crate::graph::Graph;
 use crate::result::{
-    Consequence, Finding, PairValue, QuantityResult, Reported, Verdict, VerdictResult, ZoneResult,
-    usable_sections,
+    Consequence, Figures, Finding, PairValue, QuantityResult, Reported, Verdict, VerdictResult,
+    ZoneResult, usable_sections,
 };
 use crate::run::describe::{reports, spreads};
 use crate::run::estimate::{Member, Rows, count_independent};
@@ -193,14 +193,10 @@ fn quantity_result(
         .unzip();
     let undefined =
         statistics.iter().find(|statistic| statistic.holds.is_none()).map(|statistic| {
-            let scope = if statistic.scope == "all" {
-                String::new()
-            } else {
-                format!(", {}", statistic.scope)
-            };
             format!(
-                "{}{scope}: {}",
+                "{}{}: {}",
                 statistic.title,
+                statistic.scope.suffix(),
                 statistic.reason.as_deref().unwrap_or_default()
             )
         });
@@ -215,7 +211,7 @@ fn quantity_result(
         zone: member.unit.zone.clone(),
         signal: member.signal.to_string(),
         taken: quantity.evaluation.value_in_words(member.row.which),
-        record: member.row.record.as_deref().map(str::to_string),
+        record: member.row.record.clone(),
         simulated: member.row.simulated.map(show),
         measured: member.row.measured.map(show),
         difference: show(member.row.value),
@@ -227,6 +223,9 @@ fn quantity_result(
         title: quantity.title.clone(),
         symbol: quantity.symbol.clone(),
         unit: quantity.unit.text.clone(),
+        pairs: 0,
+        figures: Figures::default(),
+        groups: None,
         of: quantity.words.of.clone(),
         filter: quantity.words.filter.clone(),
         processing: quantity.words.processing.clone(),
@@ -269,5 +268,5 @@ fn quantity_result(
         reason,
         rule: rule_place(&quantity.span),
     };
-    (result, fails.into_iter().flatten().collect())
+    (result.completed(), fails.into_iter().flatten().collect())
 }

@@ -1,63 +1,19 @@
 //! Computes a verdict again from the values recorded in a result, without the records, to check
 //! that it follows from them.
 
+use indexmap::IndexSet;
+
 use super::judge::{Judged, Told, judge};
 use crate::check::evaluate::number;
 use crate::check::plan::{Evaluation, Plan, Records, Scalar};
 use crate::graph::{Graph, NodeId};
-use crate::result::{Consequence, DomainResult, Finding};
+use crate::result::{Certification, Consequence, DataItem, DomainResult, Finding, SectionResult};
 use crate::run::describe::domain;
 use crate::run::sections::{
     Facts, Known, NOT_STATED, Unit, Vehicle, absent, needed, requirements, scalar,
 };
 use crate::run::values::{Row, SectionValues};
 use crate::source::{Source, Spanned};
-
-/// The part of a result that rules use. All texts are as in the result, in the units that the
-/// protocol declares.
-#[derive(Clone, Debug, Default)]
-pub struct Recorded {
-    /// Of each vehicle whose it is, where there are several, and one value for each
-    /// [`Plan::vehicle`].
-    pub vehicles: Vec<(Option<String>, Vec<String>)>,
-    pub sections: Vec<RecordedSection>,
-    /// One for each [`Plan::quantities`].
-    pub values: Vec<Vec<RecordedValue>>,
-    pub findings: Vec<Finding>,
-    pub application: Vec<DomainResult>,
-}
-
-#[derive(Clone, Debug)]
-pub struct RecordedSection {
-    pub name: String,
-    /// Which of several campaigns and vehicles.
-    pub campaign: Option<String>,
-    pub vehicle: Option<String>,
-    /// The first section of its site; its own name where the result states none.
-    pub site: String,
-    pub zone: Option<String>,
-    /// Why it is not used.
-    pub fault: Option<String>,
-    /// Start and end in the unit of the axis.
-    pub start: f64,
-    pub end: f64,
-    /// One for each [`Plan::columns`].
-    pub columns: Vec<String>,
-}
-
-#[derive(Clone, Debug)]
-pub struct RecordedValue {
-    pub section: String,
-    pub signal: String,
-    pub record: Option<String>,
-    /// Which of several values, in words.
-    pub taken: Option<String>,
-    /// In the unit of the quantity, as are all values.
-    pub simulated: Option<f64>,
-    pub measured: Option<f64>,
-    pub difference: f64,
-    pub samples: usize,
-}
 
 /// What follows from the recorded values.
 #[derive(Debug)]
@@ -77,16 +33,18 @@ const ROUNDING: f64 = 1e-9;
 ///
 /// # Errors
 /// The result does not agree with the protocol, in words.
-pub fn replay(plan: &Plan, graph: &Graph, recorded: &Recorded) -> Result<Replayed, String> {
-    let facts = facts(plan, recorded)?;
-    let mut units = units(plan, recorded)?;
+pub fn replay(plan: &Plan, graph: &Graph, results: &Certification) -> Result<Replayed, String> {
+    let facts = facts(plan, results)?;
+    let mut units = units(plan, results)?;
     let mut values = vec![SectionValues::default(); units.len()];
     let mut contradictions = Vec::new();
     for (index, quantity) in plan.quantities.iter().enumerate() {
         for values in &mut values {
             values.rows.push(Vec::new());
         }
-        for value in recorded.values.get(index).into_iter().flatten() {
+        let found = results.quantities.iter().find(|found| found.id == quantity.id);
+        let found = found.ok_or_else(|| format!("the result has no quantity `{}`", quantity.id))?;
+        for value in &found.values {
             let place = format!("{} {} {}", quantity.id, value.section, value.signal);
             let unit = units.iter().position(|unit| unit.name == value.section);
             let unit =
@@ -102,7 +60,7 @@ pub fn replay(plan: &Plan, graph: &Graph, recorded: &Recorded) -> Result<Replaye
             let row = Row {
                 position,
                 which: which(&quantity.evaluation, value.taken.as_deref()),
-                record: value.record.as_deref().map(Into::into),
+                record: value.record.clone(),
                 simulated: value.simulated.map(si),
                 measured: value.measured.map(si),
                 value: si(value.difference),
@@ -121,13 +79,13 @@ pub fn replay(plan: &Plan, graph: &Graph, recorded: &Recorded) -> Result<Replaye
         }
     }
     contradictions.extend(refused(plan, &facts, &units));
-    contradictions.extend(barred(&units, &recorded.findings));
+    contradictions.extend(barred(&units, &results.findings));
     for unit in &mut units {
         unit.faulty = unit.fault.is_some();
     }
     let application =
-        domain::compared(plan, &facts, &units, &domain::recorded(plan, &recorded.application)?);
-    let told = Told { findings: &recorded.findings, barred: domain::barred(&application) };
+        domain::compared(plan, &facts, &units, &domain::recorded(plan, &results.application)?);
+    let told = Told { findings: &results.findings, barred: domain::barred(&application) };
     Ok(Replayed {
         judged: judge(plan, graph, &facts, &units, &values, &told),
         application,
@@ -143,19 +101,32 @@ fn which(evaluation: &Evaluation, taken: Option<&str>) -> usize {
         .unwrap_or_default()
 }
 
-fn facts(plan: &Plan, recorded: &Recorded) -> Result<Facts, String> {
-    let vehicles = recorded
-        .vehicles
-        .iter()
-        .map(|(of, data)| vehicle(plan, of.clone(), data))
+/// Whose vehicle data there are, in the order of the result.
+fn vehicles(results: &Certification) -> IndexSet<&Option<String>> {
+    let of_sections = results.sections.iter().map(|section| &section.vehicle);
+    of_sections.chain(used(results).map(|item| &item.of)).collect()
+}
+
+/// The vehicle data that the protocol reads.
+fn used(results: &Certification) -> impl Iterator<Item = &DataItem> {
+    results.campaign.vehicle.iter().filter(|item| item.used)
+}
+
+fn facts(plan: &Plan, results: &Certification) -> Result<Facts, String> {
+    let own = |of: &Option<String>| -> Vec<&str> {
+        used(results).filter(|item| item.of == *of).map(|item| item.value.as_str()).collect()
+    };
+    let vehicles = vehicles(results)
+        .into_iter()
+        .map(|of| vehicle(plan, of.clone(), &own(of)))
         .collect::<Result<_, _>>()?;
     Ok(Facts {
         vehicles,
-        by_campaign: recorded.sections.iter().any(|section| section.campaign.is_some()),
+        by_campaign: results.sections.iter().any(|section| section.campaign.is_some()),
     })
 }
 
-fn vehicle(plan: &Plan, of: Option<String>, data: &[String]) -> Result<Vehicle, String> {
+fn vehicle(plan: &Plan, of: Option<String>, data: &[&str]) -> Result<Vehicle, String> {
     if data.len() != plan.vehicle.len() {
         return Err(format!(
             "the protocol reads {} vehicle data, the result has {}",
@@ -164,7 +135,7 @@ fn vehicle(plan: &Plan, of: Option<String>, data: &[String]) -> Result<Vehicle, 
         ));
     }
     let read = plan.vehicle.iter().zip(data);
-    let vehicle = read.map(|(datum, text)| match text.as_str() {
+    let vehicle = read.map(|(datum, text)| match *text {
         NOT_STATED if datum.may_be_absent => Ok(Err(absent(datum))),
         text => {
             scalar(&datum.kind, text).map(Ok).map_err(|says| format!("`{}`: {says}", datum.key))
@@ -174,43 +145,44 @@ fn vehicle(plan: &Plan, of: Option<String>, data: &[String]) -> Result<Vehicle, 
     Ok(Vehicle { of, assumed: vec![false; data.len()], data })
 }
 
-fn units(plan: &Plan, recorded: &Recorded) -> Result<Vec<Unit>, String> {
+fn units(plan: &Plan, results: &Certification) -> Result<Vec<Unit>, String> {
     let axis = &plan.axis.unit;
     let nowhere = Source::new("results.json", "").whole();
-    let place = |name: &str| recorded.sections.iter().position(|other| other.name == name);
-    let vehicle = |of: &Option<String>| recorded.vehicles.iter().position(|(known, _)| known == of);
-    let one = |section: &RecordedSection| {
+    let place = |name: &str| results.sections.iter().position(|other| other.section == name);
+    let vehicles = vehicles(results);
+    let one = |section: &SectionResult| {
         if section.columns.len() != plan.columns.len() {
             let (asked, found) = (plan.columns.len(), section.columns.len());
             return Err(format!(
                 "section {}: the protocol declares {asked} columns, the result has {found}",
-                section.name
+                section.section
             ));
         }
         let column =
-            |(datum, text): (&crate::check::plan::Datum, &String)| -> Result<Scalar, String> {
-                if text.is_empty() {
+            |(datum, item): (&crate::check::plan::Datum, &DataItem)| -> Result<Scalar, String> {
+                if item.value.is_empty() {
                     Err(format!("`{}` is empty", datum.key))
                 } else {
-                    scalar(&datum.kind, text)
+                    scalar(&datum.kind, &item.value)
                 }
             };
-        let none = || format!("section {}: the result has no data of its vehicle", section.name);
-        let cell = Spanned::new(section.name.clone(), nowhere.clone());
-        let site = place(&section.site).or_else(|| place(&section.name)).unwrap_or_default();
+        let none = || format!("section {}: the result has no data of its vehicle", section.section);
+        let cell = Spanned::new(section.section.clone(), nowhere.clone());
+        let site = place(&section.site).or_else(|| place(&section.section)).unwrap_or_default();
         let columns = plan.columns.iter().zip(&section.columns).map(column).collect();
         Ok(Unit {
             campaign_name: section.campaign.clone(),
-            vehicle: vehicle(&section.vehicle).ok_or_else(none)?,
+            vehicle: vehicles.get_index_of(&section.vehicle).ok_or_else(none)?,
             zone: section.zone.clone(),
             site_name: section.site.clone(),
             extent: (!plan.sections.whole_records)
                 .then(|| (axis.to_si(section.start), axis.to_si(section.end))),
-            fault: section.fault.clone(),
+            fault: (!section.used).then(|| section.reason.clone().unwrap_or_default()),
+            unreadable: section.unreadable,
             ..Unit::new(&cell, site, columns)
         })
     };
-    recorded.sections.iter().map(one).collect()
+    results.sections.iter().map(one).collect()
 }
 
 /// Why a recorded difference does not follow from its two sides.
@@ -272,12 +244,12 @@ fn barred(units: &[Unit], findings: &[Finding]) -> Vec<String> {
 pub fn operations(
     plan: &Plan,
     graph: &Graph,
-    recorded: &Recorded,
+    results: &Certification,
     (quantity, signal): (usize, usize),
     section: &str,
 ) -> Result<Vec<NodeId>, String> {
-    let facts = facts(plan, recorded)?;
-    let units = units(plan, recorded)?;
+    let facts = facts(plan, results)?;
+    let units = units(plan, results)?;
     let unit = units
         .iter()
         .find(|unit| unit.name == section)

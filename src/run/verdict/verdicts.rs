@@ -2,7 +2,7 @@
 
 use crate::check::plan::{Decision, Over, Plan, Rule};
 use crate::graph::{Graph, Operation};
-use crate::result::{Outcome, QuantityResult, VerdictResult};
+use crate::result::{Outcome, QuantityResult, StatisticName, VerdictResult};
 use crate::run::limit::rule_place;
 use crate::run::words::count;
 
@@ -224,10 +224,12 @@ fn in_words(over: &Over, plan: &Plan) -> String {
 /// Number of limits of a quantity that are met. A limit of several groups is met if all groups meet
 /// it, and counts once.
 fn limits_holding(quantity: &QuantityResult) -> usize {
-    let mut limits: Vec<(&str, &str, usize, bool)> = Vec::new();
+    let mut limits: Vec<(&StatisticName, Option<&str>, usize, bool)> = Vec::new();
     for one in &quantity.statistics {
-        let zone =
-            one.scope.split(", ").next().filter(|first| first.starts_with("zone ")).unwrap_or("");
+        let zone = match one.scope.zones.as_slice() {
+            [zone] => Some(zone.as_str()),
+            _ => None,
+        };
         let holds = one.holds == Some(true);
         match limits
             .iter_mut()

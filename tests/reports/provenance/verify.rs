@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::campaign::{cell, copy, lines, replace};
 use super::program::{Ran, fishplate};
-use super::{check, example, text, written};
+use super::{check, example, root, text, written};
 
 fn verify(report: &Path, campaign: Option<&Path>, more: &[&str]) -> Ran {
     let (report, campaign) = (text(report), campaign.map(text));
@@ -327,4 +327,25 @@ fn what_is_no_report_is_refused_with_help() {
         "{}",
         ran.stderr
     );
+}
+
+/// Results of the first versions state no format: they are read, verified and traced as those of
+/// now. The file was written by version 0.1.0.
+#[test]
+fn results_without_a_format_are_verified_and_traced() {
+    let results = root().join("tests/cases/provenance/without-format.json");
+    let campaign = example("two-link-arm");
+    let protocol = campaign.join("protocol.fp");
+    let ran =
+        fishplate(&["verify", &text(&results), &text(&campaign), "--protocol", &text(&protocol)]);
+    assert_eq!(ran.code, 0, "{}{}", ran.stdout, ran.stderr);
+    let changed = tempfile::tempdir().expect("a temporary folder");
+    let changed = changed.path().join("results.json");
+    let before = std::fs::read_to_string(&results).expect("readable");
+    let after = before.replacen("\"holds\": true", "\"holds\": false", 1);
+    assert_ne!(before, after);
+    std::fs::create_dir_all(changed.parent().expect("a folder")).expect("made");
+    std::fs::write(&changed, after).expect("written");
+    let ran = fishplate(&["verify", &text(&changed), "--protocol", &text(&protocol)]);
+    assert_eq!(ran.code, 1, "{}{}", ran.stdout, ran.stderr);
 }

@@ -1,0 +1,120 @@
+//! Results in the form of the first versions, which state no `format`.
+
+use serde_json::{Map, Value, json};
+
+/// Whether results are in this form.
+pub fn states_no_format(results: &Value) -> bool {
+    results.get("format").is_none()
+}
+
+/// What they do not state, by its path: `*` is every entry of a list. The values stand for
+/// nothing.
+fn added() -> [(&'static str, Value); 11] {
+    let scope = || json!({"scope_data": null});
+    [
+        ("", json!({"format": 0, "verdict_data": "not assessable"})),
+        (
+            "protocol",
+            json!({
+                "edition": null, "source": null, "scope": null, "notes": [], "filters": [],
+                "channels": [], "graph_nodes": 0, "verdict_rule": "",
+                "verdict_words": {"good": "", "bad": ""},
+            }),
+        ),
+        ("campaign", json!({"report_data": [], "facts": []})),
+        ("campaign.members.*", json!({"report_data": []})),
+        (
+            "quantities.*",
+            json!({
+                "symbol": "", "of": "", "filter": "", "processing": "", "comparison": "",
+                "clause": null, "source": null, "notes": [], "has_sides": false, "from": null,
+                "among": null, "against": null, "repeats": false, "spread": null,
+            }),
+        ),
+        (
+            "quantities.*.statistics.*",
+            json!({
+                "scope_data": null, "sample": {"mean": null, "std": null}, "regression": null,
+                "divided_at": null, "outside": [],
+            }),
+        ),
+        ("quantities.*.reported.*", scope()),
+        ("quantities.*.values.*", json!({"records": []})),
+        ("reported.*", scope()),
+        ("domain.*", scope()),
+        ("sections.*", json!({"site": null})),
+    ]
+}
+
+/// Calls a function with every object at a path.
+fn each(value: &mut Value, path: &str, change: &mut dyn FnMut(&mut Map<String, Value>)) {
+    let (first, rest) = path.split_once('.').unwrap_or((path, ""));
+    match (first, value) {
+        ("", Value::Object(entry)) => change(entry),
+        ("*", Value::Array(list)) => list.iter_mut().for_each(|one| each(one, rest, change)),
+        (key, Value::Object(entry)) => {
+            entry.get_mut(key).into_iter().for_each(|one| each(one, rest, change));
+        }
+        _ => {}
+    }
+}
+
+/// Brings results to the present form: adds what they do not state, and as data what they state
+/// as text.
+pub fn upgrade(results: &mut Value) {
+    for (path, keys) in added() {
+        each(results, path, &mut |entry| {
+            for (key, value) in keys.as_object().into_iter().flatten() {
+                let text = |key: &str| entry.get(key).and_then(Value::as_str).unwrap_or_default();
+                let value = match key.as_str() {
+                    "scope_data" => scope(text("scope"), entry.get("group")),
+                    "records" => text("record").split(", ").collect(),
+                    "site" => json!(text("section")),
+                    "verdict_data" => match text("verdict") {
+                        "requirements met" => json!("validated"),
+                        "requirements not met" => json!("not validated"),
+                        other => json!(other),
+                    },
+                    _ => value.clone(),
+                };
+                entry.entry(key).or_insert(value);
+            }
+        });
+    }
+}
+
+/// Removes from results in the present form what those before did not state.
+pub fn downgrade(results: &mut Value) {
+    for (path, keys) in added().into_iter().filter(|(path, _)| *path != "sections.*") {
+        each(results, path, &mut |entry| {
+            entry.retain(|key, _| keys.get(key).is_none());
+        });
+    }
+}
+
+/// The data of a scope from its text: `zone 1, wheelset 2`. What is neither a zone nor one of the
+/// keys is a condition.
+fn scope(text: &str, keys: Option<&Value>) -> Value {
+    let zones: Vec<&str> = match (text.strip_prefix("zone "), text.strip_prefix("zones ")) {
+        (Some(one), _) => one.split(", ").take(1).collect(),
+        (_, Some(all)) => all.split(", ").take_while(|zone| !zone.contains(' ')).collect(),
+        _ => Vec::new(),
+    };
+    let mut keys = keys.cloned().unwrap_or_else(|| json!({}));
+    let mut words: Vec<String> = Vec::new();
+    if !zones.is_empty() {
+        let plural = if zones.len() == 1 { "" } else { "s" };
+        words.push(format!("zone{plural} {}", zones.join(", ")));
+    }
+    if let Some(keys) = keys.as_object_mut() {
+        keys.shift_remove("zone");
+        let word = |(key, member): (&String, &Value)| {
+            format!("{key} {}", member.as_str().unwrap_or_default())
+        };
+        words.extend(keys.iter().map(word));
+    }
+    let known = words.join(", ");
+    let rest = text.strip_prefix(known.as_str()).unwrap_or_default().trim_start_matches(", ");
+    let condition = (!rest.is_empty() && rest != "all").then_some(rest);
+    json!({"zones": zones, "keys": keys, "condition": condition})
+}
