@@ -137,12 +137,3 @@ fn campaign_of(
     let vehicle = evaluated.facts.items(&compiled.plan);
     campaign_info(&compiled.plan, campaigns, evaluated.files.clone(), vehicle)
 }
-
-fn campaign_of(
-    compiled: &Compiled,
-    campaigns: Campaigns<'_>,
-    evaluated: &Evaluated,
-) -> CampaignInfo {
-    let vehicle = evaluated.facts.items(&compiled.plan);
-    campaign_info(&compiled.plan, campaigns, evaluated.files.clone(), vehicle)
-}
