@@ -411,7 +411,7 @@ fn pages(
     }
     let names = attached::protocol_names(found);
     let attachments = attached::attachments(found, results, &names);
-    match typst::typeset(&view::view(found), &figure::figures(found), &attachments) {
+    match typst::typeset(&view::document(found), &figure::figures(found), &attachments) {
         Err(problems) => Check::not_possible(
             NAME,
             problems.0.first().map_or_else(String::new, |problem| problem.says.clone()),

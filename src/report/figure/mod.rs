@@ -48,7 +48,7 @@ pub use zones::Zones;
 use crate::report::{brief, estimates, sides, view};
 use crate::result::Certification;
 
-/// All figures of a report by their names in the view ([`super::view::FigureView::name`]).
+/// All figures of a report by their names in the document ([`super::document::Figure::name`]).
 ///
 /// Empty figures are omitted: a quantity without values, a domain without conditions, a missing
 /// graph.
@@ -90,7 +90,7 @@ pub fn figures(found: &Certification) -> Vec<(String, String)> {
         drawn.push(("domain".to_owned(), domain(&found.domain, &found.sections, &zones)));
     }
     for (at, result) in
-        found.application.iter().enumerate().filter(|(_, result)| view::application::drawn(result))
+        found.application.iter().enumerate().filter(|(_, result)| view::drawn(result))
     {
         drawn.push((format!("application-{at}"), application(result)));
     }
