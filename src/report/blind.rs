@@ -1,6 +1,6 @@
 //! Scores of blind diagnoses as a page.
 
-use crate::report::document::{Cell, Chapter, Column, Document, Format, PROGRAM, Table};
+use crate::report::document::{Cell, Chapter, Column, Document, Format, PROGRAM, Table, cells};
 use crate::report::number;
 use crate::result::blind::{Blind, Case};
 
@@ -44,7 +44,7 @@ fn scores(blind: &Blind) -> Chapter {
     let rows = blind.scores.iter().map(|score| {
         let interval =
             score.low.zip(score.high).map_or(Cell::BLANK, |(low, high)| between(low, high));
-        vec![Cell::from(&score.name), score.cases.into(), number(score.value), interval]
+        cells![score.name, score.cases, number(score.value), interval]
     });
     let mut columns = vec![Column::text("Score")];
     let numbers = ["Cases, cells or sections", "Value", "95 % interval"];
@@ -55,18 +55,18 @@ fn scores(blind: &Blind) -> Chapter {
 
 fn cases(blind: &Blind) -> Chapter {
     let rows = blind.cases.iter().map(|case| {
-        vec![
-            Cell::from(&case.campaign),
-            (&case.kind).into(),
-            case.truth.join(", ").into(),
-            case.fault.as_ref().unwrap_or(&case.verdict).into(),
-            case.named.join(", ").into(),
-            if right(case) { "yes" } else { "no" }.into(),
+        cells![
+            case.campaign,
+            case.kind,
+            case.truth.join(", "),
+            case.fault.as_ref().unwrap_or(&case.verdict),
+            case.named.join(", "),
+            if right(case) { "yes" } else { "no" },
             number(case.detectability),
             number(case.weakest),
             number(case.parameter_error),
             number(case.shrink_said),
-            number(case.shrink_true),
+            number(case.shrink_true)
         ]
     });
     let mut columns = vec![
@@ -85,7 +85,7 @@ fn cases(blind: &Blind) -> Chapter {
 
 fn confusion(blind: &Blind) -> Chapter {
     let rows = blind.confusion.iter().flat_map(|(truth, named)| {
-        named.iter().map(move |(name, count)| vec![Cell::from(truth), name.into(), (*count).into()])
+        named.iter().map(move |(name, count)| cells![truth, name, (*count)])
     });
     let columns = vec![
         Column::text("Truth"),
@@ -98,11 +98,11 @@ fn confusion(blind: &Blind) -> Chapter {
 
 fn detectability(blind: &Blind) -> Chapter {
     let rows = blind.by_detectability.iter().filter(|one| one.cases > 0).map(|one| {
-        vec![
+        cells![
             Cell::number(one.from, Format::Fixed(0)),
-            one.cases.into(),
-            one.named.into(),
-            between(one.low, one.high),
+            one.cases,
+            one.named,
+            between(one.low, one.high)
         ]
     });
     let columns = ["d from", "Cases", "Named first", "95 % interval of the share"];
@@ -112,11 +112,11 @@ fn detectability(blind: &Blind) -> Chapter {
 
 fn calibration(blind: &Blind) -> Chapter {
     let rows = blind.calibration.iter().map(|bin| {
-        vec![
+        cells![
             Cell::number(bin.said, Format::Fixed(2)),
-            bin.cases.into(),
-            bin.right.into(),
-            between(bin.low, bin.high),
+            bin.cases,
+            bin.right,
+            between(bin.low, bin.high)
         ]
     });
     let columns = ["Stated", "Cases", "Right", "95 % interval of the share"];

@@ -1,6 +1,6 @@
 //! What a campaign can show: drawn campaigns, detectable sizes, effects closest to being named.
 
-use crate::report::document::{Block, Cell, Column, Format, Table};
+use crate::report::document::{Block, Cell, Column, Format, Table, cells};
 use crate::report::number;
 use crate::result::diagnosis::{Detectable, Diagnosis, Share};
 
@@ -19,7 +19,7 @@ fn drawn(found: &Diagnosis) -> Table {
         ("The named effects", "the 90 % interval contains the hidden size", of.intervals),
     ];
     let row = |(hidden, result, share): (&str, &str, Share)| -> Vec<Cell> {
-        vec![hidden.into(), result.into(), share.count.into(), share.of.into()]
+        cells![hidden, result, share.count, share.of]
     };
     let columns = vec![
         Column::text("Hidden"),
@@ -38,13 +38,13 @@ const SIZE: Format = Format::Significant(3);
 pub fn detectable(found: &Diagnosis) -> Vec<Block> {
     let row = |one: &Detectable| {
         let size = |change: Option<f64>| Cell::number(change.map(|by| one.neutral + by), SIZE);
-        vec![
-            Cell::from(&one.effect),
-            (&one.parameter).into(),
+        cells![
+            one.effect,
+            one.parameter,
             Cell::number(one.neutral, SIZE),
             size(one.below),
             size(one.above),
-            (&one.unit).into(),
+            one.unit
         ]
     };
     let columns = vec![
@@ -70,13 +70,10 @@ pub fn detectable(found: &Diagnosis) -> Vec<Block> {
     let sizes = Table::new(caption, columns, found.detectable.iter().map(row));
     let mut blocks = vec![drawn(found).into(), sizes.into()];
     if !found.nearest.is_empty() {
-        let rows = found.nearest.iter().map(|one| {
-            vec![
-                Cell::from(&one.says),
-                Cell::number(one.evidence, Format::Fixed(1)),
-                (&one.wants).into(),
-            ]
-        });
+        let rows = found
+            .nearest
+            .iter()
+            .map(|one| cells![one.says, Cell::number(one.evidence, Format::Fixed(1)), one.wants]);
         let columns = vec![
             Column::text("Effect"),
             Column::number("Evidence"),

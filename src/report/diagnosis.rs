@@ -3,7 +3,7 @@
 
 use crate::report::detectable::detectable;
 use crate::report::document::{
-    Block, Cell, Chapter, Column, Document, Fact, Figure, Finding, Format, Table,
+    Block, Cell, Chapter, Column, Document, Fact, Figure, Finding, Format, Table, cells,
 };
 use crate::report::figure;
 use crate::report::number;
@@ -148,15 +148,15 @@ fn cells(found: &Diagnosis) -> Table {
         } else {
             number::significant(place.p_value, 2)
         };
-        vec![
-            Cell::from(&place.quantity),
-            (&place.position).into(),
-            (&place.wavelength_or_band).into(),
-            place.zones.join(", ").into(),
+        cells![
+            place.quantity,
+            place.position,
+            place.wavelength_or_band,
+            place.zones.join(", "),
             size(place, place.difference),
             size(place, place.difference_rms),
-            number::with_unit(&number::fixed(100.0 * place.share_of_gap, 1), "%").into(),
-            format!("{p}{}", if place.significant { " *" } else { "" }).into(),
+            number::with_unit(&number::fixed(100.0 * place.share_of_gap, 1), "%"),
+            format!("{p}{}", if place.significant { " *" } else { "" })
         ]
     });
     let mut columns = vec![
@@ -182,7 +182,7 @@ fn invariants(all: &[Invariant], named: bool) -> Table {
             let times = (allowed > 0.0).then(|| value.abs() / allowed);
             Cell::number(times, Format::Fixed(1))
         };
-        let mut row = vec![Cell::from(&one.name), one.parity.into(), number(one.before)];
+        let mut row = cells![one.name, one.parity, number(one.before)];
         row.extend(named.then(|| number(one.after)));
         row.extend([number(one.allowed), off(one.before, one.allowed)]);
         row.extend(named.then(|| off(one.after, one.allowed_after)));
@@ -250,11 +250,11 @@ fn trends(found: &Diagnosis) -> Vec<Block> {
         };
         let last = if named { &trend.after } else { &trend.before };
         let (from, to) = (&trend.from_without_unit, &trend.to);
-        let mut cells = vec![
-            Cell::from(format!("{}, {}", trend.quantity, trend.position)),
-            (&trend.wavelength_or_band).into(),
-            format!("{}: {from} to {to}", trend.covariate).into(),
-            change(&trend.before).into(),
+        let mut cells = cells![
+            format!("{}, {}", trend.quantity, trend.position),
+            trend.wavelength_or_band,
+            format!("{}: {from} to {to}", trend.covariate),
+            change(&trend.before)
         ];
         cells.extend(named.then(|| Cell::from(change(last))));
         cells.push(Cell::number(last.correlation, Format::Fixed(2)));
@@ -336,16 +336,16 @@ fn cause_rows(cause: &Cause) -> Vec<Vec<Cell>> {
             let probability = number::with_unit(&number::fixed(100.0 * cause.probability, 1), "%");
             let title = format!("{}{}{}", effect.title, told.on(), effect.only_in());
             let assumed = told.value.assumed.map(|assumed| with_unit(assumed, told.value));
-            rows.push(vec![
+            rows.push(cells![
                 only(cause.rank.to_string().into()),
                 if at == 0 { title.into() } else { Cell::BLANK },
-                (&told.parameter).into(),
-                assumed.unwrap_or_else(|| "-".into()).into(),
-                value(told.value).into(),
-                interval(told.value).into(),
+                told.parameter,
+                assumed.unwrap_or_else(|| "-".into()),
+                value(told.value),
+                interval(told.value),
                 only(probability.into()),
                 only(Cell::number(cause.evidence, Format::Fixed(0))),
-                only(if cause.in_ambiguity_set { "yes" } else { "no" }.into()),
+                only(if cause.in_ambiguity_set { "yes" } else { "no" }.into())
             ]);
         }
     }
@@ -490,7 +490,7 @@ fn how(found: &Diagnosis) -> Chapter {
         ),
         ("Seed", how.seed.to_string()),
     ];
-    let rows = rows.map(|(name, value)| vec![Cell::from(name), value.into()]);
+    let rows = rows.map(|(name, value)| cells![name, value]);
     let columns = vec![Column::text("Setting"), Column::text("Value")];
     let table = Table::new("Settings of the diagnosis", columns, rows);
     Chapter::new("how", "Method and settings", vec![table.into()])

@@ -2,6 +2,7 @@
 
 use super::document::{Cell, Column, Symbols, Table, Tone};
 use super::number;
+use crate::report::document::cells;
 use crate::result::{Consequence, Finding};
 
 /// Findings of one kind about one channel.
@@ -51,13 +52,13 @@ pub fn rows(findings: &[Finding]) -> Vec<Row> {
 /// All findings as a table.
 pub fn table(findings: &[Finding]) -> Table {
     let row = |row: Row| {
-        vec![
-            row.code.into(),
-            row.subject.into(),
-            row.sections.into(),
-            Symbols::default().text(&row.says).into(),
-            row.cause.into(),
-            Cell::from(row.consequence).toned(row.tone),
+        cells![
+            row.code,
+            row.subject,
+            row.sections,
+            Symbols::default().text(&row.says),
+            row.cause,
+            Cell::from(row.consequence).toned(row.tone)
         ]
     };
     let columns = vec![

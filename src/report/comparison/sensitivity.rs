@@ -1,7 +1,7 @@
 //! Sensitivity of metrics to disturbances.
 
 use super::{metric, three};
-use crate::report::document::{Block, Cell, Chapter, Column, Figure, Table};
+use crate::report::document::{Block, Cell, Chapter, Column, Figure, Table, cells};
 use crate::result::comparison::{Comparison, Sensitivity};
 
 /// A curve: its name, and its values by size.
@@ -43,7 +43,7 @@ pub fn chapter(found: &Comparison) -> Option<Chapter> {
     columns.extend(first.sizes.iter().map(|size| Column::number(format!("Size {size}"))));
     columns.push(Column::number("Verdicts changed"));
     let row = |one: &Sensitivity| {
-        let mut row = vec![Cell::sentence(metric(one, found)), Cell::sentence(&one.disturbance)];
+        let mut row = cells![Cell::sentence(metric(one, found)), Cell::sentence(&one.disturbance)];
         row.extend(one.values.iter().map(|value| three(*value)));
         let changed: Vec<String> = one.verdicts_changed.iter().map(ToString::to_string).collect();
         row.push(format!("{} of {}", changed.join(", "), one.verdicts).into());

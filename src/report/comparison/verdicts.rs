@@ -1,7 +1,7 @@
 //! Verdicts, applicability, ratios and differences of protocols.
 
 use super::three;
-use crate::report::document::{Block, Cell, Chapter, Column, Medium, Table};
+use crate::report::document::{Block, Cell, Chapter, Column, Medium, Table, cells};
 use crate::result::comparison::{
     Applicability, Cell as OnProtocol, Compared, Comparison, Difference, OnCampaign, Tried,
 };
@@ -66,16 +66,16 @@ fn tried(tried: Tried) -> Cell {
 
 pub fn applicability(found: &Comparison) -> Chapter {
     let row = |one: &Applicability| {
-        vec![
-            (&one.protocol).into(),
+        cells![
+            one.protocol,
             Cell::sentence(&one.metric),
-            one.quantities.into(),
+            one.quantities,
             tried(one.number_of_one_quantity),
             tried(one.number_of_one_section),
             tried(one.verdict_of_one_quantity),
             tried(one.verdict_of_one_section),
             Cell::or_missing(one.scale.as_ref()),
-            Cell::or_missing(one.symmetric),
+            Cell::or_missing(one.symmetric)
         ]
     };
     let mut columns = vec![
@@ -177,7 +177,7 @@ pub fn ratios(found: &Comparison) -> Chapter {
             vec![campaign(found), Column::short("Quantity"), Column::text("Estimate")];
         columns.extend(names.iter().map(|name| Column::number(*name).wide(1.0).breaks(NAME)));
         let row = |([campaign, symbol, estimate], ratios): ([&str; 3], Vec<Option<f64>>)| {
-            let mut row = vec![campaign.into(), Cell::symbol(symbol, ""), Cell::sentence(estimate)];
+            let mut row = cells![campaign, Cell::symbol(symbol, ""), Cell::sentence(estimate)];
             row.extend(ratios.into_iter().map(three));
             row
         };
@@ -188,15 +188,9 @@ pub fn ratios(found: &Comparison) -> Chapter {
 }
 
 pub fn compared(found: &Comparison) -> Chapter {
-    let protocol = |one: &Compared| {
-        vec![
-            Cell::from(&one.name),
-            (&one.title).into(),
-            Cell::sentence(&one.criterion),
-            (&one.sha256).into(),
-        ]
-    };
-    let campaign = |one: &OnCampaign| vec![Cell::from(&one.name), one.sections.into()];
+    let protocol =
+        |one: &Compared| cells![one.name, one.title, Cell::sentence(&one.criterion), one.sha256];
+    let campaign = |one: &OnCampaign| cells![one.name, one.sections];
     let columns = ["Name", "Title", "Criterion", "SHA-256"].map(Column::text).to_vec();
     let caption = "Protocols, with the SHA-256 of their text";
     let protocols = Table::new(caption, columns, found.protocols.iter().map(protocol));

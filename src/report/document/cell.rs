@@ -120,13 +120,6 @@ impl Cell {
         Self::text(Run::Finding(finding))
     }
 
-    /// A finding and its reason.
-    pub fn finding_with(finding: Finding, reason: Option<&str>) -> Self {
-        let reason =
-            reason.map_or_else(String::new, |reason| format!(": {}", number::raised(reason)));
-        Self::text(Text::from(Run::Finding(finding)).and(reason))
-    }
-
     /// A dash for none.
     pub fn or_missing<T: Into<Self>>(value: Option<T>) -> Self {
         value.map_or(Self::MISSING, Into::into)
@@ -207,15 +200,9 @@ impl From<String> for Cell {
     }
 }
 
-impl From<&String> for Cell {
-    fn from(text: &String) -> Self {
-        Self::text(text)
-    }
-}
-
-impl From<&Option<String>> for Cell {
-    fn from(text: &Option<String>) -> Self {
-        text.as_ref().map_or(Self::BLANK, Self::from)
+impl From<Option<String>> for Cell {
+    fn from(text: Option<String>) -> Self {
+        text.map_or(Self::BLANK, Self::text)
     }
 }
 
@@ -243,20 +230,58 @@ impl From<usize> for Cell {
     }
 }
 
+impl From<f64> for Cell {
+    fn from(value: f64) -> Self {
+        Self::number(value, Format::Significant(DIGITS))
+    }
+}
+
+impl From<Option<f64>> for Cell {
+    fn from(value: Option<f64>) -> Self {
+        Self::number(value, Format::Significant(DIGITS))
+    }
+}
+
 impl From<u64> for Cell {
     fn from(count: u64) -> Self {
         Self::number(count as f64, Format::Count)
     }
 }
 
-impl From<f64> for Cell {
-    fn from(value: f64) -> Self {
-        Self::number(value, Format::Significant(6))
-    }
+/// Digits of a number of which nothing else is known.
+const DIGITS: usize = 6;
+
+/// From what is borrowed.
+macro_rules! from_borrowed {
+    ($($kind:ty),*) => {
+        $(impl From<&$kind> for Cell {
+            fn from(from: &$kind) -> Self {
+                from.clone().into()
+            }
+        })*
+    };
 }
 
-impl From<Option<f64>> for Cell {
-    fn from(value: Option<f64>) -> Self {
-        Self::number(value, Format::Significant(6))
-    }
+from_borrowed!(
+    Cell,
+    Text,
+    Run,
+    Finding,
+    &str,
+    &String,
+    String,
+    Option<String>,
+    f64,
+    Option<f64>,
+    bool,
+    Option<bool>,
+    usize,
+    u64
+);
+
+/// The cells of a row, each from anything that a cell can be made of.
+macro_rules! cells {
+    ($($cell:expr),* $(,)?) => { vec![$($crate::report::document::Cell::from(&$cell)),*] };
 }
+
+pub(crate) use cells;

@@ -6,15 +6,17 @@
 
 mod cell;
 pub mod finding;
+mod sentence;
 pub mod symbol;
 pub mod table;
 mod text;
 
 use serde::Serialize;
 
+pub(crate) use cell::cells;
 pub use cell::{Cell, Format};
 pub use finding::{Finding, Tone};
-pub use symbol::Symbols;
+pub use sentence::Symbols;
 pub use table::{Column, Row, Table};
 pub use text::{Run, Text};
 

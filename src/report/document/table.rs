@@ -4,8 +4,9 @@ use serde::{Serialize, Serializer};
 
 use super::Medium;
 use super::cell::{Cell, Content};
-use super::finding::Tone;
-use super::text::Text;
+use super::finding::{Finding, Tone};
+use super::text::{Run, Text};
+use crate::report::number;
 
 /// A table.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,8 +105,8 @@ impl Column {
 
     /// With a unit as printed after its title; none for a dimensionless number.
     pub fn unit(self, unit: &str) -> Self {
-        let unit = crate::report::number::unit(unit);
-        let none = unit == crate::report::number::NONE;
+        let unit = number::unit(unit);
+        let none = unit == number::NONE;
         Self { unit: if none { String::new() } else { unit }, ..self }
     }
 
@@ -153,6 +154,15 @@ pub struct Row {
 impl Row {
     pub fn toned(self, tone: Tone) -> Self {
         Self { tone: Some(tone), ..self }
+    }
+
+    /// With what the row came to as its last cell, and the reason.
+    pub fn ending(mut self, finding: Finding, reason: Option<&str>) -> Self {
+        let tone = finding.tone;
+        let reason = reason.map(|reason| format!(": {}", number::raised(reason)));
+        let text = Text::from(Run::Finding(finding)).and(reason.unwrap_or_default());
+        self.cells.push(Cell::text(text));
+        self.toned(tone)
     }
 
     pub fn in_zone(self, zone: Option<&str>) -> Self {

@@ -7,7 +7,7 @@ mod sections;
 mod sync;
 pub mod tables;
 
-use crate::report::document::{Block, Cell, Chapter, Column, Document, Finding, Table};
+use crate::report::document::{Block, Cell, Chapter, Column, Document, Finding, Table, cells};
 use crate::report::figure;
 use crate::report::number;
 use crate::report::view::{self, Opening};
@@ -72,12 +72,12 @@ fn stays(verdict: Option<Verdict>, words: &VerdictWords, otherwise: &str) -> Fin
 
 fn settings(study: &Study) -> Chapter {
     let row = |parameter: &ParameterInfo| -> Vec<Cell> {
-        vec![
-            (&parameter.name).into(),
-            (&parameter.title).into(),
-            (&parameter.value).into(),
-            (&parameter.default).into(),
-            (&parameter.set_by).into(),
+        cells![
+            parameter.name,
+            parameter.title,
+            parameter.value,
+            parameter.default,
+            parameter.set_by
         ]
     };
     let columns = vec![

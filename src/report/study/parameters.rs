@@ -1,7 +1,7 @@
 //! Text of the study of parameters.
 
 use super::{scoped, share};
-use crate::report::document::{Block, Cell, Chapter, Column, Fact, Figure, Format, Table};
+use crate::report::document::{Block, Cell, Chapter, Column, Fact, Figure, Format, Table, cells};
 use crate::report::number;
 use crate::report::sides::capital;
 use crate::report::view::Opening;
@@ -113,7 +113,7 @@ fn statistics(parameter: &Varied) -> Table {
     columns.extend(values.iter().map(|at| Column::number(&at.value)));
     let first = values.iter().find(|at| !at.statistics.is_empty());
     let rows = first.map_or(&[][..], |at| &at.statistics).iter().map(|one| {
-        let mut row = vec![Cell::symbol(&one.symbol, ""), scoped(&one.name, &one.scope).into()];
+        let mut row = cells![Cell::symbol(&one.symbol, ""), scoped(&one.name, &one.scope)];
         row.extend(values.iter().map(|at| {
             let same = at.statistics.iter().find(|other| {
                 other.id == one.id && other.name == one.name && other.scope == one.scope

@@ -1,7 +1,9 @@
 //! Text of the study of selections.
 
 use super::{BOXES, percent, scoped, share};
-use crate::report::document::{Block, Cell, Chapter, Column, Fact, Figure, Finding, Format, Table};
+use crate::report::document::{
+    Block, Cell, Chapter, Column, Fact, Figure, Finding, Format, Table, cells,
+};
 use crate::report::figure;
 use crate::report::number;
 use crate::report::sides::capital;
@@ -151,7 +153,7 @@ fn spread(quantities: &[QuantitySpread], of: &str) -> Vec<Block> {
     let scopes = statistics().any(|(_, statistic)| statistic.scope != "all");
     let spreads: Vec<Spread> = statistics().filter_map(|(_, statistic)| statistic.spread).collect();
     let rows = statistics().map(|(quantity, statistic)| {
-        let mut row = vec![Cell::symbol(&quantity.symbol, ""), (&statistic.name).into()];
+        let mut row = cells![Cell::symbol(&quantity.symbol, ""), statistic.name];
         row.extend(scopes.then(|| Cell::from(&statistic.scope)));
         row.push(Cell::number(statistic.overall, RATIO));
         row.extend(numbers(statistic.spread.as_ref()));
@@ -241,11 +243,11 @@ fn failing(found: &SelectionStudy) -> Vec<Block> {
         return blocks;
     }
     let rows = found.worst.iter().take(MOST_ROWS).map(|worst| {
-        vec![
+        cells![
             Cell::symbol(&worst.symbol, ""),
-            scoped(&worst.title, &worst.scope).into(),
+            scoped(&worst.title, &worst.scope),
             Cell::number(worst.normalised, RATIO),
-            worst.sections.join(", ").into(),
+            worst.sections.join(", ")
         ]
     });
     let columns = vec![
@@ -340,17 +342,18 @@ fn reduction(reduction: &Reduction) -> Chapter {
         "Before the selection, the sections were reduced to at most {} per zone so that the largest standard deviation of all sections is retained.",
         reduction.most
     );
-    let kept = reduction.kept.iter().map(|(zone, sections)| {
-        vec![Cell::from(zone), sections.len().into(), sections.join(", ").into()]
-    });
+    let kept = reduction
+        .kept
+        .iter()
+        .map(|(zone, sections)| cells![zone, sections.len(), sections.join(", ")]);
     let columns = vec![Column::name("Zone"), Column::number("Kept"), Column::text("Sections")];
     let kept = Table::new("Sections kept", columns, kept);
     let scatter = reduction.scatter.iter().map(|(symbol, all, kept)| {
-        vec![
+        cells![
             Cell::symbol(symbol, ""),
             Cell::number(*all, RATIO),
             Cell::number(*kept, RATIO),
-            Cell::number(kept - all, Format::Fixed(4)),
+            Cell::number(kept - all, Format::Fixed(4))
         ]
     });
     let columns = vec![

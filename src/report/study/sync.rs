@@ -1,7 +1,7 @@
 //! Text of the study of the synchronisation.
 
 use super::{BOXES, percent, scoped, sections, share};
-use crate::report::document::{Block, Cell, Chapter, Column, Fact, Figure, Format, Table};
+use crate::report::document::{Block, Cell, Chapter, Column, Fact, Figure, Format, Table, cells};
 use crate::report::number;
 use crate::report::sides::capital;
 use crate::report::view::Opening;
@@ -157,7 +157,7 @@ fn lost(at: &AtOffset, offset: &str) -> Vec<Vec<Cell>> {
     }
     rules
         .into_iter()
-        .map(|(_, sections, reason)| vec![offset.into(), sections.join(", ").into(), reason.into()])
+        .map(|(_, sections, reason)| cells![offset, sections.join(", "), reason])
         .collect()
 }
 
@@ -167,7 +167,7 @@ fn one(found: &SyncStudy) -> Vec<Block> {
     let first = found.offsets.iter().find(|at| !at.selected.is_empty());
     let all = first.map_or(&[][..], |at| &at.selected);
     let rows = all.iter().enumerate().map(|(statistic, one)| {
-        let mut row = vec![Cell::symbol(&one.symbol, ""), scoped(&one.name, &one.scope).into()];
+        let mut row = cells![Cell::symbol(&one.symbol, ""), scoped(&one.name, &one.scope)];
         row.extend(found.offsets.iter().map(|at| {
             let value = at.selected.get(statistic).and_then(|one| one.normalised);
             Cell::number(value, Format::Beside { limit: 1.0, decimals: 2 })
@@ -192,12 +192,12 @@ fn estimates(found: &SyncStudy) -> Vec<Block> {
     let number = |value: Option<f64>| number::optional(value, 2);
     let rows = found.estimates.iter().map(|one| {
         let interval = one.low.map(|_| format!("{} to {}", number(one.low), number(one.high)));
-        vec![
-            Cell::from(&one.section),
-            (&one.zone).into(),
+        cells![
+            one.section,
+            one.zone,
             Cell::number(one.shift, Format::Fixed(2)),
             Cell::or_missing(interval),
-            Cell::number(one.correlation, Format::Fixed(2)),
+            Cell::number(one.correlation, Format::Fixed(2))
         ]
     });
     let what = if found.corrected {

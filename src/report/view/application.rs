@@ -1,7 +1,7 @@
 //! Wanted operation inside and outside what the sections cover.
 
-use crate::report::document::{Block, Cell, Column, Figure, Finding, Format, Table};
-use crate::report::number;
+use crate::report::document::{Block, Cell, Column, Figure, Finding, Format, Table, cells};
+use crate::report::{figure, number};
 use crate::result::{CoordinateRange, DomainResult, WantedPoint};
 
 /// Digits of a distance, which is a share of ranges.
@@ -24,7 +24,7 @@ pub(super) fn blocks((at, result): (usize, &DomainResult)) -> Vec<Block> {
     }
     let mut blocks = vec![Block::heading(&title), Block::text(says)];
     blocks.extend(result.notes.iter().map(|note| Block::text(number::raised(note))));
-    if drawn(result) {
+    if figure::has_application(result) {
         let caption = format!(
             "{title}: sections and wanted operation, two coordinates at a time, numbered as in the table. The line is the outline of the sections seen from this \
              side; a point inside every outline may still lie outside the hull, and is then marked so."
@@ -62,11 +62,6 @@ fn says(result: &DomainResult) -> String {
     number::formula(&format!("{counted}{left_out}"))
 }
 
-/// Whether there is a figure: two coordinates or more, and something to show in them.
-pub fn drawn(result: &DomainResult) -> bool {
-    result.coordinates.len() > 1 && !(result.sections.is_empty() && result.points.is_empty())
-}
-
 fn table(result: &DomainResult) -> Table {
     let mut columns = vec![
         Column::number("No.").names_row(false),
@@ -92,7 +87,7 @@ fn row(result: &DomainResult, nth: usize, point: &WantedPoint) -> Vec<Cell> {
         Cell::number(known, Format::Change(DISTANCE))
     };
     let finding = Finding::new(point.inside, "inside", "outside", "not assessed");
-    let mut cells = vec![nth.into(), Cell::from(&point.point).strong(), finding.into()];
+    let mut cells = cells![nth, Cell::from(&point.point).strong(), finding];
     for (at, coordinate) in result.coordinates.iter().enumerate() {
         let value = point.values.get(at).copied();
         let away = point.outside_by.as_ref().and_then(|all| all.get(at));

@@ -2,7 +2,9 @@
 
 use super::View;
 use crate::report::brief::{self, Line, Matrix};
-use crate::report::document::{Block, Cell, Column, Figure, Finding, Medium, Run, Table, Text};
+use crate::report::document::{
+    Block, Cell, Column, Figure, Finding, Medium, Run, Table, Text, cells,
+};
 use crate::report::{figure, number};
 use crate::result::QuantityResult;
 
@@ -72,10 +74,10 @@ fn table(matrix: &Matrix<'_>, work: Option<&str>) -> Table {
             Text::lines(title.into_iter().filter(|text| !text.letters().is_empty()))
         };
         let paper = source.as_ref().map(|source| format!("; {source}")).unwrap_or_default();
-        let mut cells = vec![
-            quiet(first.filter.clone() + &paper).into(),
-            quiet(source.unwrap_or_default()).into(),
-            (&first.filter).into(),
+        let mut cells = cells![
+            quiet(first.filter.clone() + &paper),
+            quiet(source.unwrap_or_default()),
+            first.filter
         ];
         let quantity = |cell: &Option<(usize, &QuantityResult)>| {
             Cell::or_missing(cell.map(|(_, quantity)| self::cell(quantity)))

@@ -2,7 +2,7 @@
 
 use indexmap::IndexSet;
 
-use crate::report::document::{Block, Cell, Chapter, Column, Fact, Medium, Table};
+use crate::report::document::{Block, Cell, Chapter, Column, Fact, Medium, Table, cells};
 use crate::report::number;
 use crate::result::{CampaignInfo, CampaignMember, DataItem};
 
@@ -53,7 +53,7 @@ pub(super) fn on_cover(items: &[Item]) -> Vec<Fact> {
 fn table(caption: &str, items: &[Item]) -> Table {
     let row = |item: &Item| {
         let (value, unit) = (Cell::text(&item.value), Cell::text(&item.unit));
-        vec![Cell::text(&item.name), Cell::text(item.with_unit()), value, unit]
+        cells![Cell::text(&item.name), Cell::text(item.with_unit()), value, unit]
     };
     let brief = items.iter().all(|item| item.name.len() + item.value.len() < SHORT);
     let abreast = brief && items.len() > ABREAST;

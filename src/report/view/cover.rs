@@ -1,7 +1,7 @@
 //! The cover: verdict, reasons, key facts.
 
 use super::{View, campaign, identity, verdicts, wording};
-use crate::report::document::{Block, Cover, Fact, Finding, ResultBox, Run, Text, facts};
+use crate::report::document::{Block, Cover, Fact, Finding, ResultBox, Run, facts};
 use crate::report::number;
 use crate::result::{CampaignInfo, Kind, ProtocolInfo, QuantityResult, Verdict};
 
@@ -187,16 +187,4 @@ fn key_facts(view: &View<'_>) -> Vec<Fact> {
         facts.push(Fact::new("Test zones", says));
     }
     facts
-}
-
-/// Reasons and remarks, a line each: all, or the first and how many more there are.
-pub(super) fn first_of(mut lines: Vec<Text>, short: bool) -> Text {
-    /// Reasons of a verdict in a table on paper; the others would fill pages of it.
-    const SHOWN: usize = 1;
-    let more = lines.len() - SHOWN.min(lines.len());
-    if short && more > 1 {
-        lines.truncate(SHOWN);
-        lines.push(format!("and {more} more; see the chapter Quantities").into());
-    }
-    Text::lines(lines)
 }

@@ -4,7 +4,7 @@ use indexmap::IndexSet;
 
 use super::{View, application};
 use crate::report::document::{
-    Block, Cell, Chapter, Column, Figure, Format, Medium, Run, Table, Text,
+    Block, Cell, Chapter, Column, Figure, Format, Medium, Run, Table, Text, cells,
 };
 use crate::report::number;
 use crate::result::{Certification, DomainRange};
@@ -55,13 +55,13 @@ fn list(all: &[DomainRange]) -> Table {
     let end = |value: f64| Cell::number(value, Format::Significant(DIGITS));
     let rows = conditions(all).into_iter().flat_map(|condition| {
         all.iter().filter(move |range| named(range) == condition).map(|range| {
-            vec![
+            cells![
                 Cell::from(&range.name).strong(),
-                number::unit(&range.unit).into(),
-                scope(range).into(),
+                number::unit(&range.unit),
+                scope(range),
                 end(range.low),
                 end(range.high),
-                range.count.into(),
+                range.count
             ]
         })
     });
@@ -85,7 +85,7 @@ fn matrix(all: &[DomainRange], scopes: &[String]) -> Table {
             let ends = Text::from(format!("{} to {}", end(range.low), end(range.high)));
             Some(ends.then(Run::Break(())).then(Run::Quiet(format!("n = {}", range.count))))
         };
-        let mut row = vec![Cell::from(condition.0).strong(), number::unit(condition.1).into()];
+        let mut row = cells![Cell::from(condition.0).strong(), number::unit(condition.1)];
         row.extend(scopes.iter().map(|scope| Cell::or_missing(cell(scope))));
         row
     };

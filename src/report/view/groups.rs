@@ -2,8 +2,8 @@
 //! groups.
 
 use super::wording::limit_in_words;
-use super::{View, name, summary};
-use crate::report::document::{Cell, Column, Finding, Format, Medium, Row, Table, Text};
+use super::{View, caption, name, statistic};
+use crate::report::document::{Cell, Column, Finding, Format, Medium, Row, Table, cells};
 use crate::report::estimates::{self, OfLimit};
 use crate::report::number;
 use crate::report::sides::capital;
@@ -38,21 +38,19 @@ fn row(quantity: &QuantityResult, limit: &OfLimit<'_>) -> Row {
     let decisive = limit.decisive();
     let marginal = limit.holds().is_some() && limit.results.iter().any(|one| one.marginal);
     let finding = Finding::of(limit.holds()).marginal(marginal);
-    let tone = finding.tone;
     let place = decisive.value.map(|_| &decisive.scope);
-    Row::from(vec![
-        summary::symbol(quantity),
+    Row::from(cells![
+        statistic::symbol(quantity),
         Cell::formula(&decisive.title),
-        limit.holding().into(),
-        number::unit(&decisive.unit).into(),
-        summary::pairs_and_n(decisive.count, decisive.n),
-        summary::value(Some(decisive)),
-        summary::limit(Some(decisive)),
-        summary::normalised(Some(decisive)).toned(tone),
-        Cell::or_missing(place),
-        Cell::finding_with(finding, limit.reason()),
+        limit.holding(),
+        number::unit(&decisive.unit),
+        statistic::pairs_and_n(decisive.count, decisive.n),
+        statistic::value(Some(decisive)),
+        statistic::limit(Some(decisive)),
+        statistic::normalised(Some(decisive)).toned(finding.tone),
+        Cell::or_missing(place)
     ])
-    .toned(tone)
+    .ending(finding, limit.reason())
 }
 
 /// A table for each condensed limit that has several groups; `rows` is what the values are called.
@@ -67,50 +65,28 @@ fn table(quantity: &QuantityResult, limit: &OfLimit<'_>, rows: &str) -> Table {
     let decimals =
         number::decimals(&quantity.unit, limit.results.iter().filter_map(|one| one.sample.mean));
     let row = |one: &&StatisticResult| {
-        let finding = Finding::of_statistic(Some(one));
-        let tone = finding.tone;
         let mut cells: Vec<Cell> = members(one, &keys).into_iter().map(Cell::from).collect();
-        cells.push(summary::pairs_and_n(one.count, one.n));
+        cells.push(statistic::pairs_and_n(one.count, one.n));
         cells.push(Cell::number(one.sample.mean, Format::Fixed(decimals)));
         cells.push(Cell::number(one.sample.std, Format::Fixed(decimals)));
-        cells.push(summary::value(Some(one)).strong());
-        cells.extend(interval(one));
-        cells.push(summary::limit(Some(one)));
-        cells.push(summary::normalised(Some(one)));
-        cells.push(Cell::finding_with(finding, one.reason.as_deref()));
-        Row::from(cells).toned(tone)
+        cells.push(statistic::value(Some(one)).strong());
+        cells.extend(statistic::interval(one));
+        cells.push(statistic::limit(Some(one)));
+        cells.push(statistic::normalised(Some(one)));
+        Row::from(cells).ending(Finding::of_statistic(Some(one)), one.reason.as_deref())
     };
     let mut columns: Vec<Column> =
         keys.iter().map(|key| Column::name(capital(key)).names_row(false)).collect();
     columns.push(Column::number(format!("{rows} / n")));
     columns.extend(["Mean", "s"].map(|title| Column::number(title).unit(&quantity.unit)));
     columns.push(Column::number("Estimate").unit(&first.unit));
-    columns.extend(intervals().map(Column::sparse));
+    columns.extend(statistic::intervals().map(Column::sparse));
     columns.push(Column::number("Limit").unit(&first.unit));
     columns.push(Column::number("|Value| / limit"));
     columns.push(Column::text("Finding").wide(1.0));
-    let caption = Text::from(format!("{} of ", number::formula(&first.title)))
-        .with(Text::symbol(&super::symbol(&quantity.symbol)))
+    let caption = caption(&format!("{} of ", number::formula(&first.title)), quantity)
         .and(format!(", limit {}", limit_in_words(first, quantity)));
     Table::new(caption, columns, limit.results.iter().map(row)).size(8.0)
-}
-
-/// Columns of a confidence interval: together on paper, each end on a screen.
-pub(super) fn intervals() -> [Column; 3] {
-    [
-        Column::number("95 % interval").only(Medium::Paper),
-        Column::number("95 % interval, low").only(Medium::Screen),
-        Column::number("high").only(Medium::Screen),
-    ]
-}
-
-/// The cells of [`intervals`].
-pub(super) fn interval(one: &StatisticResult) -> [Cell; 3] {
-    let format = Format::Fixed(summary::decimals(one));
-    let ends =
-        one.interval.map(|(low, high)| format!("{} to {}", format.print(low), format.print(high)));
-    let [low, high] = [one.interval.map(|ends| ends.0), one.interval.map(|ends| ends.1)];
-    [Cell::or_missing(ends), Cell::number(low, format), Cell::number(high, format)]
 }
 
 /// Head of a column with the whole scope.

@@ -2,7 +2,7 @@
 //! stated.
 
 use super::View;
-use crate::report::document::{Block, Cell, Chapter, Column, Fact, Run, Table};
+use crate::report::document::{Block, Cell, Chapter, Column, Fact, Run, Table, cells};
 use crate::result::report::stated;
 use crate::result::{Certification, ReportItem};
 
@@ -48,7 +48,7 @@ pub(super) fn on_cover(items: &[ReportItem]) -> Vec<Fact> {
 pub(super) fn chapter(view: &View<'_>) -> Chapter {
     let found = view.found;
     let row = |clause: &str, title: &str, value: &str| {
-        vec![Cell::or_missing(unbroken(clause)), Cell::text(title).strong(), Cell::text(value)]
+        cells![Cell::or_missing(unbroken(clause)), Cell::text(title).strong(), Cell::text(value)]
     };
     let protocol = &found.protocol;
     let edition =
@@ -64,7 +64,7 @@ pub(super) fn chapter(view: &View<'_>) -> Chapter {
             .as_ref()
             .map_or_else(|| Cell::text(Run::Emphasis(NOT_STATED.into())), Cell::from);
         let clause = Cell::or_missing(item.clause.as_deref().and_then(unbroken));
-        vec![clause, Cell::text(&item.title).strong(), value]
+        cells![clause, Cell::text(&item.title).strong(), value]
     }));
     rows.extend([
         row("7.8.2.1 f)", "Method", &method),

@@ -17,21 +17,20 @@ mod search;
 mod section;
 mod spread;
 mod statements;
+mod statistic;
 mod summary;
 mod values;
 mod verdicts;
 mod wording;
 
 use crate::report::document::{
-    Block, Chapter, Cover, Document, Fact, Figure, Finding, PROGRAM, ResultBox, Symbols,
+    Block, Chapter, Cover, Document, Fact, Figure, Finding, PROGRAM, ResultBox, Symbols, Text,
 };
 use crate::report::number;
 use crate::report::sides::{self, capital};
-use crate::result::{CampaignInfo, Certification, ProtocolInfo, Trace};
+use crate::result::{CampaignInfo, Certification, ProtocolInfo, QuantityResult, Trace};
 use provenance::{Kind, provenance};
 use wording::Wording;
-
-pub use application::drawn;
 
 /// A certification and what all its chapters need to know of it.
 struct View<'a> {
@@ -134,6 +133,17 @@ fn name(text: &str) -> String {
 /// The symbol of a quantity, shortened for a table.
 fn symbol(text: &str) -> String {
     cut(text, SYMBOL)
+}
+
+/// A caption with the symbol of a quantity, after some words.
+fn caption(before: &str, quantity: &QuantityResult) -> Text {
+    Text::from(before).with(Text::symbol(&symbol(&quantity.symbol)))
+}
+
+/// `, in kN`; nothing for a dimensionless quantity.
+fn in_unit(quantity: &QuantityResult) -> String {
+    let unit = number::unit(&quantity.unit);
+    if unit == number::NONE { String::new() } else { format!(", in {unit}") }
 }
 
 /// Removes the middle of a long text, since names usually differ at their ends.

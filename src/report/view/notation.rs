@@ -2,7 +2,7 @@
 
 use super::{View, verdicts};
 use crate::report::brief::in_full;
-use crate::report::document::{Block, Cell, Chapter, Column, Finding, Table};
+use crate::report::document::{Block, Cell, Chapter, Column, Finding, Table, cells};
 use crate::report::number;
 use crate::result::{Certification, ChannelInfo, Outcome, QuantityResult};
 
@@ -41,7 +41,7 @@ fn comparisons(found: &Certification) -> Vec<Vec<Cell>> {
     };
     let used = |words: &str| found.quantities.iter().any(|quantity| quantity.comparison == words);
     let all = VALUES.into_iter().flat_map(of_values).filter(|(words, _)| used(words));
-    all.map(|(words, meaning)| vec![Cell::formula(words), meaning.into()]).collect()
+    all.map(|(words, meaning)| cells![Cell::formula(words), meaning]).collect()
 }
 
 /// Terms of a comparison of simulated with measured records.
@@ -185,7 +185,7 @@ pub(super) fn chapter(view: &View<'_>) -> Chapter {
         known(Table::new(caption, columns, rows).class(""))
     };
     let terms = if found.quantities.is_empty() { Vec::new() } else { terms(found) };
-    let terms = terms.into_iter().map(|(word, meaning)| vec![word.into(), meaning.into()]);
+    let terms = terms.into_iter().map(|(word, meaning)| cells![word, meaning]);
     let tables = [
         known(quantities(view)),
         known(channels(&found.protocol.channels)),
@@ -200,12 +200,12 @@ pub(super) fn chapter(view: &View<'_>) -> Chapter {
 fn quantities(view: &View<'_>) -> Table {
     let all = &view.found.quantities;
     let rows = in_full(all).into_iter().map(|at| &all[at]).map(|quantity| {
-        vec![
+        cells![
             Cell::symbol(&super::symbol(&quantity.symbol), ""),
-            (&quantity.title).into(),
-            number::unit(&quantity.unit).into(),
-            (&quantity.of).into(),
-            Cell::formula(&quantity.comparison),
+            quantity.title,
+            number::unit(&quantity.unit),
+            quantity.of,
+            Cell::formula(&quantity.comparison)
         ]
     });
     let columns = vec![
@@ -221,12 +221,7 @@ fn quantities(view: &View<'_>) -> Table {
 fn channels(all: &[ChannelInfo]) -> Table {
     let row = |channel: &ChannelInfo| {
         let note = Some(&channel.note).filter(|note| !note.is_empty());
-        vec![
-            (&channel.name).into(),
-            (&channel.title).into(),
-            number::unit(&channel.unit).into(),
-            Cell::or_missing(note),
-        ]
+        cells![channel.name, channel.title, number::unit(&channel.unit), Cell::or_missing(note)]
     };
     let columns = vec![
         Column::name("Channel"),
@@ -238,7 +233,7 @@ fn channels(all: &[ChannelInfo]) -> Table {
 }
 
 fn findings(found: &Certification) -> Vec<Vec<Cell>> {
-    let row = |finding: Finding, meaning: &str| vec![Cell::finding(finding), meaning.into()];
+    let row = |finding: Finding, meaning: &str| cells![finding, meaning];
     let mut rows = vec![
         row(Finding::of(Some(true)), "The acceptance criterion or requirement is met."),
         row(Finding::of(Some(false)), "It is not met."),

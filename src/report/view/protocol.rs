@@ -1,6 +1,8 @@
 //! The protocol: identification, text, parameters, and deviations from its parent.
 
-use crate::report::document::{Block, Cell, Chapter, Column, Figure, Run, Table, Text, facts};
+use crate::report::document::{
+    Block, Cell, Chapter, Column, Figure, Run, Table, Text, cells, facts,
+};
 use crate::report::number;
 use crate::result::{Deviation, FilterInfo, ParameterInfo, ProtocolFile, ProtocolInfo};
 
@@ -45,7 +47,7 @@ fn deviations(all: &[Deviation]) -> Block {
     }
     let row = |one: &Deviation| {
         let side = |text: &Option<String>, none: &str| Cell::from(text.as_deref().unwrap_or(none));
-        vec![(&one.rule).into(), side(&one.before, "not present"), side(&one.after, "removed")]
+        cells![one.rule, side(&one.before, "not present"), side(&one.after, "removed")]
     };
     let columns = vec![
         Column::text("Rule").wide(1.1),
@@ -89,12 +91,7 @@ fn filters(protocol: &ProtocolInfo) -> Table {
     let row = |filter: &FilterInfo| {
         let source = filter.source.as_deref();
         let source = source.map(|one| super::with_work(one, protocol.source.as_deref()));
-        vec![
-            Run::Code(filter.name.clone()).into(),
-            (&filter.title).into(),
-            (&filter.steps).into(),
-            Cell::or_missing(source),
-        ]
+        cells![Run::Code(filter.name.clone()), filter.title, filter.steps, Cell::or_missing(source)]
     };
     let columns = vec![
         Column::short("Name"),
@@ -116,7 +113,7 @@ fn graph(protocol: &ProtocolInfo) -> Option<Figure> {
     );
     let figure = Figure::new("graph", caption, alt, 220);
     let drawn = !protocol.graph_svg.trim().is_empty();
-    drawn.then(|| Figure { page: Some("Processing graph"), ..figure })
+    drawn.then_some(Figure { page: Some("Processing graph"), ..figure })
 }
 
 /// A file line by line, with tabs as four spaces and no trailing white space.

@@ -1,6 +1,8 @@
 //! Inputs that are required to repeat an evaluation, and how imported records were made.
 
-use crate::report::document::{Block, Cell, Chapter, Column, PROGRAM, Run, Table, Text, facts};
+use crate::report::document::{
+    Block, Cell, Chapter, Column, PROGRAM, Run, Table, Text, cells, facts,
+};
 use crate::report::number;
 use crate::report::sides::capital;
 use crate::result::{CampaignInfo, FileHash, ImportedOne, ImportedSide, ProtocolInfo};
@@ -18,7 +20,7 @@ pub(super) enum Kind {
 pub(super) fn provenance(campaign: &CampaignInfo, protocol: &ProtocolInfo, kind: Kind) -> Chapter {
     let same = "The same inputs give an identical document, byte for byte. It therefore contains no date of creation";
     let issued = super::identity::issued(&campaign.report)
-        .map_or_else(|| "which the campaign does not state".to_owned(), |date| date);
+        .unwrap_or_else(|| "which the campaign does not state".to_owned());
     let date = format!("{same}; the only date in its metadata is the date of issue, {issued}.");
     let bytes = number::count(campaign.files.iter().map(|file| file.bytes).sum());
     let mut blocks = vec![
@@ -98,7 +100,7 @@ fn imported(side: &ImportedSide) -> [Block; 2] {
 
 fn files(all: &[FileHash]) -> Table {
     let row = |file: &FileHash| -> Vec<Cell> {
-        vec![(&file.path).into(), file.bytes.into(), Run::Hash(file.sha256.clone()).into()]
+        cells![file.path, file.bytes, Run::Hash(file.sha256.clone())]
     };
     let columns = vec![
         Column::text("File").wide(1.0).breaks(40),

@@ -1,7 +1,7 @@
 //! One quantity: its statistics and limits, its worst pairs, and all its values.
 
 use super::wording::limit_in_words;
-use super::{View, brief, groups, reports, spread, summary, values};
+use super::{View, brief, caption, groups, in_unit, reports, spread, statistic, values};
 use crate::report::brief::in_full;
 use crate::report::document::{
     Block, Cell, Chapter, Column, Fact, Figure, Finding, Medium, Part, Row, Run, Table, Text, facts,
@@ -51,21 +51,21 @@ fn part(at: usize, quantity: &QuantityResult, view: &View<'_>) -> Part {
     blocks.push(Block::on_screen(on_screen));
     blocks.extend(spread::tables(quantity).into_iter().map(Block::from));
     blocks.extend(groups::tables(quantity, rows).into_iter().map(Block::from));
-    let symbol = Text::symbol(&super::symbol(&quantity.symbol));
-    let caption = Text::from("Further estimates of ").with(symbol.clone());
-    let caption = caption.and(in_unit(quantity)).and(", without limits");
-    blocks.extend(reports::tables(&quantity.reported, &caption, rows));
+    let further = caption("Further estimates of ", quantity);
+    let further = further.and(in_unit(quantity)).and(", without limits");
+    blocks.extend(reports::tables(&quantity.reported, &further, rows));
     blocks.extend(regressions(at, quantity).into_iter().map(Block::from));
     blocks.extend(values::worst(quantity).map(Block::from));
     blocks.push(values::all(quantity));
     let title = quantity.title.clone();
-    Part { id: format!("quantity-{at}"), title, short: symbol, finding, opening, blocks }
-}
-
-/// `, in kN`; nothing for a dimensionless quantity.
-pub(super) fn in_unit(quantity: &QuantityResult) -> String {
-    let unit = number::unit(&quantity.unit);
-    if unit == number::NONE { String::new() } else { format!(", in {unit}") }
+    Part {
+        id: format!("quantity-{at}"),
+        title,
+        short: caption("", quantity),
+        finding,
+        opening,
+        blocks,
+    }
 }
 
 /// What it is and where the protocol defines it.
@@ -109,8 +109,6 @@ fn stated(quantity: &QuantityResult) -> Vec<&StatisticResult> {
 
 fn statistics(quantity: &QuantityResult, rows: &str) -> Table {
     let row = |one: &StatisticResult| {
-        let finding = Finding::of_statistic(Some(one));
-        let tone = finding.tone;
         let (title, unit) = (number::formula(&one.title), number::unit(&one.unit));
         let with_unit = if unit == number::NONE { String::new() } else { format!(", {unit}") };
         let mut cells = vec![
@@ -118,17 +116,16 @@ fn statistics(quantity: &QuantityResult, rows: &str) -> Table {
             title.into(),
             unit.into(),
             Cell::formula(&one.scope),
-            summary::pairs_and_n(one.count, one.n),
-            summary::value(Some(one)),
+            statistic::pairs_and_n(one.count, one.n),
+            statistic::value(Some(one)),
         ];
-        cells.extend(groups::interval(one));
+        cells.extend(statistic::interval(one));
         cells.extend([
-            summary::limit(Some(one)),
+            statistic::limit(Some(one)),
             limit_in_words(one, quantity).into(),
-            summary::normalised(Some(one)),
-            Cell::finding_with(finding, one.reason.as_deref()),
+            statistic::normalised(Some(one)),
         ]);
-        Row::from(cells).toned(tone)
+        Row::from(cells).ending(Finding::of_statistic(Some(one)), one.reason.as_deref())
     };
     let mut columns = vec![
         Column::text("Statistic").wide(1.5).only(Medium::Paper),
@@ -138,16 +135,14 @@ fn statistics(quantity: &QuantityResult, rows: &str) -> Table {
         Column::number(format!("{rows} / n")),
         Column::number("Value"),
     ];
-    columns.extend(groups::intervals());
+    columns.extend(statistic::intervals());
     columns.extend([
         Column::number("Limit"),
         Column::text("Limit as worded").wide(1.2),
         Column::number("|Value| / limit"),
         Column::short("Finding"),
     ]);
-    let caption = Text::from("Statistics of ")
-        .with(Text::symbol(&super::symbol(&quantity.symbol)))
-        .and(" against their limits");
+    let caption = caption("Statistics of ", quantity).and(" against their limits");
     Table::new(caption, columns, stated(quantity).into_iter().map(row)).size(8.0)
 }
 
@@ -160,8 +155,8 @@ fn pairs(at: usize, quantity: &QuantityResult) -> Figure {
                 "{} ({}) {}, limit {}",
                 one.title,
                 one.scope,
-                summary::value(Some(one)).printed().letters(),
-                summary::limit(Some(one)).printed().letters()
+                statistic::value(Some(one)).printed().letters(),
+                statistic::limit(Some(one)).printed().letters()
             )
         })
         .collect();
@@ -172,7 +167,7 @@ fn pairs(at: usize, quantity: &QuantityResult) -> Figure {
     };
     let rows = if sides_apart(quantity) { "pairs" } else { "values" };
     let count = number::count(quantity.values.len() as u64);
-    let caption = of_symbol(quantity, format!(": {what}, {count} {rows}"));
+    let caption = self::caption("", quantity).and(format!(": {what}, {count} {rows}"));
     let alt = format!(
         "{}: {what} of {} {rows} in {}. {}.",
         quantity.title,
@@ -181,11 +176,6 @@ fn pairs(at: usize, quantity: &QuantityResult) -> Figure {
         found.join("; ")
     );
     Figure::new(format!("pairs-{at}"), caption, alt, 100)
-}
-
-/// A caption that begins with the symbol.
-fn of_symbol(quantity: &QuantityResult, says: String) -> Text {
-    Text::symbol(&super::symbol(&quantity.symbol)).and(says)
 }
 
 fn regressions(at: usize, quantity: &QuantityResult) -> Vec<Figure> {
@@ -215,7 +205,12 @@ fn regressions(at: usize, quantity: &QuantityResult) -> Vec<Figure> {
             regression.regressor,
             drawn.len()
         );
-        Some(Figure::new(format!("regression-{at}-{nth}"), of_symbol(quantity, says), alt, 190))
+        Some(Figure::new(
+            format!("regression-{at}-{nth}"),
+            caption("", quantity).and(says),
+            alt,
+            190,
+        ))
     };
     limits.iter().enumerate().filter_map(of).collect()
 }
@@ -234,5 +229,5 @@ fn frequency(at: usize, quantity: &QuantityResult) -> Figure {
         quantity.values.len(),
         number::unit(&quantity.unit)
     );
-    Figure::new(format!("frequency-{at}"), of_symbol(quantity, says), alt, 90)
+    Figure::new(format!("frequency-{at}"), caption("", quantity).and(says), alt, 90)
 }

@@ -1,7 +1,7 @@
 //! How the sections were found in runs, and which were kept.
 
 use super::name;
-use crate::report::document::{Block, Cell, Column, Format, Table};
+use crate::report::document::{Block, Cell, Column, Format, Table, cells};
 use crate::report::found::{drift_in_words, in_words};
 use crate::report::number;
 use crate::report::sides::capital;
@@ -29,12 +29,12 @@ pub(super) fn search(found: &FoundSections) -> Vec<Block> {
 fn runs(found: &FoundSections) -> Table {
     let length = |x: f64| Cell::text(format!("{} {}", number::significant(x, 7), found.axis_unit));
     let row = |run: &FoundInRun| {
-        vec![
+        cells![
             Cell::from(name(&run.run)).strong(),
             length(run.start),
             length(run.end),
-            Cell::from(run.tried as u64),
-            run.found.into(),
+            run.tried as u64,
+            run.found
         ]
     };
     let columns = vec![
@@ -50,10 +50,10 @@ fn runs(found: &FoundSections) -> Table {
 fn rejected(all: &[Rejected], tried: usize) -> Table {
     let row = |rejected: &Rejected| {
         let share = 100.0 * rejected.places as f64 / tried.max(1) as f64;
-        vec![
-            capital(&rejected.reason).into(),
-            (rejected.places as u64).into(),
-            Cell::text(format!("{share:.1} %")),
+        cells![
+            capital(&rejected.reason),
+            (rejected.places as u64),
+            Cell::text(format!("{share:.1} %"))
         ]
     };
     let columns = vec![
@@ -78,15 +78,16 @@ pub(super) fn reduction(reduction: &Reduction) -> Vec<Block> {
         number::fixed(highest(|row| row.1), 3),
         number::fixed(highest(|row| row.2), 3)
     );
-    let kept = reduction.kept.iter().map(|(group, kept)| {
-        vec![Cell::from(name(group)).strong(), kept.len().into(), kept.join(", ").into()]
-    });
+    let kept = reduction
+        .kept
+        .iter()
+        .map(|(group, kept)| cells![Cell::from(name(group)).strong(), kept.len(), kept.join(", ")]);
     let columns =
         vec![Column::name("Group"), Column::number("Kept"), Column::text("Sections").wide(1.0)];
     let groups = Table::new("Sections kept of each group", columns, kept);
     let scatter = reduction.scatter.iter().map(|(symbol, all, kept)| {
         let ratio = |value: f64| Cell::number(value, Format::Fixed(3));
-        vec![Cell::symbol(symbol, "").strong(), ratio(*all), ratio(*kept)]
+        cells![Cell::symbol(symbol, "").strong(), ratio(*all), ratio(*kept)]
     });
     let columns = vec![
         Column::text("Quantity").wide(1.0),

@@ -4,7 +4,7 @@ use indexmap::IndexSet;
 
 use super::{View, name, reports, search};
 use crate::report::document::{
-    Block, Cell, Chapter, Column, Finding, Format, Row, Run, Table, Text,
+    Block, Cell, Chapter, Column, Finding, Format, Row, Run, Table, Text, cells,
 };
 use crate::report::number;
 use crate::result::{CheckResult, SectionResult, ZoneResult};
@@ -34,14 +34,14 @@ pub(super) fn chapter(view: &View<'_>) -> Option<Chapter> {
 
 fn zones(all: &[ZoneResult]) -> Table {
     let row = |zone: &ZoneResult| {
-        Row::from(vec![
+        Row::from(cells![
             Cell::from(name(&zone.zone)).strong(),
-            (&zone.title).into(),
+            zone.title,
             Cell::formula(&zone.condition),
-            zone.given.into(),
-            zone.used.into(),
-            zone.minimum.into(),
-            Finding::of(Some(zone.holds)).into(),
+            zone.given,
+            zone.used,
+            zone.minimum,
+            Finding::of(Some(zone.holds))
         ])
         .in_zone(Some(&name(&zone.zone)))
     };
@@ -120,14 +120,12 @@ fn table(sections: &[&SectionResult], caption: String) -> Table {
     let format = Format::Fixed(number::decimals(axis, []));
     let row = |section: &&SectionResult| {
         let used = Finding::new(Some(section.used), "used", "not used", "");
-        let tone = used.tone;
         let mut cells = vec![Cell::from(name(&section.section)).strong()];
         cells.extend([section.start, section.end, section.length].map(|x| Cell::number(x, format)));
         cells.extend(
             names.iter().map(|name| text(section, name).map_or(Cell::MISSING, Cell::given)),
         );
-        cells.push(Cell::finding_with(used, section.reason.as_deref()));
-        Row::from(cells).toned(tone)
+        Row::from(cells).ending(used, section.reason.as_deref())
     };
     let mut columns = vec![Column::name("Section").wide(1.3)];
     columns.extend(["Start", "End", "Length"].map(|title| Column::number(title).unit(axis)));

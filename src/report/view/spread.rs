@@ -1,8 +1,8 @@
 //! How far several records of one side are apart, as tables: a column for each record, a block of
 //! rows for each class of sections.
 
-use super::name;
-use crate::report::document::{Cell, Column, Format, Row, Table, Text};
+use super::{caption, in_unit, name};
+use crate::report::document::{Cell, Column, Format, Row, Table};
 use crate::report::number;
 use crate::result::{ClassSpread, Furthest, OfRecord, QuantityResult, Spread};
 
@@ -24,9 +24,8 @@ pub(super) fn tables(quantity: &QuantityResult) -> Vec<Table> {
         columns.push(Column::number(format!("s of the {between}")));
         let class = |class| rows(class, part(class, from), between, format);
         let rows: Vec<Row> = spread.classes.iter().flat_map(class).collect();
-        let caption = Text::from(format!("Spread of the {between} in "))
-            .with(Text::symbol(&super::symbol(&quantity.symbol)))
-            .and(super::quantity::in_unit(quantity))
+        let caption = self::caption(&format!("Spread of the {between} in "), quantity)
+            .and(in_unit(quantity))
             .and(format!(": deviations from the {} of all {between}", spread.center));
         Table::new(caption, columns, rows).class("spread").size(7.5)
     };

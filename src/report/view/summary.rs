@@ -1,9 +1,9 @@
 //! The summary: one row per quantity with mean and standard deviation, and one row per other
 //! statistic.
 
-use super::{View, cover, groups, verdicts, wording};
+use super::{View, cover, groups, statistic, verdicts, wording};
 use crate::report::document::{
-    Block, Cell, Chapter, Column, Figure, Finding, Format, Medium, Row, Run, Table, Text,
+    Block, Cell, Chapter, Column, Figure, Finding, Medium, Row, Run, Table, Text, cells,
 };
 use crate::report::{estimates, findings, number};
 use crate::result::{Certification, QuantityResult, StatisticResult};
@@ -128,81 +128,38 @@ fn summary_row(
 ) -> Row {
     let either = mean.or(std).map(|one| (one.count, one.n));
     let (pairs, n) = either.unwrap_or((quantity.values.len(), quantity.n));
-    let finding = Finding::of_quantity(quantity);
-    let tone = finding.tone;
-    Row::from(vec![
-        symbol(quantity),
-        number::unit(&quantity.unit).into(),
-        (&quantity.filter).into(),
-        (&quantity.processing).into(),
-        limit(std),
-        limit(mean),
-        pairs_and_n(pairs, n),
-        value(mean),
-        value(std),
-        normalised(mean),
-        normalised(std),
-        Cell::finding_with(finding, quantity.reason.as_deref()),
+    Row::from(cells![
+        statistic::symbol(quantity),
+        number::unit(&quantity.unit),
+        quantity.filter,
+        quantity.processing,
+        statistic::limit(std),
+        statistic::limit(mean),
+        statistic::pairs_and_n(pairs, n),
+        statistic::value(mean),
+        statistic::value(std),
+        statistic::normalised(mean),
+        statistic::normalised(std)
     ])
-    .toned(tone)
+    .ending(Finding::of_quantity(quantity), quantity.reason.as_deref())
 }
 
 fn further_row(quantity: &QuantityResult, statistic: &StatisticResult) -> Row {
     let one = Some(statistic);
-    let finding = Finding::of_statistic(one);
-    let tone = finding.tone;
-    Row::from(vec![
-        symbol(quantity),
-        (&quantity.filter).into(),
-        (&quantity.processing).into(),
-        (&quantity.comparison).into(),
+    Row::from(cells![
+        statistic::symbol(quantity),
+        quantity.filter,
+        quantity.processing,
+        quantity.comparison,
         Cell::formula(&statistic.title),
-        (&statistic.scope).into(),
-        number::unit(&statistic.unit).into(),
-        pairs_and_n(statistic.count, statistic.n),
-        value(one),
-        limit(one),
-        normalised(one),
-        Cell::finding_with(finding, statistic.reason.as_deref()),
+        statistic.scope,
+        number::unit(&statistic.unit),
+        statistic::pairs_and_n(statistic.count, statistic.n),
+        statistic::value(one),
+        statistic::limit(one),
+        statistic::normalised(one)
     ])
-    .toned(tone)
-}
-
-/// The symbol of a quantity as the head of a row.
-pub(super) fn symbol(quantity: &QuantityResult) -> Cell {
-    Cell::symbol(&super::symbol(&quantity.symbol), &quantity.title).strong()
-}
-
-/// Number of pairs and of sites: `48 / 12`.
-pub(super) fn pairs_and_n(pairs: usize, n: usize) -> Cell {
-    format!("{} / {}", number::count(pairs as u64), number::count(n as u64)).into()
-}
-
-/// The limit, with the decimals of the value.
-pub(super) fn limit(statistic: Option<&StatisticResult>) -> Cell {
-    statistic.map_or(Cell::MISSING, |one| Cell::number(one.limit, Format::Fixed(decimals(one))))
-}
-
-/// Decimals of a statistic: those of its unit, or more if the limit (or else the value) needs them
-/// to show two digits.
-pub(super) fn decimals(statistic: &StatisticResult) -> usize {
-    number::decimals(&statistic.unit, statistic.limit.or(statistic.value))
-}
-
-/// The value with the decimals of its unit, or more if the comparison with the limit needs them.
-pub(super) fn value(statistic: Option<&StatisticResult>) -> Cell {
-    statistic.map_or(Cell::MISSING, |one| {
-        let decimals = decimals(one);
-        let format =
-            one.limit.map_or(Format::Fixed(decimals), |limit| Format::Beside { limit, decimals });
-        Cell::number(one.value, format)
-    })
-}
-
-/// |value| / limit with two decimals, or more close to 1, in the colour of what it came to.
-pub(super) fn normalised(statistic: Option<&StatisticResult>) -> Cell {
-    let ratio = statistic.and_then(|statistic| statistic.normalised);
-    Cell::number(ratio, Format::Ratio).toned(Finding::of_statistic(statistic).tone)
+    .ending(Finding::of_statistic(one), statistic.reason.as_deref())
 }
 
 fn overview(found: &Certification) -> Option<Figure> {

@@ -4,9 +4,8 @@ use std::collections::{HashMap, HashSet};
 
 use indexmap::IndexMap;
 
-use super::name;
-use super::quantity::in_unit;
-use crate::report::document::{Block, Cell, Column, Format, Row, Table, Text};
+use super::{caption, in_unit, name};
+use crate::report::document::{Block, Cell, Column, Format, Row, Table};
 use crate::report::number;
 use crate::report::sides::Sides;
 use crate::result::{PairValue, QuantityResult, StatisticResult};
@@ -80,8 +79,7 @@ pub(super) fn worst(quantity: &QuantityResult) -> Option<Table> {
     let what = if quantity.has_sides { "differences" } else { "values" };
     let against =
         yardstick.map(|(one, _)| format!(", and divided by the limit of the {}", one.title));
-    let caption = Text::from(format!("Largest {what} of "))
-        .with(Text::symbol(&super::symbol(&quantity.symbol)))
+    let caption = self::caption(&format!("Largest {what} of "), quantity)
         .and(in_unit(quantity))
         .and(against.unwrap_or_default());
     let rows = pairs.iter().take(WORST).map(row);
@@ -94,9 +92,7 @@ pub(super) fn all(quantity: &QuantityResult) -> Block {
         return Block::text("No values could be formed.");
     }
     let count = number::count(quantity.values.len() as u64);
-    let line = Text::from(format!("All {count} values of "))
-        .with(Text::symbol(&super::symbol(&quantity.symbol)))
-        .and(in_unit(quantity));
+    let line = caption(&format!("All {count} values of "), quantity).and(in_unit(quantity));
     Block::Details(line, tables(quantity).into_iter().map(Block::from).collect())
 }
 
@@ -173,10 +169,7 @@ fn table(
     } else {
         String::new()
     };
-    let caption = Text::from("All values of ")
-        .with(Text::symbol(&super::symbol(&quantity.symbol)))
-        .and(in_unit(quantity))
-        .and(what);
+    let caption = self::caption("All values of ", quantity).and(in_unit(quantity)).and(what);
     let rows = rows.iter().filter(|(_, pairs)| signals.iter().any(|one| pairs.contains_key(one)));
     let half = if quantity.has_sides { HALF_WITH_SIDES } else { HALF_WITHOUT_SIDES };
     let table = Table::new(caption, columns, rows.map(row)).class("sortable values").size(7.5);

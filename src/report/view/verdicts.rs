@@ -1,8 +1,7 @@
 //! The verdicts with a name: a table, and a box for each that a person decides.
 
 use super::View;
-use super::cover::first_of;
-use crate::report::document::{Cell, Column, Finding, Row, Run, Table, Text, Tone};
+use crate::report::document::{Cell, Column, Finding, Row, Run, Table, Text, Tone, cells};
 use crate::report::number;
 use crate::result::{Certification, Outcome, Verdict, VerdictResult};
 
@@ -26,11 +25,11 @@ pub(super) fn table(view: &View<'_>, short: bool) -> Table {
         let says = reasons.into_iter().chain(verdict.notes.clone()).map(text).collect();
         let finding = finding(verdict.outcome, &verdict.word);
         let tone = finding.tone;
-        Row::from(vec![
+        Row::from(cells![
             Cell::text(title).strong(),
-            Cell::finding(finding),
+            finding,
             Cell::text(Text::lines(rule)),
-            Cell::text(first_of(says, short)),
+            Cell::text(first_of(says, short))
         ])
         .toned(tone)
     };
@@ -41,6 +40,18 @@ pub(super) fn table(view: &View<'_>, short: bool) -> Table {
         Column::text("Reasons and remarks").wide(2.4),
     ];
     Table::new("Verdicts", columns, found.verdicts.iter().map(row)).class("").size(8.0)
+}
+
+/// Reasons and remarks, a line each: all, or the first and how many more there are.
+fn first_of(mut lines: Vec<Text>, short: bool) -> Text {
+    /// Reasons of a verdict in a table on paper; the others would fill pages of it.
+    const SHOWN: usize = 1;
+    let more = lines.len() - SHOWN.min(lines.len());
+    if short && more > 1 {
+        lines.truncate(SHOWN);
+        lines.push(format!("and {more} more; see the chapter Quantities").into());
+    }
+    Text::lines(lines)
 }
 
 /// What a verdict came to: one that a person still has to give is no lack of data.
