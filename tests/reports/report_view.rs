@@ -103,7 +103,7 @@ fn cells_of_values(of: &Document) -> usize {
         .iter()
         .map(|table| {
             let before =
-                titles(table).iter().filter(|it| ["Section", "Record", "Zone"].contains(it));
+                titles(table).into_iter().filter(|it| ["Section", "Record", "Zone"].contains(it));
             let numbers = table.columns.len() - before.count();
             let signals = if titles(table).contains(&"diff.") { numbers / 3 } else { numbers };
             signals * table.rows.len()
