@@ -8,8 +8,8 @@ use crate::diagnose::Outcome;
 use crate::problem::{Problem, Problems};
 use crate::provenance::carried::REPORT_PDF;
 use crate::provenance::statement;
+use crate::report::document::Document;
 use crate::report::pdf::Attachment;
-use crate::report::study::Document;
 use crate::report::{self, attached, figure, html, tables, typst, view};
 use crate::result::comparison::Comparison;
 use crate::result::study::Study;
@@ -41,7 +41,7 @@ pub fn certification(found: &Certification, reports: Reports) -> Result<Files, P
     );
     let mut files = in_folder(tables)?;
     if reports.pdf || reports.html {
-        let data = view::view(found);
+        let data = view::document(found);
         let figures = figure::figures(found);
         let pdf = || {
             let attachments = attached::attachments(found, &results);
@@ -117,9 +117,9 @@ pub fn document(
     let pdf = || {
         let attachment =
             Attachment { name, mime: "application/json", bytes: numbers.as_bytes(), description };
-        Ok(typst::typeset_study(data, figures, &[attachment])?.bytes)
+        Ok(typst::typeset(data, figures, &[attachment])?.bytes)
     };
-    let mut files = both(reports, pdf, || html::study_html(data, figures))?;
+    let mut files = both(reports, pdf, || html::html(data, figures))?;
     files.push((name.into(), numbers.into_bytes()));
     Ok(files)
 }

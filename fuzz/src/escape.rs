@@ -7,11 +7,11 @@
 
 use std::sync::LazyLock;
 
+use fishplate::report::document::{Block, Cell, Chapter, Column, Document, Fact, Run, Table, Text};
 use fishplate::report::figure::canvas::{Canvas, Font, Group};
 use fishplate::report::figure::figures;
-use fishplate::report::html::{chapters_html, html};
-use fishplate::report::study::{Chapter, Head, Item, Table};
-use fishplate::report::view::view;
+use fishplate::report::html::html;
+use fishplate::report::view::document;
 
 use super::campaign::certified;
 
@@ -49,20 +49,27 @@ fn compare(text: &str, harmless: &[String], page: fn(&str) -> String) -> Vec<Str
 }
 
 fn small(text: &str) -> String {
-    let table = Table {
-        caption: text.into(),
-        head: vec![Head::text(text), Head::short(text), Head::number(text)],
-        rows: vec![vec![text.into(), text.into(), text.into()]],
-    };
-    let items = vec![
-        Item::text(text),
-        Item::Heading { text: text.into() },
-        Item::List { entries: vec![text.into()] },
-        Item::Table { table },
+    let columns = vec![Column::text(text), Column::short(text), Column::number(text)];
+    let styled = [Run::Strong, Run::Emphasis, Run::Code, Run::Quiet, Run::Hash]
+        .into_iter()
+        .fold(Text::symbol(text), |all, style| all.then(style(text.into())));
+    let row = vec![Cell::text(styled), Cell::symbol(text, text), Cell::from(text).strong()];
+    let blocks = vec![
+        Block::text(text),
+        Block::heading(text),
+        Block::list([text]),
+        Block::Facts(vec![vec![Fact::new(text, text)]]),
+        Block::Listing(vec![text.into()]),
+        Table::new(text, columns, [row]).into(),
     ];
-    let chapter = Chapter { id: "chapter".into(), title: text.into(), items };
-    let page = chapters_html(text, &[chapter])
-        .unwrap_or_else(|problems| panic!("{}", problems.render(false)));
+    let document = Document {
+        title: text.into(),
+        program: "",
+        issued: None,
+        cover: None,
+        chapters: vec![Chapter::new("chapter", text, blocks)],
+    };
+    let page = html(&document, &[]).unwrap_or_else(|problems| panic!("{}", problems.render(false)));
     let mut canvas = Canvas::new(100.0, 50.0);
     let group =
         Group { title: Some(text), section: Some(text), zone: Some(text), ..Group::default() };
@@ -88,7 +95,7 @@ fn whole(text: &str) -> String {
         item.value = text.into();
         item.name = text.into();
     }
-    for item in &mut found.campaign.report {
+    for item in &mut found.campaign.report.0 {
         item.value = item.value.as_ref().map(|_| text.into());
     }
     for channel in &mut found.protocol.channels {
@@ -125,7 +132,7 @@ fn whole(text: &str) -> String {
         trace.why = text.into();
     }
     let drawn = figures(&found);
-    html(&view(&found), &drawn).unwrap_or_else(|problems| panic!("{}", problems.render(false)))
+    html(&document(&found), &drawn).unwrap_or_else(|problems| panic!("{}", problems.render(false)))
 }
 
 /// The tags of a page with the names of their attributes; what stands inside scripts and styles is

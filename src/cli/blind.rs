@@ -95,9 +95,8 @@ impl Blinded {
             return Err(Problem::error("no-diagnosis", says).into());
         }
         let text = text(&scored);
-        let chapters = report::chapters(&scored);
-        let page = html::chapters_html("Diagnoses against withheld truths", &chapters);
-        let page = page.map_err(Ended::unfinished)?;
+        let document = report::document("Diagnoses against withheld truths", &scored);
+        let page = html::html(&document, &[]).map_err(Ended::unfinished)?;
         let mut outputs = out.into_inner().unwrap_or_else(PoisonError::into_inner);
         let added = outputs
             .add("blind.json", text.as_bytes())

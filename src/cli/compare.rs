@@ -107,7 +107,7 @@ impl Compare {
                     format!("  {}, {}: {} ({why})\n", cell.campaign, cell.protocol, cell.verdict)
                 })
                 .collect();
-            told(&report::document(found), &cells.concat(), console);
+            told(report::TITLE, &report::opening(found), &cells.concat(), console);
             console.say(&format!("written: {}", self.out.display()));
         }
         Ok(Exit::Done)

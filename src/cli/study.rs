@@ -13,7 +13,9 @@ use super::values::{from_one, numbers, values};
 use crate::deliver::{self, Reports};
 use crate::disk::SetKind;
 use crate::problem::{Problem, Problems};
-use crate::report::study::{self as report, Document};
+use crate::report::document::Fact;
+use crate::report::study as report;
+use crate::report::view::Opening;
 use crate::result::study as found;
 use crate::robustness::{self, Asked, Settings, Synchronisation, Vary};
 use crate::run::Row;
@@ -259,18 +261,17 @@ fn write(common: &Common, study: &found::Study, console: &Console) -> Done {
     let files = deliver::study(study, Reports::ALL).map_err(Ended::unfinished)?;
     console.write_all(SetKind::Report, &common.out, &files)?;
     if !console.quiet {
-        let document = report::document(study);
-        let facts = document.key_facts.iter();
-        let facts: Vec<String> =
-            facts.map(|fact| format!("  {}: {}\n", fact.name, fact.value)).collect();
-        told(&document, &facts.concat(), console);
+        let opening = report::opening(study);
+        let fact = |fact: &Fact| format!("  {}: {}\n", fact.name, fact.value.letters());
+        let facts: String = opening.facts.iter().map(fact).collect();
+        told(&report::title(study), &opening, &facts, console);
         console.say(&format!("written: {}", common.out.display()));
     }
     Ok(Exit::Done)
 }
 
 /// What a document says at its beginning, and some facts.
-pub fn told(document: &Document, facts: &str, console: &Console) {
-    let Document { title, headline, sentence, .. } = document;
+pub fn told(title: &str, opening: &Opening, facts: &str, console: &Console) {
+    let Opening { headline, sentence, .. } = opening;
     console.show(&format!("{title}\n\n{}\n{sentence}\n{facts}", headline.word));
 }

@@ -399,7 +399,7 @@ fn pages(
         return Check::not_checked(NAME, "inputs or numbers differ already");
     }
     let attachments = attached::attachments(found, results);
-    match typst::typeset(&view::view(found), &figure::figures(found), &attachments) {
+    match typst::typeset(&view::document(found), &figure::figures(found), &attachments) {
         Err(problems) => Check::not_possible(
             NAME,
             problems.0.first().map_or_else(String::new, |problem| problem.says.clone()),

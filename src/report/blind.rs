@@ -1,7 +1,7 @@
-//! Scores of blind diagnoses as chapters of a page.
+//! Scores of blind diagnoses as a page.
 
+use crate::report::document::{Cell, Chapter, Column, Document, Format, PROGRAM, Table, cells};
 use crate::report::number;
-use crate::report::study::{Chapter, Head, Item, Table};
 use crate::result::blind::{Blind, Case};
 
 /// Whether the answer is right. If no effect of the catalogue is hidden, no cause may be named with
@@ -14,125 +14,113 @@ fn right(case: &Case) -> bool {
     }
 }
 
-/// Scores, cases, confusion, detectability, calibration.
+/// Scores, cases, confusion, detectability, calibration; without a cover.
 #[must_use]
-pub fn chapters(blind: &Blind) -> Vec<Chapter> {
-    let number = |value: Option<f64>| {
-        value.map_or_else(|| number::NONE.to_owned(), |value| number::fixed(value, 3))
-    };
-    let chapter =
-        |id: &str, title: &str, head: Vec<Head>, rows: Vec<Vec<String>>, caption: &str| Chapter {
-            id: id.into(),
-            title: title.into(),
-            items: vec![Item::Table { table: Table { caption: caption.into(), head, rows } }],
-        };
-    let between =
-        |low: f64, high: f64| format!("{} to {}", number::fixed(low, 2), number::fixed(high, 2));
-    let scores = blind.scores.iter().map(|score| {
+pub fn document(title: &str, blind: &Blind) -> Document {
+    Document {
+        title: title.to_owned(),
+        program: PROGRAM,
+        issued: None,
+        cover: None,
+        chapters: vec![
+            scores(blind),
+            cases(blind),
+            confusion(blind),
+            detectability(blind),
+            calibration(blind),
+        ],
+    }
+}
+
+fn number(value: Option<f64>) -> Cell {
+    Cell::number(value, Format::Fixed(3))
+}
+
+fn between(low: f64, high: f64) -> Cell {
+    format!("{} to {}", number::fixed(low, 2), number::fixed(high, 2)).into()
+}
+
+fn scores(blind: &Blind) -> Chapter {
+    let rows = blind.scores.iter().map(|score| {
         let interval =
-            score.low.zip(score.high).map_or_else(String::new, |(low, high)| between(low, high));
-        vec![score.name.clone(), score.cases.to_string(), number(score.value), interval]
+            score.low.zip(score.high).map_or(Cell::BLANK, |(low, high)| between(low, high));
+        cells![score.name, score.cases, number(score.value), interval]
     });
-    let cases = blind.cases.iter().map(|case| {
-        vec![
-            case.campaign.clone(),
-            case.kind.clone(),
+    let mut columns = vec![Column::text("Score")];
+    let numbers = ["Cases, cells or sections", "Value", "95 % interval"];
+    columns.extend(numbers.map(Column::number));
+    let table = Table::new("Shares with Wilson's intervals", columns, rows);
+    Chapter::new("scores", "Scores", vec![table.into()])
+}
+
+fn cases(blind: &Blind) -> Chapter {
+    let rows = blind.cases.iter().map(|case| {
+        cells![
+            case.campaign,
+            case.kind,
             case.truth.join(", "),
-            case.fault.clone().unwrap_or_else(|| case.verdict.clone()),
+            case.fault.as_ref().unwrap_or(&case.verdict),
             case.named.join(", "),
-            if right(case) { "yes".into() } else { "no".into() },
+            if right(case) { "yes" } else { "no" },
             number(case.detectability),
             number(case.weakest),
             number(case.parameter_error),
             number(case.shrink_said),
-            number(case.shrink_true),
+            number(case.shrink_true)
         ]
     });
-    let mut confusion = Vec::new();
-    for (truth, named) in &blind.confusion {
-        confusion.extend(
-            named.iter().map(|(name, count)| vec![truth.clone(), name.clone(), count.to_string()]),
-        );
-    }
-    let by_size = blind.by_detectability.iter().filter(|one| one.cases > 0).map(|one| {
-        vec![
-            number::fixed(one.from, 0),
-            one.cases.to_string(),
-            one.named.to_string(),
-            between(one.low, one.high),
+    let mut columns = vec![
+        Column::text("Campaign"),
+        Column::short("Kind"),
+        Column::text("Truth"),
+        Column::text("Verdict"),
+        Column::text("Named first"),
+        Column::short("Right"),
+    ];
+    let numbers = ["d", "Least d", "Parameter error", "Removed, stated", "Removed, true"];
+    columns.extend(numbers.map(Column::number));
+    let caption = "All campaigns; d is the whitened size of the true effects; least d is the smallest part of one of several effects that the others do not reproduce";
+    Chapter::new("cases", "Cases", vec![Table::new(caption, columns, rows).into()])
+}
+
+fn confusion(blind: &Blind) -> Chapter {
+    let rows = blind.confusion.iter().flat_map(|(truth, named)| {
+        named.iter().map(move |(name, count)| cells![truth, name, (*count)])
+    });
+    let columns = vec![
+        Column::text("Truth"),
+        Column::text("Named first, or verdict"),
+        Column::number("Cases"),
+    ];
+    let table = Table::new("Counts", columns, rows);
+    Chapter::new("confusion", "Confusion of effects", vec![table.into()])
+}
+
+fn detectability(blind: &Blind) -> Chapter {
+    let rows = blind.by_detectability.iter().filter(|one| one.cases > 0).map(|one| {
+        cells![
+            Cell::number(one.from, Format::Fixed(0)),
+            one.cases,
+            one.named,
+            between(one.low, one.high)
         ]
     });
-    let calibration = blind.calibration.iter().map(|bin| {
-        vec![
-            number::fixed(bin.said, 2),
-            bin.cases.to_string(),
-            bin.right.to_string(),
-            between(bin.low, bin.high),
+    let columns = ["d from", "Cases", "Named first", "95 % interval of the share"];
+    let table = Table::new("Single effects", columns.map(Column::number).to_vec(), rows);
+    Chapter::new("detectability", "Score against detectability", vec![table.into()])
+}
+
+fn calibration(blind: &Blind) -> Chapter {
+    let rows = blind.calibration.iter().map(|bin| {
+        cells![
+            Cell::number(bin.said, Format::Fixed(2)),
+            bin.cases,
+            bin.right,
+            between(bin.low, bin.high)
         ]
     });
-    let (text, short, numeric) = (Head::text, Head::short, Head::number);
-    vec![
-        chapter(
-            "scores",
-            "Scores",
-            vec![
-                text("Score"),
-                numeric("Cases, cells or sections"),
-                numeric("Value"),
-                numeric("95 % interval"),
-            ],
-            scores.collect(),
-            "Shares with Wilson's intervals",
-        ),
-        chapter(
-            "cases",
-            "Cases",
-            vec![
-                text("Campaign"),
-                short("Kind"),
-                text("Truth"),
-                text("Verdict"),
-                text("Named first"),
-                short("Right"),
-                numeric("d"),
-                numeric("Least d"),
-                numeric("Parameter error"),
-                numeric("Removed, stated"),
-                numeric("Removed, true"),
-            ],
-            cases.collect(),
-            "All campaigns; d is the whitened size of the true effects; least d is the smallest part of one of several effects that the others do not reproduce",
-        ),
-        chapter(
-            "confusion",
-            "Confusion of effects",
-            vec![text("Truth"), text("Named first, or verdict"), numeric("Cases")],
-            confusion,
-            "Counts",
-        ),
-        chapter(
-            "detectability",
-            "Score against detectability",
-            vec![
-                numeric("d from"),
-                numeric("Cases"),
-                numeric("Named first"),
-                numeric("95 % interval of the share"),
-            ],
-            by_size.collect(),
-            "Single effects",
-        ),
-        chapter(
-            "calibration",
-            "Probabilities",
-            vec![
-                numeric("Stated"),
-                numeric("Cases"),
-                numeric("Right"),
-                numeric("95 % interval of the share"),
-            ],
-            calibration.collect(),
-            "Mean probability of the first cause, and number of cases in which it is right",
-        ),
-    ]
+    let columns = ["Stated", "Cases", "Right", "95 % interval of the share"];
+    let caption = "Mean probability of the first cause, and number of cases in which it is right";
+    let table = Table::new(caption, columns.map(Column::number).to_vec(), rows);
+    Chapter::new("calibration", "Probabilities", vec![table.into()])
 }

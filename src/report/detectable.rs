@@ -1,11 +1,11 @@
 //! What a campaign can show: drawn campaigns, detectable sizes, effects closest to being named.
 
+use crate::report::document::{Block, Cell, Column, Format, Table, cells};
 use crate::report::number;
-use crate::report::study::{Head, Item, Table};
 use crate::result::diagnosis::{Detectable, Diagnosis, Share};
 
 /// What the search names in drawn campaigns.
-fn drawn(found: &Diagnosis) -> Item {
+fn drawn(found: &Diagnosis) -> Table {
     let of = &found.calibration;
     let rows = [
         ("One effect", "it is named, and nothing else", of.single),
@@ -18,72 +18,69 @@ fn drawn(found: &Diagnosis) -> Item {
         ),
         ("The named effects", "the 90 % interval contains the hidden size", of.intervals),
     ];
-    let row = |(hidden, result, share): (&str, &str, Share)| {
-        vec![hidden.to_string(), result.to_string(), share.count.to_string(), share.of.to_string()]
+    let row = |(hidden, result, share): (&str, &str, Share)| -> Vec<Cell> {
+        cells![hidden, result, share.count, share.of]
     };
-    let head = vec![
-        Head::text("Hidden"),
-        Head::text("Result"),
-        Head::number("Number"),
-        Head::number("Of"),
+    let columns = vec![
+        Column::text("Hidden"),
+        Column::text("Result"),
+        Column::number("Number"),
+        Column::number("Of"),
     ];
     let caption = "What the search names in campaigns drawn from the allowed difference of this one, with known effects of random size; the consistency checks are left out";
-    Item::Table {
-        table: Table { caption: caption.into(), head, rows: rows.into_iter().map(row).collect() },
-    }
+    Table::new(caption, columns, rows.map(row))
 }
 
+/// Digits of a size.
+const SIZE: Format = Format::Significant(3);
+
 /// The sizes that a campaign can show, and the effects closest to being named.
-pub fn detectable(found: &Diagnosis) -> Vec<Item> {
-    let significant = |size: f64| number::significant(size, 3);
+pub fn detectable(found: &Diagnosis) -> Vec<Block> {
     let row = |one: &Detectable| {
-        let size = |change: Option<f64>| {
-            change
-                .map_or_else(|| number::NONE.to_owned(), |change| significant(one.neutral + change))
-        };
-        vec![
-            one.effect.clone(),
-            one.parameter.clone(),
-            significant(one.neutral),
+        let size = |change: Option<f64>| Cell::number(change.map(|by| one.neutral + by), SIZE);
+        cells![
+            one.effect,
+            one.parameter,
+            Cell::number(one.neutral, SIZE),
             size(one.below),
             size(one.above),
-            one.unit.clone(),
+            one.unit
         ]
     };
-    let rows = found.detectable.iter().map(row);
-    let head = vec![
-        Head::text("Effect"),
-        Head::text("Parameter"),
-        Head::number("Neutral"),
-        Head::number("Detectable below"),
-        Head::number("Detectable above"),
-        Head::short("Unit"),
+    let columns = vec![
+        Column::text("Effect"),
+        Column::text("Parameter").breaks(12),
+        Column::number("Neutral"),
+        Column::number("Detectable below"),
+        Column::number("Detectable above"),
+        Column::short("Unit"),
     ];
     let length = found.calibration.length.map_or_else(
         || "in the drawn campaigns, no length of the change suffices".into(),
         |length| {
             format!(
                 "their change is {} standard deviations of the allowed difference",
-                significant(length)
+                number::significant(length, 3)
             )
         },
     );
     let caption = format!(
         "Values from which this campaign can show each effect, if it is the only one: nine of ten are named ({length}; a dash where the range of the parameter ends before)"
     );
-    let mut items =
-        vec![drawn(found), Item::Table { table: Table { caption, head, rows: rows.collect() } }];
+    let sizes = Table::new(caption, columns, found.detectable.iter().map(row));
+    let mut blocks = vec![drawn(found).into(), sizes.into()];
     if !found.nearest.is_empty() {
         let rows = found
             .nearest
             .iter()
-            .map(|one| vec![one.says.clone(), number::fixed(one.evidence, 1), one.wants.clone()]);
-        let head =
-            vec![Head::text("Effect"), Head::number("Evidence"), Head::text("Criterion not met")];
+            .map(|one| cells![one.says, Cell::number(one.evidence, Format::Fixed(1)), one.wants]);
+        let columns = vec![
+            Column::text("Effect"),
+            Column::number("Evidence"),
+            Column::text("Criterion not met"),
+        ];
         let caption = "Effects closest to being named, each alone, for the remaining gap";
-        items.push(Item::Table {
-            table: Table { caption: caption.into(), head, rows: rows.collect() },
-        });
+        blocks.push(Table::new(caption, columns, rows).into());
     }
-    items
+    blocks
 }

@@ -2,14 +2,16 @@
 //! effects.
 
 use crate::report::detectable::detectable;
+use crate::report::document::{
+    Block, Cell, Chapter, Column, Document, Fact, Figure, Finding, Format, Table, cells,
+};
 use crate::report::figure;
 use crate::report::number;
-use crate::report::study::{Chapter, Document, Head, Item, Table};
-use crate::report::view::{self, Fact, Finding};
+use crate::report::view::{self, Opening};
 use crate::result::Certification;
 use crate::result::diagnosis::{
-    Cause, Diagnosis, Invariant, NamedEffect, QuantityShrink, Ratio, Shape, Shrink, Slope, Trend,
-    Value, Where,
+    Cause, Diagnosis, Invariant, NamedEffect, Picture, QuantityShrink, Ratio, Shape, Shrink, Slope,
+    Trend, Value, Where,
 };
 
 /// Number of significant cells listed, and of cells listed where fewer are significant;
@@ -34,50 +36,45 @@ pub fn document(found: &Diagnosis, before: &Certification) -> Document {
         chapters.push(shrunk(shrink));
     }
     chapters.extend(signals(found));
-    chapters.push(chapter("seen", "Detectable effects", detectable(found)));
+    chapters.push(Chapter::new("seen", "Detectable effects", detectable(found)));
     chapters.push(how(found));
-    let class = match &*found.verdict {
-        "explained" | "no significant gap" => "good",
-        "ambiguous" => "open",
-        _ => "bad",
+    let shrink = found.shrink.as_ref();
+    let verdict_after =
+        shrink.map_or("-", |one| before.protocol.verdict_words.word(one.verdict_after));
+    let removed = shrink.map_or("-".into(), |shrink| share(shrink.fraction_removed));
+    let holds = match &*found.verdict {
+        "explained" | "no significant gap" => Some(true),
+        "ambiguous" => None,
+        _ => Some(false),
     };
-    let share = |value: f64| format!("{} %", number::fixed(100.0 * value, 0));
-    Document {
-        title: format!("Diagnosis: {}", found.campaign),
-        kind: "Differences between simulation and measurement, and their causes".into(),
-        program: concat!("Fishplate ", env!("CARGO_PKG_VERSION")).into(),
-        headline: Finding { word: found.verdict.to_string(), class, sign: sign(class) },
+    let opening = Opening {
+        headline: Finding::new(holds, &found.verdict, &found.verdict, &found.verdict),
         sentence: found.says.first().cloned().unwrap_or_default(),
-        key_facts: vec![
-            Fact { name: "Verdict before".into(), value: before.verdict_word().into() },
-            Fact {
-                name: "Verdict with the effects".into(),
-                value: found.shrink.as_ref().map_or("-".into(), |shrink| {
-                    before.protocol.verdict_words.word(shrink.verdict_after).to_owned()
-                }),
-            },
-            Fact {
-                name: "Gap removed".into(),
-                value: found
-                    .shrink
-                    .as_ref()
-                    .map_or("-".into(), |shrink| share(shrink.fraction_removed)),
-            },
-            Fact { name: "Sections".into(), value: found.how.sections.to_string() },
+        facts: vec![
+            Fact::new("Verdict before", before.verdict_word()),
+            Fact::new("Verdict with the effects", verdict_after),
+            Fact::new("Gap removed", removed),
+            Fact::new("Sections", found.how.sections.to_string()),
         ],
-        symbols: before.quantities.iter().map(|quantity| quantity.symbol.clone()).collect(),
-        campaign: view::campaign(&before.campaign),
-        protocol: view::protocol_view(&before.protocol),
+    };
+    view::study(
+        (
+            format!("Diagnosis: {}", found.campaign),
+            "Differences between simulation and measurement, and their causes",
+        ),
+        opening,
+        (&before.campaign, &before.protocol),
         chapters,
-    }
+    )
 }
 
-fn sign(class: &str) -> &'static str {
-    match class {
-        "good" => "\u{2713}",
-        "bad" => "\u{2717}",
-        _ => "?",
-    }
+/// `69 %`
+fn share(value: f64) -> String {
+    format!("{} %", percent(value))
+}
+
+fn percent(value: f64) -> String {
+    number::fixed(100.0 * value, 0)
 }
 
 /// All figures by their names in the document.
@@ -96,72 +93,20 @@ pub fn figures(found: &Diagnosis) -> Vec<(String, String)> {
     drawn
 }
 
-fn chapter(id: &str, title: &str, items: Vec<Item>) -> Chapter {
-    Chapter { id: id.into(), title: title.into(), items }
-}
-
 fn answer(found: &Diagnosis) -> Chapter {
-    let printed = |texts: &[String]| texts.iter().map(|text| number::raised(text)).collect();
-    let mut items = vec![Item::List { entries: printed(&found.says) }];
+    let printed = |texts: &[String]| Block::list(texts.iter().map(|text| number::raised(text)));
+    let mut blocks = vec![printed(&found.says)];
     if let Some(measure) = &found.discriminating_measurement {
-        items.push(Item::text(format!("The causes can be distinguished by: {measure}.")));
+        blocks.push(Block::text(format!("The causes can be distinguished by: {measure}.")));
     }
     if !found.notes.is_empty() {
-        items.push(Item::Heading { text: "Remarks".into() });
-        items.push(Item::List { entries: printed(&found.notes) });
+        blocks.push(Block::heading("Remarks"));
+        blocks.push(printed(&found.notes));
     }
-    chapter("answer", "Answer", items)
+    Chapter::new("answer", "Answer", blocks)
 }
 
 fn places(found: &Diagnosis) -> Chapter {
-    let told = |(at, place): &(usize, &Where)| {
-        place.significant || *at < FIRST_CELLS && place.share_of_gap >= LEAST_SHARE
-    };
-    let size = |place: &Where, value: f64| match place.unit.as_str() {
-        "-" => number::with_unit(&number::fixed(100.0 * value, 0), "%"),
-        unit => number::with_unit(
-            &number::fixed(value, number::decimals_of([place.difference_rms], 3)),
-            unit,
-        ),
-    };
-    let rows = found.r#where.iter().enumerate().filter(told).take(CELLS).map(|(_, place)| {
-        let p = if place.p_value < 1e-6 {
-            "<\u{a0}0.000001".into()
-        } else {
-            number::significant(place.p_value, 2)
-        };
-        vec![
-            place.quantity.clone(),
-            place
-                .says
-                .split(", ")
-                .skip(1)
-                .take(2)
-                .filter(|part| *part != place.wavelength_or_band)
-                .collect::<Vec<_>>()
-                .join(", "),
-            place.wavelength_or_band.clone(),
-            place.zones.join(", "),
-            size(place, place.difference),
-            size(place, place.difference_rms),
-            number::with_unit(&number::fixed(100.0 * place.share_of_gap, 1), "%"),
-            format!("{p}{}", if place.significant { " *" } else { "" }),
-        ]
-    });
-    let head = vec![
-        Head::short("Quantity"),
-        Head::text("Position"),
-        Head::short("Band"),
-        Head::short("Zone"),
-        Head::number("Mean"),
-        Head::number("Rms"),
-        Head::number("Share"),
-        Head::number("p"),
-    ];
-    let caption = "Cells by their share of the gap, tested against noise, declared tolerances and the allowed model discrepancy; \
-                   * significant at a false discovery rate of 5 %. Mean and rms are over the sections and channels \
-                   of a cell: of sign(measured) (simulated - measured) for quasi-static values, of rms simulated / measured - 1 for bands";
-    let table = Table { caption: caption.into(), head, rows: rows.collect() };
     let significant = found.r#where.iter().filter(|place| place.significant).count();
     let mut text = format!(
         "{significant} of {} cells differ by more than noise, declared tolerances and the allowed model discrepancy.",
@@ -171,54 +116,91 @@ fn places(found: &Diagnosis) -> Chapter {
         text.push_str(" No single cell does; the conclusions below rest on all cells together.");
     }
     let caption = "Share of the gap by quantity and position, zone and band; darker cells have a larger share (scale below); a dot marks significant cells";
-    let map =
-        Item::figure("map", caption, "Map of cells, darker where the share of the gap is larger");
-    let mut items = vec![Item::text(text), map, Item::Table { table }];
+    let alt = "Map of cells, darker where the share of the gap is larger";
+    let map = Figure::new("map", caption, alt, 200);
+    let mut blocks = vec![Block::text(text), map.into(), cells(found).into()];
     if !found.invariants.is_empty() {
-        items.push(Item::Table { table: invariants(&found.invariants, !found.causes.is_empty()) });
+        blocks.push(invariants(&found.invariants, !found.causes.is_empty()).into());
     }
-    items.extend(trends(found));
+    blocks.extend(trends(found));
     if !found.shapes.is_empty() {
-        items.push(Item::Table { table: shapes(&found.shapes) });
-        items.push(Item::List {
-            entries: found.shapes.iter().map(|shape| shape.says.clone()).collect(),
-        });
+        blocks.push(shapes(&found.shapes).into());
+        blocks.push(Block::list(found.shapes.iter().map(|shape| &shape.says)));
     }
-    chapter("where", "Where the gap lies", items)
+    Chapter::new("where", "Where the gap lies", blocks)
+}
+
+/// Cells of the gap: those that are significant, and the first of all.
+fn cells(found: &Diagnosis) -> Table {
+    let told = |(at, place): &(usize, &Where)| {
+        place.significant || *at < FIRST_CELLS && place.share_of_gap >= LEAST_SHARE
+    };
+    let size = |place: &Where, value: f64| match place.unit.as_str() {
+        "-" => Cell::text(number::with_unit(&percent(value), "%")),
+        unit => {
+            let decimals = number::decimals_of([place.difference_rms], 3);
+            Cell::text(number::with_unit(&number::fixed(value, decimals), unit))
+        }
+    };
+    let rows = found.r#where.iter().enumerate().filter(told).take(CELLS).map(|(_, place)| {
+        let p = if place.p_value < 1e-6 {
+            "<\u{a0}0.000001".into()
+        } else {
+            number::significant(place.p_value, 2)
+        };
+        cells![
+            place.quantity,
+            place.position,
+            place.wavelength_or_band,
+            place.zones.join(", "),
+            size(place, place.difference),
+            size(place, place.difference_rms),
+            number::with_unit(&number::fixed(100.0 * place.share_of_gap, 1), "%"),
+            format!("{p}{}", if place.significant { " *" } else { "" })
+        ]
+    });
+    let mut columns = vec![
+        Column::short("Quantity"),
+        Column::text("Position"),
+        Column::short("Band"),
+        Column::name("Zone"),
+    ];
+    columns.extend(["Mean", "Rms", "Share", "p"].map(Column::number));
+    let caption = "Cells by their share of the gap, tested against noise, declared tolerances and the allowed model discrepancy; \
+                   * significant at a false discovery rate of 5 %. Mean and rms are over the sections and channels \
+                   of a cell: of sign(measured) (simulated - measured) for quasi-static values, of rms simulated / measured - 1 for bands";
+    Table::new(caption, columns, rows)
 }
 
 /// With columns for the effects if any are named.
 fn invariants(all: &[Invariant], named: bool) -> Table {
-    let rows = all.iter().map(|one| {
+    let row = |one: &Invariant| {
         let decimals = number::decimals_of([one.before, one.after, one.allowed], 3);
-        let number = |value: f64| number::with_unit(&number::fixed(value, decimals), &one.unit);
+        let number =
+            |value: f64| Cell::from(number::with_unit(&number::fixed(value, decimals), &one.unit));
         let off = |value: f64, allowed: f64| {
-            if allowed > 0.0 {
-                number::fixed(value.abs() / allowed, 1)
-            } else {
-                number::NONE.to_owned()
-            }
+            let times = (allowed > 0.0).then(|| value.abs() / allowed);
+            Cell::number(times, Format::Fixed(1))
         };
-        let mut cells = vec![one.name.clone(), one.parity.to_string(), number(one.before)];
-        cells.extend(named.then(|| number(one.after)));
-        cells.extend([number(one.allowed), off(one.before, one.allowed)]);
-        cells.extend(named.then(|| off(one.after, one.allowed_after)));
-        cells
-    });
+        let mut row = cells![one.name, one.parity, number(one.before)];
+        row.extend(named.then(|| number(one.after)));
+        row.extend([number(one.allowed), off(one.before, one.allowed)]);
+        row.extend(named.then(|| off(one.after, one.allowed_after)));
+        row
+    };
     let caption = "Sums of quasi-static forces that only some causes can change, simulated - measured, mean over the sections; \
                    allowed is one standard deviation, which is the unit of the deviations (after: including the effects)";
-    let mut head = vec![Head::text("Sum"), Head::text("Symmetry"), Head::number("As simulated")];
-    head.extend(named.then(|| Head::number("With the effects")));
-    head.extend([
-        Head::number("Allowed"),
-        Head::number(if named { "Deviation before" } else { "Deviation" }),
-    ]);
-    head.extend(named.then(|| Head::number("Deviation after")));
-    Table { caption: caption.into(), head, rows: rows.collect() }
+    let mut columns =
+        vec![Column::text("Sum"), Column::text("Symmetry"), Column::number("As simulated")];
+    columns.extend(named.then(|| Column::number("With the effects")));
+    let deviation = if named { "Deviation before" } else { "Deviation" };
+    columns.extend(["Allowed", deviation].map(Column::number));
+    columns.extend(named.then(|| Column::number("Deviation after")));
+    Table::new(caption, columns, all.iter().map(row))
 }
 
 /// Trends that are significant before or after, or else the closest ones.
-fn trends(found: &Diagnosis) -> Vec<Item> {
+fn trends(found: &Diagnosis) -> Vec<Block> {
     if found.trends_tested == 0 {
         return Vec::new();
     }
@@ -267,14 +249,15 @@ fn trends(found: &Diagnosis) -> Vec<Item> {
             format!("{} {}{mark}", of(slope.change), number::with_unit(&between, unit))
         };
         let last = if named { &trend.after } else { &trend.before };
-        let mut cells = vec![
+        let (from, to) = (&trend.from_without_unit, &trend.to);
+        let mut cells = cells![
             format!("{}, {}", trend.quantity, trend.position),
-            trend.wavelength_or_band.clone(),
-            over(trend),
-            change(&trend.before),
+            trend.wavelength_or_band,
+            format!("{}: {from} to {to}", trend.covariate),
+            change(&trend.before)
         ];
-        cells.extend(named.then(|| change(last)));
-        cells.push(number::fixed(last.correlation, 2));
+        cells.extend(named.then(|| Cell::from(change(last))));
+        cells.push(Cell::number(last.correlation, Format::Fixed(2)));
         cells
     };
     let caption = format!(
@@ -288,87 +271,50 @@ fn trends(found: &Diagnosis) -> Vec<Item> {
         },
         if named { ", with the effects" } else { "" }
     );
-    let mut head = vec![
-        Head::text("Quantity"),
-        Head::short("Band"),
-        Head::text("Over"),
-        Head::number("As simulated"),
+    let mut columns = vec![
+        Column::text("Quantity"),
+        Column::short("Band"),
+        Column::text("Over"),
+        Column::number("As simulated"),
     ];
-    head.extend(named.then(|| Head::number("With effects")));
-    head.push(Head::number("r"));
-    let table = Table { caption, head, rows: listed.iter().take(TRENDS).map(row).collect() };
-    if table.rows.is_empty() {
-        vec![Item::text(text)]
-    } else {
-        vec![Item::text(text), Item::Table { table }]
-    }
-}
-
-/// A covariate with its range; the unit is printed once.
-fn over(trend: &Trend) -> String {
-    let unit = |end: &str| end.rsplit_once(' ').map(|(_, unit)| unit.to_owned());
-    let same = unit(&trend.from).filter(|of| Some(of) == unit(&trend.to).as_ref());
-    let from = same
-        .and_then(|unit| trend.from.strip_suffix(&unit).map(str::trim_end))
-        .unwrap_or(&trend.from);
-    format!("{}: {from} to {}", trend.covariate, trend.to)
+    columns.extend(named.then(|| Column::number("With effects")));
+    columns.push(Column::number("r"));
+    let table = Table::new(caption, columns, listed.iter().take(TRENDS).map(row));
+    let table = (!listed.is_empty()).then(|| table.into());
+    std::iter::once(Block::text(text)).chain(table).collect()
 }
 
 fn shapes(all: &[Shape]) -> Table {
-    let rows = all.iter().map(|shape| {
+    let row = |shape: &Shape| {
         let ratio = |ratio: Ratio| {
-            format!(
-                "{} ({} to {})",
-                number::fixed(ratio.value, 2),
-                number::fixed(ratio.low, 2),
-                number::fixed(ratio.high, 2)
-            )
-        };
-        let share = |share: Option<f64>| {
-            share.map_or_else(
-                || number::NONE.to_owned(),
-                |share| format!("{} %", number::fixed(100.0 * share, 0)),
-            )
+            let two = |value: f64| number::fixed(value, 2);
+            format!("{} ({} to {})", two(ratio.value), two(ratio.low), two(ratio.high))
         };
         vec![
-            shape.quantity.clone(),
-            ratio(shape.rms),
-            ratio(shape.peak),
-            ratio(shape.crest),
-            share(shape.alike_by_frequency),
-            share(shape.alike_by_wavelength),
-            shape
-                .keeps_to
-                .as_deref()
-                .or(shape.reason.as_deref())
-                .unwrap_or(number::NONE)
-                .to_owned(),
+            Cell::from(&shape.quantity),
+            ratio(shape.rms).into(),
+            ratio(shape.peak).into(),
+            ratio(shape.crest).into(),
+            Cell::or_missing(shape.alike_by_frequency.map(share)),
+            Cell::or_missing(shape.alike_by_wavelength.map(share)),
+            Cell::or_missing(shape.keeps_to.as_ref().or(shape.reason.as_ref())),
         ]
-    });
+    };
     let caption = "Dynamic content as recorded, measured over simulated, with 90 % intervals by resampling the sections; and the share of the \
                    difference of the spectra that is common to all sections, compared at equal frequency or at equal wavelength";
-    let head = vec![
-        Head::text("Quantity"),
-        Head::number("Rms"),
-        Head::number("Peak"),
-        Head::number("Crest"),
-        Head::number("Common in Hz"),
-        Head::number("Common in m"),
-        Head::text("Scales with"),
-    ];
-    Table { caption: caption.into(), head, rows: rows.collect() }
+    let mut columns = vec![Column::text("Quantity")];
+    columns.extend(["Rms", "Peak", "Crest", "Common in Hz", "Common in m"].map(Column::number));
+    columns.push(Column::text("Scales with"));
+    Table::new(caption, columns, all.iter().map(row))
+}
+
+/// A size with its unit.
+fn with_unit(size: f64, value: &Value) -> String {
+    number::with_unit(&number::significant(size, 4), &value.unit)
 }
 
 fn value(value: &Value) -> String {
-    let printed = |number: f64| number::with_unit(&number::significant(number, 4), &value.unit);
-    value.value.as_f64().map_or_else(|| value.text(), printed)
-}
-
-fn assumed(value: &Value) -> String {
-    value.assumed.map_or_else(
-        || "-".into(),
-        |assumed| number::with_unit(&number::significant(assumed, 4), &value.unit),
-    )
+    value.value.as_f64().map_or_else(|| value.text(), |size| with_unit(size, value))
 }
 
 fn interval(value: &Value) -> String {
@@ -380,26 +326,26 @@ fn interval(value: &Value) -> String {
     }
 }
 
-fn cause_rows(cause: &Cause) -> Vec<Vec<String>> {
+/// A row for each parameter; what is about the cause stands in the first.
+fn cause_rows(cause: &Cause) -> Vec<Vec<Cell>> {
     let mut rows = Vec::new();
     for effect in &cause.effects {
         for (at, told) in effect.told().into_iter().enumerate() {
             let first = rows.is_empty();
-            let only = |text: String| if first { text } else { String::new() };
-            rows.push(vec![
-                only(cause.rank.to_string()),
-                if at == 0 {
-                    format!("{}{}{}", effect.title, told.on(), effect.only_in())
-                } else {
-                    String::new()
-                },
-                told.parameter.clone(),
-                assumed(told.value),
+            let only = |cell: Cell| if first { cell } else { Cell::BLANK };
+            let probability = number::with_unit(&number::fixed(100.0 * cause.probability, 1), "%");
+            let title = format!("{}{}{}", effect.title, told.on(), effect.only_in());
+            let assumed = told.value.assumed.map(|assumed| with_unit(assumed, told.value));
+            rows.push(cells![
+                only(cause.rank.to_string().into()),
+                if at == 0 { title.into() } else { Cell::BLANK },
+                told.parameter,
+                assumed.unwrap_or_else(|| "-".into()),
                 value(told.value),
                 interval(told.value),
-                only(number::with_unit(&number::fixed(100.0 * cause.probability, 1), "%")),
-                only(number::fixed(cause.evidence, 0)),
-                only(if cause.in_ambiguity_set { "yes".into() } else { "no".into() }),
+                only(probability.into()),
+                only(Cell::number(cause.evidence, Format::Fixed(0))),
+                only(if cause.in_ambiguity_set { "yes" } else { "no" }.into())
             ]);
         }
     }
@@ -408,132 +354,112 @@ fn cause_rows(cause: &Cause) -> Vec<Vec<String>> {
 
 fn found_by(effect: &NamedEffect) -> String {
     let stands = effect.stability.map_or(String::new(), |first| {
-        format!(
-            "; in {} % of the resamples of the sections it has the most evidence",
-            number::fixed(100.0 * first, 0)
-        )
+        format!("; in {} of the resamples of the sections it has the most evidence", share(first))
     });
     format!("{}: {}{stands}", effect.title, effect.added_by)
 }
 
 fn causes(found: &Diagnosis) -> Chapter {
-    let head = vec![
-        Head::short("Rank"),
-        Head::text("Effect"),
-        Head::short("Parameter"),
-        Head::number("Assumed"),
-        Head::number("Found"),
-        Head::number("90 % interval"),
-        Head::number("Probability"),
-        Head::number("Evidence"),
-        Head::short("Possible"),
-    ];
-    let mut items = Vec::new();
-    if !found.causes.is_empty() {
+    let mut blocks = Vec::new();
+    if let Some(first) = found.causes.first() {
+        let columns = vec![
+            Column::short("Rank"),
+            Column::text("Effect"),
+            Column::short("Parameter"),
+            Column::number("Assumed"),
+            Column::number("Found"),
+            Column::number("90 % interval"),
+            Column::number("Probability"),
+            Column::number("Evidence"),
+            Column::short("Possible"),
+        ];
         let caption = "Candidate causes; evidence is twice the logarithm of the Bayes factor against no effect";
-        let rows = found.causes.iter().flat_map(cause_rows).collect();
-        items.push(Item::Table { table: Table { caption: caption.into(), head, rows } });
-        let entries: Vec<String> = found.causes[0].effects.iter().map(found_by).collect();
-        items
-            .push(Item::Heading { text: "How the effects were found, and their stability".into() });
-        items.push(Item::List { entries });
+        let rows = found.causes.iter().flat_map(cause_rows);
+        blocks.push(Table::new(caption, columns, rows).into());
+        blocks.push(Block::heading("How the effects were found, and their stability"));
+        blocks.push(Block::list(first.effects.iter().map(found_by)));
     }
     if !found.vetoed.is_empty() {
-        items.push(Item::Heading { text: "Rejected effects".into() });
-        items.push(Item::List {
-            entries: found.vetoed.iter().map(|vetoed| vetoed.says.clone()).collect(),
-        });
+        blocks.push(Block::heading("Rejected effects"));
+        blocks.push(Block::list(found.vetoed.iter().map(|vetoed| &vetoed.says)));
     }
-    chapter("which", "Cause", items)
+    Chapter::new("which", "Cause", blocks)
 }
 
 fn shrunk(shrink: &Shrink) -> Chapter {
-    let number = |value: Option<f64>| {
-        value.map_or_else(|| number::NONE.to_owned(), |value| number::fixed(value, 3))
-    };
-    let percent = |value: f64| number::fixed(100.0 * value, 0);
-    let share = |value: Option<f64>| {
-        value.map_or_else(|| number::NONE.to_owned(), |value| format!("{} %", percent(value)))
-    };
-    let row = |quantity: &QuantityShrink| {
-        vec![
-            quantity.id.clone(),
-            number(quantity.normalised_mean_before),
-            number(quantity.normalised_mean_after),
-            number(quantity.normalised_std_before),
-            number(quantity.normalised_std_after),
-            format!(
-                "{} ({} to {}) %",
-                percent(quantity.fraction_removed),
-                percent(quantity.low),
-                percent(quantity.high)
-            ),
-            share(quantity.variance_explained),
-            share(quantity.variance_explained_above_noise),
-        ]
-    };
-    let head = vec![
-        Head::text("Quantity"),
-        Head::number("Mean before"),
-        Head::number("after"),
-        Head::number("Std before"),
-        Head::number("after"),
-        Head::number("Removed"),
-        Head::number("Variance removed"),
-        Head::number("above noise"),
-    ];
-    let mut items = vec![
-        Item::text(format!(
-            "Each section was simulated with parameters fitted to the other sections. The {} changes from {} to {}.",
-            shrink.measure,
-            number::fixed(shrink.before, 3),
-            number::fixed(shrink.after, 3)
-        )),
-        Item::figure("before-after", "Statistics divided by their limits, before and with the effects", "Two marks per statistic, joined by a line"),
-        Item::Table {
-            table: Table {
-                caption: "Mean and standard deviation divided by their limits, before and with the effects; fraction of their root mean square that is removed, \
-                          with a 90 % interval by resampling sections; fraction of the squared differences that is removed, in total and \
-                          above the declared noise of the channels"
-                    .into(),
-                head,
-                rows: shrink.quantities.iter().map(row).collect(),
-            },
-        },
-    ];
+    let about = format!(
+        "Each section was simulated with parameters fitted to the other sections. The {} changes from {} to {}.",
+        shrink.measure,
+        number::fixed(shrink.before, 3),
+        number::fixed(shrink.after, 3)
+    );
+    let caption = "Statistics divided by their limits, before and with the effects";
+    let figure =
+        Figure::new("before-after", caption, "Two marks per statistic, joined by a line", 200);
+    let mut blocks = vec![Block::text(about), figure.into(), statistics(shrink).into()];
     if let Some(touched) = &shrink.touched {
-        let share = |value: f64| number::fixed(100.0 * value, 0);
-        items.push(Item::text(format!(
-            "In the quantities affected ({}), {} % of the gap is removed (90 % interval {} to {} %, by resampling sections).",
+        blocks.push(Block::text(format!(
+            "In the quantities affected ({}), {} of the gap is removed (90 % interval {} to {}, by resampling sections).",
             touched.quantities.join(", "),
             share(touched.fraction_removed),
-            share(touched.low),
+            percent(touched.low),
             share(touched.high)
         )));
     }
     if shrink.shares.len() > 1 {
-        let entries = shrink
-            .shares
-            .iter()
-            .map(|(name, share)| format!("{name}: {} %", number::fixed(100.0 * share, 0)))
-            .collect();
-        items.push(Item::Heading { text: "Contribution of each effect".into() });
-        items.push(Item::List { entries });
+        let entry = |(name, of_all): &(String, f64)| format!("{name}: {}", share(*of_all));
+        blocks.push(Block::heading("Contribution of each effect"));
+        blocks.push(Block::list(shrink.shares.iter().map(entry)));
     }
-    chapter("how-far", "Reduction of the gap", items)
+    Chapter::new("how-far", "Reduction of the gap", blocks)
+}
+
+fn statistics(shrink: &Shrink) -> Table {
+    let number = |value: Option<f64>| Cell::number(value, Format::Fixed(3));
+    let row = |quantity: &QuantityShrink| {
+        let removed = format!(
+            "{} ({} to {}) %",
+            percent(quantity.fraction_removed),
+            percent(quantity.low),
+            percent(quantity.high)
+        );
+        vec![
+            Cell::symbol(&quantity.id, ""),
+            number(quantity.normalised_mean_before),
+            number(quantity.normalised_mean_after),
+            number(quantity.normalised_std_before),
+            number(quantity.normalised_std_after),
+            removed.into(),
+            Cell::or_missing(quantity.variance_explained.map(share)),
+            Cell::or_missing(quantity.variance_explained_above_noise.map(share)),
+        ]
+    };
+    let mut columns = vec![Column::text("Quantity")];
+    let numbers = [
+        "Mean before",
+        "after",
+        "Std before",
+        "after",
+        "Removed",
+        "Variance removed",
+        "above noise",
+    ];
+    columns.extend(numbers.map(Column::number));
+    let caption = "Mean and standard deviation divided by their limits, before and with the effects; fraction of their root mean square that is removed, \
+                   with a 90 % interval by resampling sections; fraction of the squared differences that is removed, in total and \
+                   above the declared noise of the channels";
+    Table::new(caption, columns, shrink.quantities.iter().map(row))
 }
 
 fn signals(found: &Diagnosis) -> Option<Chapter> {
-    let item = |(at, picture): (usize, &crate::result::diagnosis::Picture)| {
+    let figure = |(at, picture): (usize, &Picture)| {
         let caption = format!("Section {}: {}", picture.section, picture.says);
-        Item::figure(
-            format!("signals-{at}"),
-            caption,
-            "Measured and simulated signals over distance",
-        )
+        let alt = "Measured and simulated signals over distance";
+        Figure::new(format!("signals-{at}"), caption, alt, 200).into()
     };
-    let items: Vec<Item> = found.pictures.iter().enumerate().map(item).collect();
-    (!items.is_empty()).then(|| chapter("signals", "Signals with the largest gap", items))
+    let blocks: Vec<Block> = found.pictures.iter().enumerate().map(figure).collect();
+    let title = "Signals with the largest gap";
+    (!blocks.is_empty()).then(|| Chapter::new("signals", title, blocks))
 }
 
 fn how(found: &Diagnosis) -> Chapter {
@@ -564,10 +490,8 @@ fn how(found: &Diagnosis) -> Chapter {
         ),
         ("Seed", how.seed.to_string()),
     ];
-    let table = Table {
-        caption: "Settings of the diagnosis".into(),
-        head: vec![Head::text("Setting"), Head::text("Value")],
-        rows: rows.map(|(name, value)| vec![name.to_string(), value]).to_vec(),
-    };
-    chapter("how", "Method and settings", vec![Item::Table { table }])
+    let rows = rows.map(|(name, value)| cells![name, value]);
+    let columns = vec![Column::text("Setting"), Column::text("Value")];
+    let table = Table::new("Settings of the diagnosis", columns, rows);
+    Chapter::new("how", "Method and settings", vec![table.into()])
 }

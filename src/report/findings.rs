@@ -1,12 +1,12 @@
 //! Plausibility findings for print: the same finding in several sections is one row.
 
-use serde::Serialize;
-
+use super::document::{Cell, Column, Symbols, Table, Tone};
 use super::number;
+use crate::report::document::cells;
 use crate::result::{Consequence, Finding};
 
 /// Findings of one kind about one channel.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Row {
     pub code: String,
     /// `Y_1R, measurement`; empty if it concerns a section or the campaign.
@@ -19,8 +19,7 @@ pub struct Row {
     pub cause: String,
     /// `noted`, `section not used`, `not assessable`.
     pub consequence: &'static str,
-    /// `good`, `bad` or `open`, for styling.
-    pub class: &'static str,
+    pub tone: Tone,
 }
 
 /// Number of sections that are named before the rest is counted.
@@ -50,6 +49,29 @@ pub fn rows(findings: &[Finding]) -> Vec<Row> {
     groups.iter().map(|(first, sections)| row(first, sections)).collect()
 }
 
+/// All findings as a table.
+pub fn table(findings: &[Finding]) -> Table {
+    let row = |row: Row| {
+        cells![
+            row.code,
+            row.subject,
+            row.sections,
+            Symbols::default().text(&row.says),
+            row.cause,
+            Cell::from(row.consequence).toned(row.tone)
+        ]
+    };
+    let columns = vec![
+        Column::name("Rule").wide(0.9),
+        Column::name("Channel").wide(0.8).sparse(),
+        Column::name("Sections").wide(0.8).sparse(),
+        Column::text("Finding").wide(2.2),
+        Column::text("Likely cause").wide(1.9).sparse(),
+        Column::text("Consequence").wide(0.8),
+    ];
+    Table::new("Findings on the data", columns, rows(findings).into_iter().map(row)).size(7.5)
+}
+
 fn row(first: &Finding, sections: &[&str]) -> Row {
     let subject = [first.channel.as_deref(), first.record.as_deref()];
     Row {
@@ -59,7 +81,7 @@ fn row(first: &Finding, sections: &[&str]) -> Row {
         says: number::raised(&first.says),
         cause: first.cause.clone().unwrap_or_default(),
         consequence: first.consequence.in_words(),
-        class: if first.consequence == Consequence::Note { "open" } else { "bad" },
+        tone: if first.consequence == Consequence::Note { Tone::Open } else { Tone::Bad },
     }
 }
 

@@ -1,10 +1,9 @@
-//! The HTML report: one self-contained file, filled by minijinja from `templates/`.
+//! The HTML report: one self-contained file, filled by minijinja from
+//! `templates/report.html`.
 //!
 //! User text is data: it is escaped by the engine, and hidden characters are made visible. The
 //! page's policy allows only its own style and script, by their hashes, so that even a fault in
 //! escaping could neither execute code nor load anything.
-
-mod symbols;
 
 use std::collections::BTreeMap;
 
@@ -12,119 +11,57 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::{Environment, UndefinedBehavior, Value, context};
-use serde::Serialize;
 use serde_json::Value as Json;
 
 use crate::hash::sha256_base64;
 use crate::problem::{Problem, Problems};
-use crate::report::study::{Chapter, Document};
-use crate::report::view::ReportData;
+use crate::report::document::{Document, Medium};
 use crate::report::visible::visible;
 
-const CSS: &str = include_str!("../../templates/html/report.css");
-const SCRIPT: &str = include_str!("../../templates/html/report.js");
-
-const TEMPLATES: [(&str, &str); 21] = [
-    ("chapters.html", include_str!("../../templates/chapters.html")),
-    ("html/chapters.html", include_str!("../../templates/html/chapters.html")),
-    ("report.html", include_str!("../../templates/report.html")),
-    ("study.html", include_str!("../../templates/study.html")),
-    ("html/study.html", include_str!("../../templates/html/study.html")),
-    ("html/macros.html", include_str!("../../templates/html/macros.html")),
-    ("html/navigation.html", include_str!("../../templates/html/navigation.html")),
-    ("html/cover.html", include_str!("../../templates/html/cover.html")),
-    ("html/verdicts.html", include_str!("../../templates/html/verdicts.html")),
-    ("html/judgements.html", include_str!("../../templates/html/judgements.html")),
-    ("html/identity.html", include_str!("../../templates/html/identity.html")),
-    ("html/notation.html", include_str!("../../templates/html/notation.html")),
-    ("html/summary.html", include_str!("../../templates/html/summary.html")),
-    ("html/vehicle.html", include_str!("../../templates/html/vehicle.html")),
-    ("html/sections.html", include_str!("../../templates/html/sections.html")),
-    ("html/quantities.html", include_str!("../../templates/html/quantities.html")),
-    ("html/traces.html", include_str!("../../templates/html/traces.html")),
-    ("html/domain.html", include_str!("../../templates/html/domain.html")),
-    ("html/protocol.html", include_str!("../../templates/html/protocol.html")),
-    ("html/provenance.html", include_str!("../../templates/html/provenance.html")),
-    ("html/statements.html", include_str!("../../templates/html/statements.html")),
-];
+const PAGE: &str = include_str!("../../templates/report.html");
+const CSS: &str = include_str!("../../templates/report.css");
+const SCRIPT: &str = include_str!("../../templates/report.js");
 
 /// Name of the figure of the processing graph.
 const GRAPH: &str = "graph";
 
-/// The report as one HTML page.
+/// A document as one HTML page.
 ///
-/// `figures` are SVG texts of this program by their names in the view
-/// ([`super::view::FigureView::name`]); a missing figure is omitted. The same arguments give the
+/// `figures` are SVG texts of this program by their names in the document
+/// ([`super::document::Figure::name`]); a missing figure is omitted. The same arguments give the
 /// same bytes.
 ///
 /// # Errors
 ///
-/// `report-template`: a template cannot be filled.
-pub fn html(data: &ReportData, figures: &[(String, String)]) -> Result<String, Problems> {
-    filled("report.html", data, figures)
+/// `report-template`: the template cannot be filled.
+pub fn html(document: &Document, figures: &[(String, String)]) -> Result<String, Problems> {
+    filled(document, figures)
         .map_err(|error| Problems(vec![Problem::error("report-template", error)]))
 }
 
-/// A study as one HTML page.
-///
-/// # Errors
-///
-/// As [`html`].
-pub fn study_html(data: &Document, figures: &[(String, String)]) -> Result<String, Problems> {
-    filled("study.html", data, figures)
-        .map_err(|error| Problems(vec![Problem::error("report-template", error)]))
-}
-
-/// Chapters under a title as one HTML page.
-///
-/// # Errors
-///
-/// As [`html`].
-pub fn chapters_html(title: &str, chapters: &[Chapter]) -> Result<String, Problems> {
-    #[derive(Serialize)]
-    struct Page<'a> {
-        title: &'a str,
-        chapters: &'a [Chapter],
-        symbols: [String; 0],
-    }
-    filled("chapters.html", &Page { title, chapters, symbols: [] }, &[])
-        .map_err(|error| Problems(vec![Problem::error("report-template", error)]))
-}
-
-fn filled(
-    frame: &str,
-    data: &impl Serialize,
-    figures: &[(String, String)],
-) -> Result<String, String> {
+fn filled(document: &Document, figures: &[(String, String)]) -> Result<String, String> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     environment.set_syntax(
         SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build().map_err(said)?,
     );
-    environment
-        .add_filter("symbol", |text: String| Value::from_safe_string(symbols::typeset(&text)));
-    environment.add_filter("symbols", |text: String, known: Vec<String>| {
-        Value::from_safe_string(symbols::typeset_in(&text, &known))
-    });
-    for (name, text) in TEMPLATES {
-        environment.add_template(name, text).map_err(said)?;
-    }
-    let data = serde_json::to_value(data).map_err(|error| error.to_string())?;
-    let drawn: BTreeMap<&str, Value> = figures
-        .iter()
-        .filter(|(name, _)| name != GRAPH)
-        .map(|(name, svg)| (name.as_str(), Value::from_safe_string(svg.trim_end().to_owned())))
-        .collect();
+    environment.add_template("report.html", PAGE).map_err(said)?;
+    let data =
+        serde_json::to_value(document.on(Medium::Screen)).map_err(|error| error.to_string())?;
     // The graph is wide and has its own styles: an embedded image keeps both apart from the page.
-    let graph = figures
-        .iter()
-        .find(|(name, _)| name == GRAPH)
-        .map(|(_, svg)| format!("data:image/svg+xml;base64,{}", STANDARD.encode(svg)));
-    let page = environment.get_template(frame).map_err(said)?;
+    let drawing = |(name, svg): &(String, String)| {
+        let drawing = if name == GRAPH {
+            format!("data:image/svg+xml;base64,{}", STANDARD.encode(svg)).into()
+        } else {
+            Value::from_safe_string(svg.trim_end().to_owned())
+        };
+        (name.clone(), drawing)
+    };
+    let drawn: BTreeMap<String, Value> = figures.iter().map(drawing).collect();
+    let page = environment.get_template("report.html").map_err(said)?;
     page.render(context! {
         data => shown(&data),
         figures => drawn,
-        graph,
         css => Value::from_safe_string(CSS.to_owned()),
         script => Value::from_safe_string(SCRIPT.to_owned()),
         policy => policy(),

@@ -1,6 +1,7 @@
-//! A certification as a document: one view of the result, printed as PDF and as HTML.
+//! Results as documents: each is printed as PDF and as HTML.
 //!
-//! [`view::view`] rounds, sorts and formulates; the templates only place its data.
+//! [`view::document`] and its like round, sort and formulate; the templates only place a
+//! [`document::Document`].
 
 pub mod attached;
 pub mod blind;
@@ -8,6 +9,7 @@ pub mod brief;
 pub mod comparison;
 mod detectable;
 pub mod diagnosis;
+pub mod document;
 pub mod estimates;
 pub mod figure;
 pub mod findings;

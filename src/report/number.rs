@@ -226,6 +226,22 @@ fn reciprocal(text: &str) -> Option<&str> {
         .then_some(&unit[..end])
 }
 
+/// Decimals from which on a number is not one that was written by hand.
+const BY_PROGRAM: usize = 5;
+
+/// A number or a word as a campaign states it. Section data that were found have more digits than
+/// they are worth: of a number as long as this, three decimals are printed.
+pub fn given(text: &str) -> String {
+    let decimals = text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    match text.parse::<f64>() {
+        // A small number, such as a curvature, keeps its digits.
+        Ok(value) if decimals >= BY_PROGRAM && value.abs() >= 1.0 => {
+            signed(trimmed(&format!("{value:.3}")))
+        }
+        _ => in_text(text),
+    }
+}
+
 /// Text that is a number gets a true minus sign; other text is unchanged.
 pub fn in_text(text: &str) -> String {
     if is_number(text) { text.replace('-', "\u{2212}") } else { text.to_owned() }

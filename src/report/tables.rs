@@ -1,8 +1,9 @@
-//! All tables of the report as CSV.
+//! All tables of the report as CSV, in full precision.
 
+use crate::report::document::{Cell, cells};
 use crate::result::{
     Certification, ClassSpread, CoordinateRange, DomainResult, OfRecord, QuantityResult, Reported,
-    WantedPoint,
+    SectionResult, WantedPoint,
 };
 
 /// Columns of estimates without a limit; the quantity is empty where they are of sections.
@@ -21,22 +22,25 @@ const REPORTED: [&str; 12] = [
     "reason",
 ];
 
-fn reported_row(quantity: Option<&QuantityResult>, one: &Reported) -> Vec<String> {
-    vec![
-        quantity.map_or_else(String::new, |quantity| quantity.id.clone()),
-        one.name.to_string(),
-        one.title.clone(),
-        one.scope.to_string(),
-        one.condition.clone().unwrap_or_default(),
-        one.count.number().to_string(),
-        one.n.to_string(),
-        one.unit.clone(),
-        number(one.value),
-        number(one.low),
-        number(one.high),
-        one.reason.clone().unwrap_or_default(),
+fn reported_row(quantity: Option<&QuantityResult>, one: &Reported) -> Vec<Cell> {
+    cells![
+        quantity.map(|quantity| quantity.id.clone()),
+        one.name,
+        one.title,
+        one.scope,
+        one.condition,
+        one.count.number(),
+        one.n,
+        one.unit,
+        one.value,
+        one.low,
+        one.high,
+        one.reason
     ]
 }
+
+/// Rows that are made while they are written.
+type Rows<'a> = dyn Iterator<Item = Vec<Cell>> + 'a;
 
 /// File names and contents for the folder `tables/`.
 ///
@@ -44,30 +48,30 @@ fn reported_row(quantity: Option<&QuantityResult>, one: &Reported) -> Vec<String
 /// An error of the CSV writer, which writes to memory.
 pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Error> {
     let mut all = Vec::new();
-    let mut add = |name: &str, header: &[&str], rows: Vec<Vec<String>>| -> Result<(), csv::Error> {
+    let mut add = |name: &str, header: &[&str], rows: &mut Rows<'_>| -> Result<(), csv::Error> {
         all.push(csv_file(name, header, rows)?);
         Ok(())
     };
-    let statistics = found.quantities.iter().flat_map(|quantity| {
+    let mut statistics = found.quantities.iter().flat_map(|quantity| {
         quantity.statistics.iter().map(|s| {
-            vec![
-                quantity.id.clone(),
-                quantity.title.clone(),
-                quantity.filter.clone(),
-                quantity.processing.clone(),
-                s.name.to_string(),
-                s.scope.to_string(),
-                s.count.to_string(),
-                s.n.to_string(),
-                s.unit.clone(),
-                number(s.value),
-                number(s.interval.map(|(low, _)| low)),
-                number(s.interval.map(|(_, high)| high)),
-                number(s.limit),
-                number(s.normalised),
-                s.holds.map_or(String::new(), |holds| holds.to_string()),
-                s.marginal.to_string(),
-                s.reason.clone().unwrap_or_default(),
+            cells![
+                quantity.id,
+                quantity.title,
+                quantity.filter,
+                quantity.processing,
+                s.name,
+                s.scope,
+                s.count,
+                s.n,
+                s.unit,
+                s.value,
+                s.interval.map(|(low, _)| low),
+                s.interval.map(|(_, high)| high),
+                s.limit,
+                s.normalised,
+                s.holds,
+                s.marginal,
+                s.reason
             ]
         })
     });
@@ -92,16 +96,15 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
             "marginal",
             "reason",
         ],
-        statistics.collect(),
+        &mut statistics,
     )?;
     let all_reported = found.reported.iter().map(|one| (None, one));
     let all_reported = all_reported.chain(
         found.quantities.iter().flat_map(|of| of.reported.iter().map(move |one| (Some(of), one))),
     );
-    let rows: Vec<Vec<String>> =
-        all_reported.map(|(quantity, one)| reported_row(quantity, one)).collect();
-    if !rows.is_empty() {
-        add("reported", &REPORTED, rows)?;
+    let mut rows = all_reported.map(|(quantity, one)| reported_row(quantity, one)).peekable();
+    if rows.peek().is_some() {
+        add("reported", &REPORTED, &mut rows)?;
     }
     // A column of its own says which of several campaigns a row is of.
     let pooled = !found.campaign.members.is_empty();
@@ -112,22 +115,22 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
         }
         all
     };
-    let of = |campaign: &Option<String>| pooled.then(|| campaign.clone().unwrap_or_default());
-    let pairs = found.quantities.iter().flat_map(|quantity| {
+    let of = |campaign: &Option<String>| pooled.then(|| campaign.into());
+    let mut pairs = found.quantities.iter().flat_map(|quantity| {
         quantity.values.iter().map(move |pair| {
             let campaign = of(&pair.campaign);
-            let row = vec![
-                quantity.id.clone(),
-                quantity.unit.clone(),
-                pair.section.clone(),
-                pair.zone.clone().unwrap_or_default(),
-                pair.signal.clone(),
-                pair.record.as_ref().map(ToString::to_string).unwrap_or_default(),
-                number(pair.simulated),
-                number(pair.measured),
-                number(quantity.has_sides.then_some(pair.difference)),
-                number((!quantity.has_sides).then_some(pair.difference)),
-                pair.samples.to_string(),
+            let row = cells![
+                quantity.id,
+                quantity.unit,
+                pair.section,
+                pair.zone,
+                pair.signal,
+                pair.record,
+                pair.simulated,
+                pair.measured,
+                quantity.has_sides.then_some(pair.difference),
+                (!quantity.has_sides).then_some(pair.difference),
+                pair.samples
             ];
             with(row, campaign, 2)
         })
@@ -145,35 +148,31 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
         "value",
         "samples",
     ];
-    add("values", &header(&columns, 2), pairs.collect())?;
+    add("values", &header(&columns, 2), &mut pairs)?;
     if found.quantities.iter().any(|quantity| quantity.spread.is_some()) {
-        add("spreads", &SPREADS, spreads(found, of_records))?;
-        add("spreads_between", &SPREADS_BETWEEN, spreads(found, between))?;
+        add("spreads", &SPREADS, &mut spreads(found, of_records))?;
+        add("spreads_between", &SPREADS_BETWEEN, &mut spreads(found, between))?;
     }
-    add("sections", &section_header(found), section_rows(found))?;
-    let checks = found.sections.iter().flat_map(|section| {
-        section.checks.iter().map(|check| {
-            vec![
-                section.section.clone(),
-                check.title.clone(),
-                check.holds.map_or(String::new(), |holds| holds.to_string()),
-                check.says.clone(),
-            ]
-        })
+    add("sections", &section_header(found), &mut found.sections.iter().map(section_row))?;
+    let mut checks = found.sections.iter().flat_map(|section| {
+        section
+            .checks
+            .iter()
+            .map(|check| cells![section.section, check.title, check.holds, check.says])
     });
-    add("checks", &["section", "requirement", "holds", "found"], checks.collect())?;
-    let findings = found.findings.iter().map(|finding| {
-        let row = vec![
-            finding.code.clone(),
-            finding.section.clone().unwrap_or_default(),
-            finding.record.clone().unwrap_or_default(),
-            finding.channel.clone().unwrap_or_default(),
-            number(finding.value),
-            number(finding.expected),
-            finding.unit.clone().unwrap_or_default(),
-            finding.says.clone(),
-            finding.cause.clone().unwrap_or_default(),
-            finding.consequence.in_words().into(),
+    add("checks", &["section", "requirement", "holds", "found"], &mut checks)?;
+    let mut findings = found.findings.iter().map(|finding| {
+        let row = cells![
+            finding.code,
+            finding.section,
+            finding.record,
+            finding.channel,
+            finding.value,
+            finding.expected,
+            finding.unit,
+            finding.says,
+            finding.cause,
+            finding.consequence.in_words()
         ];
         with(row, of(&finding.campaign), 1)
     });
@@ -194,70 +193,44 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
             ],
             1,
         ),
-        findings.collect(),
+        &mut findings,
     )?;
-    let zones = found.zones.iter().map(|z| {
-        vec![
-            z.zone.clone(),
-            z.title.clone(),
-            z.condition.clone(),
-            z.given.to_string(),
-            z.used.to_string(),
-            z.minimum.to_string(),
-            z.holds.to_string(),
-        ]
-    });
-    add(
-        "zones",
-        &["zone", "title", "condition", "given", "used", "minimum", "holds"],
-        zones.collect(),
-    )?;
+    let mut zones = found
+        .zones
+        .iter()
+        .map(|z| cells![z.zone, z.title, z.condition, z.given, z.used, z.minimum, z.holds]);
+    add("zones", &["zone", "title", "condition", "given", "used", "minimum", "holds"], &mut zones)?;
     if !found.found.is_empty() {
-        let rows = found
+        let mut rows = found
             .found
             .iter()
             .flat_map(|found| found.runs.iter().map(move |run| (found, run)))
             .flat_map(|(found, run)| {
                 run.stretches.iter().map(move |stretch| {
-                    let of = found.campaign.clone().unwrap_or_default();
-                    let ends = [stretch.from, stretch.to].map(|x| number(Some(x)));
-                    let [from, to] = ends;
-                    vec![
-                        of,
-                        run.run.clone(),
-                        from,
-                        to,
-                        found.axis_unit.clone(),
-                        stretch.places.to_string(),
-                        stretch.reason.clone(),
+                    cells![
+                        found.campaign,
+                        run.run,
+                        stretch.from,
+                        stretch.to,
+                        found.axis_unit,
+                        stretch.places,
+                        stretch.reason
                     ]
                 })
             });
-        add(
-            "rejected",
-            &["campaign", "run", "from", "to", "unit", "places", "reason"],
-            rows.collect(),
-        )?;
+        add("rejected", &["campaign", "run", "from", "to", "unit", "places", "reason"], &mut rows)?;
     }
     if let Some(reduction) = &found.reduction {
-        let kept = reduction.kept.iter().flat_map(|(group, kept)| {
-            kept.iter().map(move |one| vec![group.clone(), one.clone(), "true".into()])
-        });
-        let left =
-            reduction.left_out.iter().map(|one| vec![String::new(), one.clone(), "false".into()]);
-        add("reduction", &["group", "section", "kept"], kept.chain(left).collect())?;
+        let kept = reduction
+            .kept
+            .iter()
+            .flat_map(|(group, kept)| kept.iter().map(move |one| cells![group, one, true]));
+        let left = reduction.left_out.iter().map(|one| cells![Cell::BLANK, one, false]);
+        add("reduction", &["group", "section", "kept"], &mut kept.chain(left))?;
     }
-    let domain = found.domain.iter().map(|d| {
-        vec![
-            d.name.clone(),
-            d.unit.clone(),
-            d.scope.to_string(),
-            number(Some(d.low)),
-            number(Some(d.high)),
-            d.count.to_string(),
-        ]
-    });
-    add("domain", &["quantity", "unit", "scope", "low", "high", "sections"], domain.collect())?;
+    let mut domain =
+        found.domain.iter().map(|d| cells![d.name, d.unit, d.scope, d.low, d.high, d.count]);
+    add("domain", &["quantity", "unit", "scope", "low", "high", "sections"], &mut domain)?;
     if !found.application.is_empty() {
         let head = [
             "domain",
@@ -273,41 +246,28 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
             "beyond range",
             "nearest section",
         ];
-        add("application", &head, found.application.iter().flat_map(application_rows).collect())?;
+        add("application", &head, &mut found.application.iter().flat_map(application_rows))?;
     }
     let several = found.campaign.vehicle.iter().any(|item| item.of.is_some());
-    let vehicle = found.campaign.vehicle.iter().chain(&found.campaign.facts).map(|item| {
-        let unit = item.unit.clone().unwrap_or_default();
-        let row = vec![
-            item.name.clone(),
-            item.value.clone(),
-            unit,
-            item.unit_assumed.to_string(),
-            item.used.to_string(),
-        ];
-        with(row, several.then(|| item.of.clone().unwrap_or_default()), 5)
+    let mut vehicle = found.campaign.vehicle.iter().chain(&found.campaign.facts).map(|item| {
+        let row = cells![item.name, item.value, item.unit, item.unit_assumed, item.used];
+        with(row, several.then(|| (&item.of).into()), 5)
     });
     let mut columns = vec!["name", "value", "unit", "unit assumed", "used by the protocol"];
     columns.extend(several.then_some("of"));
-    add("vehicle", &columns, vehicle.collect())?;
-    let parameters = found.protocol.parameters.iter().map(|p| {
-        vec![p.name.clone(), p.title.clone(), p.value.clone(), p.default.clone(), p.set_by.clone()]
-    });
-    add("parameters", &["parameter", "title", "value", "default", "set by"], parameters.collect())?;
-    let deviations = found.protocol.deviations.iter().map(|d| {
-        vec![
-            d.rule.clone(),
-            d.before.clone().unwrap_or_default(),
-            d.after.clone().unwrap_or_default(),
-        ]
-    });
-    add("deviations", &["rule", "parent", "this protocol"], deviations.collect())?;
-    let files = found
-        .campaign
-        .files
+    add("vehicle", &columns, &mut vehicle)?;
+    let mut parameters = found
+        .protocol
+        .parameters
         .iter()
-        .map(|file| vec![file.path.clone(), file.bytes.to_string(), file.sha256.clone()]);
-    add("files", &["file", "bytes", "sha256"], files.collect())?;
+        .map(|p| cells![p.name, p.title, p.value, p.default, p.set_by]);
+    add("parameters", &["parameter", "title", "value", "default", "set by"], &mut parameters)?;
+    let mut deviations =
+        found.protocol.deviations.iter().map(|d| cells![d.rule, d.before, d.after]);
+    add("deviations", &["rule", "parent", "this protocol"], &mut deviations)?;
+    let mut files =
+        found.campaign.files.iter().map(|file| cells![file.path, file.bytes, file.sha256]);
+    add("files", &["file", "bytes", "sha256"], &mut files)?;
     Ok(all)
 }
 
@@ -346,42 +306,37 @@ const SPREADS_BETWEEN: [&str; 13] = [
 /// Rows for each quantity with several records and each class of sections, after what these are.
 fn spreads(
     found: &Certification,
-    rows: impl Fn(&ClassSpread) -> Vec<Vec<String>>,
-) -> Vec<Vec<String>> {
-    let of_quantity = |quantity: &QuantityResult| -> Vec<Vec<String>> {
+    rows: impl Fn(&ClassSpread) -> Vec<Vec<Cell>>,
+) -> impl Iterator<Item = Vec<Cell>> {
+    let of_quantity = move |quantity: &QuantityResult| -> Vec<Vec<Cell>> {
         let Some(spread) = &quantity.spread else { return Vec::new() };
         let of_class = |class: &ClassSpread| {
-            let of = [
-                quantity.id.clone(),
-                quantity.unit.clone(),
-                spread.center.clone(),
-                class.zone.clone().unwrap_or_default(),
-            ];
-            rows(class).into_iter().map(move |row| [of.to_vec(), row].concat())
+            let of = cells![quantity.id, quantity.unit, spread.center, class.zone];
+            rows(class).into_iter().map(move |row| [of.clone(), row].concat())
         };
         spread.classes.iter().flat_map(of_class).collect()
     };
-    found.quantities.iter().flat_map(of_quantity).collect()
+    found.quantities.iter().flat_map(of_quantity)
 }
 
-fn of_records(class: &ClassSpread) -> Vec<Vec<String>> {
+fn of_records(class: &ClassSpread) -> Vec<Vec<Cell>> {
     let row = |one: &OfRecord| {
-        vec![
-            one.record.clone(),
-            one.values.to_string(),
-            one.mean.to_string(),
-            number(one.std),
-            one.largest.value.to_string(),
-            one.largest.section.clone(),
-            one.largest.signal.clone(),
-            one.rms.to_string(),
-            one.rank.to_string(),
+        cells![
+            one.record,
+            one.values,
+            one.mean,
+            one.std,
+            one.largest.value,
+            one.largest.section,
+            one.largest.signal,
+            one.rms,
+            one.rank
         ]
     };
     class.records.iter().map(row).collect()
 }
 
-fn between(class: &ClassSpread) -> Vec<Vec<String>> {
+fn between(class: &ClassSpread) -> Vec<Vec<Cell>> {
     let numbers = [
         class.range_of_means,
         class.std_of_means,
@@ -389,14 +344,14 @@ fn between(class: &ClassSpread) -> Vec<Vec<String>> {
         class.mean_std,
         class.widest.value,
     ];
-    let mut row = vec![class.records.len().to_string(), class.places.to_string()];
-    row.extend(numbers.map(|value| value.to_string()));
-    row.extend([class.widest.section.clone(), class.widest.signal.clone()]);
+    let mut row = cells![class.records.len(), class.places];
+    row.extend(numbers.map(Cell::from));
+    row.extend(cells![class.widest.section, class.widest.signal]);
     vec![row]
 }
 
 /// A row with one more cell, if there is one.
-fn with(mut row: Vec<String>, cell: Option<String>, at: usize) -> Vec<String> {
+fn with(mut row: Vec<Cell>, cell: Option<Cell>, at: usize) -> Vec<Cell> {
     if let Some(cell) = cell {
         row.insert(at, cell);
     }
@@ -418,12 +373,12 @@ fn inert(cell: &str) -> std::borrow::Cow<'_, str> {
 pub fn csv_file(
     name: &str,
     header: &[&str],
-    rows: Vec<Vec<String>>,
+    rows: impl IntoIterator<Item = Vec<Cell>>,
 ) -> Result<(String, Vec<u8>), csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(header)?;
     for row in rows {
-        writer.write_record(row.iter().map(|cell| inert(cell).into_owned()))?;
+        writer.write_record(row.iter().map(|cell| inert(&cell.in_file()).into_owned()))?;
     }
     let bytes = writer.into_inner().map_err(|error| error.into_error())?;
     Ok((format!("{name}.csv"), bytes))
@@ -441,46 +396,38 @@ fn section_header(found: &Certification) -> Vec<&str> {
     header
 }
 
-fn section_rows(found: &Certification) -> Vec<Vec<String>> {
-    let row = |section: &crate::result::SectionResult| {
-        let mut row = vec![
-            section.section.clone(),
-            section.zone.clone().unwrap_or_default(),
-            number(Some(section.start)),
-            number(Some(section.end)),
-            number(Some(section.length)),
-            section.axis_unit.clone(),
-        ];
-        row.extend(section.columns.iter().map(|column| column.value.clone()));
-        row.extend([section.used.to_string(), section.reason.clone().unwrap_or_default()]);
-        with(row, section.campaign.clone(), 0)
-    };
-    found.sections.iter().map(row).collect()
-}
-
-/// Full precision; an empty cell for a missing number.
-fn number(value: Option<f64>) -> String {
-    value.map_or(String::new(), |value| value.to_string())
+fn section_row(section: &SectionResult) -> Vec<Cell> {
+    let mut row = cells![
+        section.section,
+        section.zone,
+        section.start,
+        section.end,
+        section.length,
+        section.axis_unit
+    ];
+    row.extend(section.columns.iter().map(|column| Cell::from(&column.value)));
+    row.extend(cells![section.used, section.reason]);
+    with(row, section.campaign.as_ref().map(Cell::from), 0)
 }
 
 /// One row for each point of wanted operation and coordinate.
-fn application_rows(result: &DomainResult) -> Vec<Vec<String>> {
+fn application_rows(result: &DomainResult) -> Vec<Vec<Cell>> {
     let of_point = |point: &WantedPoint| {
-        let at = |list: &Option<Vec<f64>>, at: usize| number(list.as_ref().map(|list| list[at]));
+        let at = |list: &Option<Vec<f64>>, at: usize| list.as_ref().map(|list| list[at]);
         let row = |(index, of): (usize, &CoordinateRange)| {
-            vec![
-                result.domain.clone(),
-                result.scope.clone(),
-                point.point.clone(),
-                point.inside.map_or(String::new(), |inside| inside.to_string()),
-                number(point.distance),
-                of.name.clone(),
-                of.unit.clone(),
-                number(Some(point.values[index])),
+            cells![
+                result.domain,
+                result.scope,
+                point.point,
+                point.inside,
+                point.distance,
+                of.name,
+                of.unit,
+                point.values[index],
                 at(&point.nearest, index),
                 at(&point.outside_by, index),
                 at(&point.beyond_range, index),
-                point.nearest_section.clone().unwrap_or_default(),
+                point.nearest_section
             ]
         };
         result.coordinates.iter().enumerate().map(row).collect::<Vec<_>>()
@@ -500,7 +447,7 @@ mod tests {
         for plain in ["", "-1.5", "+2", "-1e-3", "1+1", "Y_1R", "a=b"] {
             assert_eq!(inert(plain), plain);
         }
-        let (_, bytes) = csv_file("t", &["a"], vec![vec!["=1+1".into()]]).expect("written");
+        let (_, bytes) = csv_file("t", &["a"], [cells!["=1+1"]]).expect("written");
         assert_eq!(bytes, b"a\n'=1+1\n");
     }
 }

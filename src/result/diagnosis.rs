@@ -156,6 +156,9 @@ pub struct Where {
     pub p_value: f64,
     /// At the false discovery rate of the diagnosis.
     pub significant: bool,
+    /// Where on the vehicle.
+    #[serde(skip)]
+    pub position: String,
     pub says: String,
 }
 
@@ -188,6 +191,9 @@ pub struct Trend {
     /// The table's text for its minimum and its maximum.
     pub from: String,
     pub to: String,
+    /// The first without its unit, where both have one.
+    #[serde(skip)]
+    pub from_without_unit: String,
     /// Unit of the changes; `-` for ratios.
     pub unit: String,
     pub before: Slope,

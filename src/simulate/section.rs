@@ -63,13 +63,16 @@ impl Section {
     /// A column in words, `radius 280 m`; nothing if its cell is empty.
     #[must_use]
     pub fn says(&self, column: &str) -> Option<String> {
-        let fact = self
-            .facts
-            .iter()
-            .find(|fact| fact.name == column)
-            .filter(|fact| !fact.text.is_empty())?;
+        let fact = self.facts.iter().find(|fact| fact.name == column)?;
         let unit = fact.unit.as_ref().map(Unit::suffix).unwrap_or_default();
-        Some(format!("{column} {}{unit}", fact.text))
+        self.says_without_unit(column).map(|says| says + &unit)
+    }
+
+    /// The same without the unit, `radius 280`.
+    #[must_use]
+    pub fn says_without_unit(&self, column: &str) -> Option<String> {
+        let text = self.fact(column).filter(|text| !text.is_empty())?;
+        Some(format!("{column} {text}"))
     }
 }
 

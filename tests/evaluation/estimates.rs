@@ -10,7 +10,7 @@ use fishplate::data::Campaign;
 use fishplate::library;
 use fishplate::metrics::{cluster, percentile, statistics, weighted};
 use fishplate::problem::Problems;
-use fishplate::result::{Certification, Scope, StatisticResult, Verdict};
+use fishplate::result::{Certification, StatisticResult, Verdict};
 use fishplate::run::{Settings, Shifts, evaluate};
 use fishplate::source::Source;
 use fishplate::study::{Settings as StudySettings, case::Case, selections};

@@ -287,12 +287,13 @@ fn replaced_order() -> Compiled {
 #[test]
 fn reports_have_the_verdicts_and_lines_for_the_judgement() {
     let found = certified(&[]);
-    let data = view::view(&found);
+    let data = view::document(&found);
+    let result = &data.cover.as_ref().expect("a cover").result;
     assert_eq!(
-        (data.verdict.word.as_str(), data.verdict_title.as_deref()),
-        ("accepted", Some("Acceptance by the measurement"))
+        (result.finding.word.as_str(), result.label.as_deref()),
+        ("accepted", Some("Verdict: Acceptance by the measurement"))
     );
-    assert!(!data.verdict_sentence.contains("validated"), "{}", data.verdict_sentence);
+    assert!(!result.sentence.contains("validated"), "{}", result.sentence);
     let page =
         html::html(&data, &[]).unwrap_or_else(|problems| panic!("{}", problems.render(false)));
     for wanted in [

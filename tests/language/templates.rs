@@ -29,11 +29,10 @@ fn words(node: &SyntaxNode, found: &mut Vec<(SyntaxKind, String)>) {
 fn no_template_evaluates_text() {
     let mut paths = Vec::new();
     templates(&Path::new(env!("CARGO_MANIFEST_DIR")).join("templates"), &mut paths);
-    assert!(paths.len() > 10, "{paths:?}");
+    assert!(paths.len() >= 2, "{paths:?}");
     for path in paths {
         let text = fs::read_to_string(&path).expect("readable");
         let mut found = Vec::new();
-        // Frames are filled before Typst sees them; what fills them are yes or no.
         words(&typst::syntax::parse(&text), &mut found);
         for (kind, word) in found {
             let name = path.display();

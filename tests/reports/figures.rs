@@ -284,7 +284,8 @@ fn figures_are_well_formed_and_the_same_each_time() {
 #[test]
 fn the_pdf_takes_the_figures() {
     let found = coach::certification();
-    let pdf = typst::typeset(&view::view(&found), &figure::figures(&found), &[]).expect("a PDF");
+    let pdf =
+        typst::typeset(&view::document(&found), &figure::figures(&found), &[]).expect("a PDF");
     assert!(pdf.warnings.0.is_empty(), "{:?}", pdf.warnings);
 }
 
@@ -397,9 +398,10 @@ fn figures_can_be_looked_at() {
     let folder = std::env::var("FISHPLATE_FIGURES").expect("FISHPLATE_FIGURES names a folder");
     for (prefix, found) in [("coach", coach::certification()), ("odd", odd::certification())] {
         let figures = figure::figures(&found);
-        let page = fishplate::report::html::html(&view::view(&found), &figures).expect("a page");
+        let page =
+            fishplate::report::html::html(&view::document(&found), &figures).expect("a page");
         let folder = std::path::Path::new(&folder);
-        let pdf = typst::typeset(&view::view(&found), &figures, &[]).expect("a PDF");
+        let pdf = typst::typeset(&view::document(&found), &figures, &[]).expect("a PDF");
         std::fs::write(folder.join(format!("{prefix}.pdf")), pdf.bytes)
             .expect("the folder can be written");
         std::fs::write(folder.join(format!("{prefix}.html")), page)

@@ -6,6 +6,7 @@ mod common {
     pub mod campaign;
     pub mod certification;
     pub mod coach;
+    pub mod document;
     pub mod program;
     pub mod tools;
     pub mod xml;

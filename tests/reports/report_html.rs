@@ -10,7 +10,8 @@ use fishplate::report::{figure, html, view};
 use fishplate::result::Certification;
 
 fn page(found: &Certification) -> String {
-    html::html(&view::view(found), &figure::figures(found)).expect("the templates can be filled")
+    html::html(&view::document(found), &figure::figures(found))
+        .expect("the templates can be filled")
 }
 
 #[test]

@@ -10,7 +10,7 @@ use crate::common::certification::{HOSTILE, LONG};
 use crate::common::{assessment, certification};
 use fishplate::report::pdf::{Attachment, Pdf};
 use fishplate::report::typst::typeset;
-use fishplate::report::view::view;
+use fishplate::report::view::document;
 use fishplate::result::{Certification, Verdict};
 
 const RESULTS: &[u8] = b"{\"verdict\": \"not validated\"}\n";
@@ -27,7 +27,7 @@ fn attached() -> Attachment<'static> {
 /// A report that compiled without a remark.
 #[track_caller]
 fn rendered(found: &Certification) -> Pdf {
-    match typeset(&view(found), &fishplate::report::figure::figures(found), &[attached()]) {
+    match typeset(&document(found), &fishplate::report::figure::figures(found), &[attached()]) {
         Ok(pdf) => {
             assert!(pdf.warnings.0.is_empty(), "{}", pdf.warnings.render(false));
             pdf
@@ -276,9 +276,10 @@ fn numbers_that_are_none_do_not_stop_it() {
 fn a_figure_that_is_none_is_refused_with_a_reason() {
     let found = Certification { verdict: Verdict::Validated, ..certification::certification() };
     let figures = [("overview".to_owned(), "no drawing".to_owned())];
-    let problems = typeset(&view(&found), &figures, &[]).expect_err("this is no SVG");
+    let problems = typeset(&document(&found), &figures, &[]).expect_err("this is no SVG");
     assert_eq!(problems.0.first().map(|problem| problem.code), Some("report-template"));
     let attachment = Attachment { name: "../results.json", ..attached() };
-    let problems = typeset(&view(&found), &[], &[attachment]).expect_err("this is not a file name");
+    let problems =
+        typeset(&document(&found), &[], &[attachment]).expect_err("this is not a file name");
     assert_eq!(problems.0.first().map(|problem| problem.code), Some("report-attachment"));
 }

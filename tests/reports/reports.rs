@@ -9,7 +9,7 @@ use fishplate::check::{Overrides, family};
 use fishplate::data::Campaign;
 use fishplate::library;
 use fishplate::problem::Problems;
-use fishplate::report::{tables, view};
+use fishplate::report::{html, tables, view};
 use fishplate::result::text;
 use fishplate::result::{Certification, Reported, Verdict};
 use fishplate::run::Settings;
@@ -200,13 +200,16 @@ fn reports_decide_nothing_and_stand_in_all_outputs() {
     let all =
         with.reported.len() + with.quantities.iter().map(|one| one.reported.len()).sum::<usize>();
     assert_eq!(lines, 1 + all);
-    let printed = view::view(&with);
-    assert_eq!(printed.reported[0].keys, ["Zone"]);
+    let printed = view::document(&with);
+    let table = printed
+        .tables()
+        .find(|table| table.caption.letters() == "Data of the sections used")
+        .expect("a table");
     assert_eq!(
-        printed.reported[0].columns.iter().map(|column| column.title.as_str()).collect::<Vec<_>>(),
-        ["Total length", "Mean of radius, direction is not straight"]
+        table.columns.iter().map(|column| column.title.as_str()).collect::<Vec<_>>(),
+        ["Zone", "Sections", "Total length", "Mean of radius, direction is not straight"]
     );
-    assert_eq!(printed.reported[0].rows.len(), 4);
+    assert_eq!(table.rows.len(), 4);
 }
 
 /// A group without a number has a reason, and nothing else changes.
@@ -222,7 +225,8 @@ fn a_report_without_a_number_says_why() {
         "{one:?}"
     );
     assert_eq!(found.verdict, Verdict::Validated);
-    assert!(view::view(&found).reported[0].reasons[0].starts_with("Mean of radius, zone 1: "));
+    let page = html::html(&view::document(&found), &[]).expect("a page");
+    assert!(page.contains("<li>Mean of radius, zone 1: "));
 }
 
 /// A weight of 0 in the vehicle file makes every value of a metric 0: that is no agreement.

@@ -5,8 +5,8 @@ use std::fs;
 use std::path::PathBuf;
 
 use crate::common::pools::{every, limit, quantity, sections, sorted, zones};
-use fishplate::result::Verdict;
 use fishplate::result::study::Spread;
+use fishplate::result::{StatisticName, Verdict};
 use fishplate::run::pool::{Pool, Rule, Section};
 use fishplate::study::case::Case;
 use fishplate::study::random::{Random, draw};
@@ -267,7 +267,7 @@ fn what_is_drawn_agrees_with_what_is_counted() {
     for (drawn, exact) in drawn.quantities.iter().zip(&exact.quantities) {
         for (drawn, exact) in drawn.statistics.iter().zip(&exact.statistics) {
             let (a, b) = (drawn.spread.expect("values"), exact.spread.expect("values"));
-            if drawn.name == "mean" {
+            if drawn.name == StatisticName::Mean {
                 // Exact, whatever was drawn.
                 close(Some(a), Some(b), "mean");
                 assert!(a.exact && a.outliers == b.outliers);

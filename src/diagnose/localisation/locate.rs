@@ -20,6 +20,7 @@ pub fn locate(settings: &Settings, found: &Found, units: &Units) -> Vec<Where> {
     let limit = significant_up_to(&tested.iter().map(|test| test.p_value).collect::<Vec<f64>>());
     let place = |(cell, test): (&Cell, &Tested)| Where {
         quantity: settings.groups[cell.group].says.clone(),
+        position: cell.position.clone(),
         says: says(settings, found, cell),
         signals: cell.signals(found),
         zones: vec![stratum(settings, found, cell).to_string()],

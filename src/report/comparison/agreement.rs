@@ -1,75 +1,63 @@
 //! Agreement of protocols and of metrics.
 
-use super::{table, three};
-use crate::report::number;
-use crate::report::study::{Chapter, Head, Item};
+use super::three;
+use crate::report::document::{Block, Cell, Chapter, Column, Table};
 use crate::result::comparison::{Agreement, Comparison};
 
 pub fn chapter(found: &Comparison) -> Option<Chapter> {
     if found.agreement.is_empty() {
         return None;
     }
-    let mut items = vec![Item::text(
+    let mut blocks = vec![Block::text(
         "The score of a section is the largest ratio of its values and their limits. The limit of a pooled estimate stands for the values of the section too. Up to 1, the section meets the requirement. Spearman's rank correlation compares the order of the scores; the sections of all campaigns are taken together. The last column counts the campaigns with the same verdict.",
     )];
     for (of, caption) in [
         ("protocols", "Agreement of protocols over the sections"),
         ("metrics", "Agreement of the metrics of a protocol over the sections"),
     ] {
-        let rows: Vec<Vec<String>> =
+        let rows: Vec<Vec<Cell>> =
             found.agreement.iter().filter(|one| one.of == of).map(row).collect();
         if !rows.is_empty() {
-            items.push(table(caption, head(of), rows));
+            blocks.push(Table::new(caption, columns(of), rows).into());
         }
     }
-    Some(Chapter { id: "agreement".into(), title: "Agreement".into(), items })
+    Some(Chapter::new("agreement", "Agreement", blocks))
 }
 
-fn head(of: &str) -> Vec<Head> {
-    let mut head = vec![];
+fn columns(of: &str) -> Vec<Column> {
+    let mut columns = Vec::new();
     if of == "metrics" {
-        head.push(Head::text("Protocol"));
+        columns.push(Column::text("Protocol"));
     }
-    head.extend([
-        Head::text("A"),
-        Head::text("B"),
-        Head::number("Sections"),
-        Head::number("Both met"),
-        Head::number("A only"),
-        Head::number("B only"),
-        Head::number("Neither"),
-        Head::number("Spearman"),
-    ]);
+    columns.extend(["A", "B"].map(Column::text));
+    let counts = ["Sections", "Both met", "A only", "B only", "Neither", "Spearman"];
+    columns.extend(counts.map(Column::number));
     if of == "protocols" {
-        head.push(Head::number("Same verdict"));
+        columns.push(Column::number("Same verdict"));
     }
-    head
+    columns
 }
 
-fn row(one: &Agreement) -> Vec<String> {
-    let mut row: Vec<String> = if one.of == "metrics" {
-        vec![one.protocol.clone().unwrap_or_default()]
-    } else {
-        Vec::new()
-    };
-    row.extend([one.a.clone(), one.b.clone(), one.sections.to_string()]);
-    match one.contingency {
-        Some([[both, a], [b, neither]]) => {
-            row.extend([both, a, b, neither].map(|count| count.to_string()))
-        }
-        None => row.extend([number::NONE; 4].map(str::to_owned)),
+fn row(one: &Agreement) -> Vec<Cell> {
+    let mut row = Vec::new();
+    if one.of == "metrics" {
+        row.push((&one.protocol).into());
     }
-    row.push(if one.spearman.is_some() {
-        three(one.spearman)
-    } else {
-        one.reason.clone().unwrap_or_else(|| number::NONE.to_owned())
+    row.extend([Cell::sentence(&one.a), Cell::sentence(&one.b), one.sections.into()]);
+    match one.contingency {
+        Some([[both, a], [b, neither]]) => row.extend([both, a, b, neither].map(Cell::from)),
+        None => row.extend([Cell::MISSING; 4]),
+    }
+    row.push(match (one.spearman, &one.reason) {
+        (None, Some(reason)) => Cell::sentence(reason),
+        (spearman, _) => three(spearman),
     });
     if let Some(verdicts) = one.verdicts {
         let (same, all) = (
             (0..3).map(|at| verdicts[at][at]).sum::<usize>(),
             verdicts.iter().flatten().sum::<usize>(),
         );
-        row.push(format!("{same} of {all}"));
+        row.push(format!("{same} of {all}").into());
     }
     row
 }

@@ -6,53 +6,43 @@ mod sensitivity;
 pub mod tables;
 mod verdicts;
 
+use crate::report::document::{Cell, Document, Fact, Finding, Format};
 use crate::report::figure;
-use crate::report::number;
-use crate::report::study::{Document, Item, Table};
-use crate::report::view::{self, Fact, Finding};
+use crate::report::view::{self, Opening};
 use crate::result::comparison::{Comparison, Sensitivity};
 use crate::result::{CampaignInfo, FileHash, Identification, Kind, ProtocolInfo, VerdictWords};
 
+/// Title of every comparison.
+pub const TITLE: &str = "Protocols side by side";
+
 /// The comparison as printed in both reports.
 pub fn document(found: &Comparison) -> Document {
-    let (headline, sentence) = opening(found);
     let mut chapters = vec![verdicts::verdicts(found), verdicts::applicability(found)];
     chapters.extend(sensitivity::chapter(found));
     chapters.extend(agreement::chapter(found));
     chapters.extend(verdicts::differences(found));
     chapters.push(verdicts::ratios(found));
     chapters.push(verdicts::compared(found));
+    let title = (TITLE.into(), "Comparison of protocols");
+    view::study(title, opening(found), (&inputs(found), &rules(found)), chapters)
+}
+
+/// What it came to, and what was done for it.
+pub fn opening(found: &Comparison) -> Opening {
+    let (headline, sentence) = verdicts_apart(found);
+    let work = &found.work;
     let facts = [
         ("Protocols", found.protocols.len().to_string()),
         ("Campaigns", found.campaigns.len().to_string()),
-        (
-            "Records read",
-            format!("{} of {} asked for", found.work.records_read, found.work.records_asked),
-        ),
-        (
-            "Filters run",
-            format!("{} of {} asked for", found.work.filters_run, found.work.filters_asked),
-        ),
+        ("Records read", format!("{} of {} asked for", work.records_read, work.records_asked)),
+        ("Filters run", format!("{} of {} asked for", work.filters_run, work.filters_asked)),
     ];
-    let mut symbols: Vec<String> = found.ratios.iter().map(|ratio| ratio.symbol.clone()).collect();
-    symbols.sort_unstable();
-    symbols.dedup();
-    Document {
-        title: "Protocols side by side".into(),
-        kind: "Comparison of protocols".into(),
-        program: concat!("Fishplate ", env!("CARGO_PKG_VERSION")).to_owned(),
-        headline,
-        sentence,
-        key_facts: facts.map(|(name, value)| Fact { name: name.into(), value }).to_vec(),
-        symbols,
-        campaign: view::campaign(&inputs(found)),
-        protocol: view::protocol_view(&rules(found)),
-        chapters,
-    }
+    let facts = facts.map(|(name, value)| Fact::new(name, value)).to_vec();
+    Opening { headline, sentence, facts }
 }
 
 /// Campaigns on which the protocols have different verdicts.
-fn opening(found: &Comparison) -> (Finding, String) {
+fn verdicts_apart(found: &Comparison) -> (Finding, String) {
     let differs = |campaign: &str| {
         let mut cells =
             found.verdicts.iter().filter(|cell| cell.campaign == campaign).map(|cell| cell.holds);
@@ -71,7 +61,7 @@ fn opening(found: &Comparison) -> (Finding, String) {
     }
     match different {
         0 => (
-            Finding { class: "open", sign: "–", word: "The verdicts agree".into() },
+            Finding::neutral("The verdicts agree"),
             format!(
                 "On {} the protocols have the same verdict.",
                 if all == 1 { "the campaign" } else { "every campaign" }
@@ -137,14 +127,15 @@ pub fn figures(found: &Comparison) -> Vec<(String, String)> {
         .collect()
 }
 
-fn table(caption: &str, head: Vec<crate::report::study::Head>, rows: Vec<Vec<String>>) -> Item {
-    let rows =
-        rows.into_iter().map(|row| row.iter().map(|cell| number::raised(cell)).collect()).collect();
-    Item::Table { table: Table { caption: caption.into(), head, rows } }
+/// The whole comparison as `comparison.json`, ending in a line break.
+pub fn json(found: &Comparison) -> String {
+    // Serialisation of plain values cannot fail.
+    serde_json::to_string_pretty(found).unwrap_or_default() + "\n"
 }
 
-fn three(value: Option<f64>) -> String {
-    value.map_or_else(|| number::NONE.to_owned(), |value| number::significant(value, 3))
+/// A number with three digits, and a dash for none.
+fn three(value: Option<f64>) -> Cell {
+    Cell::number(value, Format::Significant(3))
 }
 
 /// A metric with its protocol, where there are several.

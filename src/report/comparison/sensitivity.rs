@@ -1,7 +1,7 @@
 //! Sensitivity of metrics to disturbances.
 
-use super::{metric, table, three};
-use crate::report::study::{Chapter, Head, Item};
+use super::{metric, three};
+use crate::report::document::{Block, Cell, Chapter, Column, Figure, Table, cells};
 use crate::result::comparison::{Comparison, Sensitivity};
 
 /// A curve: its name, and its values by size.
@@ -29,30 +29,28 @@ pub fn disturbances(found: &Comparison) -> Vec<(&str, Vec<Curve>)> {
 
 pub fn chapter(found: &Comparison) -> Option<Chapter> {
     let first = found.sensitivity.first()?;
-    let mut items = vec![Item::text(
+    let mut blocks = vec![Block::text(
         "A disturbance of size x changes the measured samples of a section by x times their standard deviation, as an rms over the section, before any filter. This holds for an offset, a gain, a shift in time and white noise, so that the same size is the same change. The choice of sections of size x leaves out the share x of the sections, drawn at random. The sensitivity is the root mean square of the change of value / limit, over all requirements of the metric and all campaigns.",
     )];
     for (at, (name, _)) in disturbances(found).iter().enumerate() {
-        items.push(Item::figure(
-            format!("sensitivity-{at}"),
-            format!("Sensitivity to {name}: rms change of value / limit over the size of the disturbance"),
-            format!("Curves of the sensitivity to {name}; the numbers are in the table."),
-        ));
+        let caption = format!(
+            "Sensitivity to {name}: rms change of value / limit over the size of the disturbance"
+        );
+        let alt = format!("Curves of the sensitivity to {name}; the numbers are in the table.");
+        blocks.push(Figure::new(format!("sensitivity-{at}"), caption, alt, 200).into());
     }
-    let mut head = vec![Head::text("Metric"), Head::short("Disturbance")];
-    head.extend(first.sizes.iter().map(|size| Head::number(&format!("Size {size}"))));
-    head.push(Head::number("Verdicts changed"));
+    let mut columns = vec![Column::text("Metric"), Column::short("Disturbance")];
+    columns.extend(first.sizes.iter().map(|size| Column::number(format!("Size {size}"))));
+    columns.push(Column::number("Verdicts changed"));
     let row = |one: &Sensitivity| {
-        let mut row = vec![metric(one, found), one.disturbance.clone()];
+        let mut row = cells![Cell::sentence(metric(one, found)), Cell::sentence(&one.disturbance)];
         row.extend(one.values.iter().map(|value| three(*value)));
         let changed: Vec<String> = one.verdicts_changed.iter().map(ToString::to_string).collect();
-        row.push(format!("{} of {}", changed.join(", "), one.verdicts));
+        row.push(format!("{} of {}", changed.join(", "), one.verdicts).into());
         row
     };
-    items.push(table(
-        "Sensitivity by size; at the end, the number of verdicts of the protocol that change at each size",
-        head,
-        found.sensitivity.iter().filter(|one| one.limited).map(row).collect(),
-    ));
-    Some(Chapter { id: "sensitivity".into(), title: "Sensitivity".into(), items })
+    let caption = "Sensitivity by size; at the end, the number of verdicts of the protocol that change at each size";
+    let rows = found.sensitivity.iter().filter(|one| one.limited).map(row);
+    blocks.push(Table::new(caption, columns, rows).into());
+    Some(Chapter::new("sensitivity", "Sensitivity", blocks))
 }

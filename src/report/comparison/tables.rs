@@ -1,15 +1,8 @@
 //! All tables of a comparison as CSV, in full precision.
 
+use crate::report::document::{Cell, cells};
 use crate::report::tables::csv_file;
 use crate::result::comparison::Comparison;
-
-fn number(value: Option<f64>) -> String {
-    value.map_or_else(String::new, |value| value.to_string())
-}
-
-fn flag(value: Option<bool>) -> String {
-    value.map_or_else(String::new, |value| value.to_string())
-}
 
 /// File names and contents for the folder `tables/`.
 ///
@@ -17,82 +10,68 @@ fn flag(value: Option<bool>) -> String {
 /// An error of the CSV writer, which writes to memory.
 pub fn tables(found: &Comparison) -> Result<Vec<(String, Vec<u8>)>, csv::Error> {
     let verdicts = found.verdicts.iter().map(|one| {
-        vec![
-            one.campaign.clone(),
-            one.protocol.clone(),
-            one.verdict.clone(),
-            flag(one.holds),
-            one.decided_by.clone().unwrap_or_default(),
-            number(one.ratio),
-            one.sections_used.to_string(),
-            one.reasons.join("; "),
+        cells![
+            one.campaign,
+            one.protocol,
+            one.verdict,
+            one.holds,
+            one.decided_by,
+            one.ratio,
+            one.sections_used,
+            one.reasons.join("; ")
         ]
     });
     let ratios = found.ratios.iter().map(|one| {
-        vec![
-            one.campaign.clone(),
-            one.protocol.clone(),
-            one.metric.clone(),
-            one.quantity.clone(),
-            one.estimate.clone(),
-            one.scope.to_string(),
-            one.unit.clone(),
-            number(one.value),
-            number(one.limit),
-            number(one.ratio),
-            flag(one.holds),
-            one.reason.clone().unwrap_or_default(),
+        cells![
+            one.campaign,
+            one.protocol,
+            one.metric,
+            one.quantity,
+            one.estimate,
+            one.scope,
+            one.unit,
+            one.value,
+            one.limit,
+            one.ratio,
+            one.holds,
+            one.reason
         ]
     });
     let scores = found.scores.iter().map(|one| {
-        let metric = one.metric.clone().unwrap_or_default();
-        vec![
-            one.campaign.clone(),
-            one.section.clone(),
-            one.protocol.clone(),
-            metric,
-            one.score.to_string(),
-            one.limited.to_string(),
-        ]
+        cells![one.campaign, one.section, one.protocol, one.metric, one.score, one.limited]
     });
     let agreement = found.agreement.iter().map(|one| {
         let counts = one.contingency.map_or([None; 4], |[[a, b], [c, d]]| [a, b, c, d].map(Some));
-        let mut row = vec![
-            one.of.clone(),
-            one.protocol.clone().unwrap_or_default(),
-            one.a.clone(),
-            one.b.clone(),
-            one.sections.to_string(),
-        ];
-        row.extend(counts.map(|count| count.map_or_else(String::new, |count| count.to_string())));
-        row.extend([number(one.spearman), one.reason.clone().unwrap_or_default()]);
+        let mut row = cells![one.of, one.protocol, one.a, one.b, one.sections];
+        row.extend(counts.map(|count| count.map_or(Cell::BLANK, Cell::from)));
+        row.extend(cells![one.spearman, one.reason]);
         row
     });
     let sensitivity = found.sensitivity.iter().flat_map(|one| {
         one.sizes.iter().enumerate().map(move |(at, size)| {
-            vec![
-                one.protocol.clone(),
-                one.metric.clone(),
-                one.disturbance.clone(),
-                size.to_string(),
-                number(one.values.get(at).copied().flatten()),
-                number(one.largest.get(at).copied().flatten()),
-                one.verdicts_changed.get(at).map_or_else(String::new, ToString::to_string),
-                one.verdicts.to_string(),
-                one.reasons.get(at).cloned().flatten().unwrap_or_default(),
+            cells![
+                one.protocol,
+                one.metric,
+                one.disturbance,
+                *size,
+                one.values.get(at).copied().flatten(),
+                one.largest.get(at).copied().flatten(),
+                one.verdicts_changed.get(at).copied().map_or(Cell::BLANK, Cell::from),
+                one.verdicts,
+                one.reasons.get(at).cloned().flatten()
             ]
         })
     });
     let differences = found.differences.iter().map(|one| {
-        vec![
-            one.rule.clone(),
-            one.words.clone(),
-            one.campaign.clone(),
-            one.verdict_before.clone(),
-            one.verdict_after.clone().unwrap_or_default(),
-            number(one.ratio_before),
-            number(one.ratio_after),
-            one.reason.clone().unwrap_or_default(),
+        cells![
+            one.rule,
+            one.words,
+            one.campaign,
+            one.verdict_before,
+            one.verdict_after,
+            one.ratio_before,
+            one.ratio_after,
+            one.reason
         ]
     });
     Ok(vec![
@@ -108,7 +87,7 @@ pub fn tables(found: &Comparison) -> Result<Vec<(String, Vec<u8>)>, csv::Error> 
                 "sections used",
                 "reasons",
             ],
-            verdicts.collect(),
+            verdicts,
         )?,
         csv_file(
             "ratios",
@@ -116,12 +95,12 @@ pub fn tables(found: &Comparison) -> Result<Vec<(String, Vec<u8>)>, csv::Error> 
                 "campaign", "protocol", "metric", "quantity", "estimate", "scope", "unit", "value",
                 "limit", "ratio", "holds", "reason",
             ],
-            ratios.collect(),
+            ratios,
         )?,
         csv_file(
             "scores",
             &["campaign", "section", "protocol", "metric", "score", "limited"],
-            scores.collect(),
+            scores,
         )?,
         csv_file(
             "agreement",
@@ -129,7 +108,7 @@ pub fn tables(found: &Comparison) -> Result<Vec<(String, Vec<u8>)>, csv::Error> 
                 "of", "protocol", "a", "b", "sections", "both met", "a only", "b only", "neither",
                 "spearman", "reason",
             ],
-            agreement.collect(),
+            agreement,
         )?,
         csv_file(
             "sensitivity",
@@ -144,7 +123,7 @@ pub fn tables(found: &Comparison) -> Result<Vec<(String, Vec<u8>)>, csv::Error> 
                 "verdicts",
                 "reason",
             ],
-            sensitivity.collect(),
+            sensitivity,
         )?,
         csv_file(
             "differences",
@@ -158,7 +137,7 @@ pub fn tables(found: &Comparison) -> Result<Vec<(String, Vec<u8>)>, csv::Error> 
                 "ratio after",
                 "reason",
             ],
-            differences.collect(),
+            differences,
         )?,
     ])
 }

@@ -1,38 +1,45 @@
 //! Verdicts, applicability, ratios and differences of protocols.
 
-use super::{table, three};
-use crate::report::number;
-use crate::report::study::{Chapter, Head, Item};
-use crate::result::comparison::{Applicability, Cell, Comparison, Difference, Tried};
+use super::three;
+use crate::report::document::{Block, Cell, Chapter, Column, Medium, Table, cells};
+use crate::result::comparison::{
+    Applicability, Cell as OnProtocol, Compared, Comparison, Difference, OnCampaign, Tried,
+};
+
+/// The column of the campaign. The cover names a single one: on paper, it is not told again in every
+/// row.
+fn campaign(found: &Comparison) -> Column {
+    let column = Column::text("Campaign").breaks(NAME);
+    if found.campaigns.len() == 1 { column.only(Medium::Screen) } else { column }
+}
+
+/// Letters of a name that is not broken.
+const NAME: usize = 12;
 
 pub fn verdicts(found: &Comparison) -> Chapter {
-    let row = |cell: &Cell| {
+    let row = |cell: &OnProtocol| {
         vec![
-            cell.campaign.clone(),
-            cell.protocol.clone(),
-            cell.verdict.clone(),
-            cell.decided_by.clone().unwrap_or_else(|| number::NONE.to_owned()),
+            Cell::from(&cell.campaign),
+            (&cell.protocol).into(),
+            (&cell.verdict).into(),
+            Cell::or_missing(cell.decided_by.as_deref().map(Cell::sentence)),
             three(cell.ratio),
-            cell.sections_used.to_string(),
+            cell.sections_used.into(),
         ]
     };
-    let mut items = vec![
-        Item::text(
-            "A verdict is decided by the requirement with the largest ratio of value and limit.",
-        ),
-        table(
-            "Verdicts of the protocols",
-            vec![
-                Head::text("Campaign"),
-                Head::text("Protocol"),
-                Head::short("Verdict"),
-                Head::text("Decided by"),
-                Head::number("Ratio"),
-                Head::number("Sections used"),
-            ],
-            found.verdicts.iter().map(row).collect(),
-        ),
+    let columns = vec![
+        campaign(found),
+        Column::text("Protocol").breaks(NAME),
+        Column::short("Verdict"),
+        Column::text("Decided by"),
+        Column::number("Ratio"),
+        Column::number("Sections used"),
     ];
+    let table =
+        Table::new("Verdicts of the protocols", columns, found.verdicts.iter().map(row)).into();
+    let about =
+        "A verdict is decided by the requirement with the largest ratio of value and limit.";
+    let mut blocks = vec![Block::text(about), table];
     let open: Vec<String> = found
         .verdicts
         .iter()
@@ -42,84 +49,62 @@ pub fn verdicts(found: &Comparison) -> Chapter {
         })
         .collect();
     if !open.is_empty() {
-        items.push(Item::text("Not assessable or open:"));
-        items.push(Item::List { entries: open });
+        blocks.push(Block::text("Not assessable or open:"));
+        blocks.push(Block::list(open));
     }
-    Chapter { id: "verdicts".into(), title: "Verdicts".into(), items }
+    Chapter::new("verdicts", "Verdicts", blocks)
 }
 
-fn tried(tried: Tried) -> String {
+fn tried(tried: Tried) -> Cell {
     match (tried.gave, tried.of) {
-        (_, 0) => number::NONE.to_owned(),
+        (_, 0) => Cell::MISSING,
         (gave, of) if gave == of => "yes".into(),
         (0, _) => "no".into(),
-        (gave, of) => format!("{gave} of {of}"),
+        (gave, of) => format!("{gave} of {of}").into(),
     }
 }
 
 pub fn applicability(found: &Comparison) -> Chapter {
     let row = |one: &Applicability| {
-        vec![
-            one.protocol.clone(),
-            one.metric.clone(),
-            one.quantities.to_string(),
+        cells![
+            one.protocol,
+            Cell::sentence(&one.metric),
+            one.quantities,
             tried(one.number_of_one_quantity),
             tried(one.number_of_one_section),
             tried(one.verdict_of_one_quantity),
             tried(one.verdict_of_one_section),
-            one.scale.clone().unwrap_or_else(|| number::NONE.to_owned()),
-            one.symmetric.map_or_else(
-                || number::NONE.to_owned(),
-                |it| if it { "yes" } else { "no" }.to_owned(),
-            ),
+            Cell::or_missing(one.scale.as_ref()),
+            Cell::or_missing(one.symmetric)
         ]
     };
-    Chapter {
-        id: "applicability".into(),
-        title: "Applicability".into(),
-        items: vec![
-            Item::text(
-                "Each entry was found by trying. All but one quantity, or all but one section, are withheld: does the metric have a number, and the protocol a verdict? Scale: with both records doubled, a relative metric keeps its values and an absolute one doubles them. Symmetric: with simulation and measurement exchanged, the magnitude stays.",
-            ),
-            table(
-                "Applicability of the metrics",
-                vec![
-                    Head::text("Protocol"),
-                    Head::text("Metric"),
-                    Head::number("Quantities"),
-                    Head::short("Number, one quantity"),
-                    Head::short("Number, one section"),
-                    Head::short("Verdict, one quantity"),
-                    Head::short("Verdict, one section"),
-                    Head::short("Scale"),
-                    Head::short("Symmetric"),
-                ],
-                found.applicability.iter().map(row).collect(),
-            ),
-        ],
-    }
+    let mut columns = vec![
+        Column::text("Protocol").breaks(24),
+        Column::text("Metric").breaks(24),
+        Column::number("Quantities"),
+    ];
+    columns.extend(
+        [
+            "Number, one quantity",
+            "Number, one section",
+            "Verdict, one quantity",
+            "Verdict, one section",
+            "Scale",
+            "Symmetric",
+        ]
+        .map(Column::short),
+    );
+    let about = "Each entry was found by trying. All but one quantity, or all but one section, are withheld: does the metric have a number, and the protocol a verdict? Scale: with both records doubled, a relative metric keeps its values and an absolute one doubles them. Symmetric: with simulation and measurement exchanged, the magnitude stays.";
+    let rows = found.applicability.iter().map(row);
+    let table = Table::new("Applicability of the metrics", columns, rows);
+    Chapter::new("applicability", "Applicability", vec![Block::text(about), table.into()])
 }
 
 /// With two protocols, what each difference does.
 pub fn differences(found: &Comparison) -> Option<Chapter> {
     let [before, after] = found.protocols.as_slice() else { return None };
-    let row = |one: &Difference| {
-        let ratio = |ratio: Option<f64>| three(ratio);
-        vec![
-            one.rule.clone(),
-            one.words.clone(),
-            one.campaign.clone(),
-            one.verdict_before.clone(),
-            one.verdict_after
-                .clone()
-                .or_else(|| one.reason.clone())
-                .unwrap_or_else(|| number::NONE.to_owned()),
-            format!("{} / {}", ratio(one.ratio_before), ratio(one.ratio_after)),
-            one.limits_changed.map_or_else(|| number::NONE.to_owned(), |count| count.to_string()),
-        ]
-    };
-    let items = if let Some(count) = found.unrelated {
-        vec![Item::text(format!(
+    let blocks = if let Some(count) = found.unrelated {
+        vec![Block::text(format!(
             "{} and {} are unrelated: neither extends the other and they extend no common protocol. They differ in {}, none of which is \
              applied alone.",
             before.name,
@@ -127,29 +112,42 @@ pub fn differences(found: &Comparison) -> Option<Chapter> {
             if count == 1 { "one rule".into() } else { format!("{count} rules") }
         ))]
     } else if found.differences.is_empty() {
-        vec![Item::text("The protocols do not differ in any rule.")]
+        vec![Block::text("The protocols do not differ in any rule.")]
     } else {
+        let about = format!(
+            "Each rule in which {} differs from {} is applied alone to {}, then all rules together. The largest ratio of value and limit is printed before and after.",
+            after.name, before.name, before.name
+        );
+        vec![Block::text(about), rules(found).into()]
+    };
+    Some(Chapter::new("differences", "Differences, rule by rule", blocks))
+}
+
+fn rules(found: &Comparison) -> Table {
+    let row = |one: &Difference| {
+        let ratio = |ratio: Option<f64>| three(ratio).printed().letters();
+        let after = one.verdict_after.as_ref().or(one.reason.as_ref());
         vec![
-            Item::text(format!(
-                "Each rule in which {} differs from {} is applied alone to {}, then all rules together. The largest ratio of value and limit is printed before and after.",
-                after.name, before.name, before.name
-            )),
-            table(
-                "Rules that differ, and the verdict with each of them",
-                vec![
-                    Head::text("Rule"),
-                    Head::text("Difference"),
-                    Head::text("Campaign"),
-                    Head::short("Verdict before"),
-                    Head::text("Verdict after"),
-                    Head::number("Largest ratio"),
-                    Head::number("Limits changed"),
-                ],
-                found.differences.iter().map(row).collect(),
-            ),
+            Cell::sentence(&one.rule),
+            Cell::sentence(&one.words),
+            (&one.campaign).into(),
+            (&one.verdict_before).into(),
+            Cell::or_missing(after.map(Cell::sentence)),
+            format!("{} / {}", ratio(one.ratio_before), ratio(one.ratio_after)).into(),
+            Cell::or_missing(one.limits_changed),
         ]
     };
-    Some(Chapter { id: "differences".into(), title: "Differences, rule by rule".into(), items })
+    let columns = vec![
+        Column::text("Rule"),
+        Column::text("Difference"),
+        campaign(found),
+        Column::short("Verdict before"),
+        Column::text("Verdict after"),
+        Column::number("Largest ratio"),
+        Column::number("Limits changed"),
+    ];
+    let caption = "Rules that differ, and the verdict with each of them";
+    Table::new(caption, columns, found.differences.iter().map(row))
 }
 
 /// Most protocols side by side in a table.
@@ -157,7 +155,7 @@ const ABREAST: usize = 6;
 
 /// The largest ratio of each quantity, the protocols side by side.
 pub fn ratios(found: &Comparison) -> Chapter {
-    let mut items = Vec::new();
+    let mut blocks = Vec::new();
     for some in found.protocols.chunks(ABREAST) {
         let names: Vec<&str> = some.iter().map(|one| one.name.as_str()).collect();
         let mut rows: Vec<([&str; 3], Vec<Option<f64>>)> = Vec::new();
@@ -175,47 +173,28 @@ pub fn ratios(found: &Comparison) -> Chapter {
                 *largest = one.ratio;
             }
         }
-        let mut head =
-            vec![Head::text("Campaign"), Head::short("Quantity"), Head::text("Estimate")];
-        head.extend(names.iter().map(|name| Head { numeric: true, ..Head::text(name) }));
-        let row = |(key, ratios): ([&str; 3], Vec<Option<f64>>)| {
-            key.iter()
-                .map(|part| (*part).to_owned())
-                .chain(ratios.into_iter().map(three))
-                .collect::<Vec<_>>()
+        let mut columns =
+            vec![campaign(found), Column::short("Quantity"), Column::text("Estimate")];
+        columns.extend(names.iter().map(|name| Column::number(*name).wide(1.0).breaks(NAME)));
+        let row = |([campaign, symbol, estimate], ratios): ([&str; 3], Vec<Option<f64>>)| {
+            let mut row = cells![campaign, Cell::symbol(symbol, ""), Cell::sentence(estimate)];
+            row.extend(ratios.into_iter().map(three));
+            row
         };
         let caption = "Largest ratio of value and limit over the groups of each requirement";
-        items.push(table(caption, head, rows.into_iter().map(row).collect()));
+        blocks.push(Table::new(caption, columns, rows.into_iter().map(row)).into());
     }
-    Chapter { id: "ratios".into(), title: "Ratios by quantity".into(), items }
+    Chapter::new("ratios", "Ratios by quantity", blocks)
 }
 
 pub fn compared(found: &Comparison) -> Chapter {
-    let protocol = |one: &crate::result::comparison::Compared| {
-        vec![one.name.clone(), one.title.clone(), one.criterion.clone(), one.sha256.clone()]
-    };
-    let campaign = |one: &crate::result::comparison::OnCampaign| {
-        vec![one.name.clone(), one.sections.to_string()]
-    };
-    Chapter {
-        id: "compared".into(),
-        title: "Protocols and campaigns".into(),
-        items: vec![
-            table(
-                "Protocols, with the SHA-256 of their text",
-                vec![
-                    Head::text("Name"),
-                    Head::text("Title"),
-                    Head::text("Criterion"),
-                    Head::text("SHA-256"),
-                ],
-                found.protocols.iter().map(protocol).collect(),
-            ),
-            table(
-                "Campaigns",
-                vec![Head::text("Name"), Head::number("Sections")],
-                found.campaigns.iter().map(campaign).collect(),
-            ),
-        ],
-    }
+    let protocol =
+        |one: &Compared| cells![one.name, one.title, Cell::sentence(&one.criterion), one.sha256];
+    let campaign = |one: &OnCampaign| cells![one.name, one.sections];
+    let columns = ["Name", "Title", "Criterion", "SHA-256"].map(Column::text).to_vec();
+    let caption = "Protocols, with the SHA-256 of their text";
+    let protocols = Table::new(caption, columns, found.protocols.iter().map(protocol));
+    let columns = vec![Column::text("Name"), Column::number("Sections")];
+    let campaigns = Table::new("Campaigns", columns, found.campaigns.iter().map(campaign));
+    Chapter::new("compared", "Protocols and campaigns", vec![protocols.into(), campaigns.into()])
 }

@@ -19,6 +19,11 @@ const GUTTER: f64 = 20.0;
 /// of points.
 const NUMBERED: usize = 30;
 
+/// Whether there is a figure: two coordinates or more, and something to show in them.
+pub fn has_application(result: &DomainResult) -> bool {
+    result.coordinates.len() > 1 && !(result.sections.is_empty() && result.points.is_empty())
+}
+
 /// A diagram for each of the first pairs of coordinates.
 pub fn application(result: &DomainResult) -> String {
     let count = result.coordinates.len();

@@ -30,7 +30,7 @@ mod symbol;
 mod trace;
 mod zones;
 
-pub use application::application;
+pub use application::{application, has_application};
 pub use choices::choices;
 pub use domain::domain;
 pub use frequency::{frequency, has_frequency};
@@ -45,10 +45,10 @@ pub use states::{before_after, signals};
 pub use trace::trace;
 pub use zones::Zones;
 
-use crate::report::{brief, estimates, sides, view};
+use crate::report::{brief, estimates, sides};
 use crate::result::Certification;
 
-/// All figures of a report by their names in the view ([`super::view::FigureView::name`]).
+/// All figures of a report by their names in the document ([`super::document::Figure::name`]).
 ///
 /// Empty figures are omitted: a quantity without values, a domain without conditions, a missing
 /// graph.
@@ -90,7 +90,7 @@ pub fn figures(found: &Certification) -> Vec<(String, String)> {
         drawn.push(("domain".to_owned(), domain(&found.domain, &found.sections, &zones)));
     }
     for (at, result) in
-        found.application.iter().enumerate().filter(|(_, result)| view::application::drawn(result))
+        found.application.iter().enumerate().filter(|(_, result)| has_application(result))
     {
         drawn.push((format!("application-{at}"), application(result)));
     }

@@ -1,72 +1,59 @@
 //! A study as a document: chapters of text, tables and figures, printed as PDF and HTML from the
 //! same data.
 
-mod document;
 mod parameters;
 mod sections;
 mod sync;
 pub mod tables;
 
-pub use document::{Chapter, Document, Head, Item, Table};
+use std::fmt::Display;
 
+use crate::report::document::{Block, Cell, Chapter, Column, Document, Finding, Table, cells};
 use crate::report::figure;
 use crate::report::number;
-use crate::report::view::{self, Fact, Finding};
+use crate::report::view::{self, Opening};
 use crate::result::study::{Found, QuantitySpread, Share, Study};
-use crate::result::{Verdict, VerdictWords};
+use crate::result::{ParameterInfo, Scope, Verdict, VerdictWords};
+
+/// What was varied.
+fn subject(study: &Study) -> &'static str {
+    match &study.found {
+        Found::Sections(_) => "Selection of sections",
+        Found::Sync(_) => "Synchronisation",
+        Found::Parameters(_) => "Parameters of the protocol",
+    }
+}
+
+/// What was varied, and the campaign.
+pub fn title(study: &Study) -> String {
+    format!("{}: {}", subject(study), study.campaign.name)
+}
+
+/// What the study came to.
+pub fn opening(study: &Study) -> Opening {
+    let words = &study.protocol.verdict_words;
+    match &study.found {
+        Found::Sections(found) => sections::opening(found, words),
+        Found::Sync(found) => sync::opening(found, words),
+        Found::Parameters(found) => parameters::opening(found, words),
+    }
+}
 
 /// The study as printed in both reports.
 pub fn document(study: &Study) -> Document {
     let words = &study.protocol.verdict_words;
-    let (title, opening, mut chapters) = match &study.found {
-        Found::Sections(found) => (
-            "Selection of sections",
-            sections::opening(found, words),
-            sections::chapters(found, words),
-        ),
-        Found::Sync(found) => {
-            ("Synchronisation", sync::opening(found, words), sync::chapters(found, words))
-        }
-        Found::Parameters(found) => (
-            "Parameters of the protocol",
-            parameters::opening(found, words),
-            parameters::chapters(found, words),
-        ),
+    let mut chapters = match &study.found {
+        Found::Sections(found) => sections::chapters(found, words),
+        Found::Sync(found) => sync::chapters(found, words),
+        Found::Parameters(found) => parameters::chapters(found, words),
     };
     if !study.notes.is_empty() {
-        chapters.push(Chapter {
-            id: "remarks".into(),
-            title: "Remarks".into(),
-            items: vec![Item::List { entries: study.notes.clone() }],
-        });
+        chapters.push(Chapter::new("remarks", "Remarks", vec![Block::list(&study.notes)]));
     }
     chapters.push(settings(study));
-    Document {
-        title: format!("{title}: {}", study.campaign.name),
-        kind: format!("Robustness of the verdict: {}", title.to_lowercase()),
-        program: concat!("Fishplate ", env!("CARGO_PKG_VERSION")).to_owned(),
-        headline: opening.headline,
-        sentence: opening.sentence,
-        key_facts: opening.facts,
-        symbols: symbols(&study.found),
-        campaign: view::campaign(&study.campaign),
-        protocol: view::protocol_view(&study.protocol),
-        chapters,
-    }
-}
-
-/// Symbols of the quantities, without repetition.
-fn symbols(found: &Found) -> Vec<String> {
-    let all: Vec<&String> = match found {
-        Found::Sections(found) => {
-            found.quantities.iter().map(|quantity| &quantity.symbol).collect()
-        }
-        Found::Sync(found) => {
-            found.offsets.iter().flat_map(|at| &at.selected).map(|one| &one.symbol).collect()
-        }
-        Found::Parameters(found) => found.base.statistics.iter().map(|one| &one.symbol).collect(),
-    };
-    all.into_iter().collect::<indexmap::IndexSet<_>>().into_iter().cloned().collect()
+    let over = format!("Robustness of the verdict: {}", subject(study).to_lowercase());
+    let inputs = (&study.campaign, &study.protocol);
+    view::study((title(study), &over), opening(study), inputs, chapters)
 }
 
 /// An unchanged verdict as a headline; only one that holds gets the positive sign. `otherwise` if
@@ -79,43 +66,37 @@ fn stays(verdict: Option<Verdict>, words: &VerdictWords, otherwise: &str) -> Fin
         }
         // Neither positive nor negative: that a verdict does not depend on a choice is no statement
         // on the model.
-        Some(verdict) => Finding { class: "open", sign: "–", word: unchanged(verdict) },
+        Some(verdict) => Finding::neutral(unchanged(verdict)),
         None => Finding::new(None, "", "", otherwise),
     }
 }
 
-/// Content of the cover.
-struct Opening {
-    headline: Finding,
-    sentence: String,
-    facts: Vec<Fact>,
+fn settings(study: &Study) -> Chapter {
+    let row = |parameter: &ParameterInfo| -> Vec<Cell> {
+        cells![
+            parameter.name,
+            parameter.title,
+            parameter.value,
+            parameter.default,
+            parameter.set_by
+        ]
+    };
+    let columns = vec![
+        Column::name("Name"),
+        Column::text("Meaning"),
+        Column::short("Used"),
+        Column::short("Default"),
+        Column::short("Set by"),
+    ];
+    let caption = "Parameters of the protocol, values used and defaults";
+    let table = Table::new(caption, columns, study.protocol.parameters.iter().map(row));
+    let rule = Block::text(&study.protocol.verdict_rule);
+    Chapter::new("protocol", "Protocol", vec![rule, table.into()])
 }
 
-fn settings(study: &Study) -> Chapter {
-    let row = |parameter: &crate::result::ParameterInfo| {
-        [&parameter.name, &parameter.title, &parameter.value, &parameter.default, &parameter.set_by]
-            .map(Clone::clone)
-            .to_vec()
-    };
-    let table = Table {
-        caption: "Parameters of the protocol, values used and defaults".into(),
-        head: vec![
-            Head::short("Name"),
-            Head::text("Meaning"),
-            Head::short("Used"),
-            Head::short("Default"),
-            Head::short("Set by"),
-        ],
-        rows: study.protocol.parameters.iter().map(row).collect(),
-    };
-    Chapter {
-        id: "protocol".into(),
-        title: "Protocol".into(),
-        items: vec![
-            Item::Text { text: study.protocol.verdict_rule.clone() },
-            Item::Table { table },
-        ],
-    }
+/// A statistic with its scope, unless that is all.
+fn scoped(statistic: impl Display, scope: &Scope) -> String {
+    format!("{statistic}{}", scope.suffix())
 }
 
 /// All figures of a study by their names in the document.

@@ -1,10 +1,10 @@
 //! Text of the study of parameters.
 
-use super::document::{Chapter, Head, Item, Table};
-use super::{Opening, share_with};
+use super::{scoped, share_with};
+use crate::report::document::{Block, Cell, Chapter, Column, Fact, Figure, Format, Table, cells};
 use crate::report::number;
 use crate::report::sides::capital;
-use crate::report::view::Fact;
+use crate::report::view::Opening;
 use crate::result::VerdictWords;
 use crate::result::study::{AtValue, ParameterStudy, Varied};
 
@@ -51,94 +51,78 @@ pub fn opening(found: &ParameterStudy, words: &VerdictWords) -> Opening {
                 ),
             ),
         ]
-        .map(|(name, value)| Fact { name, value })
+        .map(|(name, value)| Fact::new(name, value))
         .to_vec(),
     }
 }
 
+/// A ratio of a value and its limit, with enough decimals to compare with 1.
+const RATIO: Format = Format::Beside { limit: 1.0, decimals: 3 };
+
 pub fn chapters(found: &ParameterStudy, words: &VerdictWords) -> Vec<Chapter> {
+    let good = &words.good;
     let row = |parameter: &Varied, at: &AtValue| {
+        let largest = at.largest.as_ref();
         vec![
-            parameter.name.clone(),
-            if at.is_base { format!("{} (baseline)", at.value) } else { at.value.clone() },
-            words.word(at.verdict).to_owned(),
-            at.largest.as_ref().map_or_else(
-                || number::NONE.to_owned(),
-                |largest| number::beside(largest.normalised, 1.0, 3),
-            ),
-            at.largest.as_ref().map_or_else(String::new, |largest| largest.statistic.clone()),
-            at.share.map_or_else(
-                || at.reason.clone().unwrap_or_default(),
-                |share| share_with(share, at.interval),
-            ),
+            Cell::from(&parameter.name),
+            if at.is_base { format!("{} (baseline)", at.value).into() } else { (&at.value).into() },
+            words.word(at.verdict).into(),
+            Cell::number(largest.map(|largest| largest.normalised), RATIO),
+            largest.map_or(Cell::BLANK, |largest| (&largest.statistic).into()),
+            at.share
+                .map_or_else(|| (&at.reason).into(), |share| share_with(share, at.interval).into()),
         ]
     };
     let rows = found
         .parameters
         .iter()
         .flat_map(|parameter| parameter.values.iter().map(move |at| row(parameter, at)));
-    let mut chapters = vec![Chapter {
-        id: "choices".into(),
-        title: "Parameters that affect the verdict".into(),
-        items: vec![
-            Item::text(
-                "Each parameter is varied individually; all others keep their baseline values. In the figure, baseline values and the parameters that affect the verdict are printed in bold.",
-            ),
-            Item::figure(
-                "choices",
-                format!(
-                    "Largest statistic divided by its limit for each value, and the share of selections with the verdict '{}'",
-                    words.good
-                ),
-                "For every value of every parameter the largest normalised statistic; the numbers are in the table.",
-            ),
-            Item::Table {
-                table: Table {
-                    caption: format!(
-                        "Verdict on all sections, largest statistic divided by its limit, and share of selections with the verdict '{}'",
-                        words.good
-                    ),
-                    head: vec![
-                        Head::text("Parameter"),
-                        Head::text("Value"),
-                        Head::short("Verdict"),
-                        Head::number("Largest ratio"),
-                        Head::text("Statistic"),
-                        Head::number(&capital(&words.good)),
-                    ],
-                    rows: rows.collect(),
-                },
-            },
-        ],
-    }];
-    let mut items = Vec::new();
-    for parameter in &found.parameters {
-        items.push(statistics(parameter));
-    }
-    chapters.push(Chapter {
-        id: "statistics".into(),
-        title: "Statistics by parameter value".into(),
-        items,
-    });
-    chapters
+    let columns = vec![
+        Column::text("Parameter").breaks(NAME),
+        Column::text("Value"),
+        Column::short("Verdict"),
+        Column::number("Largest ratio"),
+        Column::text("Statistic"),
+        Column::number(capital(good)),
+    ];
+    let about = "Each parameter is varied individually; all others keep their baseline values. In the figure, baseline values and the parameters that affect the verdict are printed in bold.";
+    let figure = Figure::new(
+        "choices",
+        format!(
+            "Largest statistic divided by its limit for each value, and the share of selections with the verdict '{good}'"
+        ),
+        "For every value of every parameter the largest normalised statistic; the numbers are in the table.",
+        200,
+    );
+    let caption = format!(
+        "Verdict on all sections, largest statistic divided by its limit, and share of selections with the verdict '{good}'"
+    );
+    let table = Table::new(caption, columns, rows);
+    let blocks = vec![Block::text(about), figure.into(), table.into()];
+    let statistics = found.parameters.iter().map(|parameter| statistics(parameter).into());
+    vec![
+        Chapter::new("choices", "Parameters that affect the verdict", blocks),
+        Chapter::new("statistics", "Statistics by parameter value", statistics.collect()),
+    ]
 }
 
+/// Letters of a name of a parameter that is not broken.
+const NAME: usize = 12;
 /// Maximum number of values side by side in a table.
 const ABREAST: usize = 9;
 
-fn statistics(parameter: &Varied) -> Item {
+fn statistics(parameter: &Varied) -> Table {
     let values: Vec<&AtValue> = parameter.values.iter().take(ABREAST).collect();
-    let mut head = vec![Head::text("Quantity"), Head::short("Statistic")];
-    head.extend(values.iter().map(|at| Head::number(&at.value)));
+    let mut columns = vec![Column::text("Quantity"), Column::short("Statistic")];
+    columns.extend(values.iter().map(|at| Column::number(&at.value)));
     let first = values.iter().find(|at| !at.statistics.is_empty());
     let rows = first.map_or(&[][..], |at| &at.statistics).iter().map(|one| {
-        let mut row = vec![one.symbol.clone(), format!("{}{}", one.name, one.scope.suffix())];
+        let mut row = cells![Cell::symbol(&one.symbol, ""), scoped(&one.name, &one.scope)];
         row.extend(values.iter().map(|at| {
             let same = at.statistics.iter().find(|other| {
                 other.id == one.id && other.name == one.name && other.scope == one.scope
             });
-            same.and_then(|other| other.normalised)
-                .map_or_else(|| number::NONE.to_owned(), |value| number::beside(value, 1.0, 3))
+            Cell::number(same.and_then(|other| other.normalised), RATIO)
         }));
         row
     });
@@ -147,14 +131,7 @@ fn statistics(parameter: &Varied) -> Item {
     } else {
         ""
     };
-    Item::Table {
-        table: Table {
-            caption: format!(
-                "{}: statistics of all sections divided by their limits{more}",
-                parameter.title
-            ),
-            head,
-            rows: rows.collect(),
-        },
-    }
+    let caption =
+        format!("{}: statistics of all sections divided by their limits{more}", parameter.title);
+    Table::new(caption, columns, rows)
 }

@@ -1,11 +1,13 @@
 //! Text of the study of selections.
 
-use super::document::{Chapter, Head, Item, Table};
-use super::{BOXES, Opening, percent, share};
+use super::{BOXES, percent, scoped, share};
+use crate::report::document::{
+    Block, Cell, Chapter, Column, Fact, Figure, Finding, Format, Table, cells,
+};
 use crate::report::figure;
 use crate::report::number;
 use crate::report::sides::capital;
-use crate::report::view::{Fact, Finding};
+use crate::report::view::Opening;
 use crate::result::study::{
     Importance, QuantitySpread, Reduction, Removal, SelectionStudy, Spread,
 };
@@ -14,9 +16,8 @@ use crate::result::{Verdict, VerdictWords};
 /// Maximum number of rows of a table; the CSV tables contain all.
 const MOST_ROWS: usize = 60;
 
-fn fact(name: &str, value: String) -> Fact {
-    Fact { name: name.to_owned(), value }
-}
+/// A ratio of a value and its limit, with enough decimals to compare with 1.
+const RATIO: Format = Format::Beside { limit: 1.0, decimals: 3 };
 
 pub fn opening(found: &SelectionStudy, words: &VerdictWords) -> Opening {
     let all = found.counted.share.share;
@@ -62,17 +63,17 @@ pub fn opening(found: &SelectionStudy, words: &VerdictWords) -> Opening {
             words.word(found.verdict)
         ),
         facts: vec![
-            fact("Selections", number::large(found.counted.combinations)),
-            fact(
-                &capital(&words.good),
+            Fact::new("Selections", number::large(found.counted.combinations)),
+            Fact::new(
+                capital(&words.good),
                 if found.counted.share.exact {
                     number::count(found.counted.share.validated)
                 } else {
                     share(&found.counted.share)
                 },
             ),
-            fact("All sections", words.word(found.verdict).to_owned()),
-            fact(
+            Fact::new("All sections", words.word(found.verdict).to_owned()),
+            Fact::new(
                 "Sections",
                 found
                     .strata
@@ -86,81 +87,63 @@ pub fn opening(found: &SelectionStudy, words: &VerdictWords) -> Opening {
 }
 
 pub fn chapters(found: &SelectionStudy, words: &VerdictWords) -> Vec<Chapter> {
-    let mut items = vec![strata(found)];
-    items.extend(found.methods.iter().map(Item::text));
+    let mut blocks = vec![strata(found).into()];
+    blocks.extend(found.methods.iter().map(Block::text));
+    let influence = importance(&found.sections, found.removal.as_ref(), words);
     let mut chapters = vec![
-        Chapter { id: "selections".into(), title: "Selections".into(), items },
-        Chapter {
-            id: "spread".into(),
-            title: "Scatter over the selections".into(),
-            items: spread(&found.quantities, all_of(found)),
-        },
-        Chapter {
-            id: "failing".into(),
-            title: "Criteria not met or not assessed".into(),
-            items: failing(found),
-        },
-        Chapter {
-            id: "sections".into(),
-            title: "Influence of individual sections".into(),
-            items: importance(&found.sections, found.removal.as_ref(), words),
-        },
+        Chapter::new("selections", "Selections", blocks),
+        Chapter::new(
+            "spread",
+            "Scatter over the selections",
+            spread(&found.quantities, all_of(found)),
+        ),
+        Chapter::new("failing", "Criteria not met or not assessed", failing(found)),
+        Chapter::new("sections", "Influence of individual sections", influence),
     ];
     chapters.extend(found.reduction.as_ref().map(reduction));
     chapters
 }
 
-fn strata(found: &SelectionStudy) -> Item {
+fn strata(found: &SelectionStudy) -> Table {
     let rows = found.strata.iter().map(|stratum| {
-        let not_used = by_reason(&stratum.not_used);
+        let not_used = Some(by_reason(&stratum.not_used)).filter(|reasons| !reasons.is_empty());
         vec![
-            stratum.zone.clone(),
-            stratum.title.clone(),
-            stratum.take.to_string(),
-            stratum.sections.len().to_string(),
-            stratum.sections.join(", "),
-            if not_used.is_empty() { number::NONE.into() } else { not_used.join("; ") },
+            Cell::from(&stratum.zone),
+            (&stratum.title).into(),
+            stratum.take.into(),
+            stratum.sections.len().into(),
+            stratum.sections.join(", ").into(),
+            Cell::or_missing(not_used.map(|reasons| reasons.join("; "))),
         ]
     });
-    Item::Table {
-        table: Table {
-            caption: "Composition of a selection, and the sections it is drawn from".into(),
-            head: vec![
-                Head::short("Zone"),
-                Head::text("Title"),
-                Head::number("Taken"),
-                Head::number("Usable"),
-                Head::text("Sections"),
-                Head::text("Not used"),
-            ],
-            rows: rows.collect(),
-        },
-    }
+    let columns = vec![
+        Column::name("Zone"),
+        Column::text("Title"),
+        Column::number("Taken"),
+        Column::number("Usable"),
+        Column::text("Sections"),
+        Column::text("Not used"),
+    ];
+    Table::new("Composition of a selection, and the sections it is drawn from", columns, rows)
 }
 
 /// The box plots, one figure for each kind of statistic.
-pub fn boxes(quantities: &[QuantitySpread], name: &str, at: &str) -> Vec<Item> {
+pub fn boxes(quantities: &[QuantitySpread], name: &str, at: &str) -> Vec<Block> {
     let one = |(of, count): (figure::boxes::Of, usize)| {
-        let all = || {
-            quantities
-                .iter()
-                .flat_map(|quantity| &quantity.statistics)
-                .filter(|statistic| of.has(&statistic.name))
-        };
-        let beyond = all().filter(|statistic| statistic.failing > 0.0).count();
-        Item::figure(
-            format!("{name}-{}", of.name()),
-            format!("{} of all selections divided by their limits{at}", of.in_words()),
-            format!(
-                "Box plots of {count} normalised statistics; {beyond} exceed their limits in some selections. The numbers are in the table."
-            ),
-        )
+        let all = quantities.iter().flat_map(|quantity| &quantity.statistics);
+        let beyond =
+            all.filter(|statistic| of.has(&statistic.name) && statistic.failing > 0.0).count();
+        let caption = format!("{} of all selections divided by their limits{at}", of.in_words());
+        let alt = format!(
+            "Box plots of {count} normalised statistics; {beyond} exceed their limits in some selections. The numbers are in the table."
+        );
+        Figure::new(format!("{name}-{}", of.name()), caption, alt, 200).into()
     };
     figure::boxes::drawn(quantities).into_iter().map(one).collect()
 }
 
 /// The box plots and their numbers.
-fn spread(quantities: &[QuantitySpread], of: &str) -> Vec<Item> {
+fn spread(quantities: &[QuantitySpread], of: &str) -> Vec<Block> {
     let statistics = || {
         quantities.iter().flat_map(|quantity| {
             quantity.statistics.iter().map(move |statistic| (quantity, statistic))
@@ -169,55 +152,42 @@ fn spread(quantities: &[QuantitySpread], of: &str) -> Vec<Item> {
     // Columns with the same content in every row are omitted.
     let scopes = statistics().any(|(_, statistic)| !statistic.scope.is_all());
     let spreads: Vec<Spread> = statistics().filter_map(|(_, statistic)| statistic.spread).collect();
-    let rows: Vec<Vec<String>> = statistics()
-        .map(|(quantity, statistic)| {
-            let mut row = vec![quantity.symbol.clone(), statistic.name.to_string()];
-            row.extend(scopes.then(|| statistic.scope.to_string()));
-            row.push(statistic.overall.map_or_else(|| number::NONE.into(), shown));
-            match &statistic.spread {
-                Some(spread) => row.extend(numbers(spread)),
-                None => row.extend((0..6).map(|_| number::NONE.to_owned())),
-            }
-            row.push(percent(statistic.failing));
-            row
-        })
-        .collect();
-    let mut head = vec![Head::text("Quantity"), Head::short("Statistic")];
-    head.extend(scopes.then(|| Head::short("Pairs")));
-    head.extend(["All", "Min", "25 %", "Median", "75 %", "Max", "Outliers"].map(Head::number));
-    head.push(Head::number("Not met"));
-    let table = Table {
-        caption: format!(
-            "Statistics divided by their limits over the selections; “All” refers to all {} together{}",
-            of,
-            known(&spreads)
-        ),
-        head,
-        rows,
-    };
-    boxes(quantities, BOXES, "").into_iter().chain([Item::Table { table }]).collect()
-}
-
-fn shown(value: f64) -> String {
-    number::beside(value, 1.0, 3)
+    let rows = statistics().map(|(quantity, statistic)| {
+        let mut row = cells![Cell::symbol(&quantity.symbol, ""), statistic.name];
+        row.extend(scopes.then(|| Cell::from(&statistic.scope)));
+        row.push(Cell::number(statistic.overall, RATIO));
+        row.extend(numbers(statistic.spread.as_ref()));
+        row.push(percent(statistic.failing).into());
+        row
+    });
+    let mut columns = vec![Column::text("Quantity"), Column::short("Statistic")];
+    columns.extend(scopes.then(|| Column::short("Pairs")));
+    let numbers = ["All", "Min", "25 %", "Median", "75 %", "Max", "Outliers", "Not met"];
+    columns.extend(numbers.map(Column::number));
+    let caption = format!(
+        "Statistics divided by their limits over the selections; “All” refers to all {of} together{}",
+        known(&spreads)
+    );
+    let table = Table::new(caption, columns, rows);
+    boxes(quantities, BOXES, "").into_iter().chain([table.into()]).collect()
 }
 
 /// Minimum, quartiles, maximum and outliers; for an estimated quartile half the width of its
 /// interval.
-fn numbers(spread: &Spread) -> Vec<String> {
-    let within = |at: usize| {
-        let half = spread.intervals.all()[at].map(|(low, high)| 0.5 * (high - low));
-        half.map_or_else(String::new, |half| format!(" ± {}", number::significant(half, 1)))
+fn numbers(spread: Option<&Spread>) -> Vec<Cell> {
+    let Some(spread) = spread else { return vec![Cell::MISSING; 6] };
+    let quartile = |(at, value): (usize, f64)| match spread.intervals.all()[at] {
+        None => Cell::number(value, RATIO),
+        Some((low, high)) => {
+            let half = number::significant(0.5 * (high - low), 1);
+            Cell::text(format!("{} ± {half}", RATIO.print(value)))
+        }
     };
-    let mut row = vec![shown(spread.min)];
-    row.extend(
-        [spread.q1, spread.median, spread.q3]
-            .iter()
-            .enumerate()
-            .map(|(at, value)| shown(*value) + &within(at)),
-    );
-    row.push(shown(spread.max));
-    row.push(number::large(spread.outliers as f64));
+    let quartiles = [spread.q1, spread.median, spread.q3];
+    let mut row = vec![Cell::number(spread.min, RATIO)];
+    row.extend(quartiles.into_iter().enumerate().map(quartile));
+    row.push(Cell::number(spread.max, RATIO));
+    row.push(Cell::number(spread.outliers as f64, Format::Count));
     row
 }
 
@@ -245,103 +215,83 @@ fn known(spreads: &[Spread]) -> String {
     }
 }
 
-fn failing(found: &SelectionStudy) -> Vec<Item> {
-    let fails: Vec<&QuantitySpread> =
-        found.quantities.iter().filter(|quantity| quantity.failing > 0.0).collect();
-    if fails.is_empty() {
-        return vec![Item::text("All criteria are met in every selection that was evaluated.")];
+fn failing(found: &SelectionStudy) -> Vec<Block> {
+    let fails = found.quantities.iter().filter(|quantity| quantity.failing > 0.0);
+    let rows: Vec<Vec<Cell>> = fails
+        .map(|quantity| {
+            vec![
+                Cell::symbol(&quantity.symbol, ""),
+                (&quantity.title).into(),
+                percent(quantity.failing).into(),
+                Cell::or_missing(quantity.alone.map(percent)),
+            ]
+        })
+        .collect();
+    if rows.is_empty() {
+        return vec![Block::text("All criteria are met in every selection that was evaluated.")];
     }
-    let mut items = vec![Item::Table {
-        table: Table {
-            caption: "Quantities whose criteria are not met or cannot be assessed: share of the selections, and share in which no other \
-                      quantity is concerned"
-                .into(),
-            head: vec![Head::text("Quantity"), Head::text("Title"), Head::number("Share"), Head::number("Share alone")],
-            rows: fails
-                .iter()
-                .map(|quantity| {
-                    vec![
-                        quantity.symbol.clone(),
-                        quantity.title.clone(),
-                        percent(quantity.failing),
-                        quantity.alone.map_or_else(|| number::NONE.to_owned(), percent),
-                    ]
-                })
-                .collect(),
-        },
-    }];
+    let columns = vec![
+        Column::text("Quantity"),
+        Column::text("Title"),
+        Column::number("Share"),
+        Column::number("Share alone"),
+    ];
+    let caption = "Quantities whose criteria are not met or cannot be assessed: share of the selections, and share in which no other \
+                   quantity is concerned";
+    let mut blocks = vec![Table::new(caption, columns, rows).into()];
     if found.worst.is_empty() {
-        return items;
+        return blocks;
     }
-    items.push(Item::Table {
-        table: Table {
-            caption: "Worst selection for each limit that is exceeded in some selection".into(),
-            head: vec![
-                Head::short("Quantity"),
-                Head::short("Statistic"),
-                Head::number("Ratio to limit"),
-                Head::text("Sections of the selection"),
-            ],
-            rows: found
-                .worst
-                .iter()
-                .take(MOST_ROWS)
-                .map(|worst| {
-                    vec![
-                        worst.symbol.clone(),
-                        format!("{}{}", worst.title, worst.scope.suffix()),
-                        number::beside(worst.normalised, 1.0, 3),
-                        worst.sections.join(", "),
-                    ]
-                })
-                .collect(),
-        },
+    let rows = found.worst.iter().take(MOST_ROWS).map(|worst| {
+        cells![
+            Cell::symbol(&worst.symbol, ""),
+            scoped(&worst.title, &worst.scope),
+            Cell::number(worst.normalised, RATIO),
+            worst.sections.join(", ")
+        ]
     });
-    items
+    let columns = vec![
+        Column::short("Quantity"),
+        Column::short("Statistic"),
+        Column::number("Ratio to limit"),
+        Column::text("Sections of the selection"),
+    ];
+    let caption = "Worst selection for each limit that is exceeded in some selection";
+    blocks.push(Table::new(caption, columns, rows).into());
+    blocks
 }
 
 fn importance(
     sections: &[Importance],
     removal: Option<&Removal>,
     words: &VerdictWords,
-) -> Vec<Item> {
+) -> Vec<Block> {
     let mut sorted: Vec<&Importance> = sections.iter().collect();
-    let effect =
-        |one: &Importance| one.with.zip(one.without).map_or(0.0, |(with, without)| with - without);
-    sorted.sort_by(|a, b| effect(b).abs().total_cmp(&effect(a).abs()));
-    let shown = |share: Option<f64>| share.map_or_else(|| number::NONE.to_owned(), percent);
-    let removal = removal.map(|removal| Item::text(worded(removal, words)));
-    let table = [Item::Table {
-        table: Table {
-            caption: format!(
-                "Share of selections with the verdict '{}', with and without each section, sorted by the difference",
-                words.good
-            ),
-            head: vec![
-                Head::text("Section"),
-                Head::short("Zone"),
-                Head::number("With"),
-                Head::number("Without"),
-                Head::number("Difference, percentage points"),
-            ],
-            rows: sorted
-                .iter()
-                .take(MOST_ROWS)
-                .map(|one| {
-                    let difference =
-                        one.with.zip(one.without).map(|(with, without)| 100.0 * (with - without));
-                    vec![
-                        one.section.clone(),
-                        one.zone.clone(),
-                        shown(one.with),
-                        shown(one.without),
-                        number::optional(difference, 2),
-                    ]
-                })
-                .collect(),
-        },
-    }];
-    removal.into_iter().chain(table).collect()
+    let effect = |one: &Importance| one.with.zip(one.without).map(|(with, without)| with - without);
+    let size = |one: &Importance| effect(one).unwrap_or(0.0).abs();
+    sorted.sort_by(|a, b| size(b).total_cmp(&size(a)));
+    let rows = sorted.iter().take(MOST_ROWS).map(|one| {
+        vec![
+            Cell::from(&one.section),
+            (&one.zone).into(),
+            Cell::or_missing(one.with.map(percent)),
+            Cell::or_missing(one.without.map(percent)),
+            Cell::number(effect(one).map(|share| 100.0 * share), Format::Fixed(2)),
+        ]
+    });
+    let columns = vec![
+        Column::text("Section").breaks(12),
+        Column::name("Zone"),
+        Column::number("With"),
+        Column::number("Without"),
+        Column::number("Difference, percentage points"),
+    ];
+    let caption = format!(
+        "Share of selections with the verdict '{}', with and without each section, sorted by the difference",
+        words.good
+    );
+    let removal = removal.map(|removal| Block::text(worded(removal, words)));
+    removal.into_iter().chain([Table::new(caption, columns, rows).into()]).collect()
 }
 
 /// A sentence on the sets whose removal changes the verdict.
@@ -388,46 +338,33 @@ fn worded(removal: &Removal, words: &VerdictWords) -> String {
 }
 
 fn reduction(reduction: &Reduction) -> Chapter {
-    let kept = reduction.kept.iter().map(|(zone, sections)| {
-        vec![zone.clone(), sections.len().to_string(), sections.join(", ")]
-    });
+    let about = format!(
+        "Before the selection, the sections were reduced to at most {} per zone so that the largest standard deviation of all sections is retained.",
+        reduction.most
+    );
+    let kept = reduction
+        .kept
+        .iter()
+        .map(|(zone, sections)| cells![zone, sections.len(), sections.join(", ")]);
+    let columns = vec![Column::name("Zone"), Column::number("Kept"), Column::text("Sections")];
+    let kept = Table::new("Sections kept", columns, kept);
     let scatter = reduction.scatter.iter().map(|(symbol, all, kept)| {
-        vec![
-            symbol.clone(),
-            number::beside(*all, 1.0, 3),
-            number::beside(*kept, 1.0, 3),
-            number::fixed(kept - all, 4),
+        cells![
+            Cell::symbol(symbol, ""),
+            Cell::number(*all, RATIO),
+            Cell::number(*kept, RATIO),
+            Cell::number(kept - all, Format::Fixed(4))
         ]
     });
-    Chapter {
-        id: "reduction".into(),
-        title: "Representative sections".into(),
-        items: vec![
-            Item::text(format!(
-                "Before the selection, the sections were reduced to at most {} per zone so that the largest standard deviation of all sections is retained.",
-                reduction.most
-            )),
-            Item::Table {
-                table: Table {
-                    caption: "Sections kept".into(),
-                    head: vec![Head::short("Zone"), Head::number("Kept"), Head::text("Sections")],
-                    rows: kept.collect(),
-                },
-            },
-            Item::Table {
-                table: Table {
-                    caption: "Standard deviations divided by their limits".into(),
-                    head: vec![
-                        Head::text("Quantity"),
-                        Head::number("All sections"),
-                        Head::number("Sections kept"),
-                        Head::number("Change"),
-                    ],
-                    rows: scatter.collect(),
-                },
-            },
-        ],
-    }
+    let columns = vec![
+        Column::text("Quantity"),
+        Column::number("All sections"),
+        Column::number("Sections kept"),
+        Column::number("Change"),
+    ];
+    let scatter = Table::new("Standard deviations divided by their limits", columns, scatter);
+    let blocks = vec![Block::text(about), kept.into(), scatter.into()];
+    Chapter::new("reduction", "Representative sections", blocks)
 }
 
 /// Sections that are not used for the same reason, with the reason once: `S01, S02: left out by the

@@ -1,10 +1,10 @@
 //! Text of the study of the synchronisation.
 
-use super::document::{Chapter, Head, Item, Table};
-use super::{BOXES, Opening, percent, sections, share};
+use super::{BOXES, percent, scoped, sections, share};
+use crate::report::document::{Block, Cell, Chapter, Column, Fact, Figure, Format, Table, cells};
 use crate::report::number;
 use crate::report::sides::capital;
-use crate::report::view::Fact;
+use crate::report::view::Opening;
 use crate::result::VerdictWords;
 use crate::result::study::{AtOffset, LostSection, SyncStudy};
 
@@ -55,95 +55,68 @@ pub fn opening(found: &SyncStudy, words: &VerdictWords) -> Opening {
             percent(low),
             percent(high)
         ),
-        facts: facts.map(|(name, value)| Fact { name, value }).to_vec(),
+        facts: facts.map(|(name, value)| Fact::new(name, value)).to_vec(),
     }
 }
 
 pub fn chapters(found: &SyncStudy, words: &VerdictWords) -> Vec<Chapter> {
-    let mut chapters = vec![
-        Chapter {
-            id: "shares".into(),
-            title: format!("Share with the verdict '{}'", words.good),
-            items: shares(found, words),
-        },
-        Chapter { id: "one".into(), title: "Single selection".into(), items: one(found) },
-        Chapter {
-            id: "estimates".into(),
-            title: "Offsets estimated from the signals".into(),
-            items: estimates(found),
-        },
-    ];
-    let mut items = Vec::new();
+    let mut blocks = Vec::new();
     for (at, offset) in found.offsets.iter().enumerate() {
         if offset.selections.counted().is_ok() {
-            let shown = shown(found, offset.offset.value());
-            items.push(Item::Heading { text: format!("Offset {shown}") });
-            let words = format!(", offset {shown}");
-            items.extend(sections::boxes(&offset.quantities, &format!("{BOXES}-{at}"), &words));
+            let words = format!(", offset {}", shown(found, offset.offset.value()));
+            blocks.push(Block::heading(format!("Offset {}", shown(found, offset.offset.value()))));
+            blocks.extend(sections::boxes(&offset.quantities, &format!("{BOXES}-{at}"), &words));
         }
     }
-    chapters.push(Chapter {
-        id: "spread".into(),
-        title: "Scatter over the selections".into(),
-        items,
-    });
-    chapters
+    let share = format!("Share with the verdict '{}'", words.good);
+    vec![
+        Chapter::new("shares", share, shares(found, words)),
+        Chapter::new("one", "Single selection", one(found)),
+        Chapter::new("estimates", "Offsets estimated from the signals", estimates(found)),
+        Chapter::new("spread", "Scatter over the selections", blocks),
+    ]
 }
 
-fn shares(found: &SyncStudy, words: &VerdictWords) -> Vec<Item> {
+fn shares(found: &SyncStudy, words: &VerdictWords) -> Vec<Block> {
     let row = |at: &AtOffset| {
-        let (validated, selections) = match at.selections.counted() {
-            Ok(counted) => (share(&counted.share), number::large(counted.combinations)),
-            Err(_) => (number::NONE.to_owned(), number::NONE.to_owned()),
-        };
-        let of = |share: f64, interval| super::share_with(share, interval);
-        let (lost, gained) = match at.flips.compared() {
-            Some(flips) => {
-                (of(flips.lost, flips.lost_interval), of(flips.gained, flips.gained_interval))
-            }
-            None => (number::NONE.to_owned(), number::NONE.to_owned()),
-        };
-        let changes =
-            if at.changes.is_empty() { number::NONE.to_owned() } else { at.changes.join("; ") };
+        let (study, flips) = (at.selections.counted().ok(), at.flips.compared());
+        let shown_share = |share: f64, interval| super::share_with(share, interval);
+        let changes = Some(at.changes.join("; ")).filter(|changes| !changes.is_empty());
         vec![
-            shown(found, at.offset.value()),
-            validated,
-            lost,
-            gained,
-            selections,
-            words.word(at.verdict).to_owned(),
-            changes,
+            Cell::from(shown(found, at.offset.value())),
+            Cell::or_missing(study.map(|study| share(&study.share))),
+            Cell::or_missing(flips.map(|flips| shown_share(flips.lost, flips.lost_interval))),
+            Cell::or_missing(flips.map(|flips| shown_share(flips.gained, flips.gained_interval))),
+            Cell::number(study.map(|study| study.combinations), Format::Count),
+            words.word(at.verdict).into(),
+            Cell::or_missing(changes),
         ]
     };
     let good = &words.good;
-    let mut items = vec![
-        Item::figure(
-            "shares",
-            format!(
-                "Share of selections with the verdict '{good}' as a function of the measurement offset"
-            ),
-            format!(
-                "Share of selections with the verdict '{good}' over the offset; the numbers are in the table."
-            ),
+    let figure = Figure::new(
+        "shares",
+        format!(
+            "Share of selections with the verdict '{good}' as a function of the measurement offset"
         ),
-        Item::Table {
-            table: Table {
-                caption: format!(
-                    "Influence of the synchronisation: share of selections with the verdict '{good}', share with it without the offset but not with the offset (lost), share with it only with the offset (gained), and the verdict"
-                ),
-                head: vec![
-                    Head::number("Offset"),
-                    Head::number(&capital(good)),
-                    Head::number("Lost"),
-                    Head::number("Gained"),
-                    Head::number("Selections"),
-                    Head::short("All sections"),
-                    Head::text("Changes"),
-                ],
-                rows: found.offsets.iter().map(row).collect(),
-            },
-        },
+        format!(
+            "Share of selections with the verdict '{good}' over the offset; the numbers are in the table."
+        ),
+        200,
+    );
+    let columns = vec![
+        Column::number("Offset"),
+        Column::number(capital(good)),
+        Column::number("Lost"),
+        Column::number("Gained"),
+        Column::number("Selections"),
+        Column::short("All sections"),
+        Column::text("Changes"),
     ];
+    let caption = format!(
+        "Influence of the synchronisation: share of selections with the verdict '{good}', share with it without the offset but not with the offset (lost), share with it only with the offset (gained), and the verdict"
+    );
+    let table = Table::new(caption, columns, found.offsets.iter().map(row));
+    let mut blocks = vec![figure.into(), table.into()];
     let none: Vec<String> = found
         .offsets
         .iter()
@@ -158,26 +131,22 @@ fn shares(found: &SyncStudy, words: &VerdictWords) -> Vec<Item> {
         })
         .collect();
     if !none.is_empty() {
-        items.push(Item::text("Offsets at which no selection can be made:"));
-        items.push(Item::List { entries: none });
+        blocks.push(Block::text("Offsets at which no selection can be made:"));
+        blocks.push(Block::list(none));
     }
-    let rows: Vec<Vec<String>> =
+    let rows: Vec<Vec<Cell>> =
         found.offsets.iter().flat_map(|at| lost(at, &shown(found, at.offset.value()))).collect();
     if !rows.is_empty() {
-        items.push(Item::Table {
-            table: Table {
-                caption: "Sections that cannot be used at some offsets, so that the selections differ; the reason of the first of them"
-                    .into(),
-                head: vec![Head::short("Offset"), Head::text("Sections"), Head::text("Reason")],
-                rows,
-            },
-        });
+        let caption = "Sections that cannot be used at some offsets, so that the selections differ; the reason of the first of them";
+        let columns =
+            vec![Column::short("Offset"), Column::text("Sections"), Column::text("Reason")];
+        blocks.push(Table::new(caption, columns, rows).into());
     }
-    items
+    blocks
 }
 
 /// A row for each rule that sections do not meet at an offset.
-fn lost(at: &AtOffset, offset: &str) -> Vec<Vec<String>> {
+fn lost(at: &AtOffset, offset: &str) -> Vec<Vec<Cell>> {
     let rule = |reason: &str| reason.split(": ").next().unwrap_or(reason).to_owned();
     let mut rules: Vec<(String, Vec<&str>, &str)> = Vec::new();
     for LostSection { section, reason } in &at.lost {
@@ -188,54 +157,47 @@ fn lost(at: &AtOffset, offset: &str) -> Vec<Vec<String>> {
     }
     rules
         .into_iter()
-        .map(|(_, sections, reason)| {
-            vec![offset.to_owned(), sections.join(", "), reason.to_owned()]
-        })
+        .map(|(_, sections, reason)| cells![offset, sections.join(", "), reason])
         .collect()
 }
 
-fn one(found: &SyncStudy) -> Vec<Item> {
-    let mut head = vec![Head::text("Quantity"), Head::short("Statistic")];
-    head.extend(found.offsets.iter().map(|at| Head::number(&shown(found, at.offset.value()))));
+fn one(found: &SyncStudy) -> Vec<Block> {
+    let mut columns = vec![Column::text("Quantity"), Column::short("Statistic")];
+    columns.extend(found.offsets.iter().map(|at| Column::number(shown(found, at.offset.value()))));
     let first = found.offsets.iter().find(|at| !at.selected.is_empty());
-    let rows =
-        first.map_or(&[][..], |at| &at.selected).iter().enumerate().map(|(statistic, one)| {
-            let mut row = vec![one.symbol.clone(), format!("{}{}", one.name, one.scope.suffix())];
-            row.extend(found.offsets.iter().map(|at| {
-                let value = at.selected.get(statistic).and_then(|one| one.normalised);
-                value.map_or_else(|| number::NONE.to_owned(), |value| number::beside(value, 1.0, 2))
-            }));
-            row
-        });
+    let all = first.map_or(&[][..], |at| &at.selected);
+    let rows = all.iter().enumerate().map(|(statistic, one)| {
+        let mut row = cells![Cell::symbol(&one.symbol, ""), scoped(&one.name, &one.scope)];
+        row.extend(found.offsets.iter().map(|at| {
+            let value = at.selected.get(statistic).and_then(|one| one.normalised);
+            Cell::number(value, Format::Beside { limit: 1.0, decimals: 2 })
+        }));
+        row
+    });
+    let figure = Figure::new(
+        "selection",
+        "Statistics of a single selection divided by their limits, at each offset",
+        "Normalised statistics of one selection at every offset; the numbers are in the table.",
+        200,
+    );
+    let caption = "Statistics of a single selection divided by their limits";
     vec![
-        Item::text(format!("One selection drawn at random: {}.", found.selection.join(", "))),
-        Item::figure(
-            "selection",
-            "Statistics of a single selection divided by their limits, at each offset",
-            "Normalised statistics of one selection at every offset; the numbers are in the table.",
-        ),
-        Item::Table {
-            table: Table {
-                caption: "Statistics of a single selection divided by their limits".into(),
-                head,
-                rows: rows.collect(),
-            },
-        },
+        Block::text(format!("One selection drawn at random: {}.", found.selection.join(", "))),
+        figure.into(),
+        Table::new(caption, columns, rows).into(),
     ]
 }
 
-fn estimates(found: &SyncStudy) -> Vec<Item> {
+fn estimates(found: &SyncStudy) -> Vec<Block> {
     let number = |value: Option<f64>| number::optional(value, 2);
     let rows = found.estimates.iter().map(|one| {
-        vec![
-            one.section.clone(),
-            one.zone.clone().unwrap_or_default(),
-            number(one.shift),
-            one.low.map_or_else(
-                || number::NONE.to_owned(),
-                |_| format!("{} to {}", number(one.low), number(one.high)),
-            ),
-            number(one.correlation),
+        let interval = one.low.map(|_| format!("{} to {}", number(one.low), number(one.high)));
+        cells![
+            one.section,
+            one.zone,
+            Cell::number(one.shift, Format::Fixed(2)),
+            Cell::or_missing(interval),
+            Cell::number(one.correlation, Format::Fixed(2))
         ]
     });
     let what = if found.corrected {
@@ -243,25 +205,19 @@ fn estimates(found: &SyncStudy) -> Vec<Item> {
     } else {
         "They are reported for information; no correction was applied."
     };
-    vec![
-        Item::text(format!(
-            "Estimated by cross-correlation of all filtered signals of both records of a section. The 95 % interval combines a jackknife over eighths of the section with the scatter between groups of signals that share no channel. {what}"
-        )),
-        Item::Table {
-            table: Table {
-                caption: format!(
-                    "Offset to be added to the axis of the measurement, in {}",
-                    number::unit(&found.axis_unit)
-                ),
-                head: vec![
-                    Head::text("Section"),
-                    Head::short("Zone"),
-                    Head::number("Offset"),
-                    Head::number("95 % interval"),
-                    Head::number("Correlation"),
-                ],
-                rows: rows.collect(),
-            },
-        },
-    ]
+    let about = format!(
+        "Estimated by cross-correlation of all filtered signals of both records of a section. The 95 % interval combines a jackknife over eighths of the section with the scatter between groups of signals that share no channel. {what}"
+    );
+    let columns = vec![
+        Column::text("Section").breaks(12),
+        Column::name("Zone"),
+        Column::number("Offset"),
+        Column::number("95 % interval"),
+        Column::number("Correlation"),
+    ];
+    let caption = format!(
+        "Offset to be added to the axis of the measurement, in {}",
+        number::unit(&found.axis_unit)
+    );
+    vec![Block::text(about), Table::new(caption, columns, rows).into()]
 }

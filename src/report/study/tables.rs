@@ -1,11 +1,12 @@
 //! All tables of a study as CSV, in full precision.
 
+use crate::report::document::{Cell, cells};
 use crate::report::tables::csv_file;
 use crate::result::study::{
     AtValue, Found, ParameterStudy, QuantitySpread, SelectionStudy, Study, SyncStudy,
 };
 
-type Row = Vec<String>;
+type Row = Vec<Cell>;
 type Tables = Vec<(String, Vec<u8>)>;
 
 /// File names and contents for the folder `tables/`.
@@ -18,10 +19,6 @@ pub fn tables(study: &Study) -> Result<Tables, csv::Error> {
         Found::Sync(found) => sync(found),
         Found::Parameters(found) => parameters(found),
     }
-}
-
-fn number(value: Option<f64>) -> String {
-    value.map_or(String::new(), |value| value.to_string())
 }
 
 const SPREAD: [&str; 20] = [
@@ -53,70 +50,45 @@ fn spread(quantities: &[QuantitySpread]) -> Vec<Row> {
     });
     statistics
         .map(|(quantity, statistic)| {
-            let mut row = vec![
-                quantity.id.clone(),
-                statistic.name.to_string(),
-                statistic.scope.to_string(),
-                statistic.limit.to_string(),
-            ];
-            row.push(number(statistic.overall));
+            let mut row = cells![quantity.id, statistic.name, statistic.scope, statistic.limit];
+            row.push(statistic.overall.into());
             match &statistic.spread {
                 Some(spread) => {
                     row.extend(
                         [spread.min, spread.q1, spread.median, spread.q3, spread.max]
-                            .map(|value| value.to_string()),
+                            .map(Cell::from),
                     );
-                    row.extend([
-                        spread.outliers.to_string(),
-                        spread.exact.to_string(),
-                        number(spread.within),
-                    ]);
-                    row.extend(spread.intervals.all().into_iter().flat_map(|ends| {
-                        [number(ends.map(|ends| ends.0)), number(ends.map(|ends| ends.1))]
-                    }));
+                    row.extend(cells![spread.outliers, spread.exact, spread.within]);
+                    let ends = spread.intervals.all().into_iter();
+                    row.extend(
+                        ends.flat_map(|ends| {
+                            cells![ends.map(|ends| ends.0), ends.map(|ends| ends.1)]
+                        }),
+                    );
                 }
-                None => row.extend((0..14).map(|_| String::new())),
+                None => row.extend(vec![Cell::BLANK; 14]),
             }
-            row.push(statistic.failing.to_string());
+            row.push(statistic.failing.into());
             row
         })
         .collect()
 }
 
 fn sections(found: &SelectionStudy) -> Result<Tables, csv::Error> {
-    let importance = found
-        .sections
-        .iter()
-        .map(|one| {
-            vec![one.section.clone(), one.zone.clone(), number(one.with), number(one.without)]
-        })
-        .collect();
+    let importance =
+        found.sections.iter().map(|one| cells![one.section, one.zone, one.with, one.without]);
     let failing = found
         .quantities
         .iter()
-        .map(|quantity| {
-            vec![quantity.id.clone(), quantity.failing.to_string(), number(quantity.alone)]
-        })
-        .collect();
-    let worst = found
-        .worst
-        .iter()
-        .map(|one| {
-            vec![
-                one.quantity.clone(),
-                one.title.clone(),
-                one.scope.to_string(),
-                one.normalised.to_string(),
-                one.sections.join(" "),
-            ]
-        })
-        .collect();
+        .map(|quantity| cells![quantity.id, quantity.failing, quantity.alone]);
+    let worst = found.worst.iter().map(|one| {
+        cells![one.quantity, one.title, one.scope, one.normalised, one.sections.join(" ")]
+    });
     let removal = found
         .removal
         .iter()
         .flat_map(|removal| &removal.sets)
-        .map(|set| vec![set.len().to_string(), set.join(" ")])
-        .collect();
+        .map(|set| cells![set.len(), set.join(" ")]);
     let mut all = vec![
         csv_file("spread", &SPREAD, spread(&found.quantities))?,
         csv_file(
@@ -129,10 +101,11 @@ fn sections(found: &SelectionStudy) -> Result<Tables, csv::Error> {
         csv_file("removal", &["sections removed", "sections"], removal)?,
     ];
     if let Some(reduction) = &found.reduction {
-        let kept = reduction.kept.iter().flat_map(|(zone, kept)| {
-            kept.iter().map(move |section| vec![zone.clone(), section.clone()])
-        });
-        all.push(csv_file("kept", &["zone", "section"], kept.collect())?);
+        let kept = reduction
+            .kept
+            .iter()
+            .flat_map(|(zone, kept)| kept.iter().map(move |section| cells![zone, section]));
+        all.push(csv_file("kept", &["zone", "section"], kept)?);
     }
     Ok(all)
 }
@@ -140,46 +113,36 @@ fn sections(found: &SelectionStudy) -> Result<Tables, csv::Error> {
 fn sync(found: &SyncStudy) -> Result<Tables, csv::Error> {
     let (mut offsets, mut all, mut one) = (Vec::new(), Vec::new(), Vec::new());
     for at in &found.offsets {
-        let offset = at.offset.value().to_string();
-        let (share, reason) = match at.selections.counted() {
-            Ok(counted) => (counted.share.share.to_string(), String::new()),
-            Err(reason) => (String::new(), reason.to_owned()),
-        };
+        let offset = at.offset.value();
+        let share = at.selections.counted().ok().map(|counted| counted.share.share);
+        let reason = at.selections.counted().err().map(str::to_owned);
         let flips = at.flips.compared();
-        let (lost, gained) =
-            (number(flips.map(|flips| flips.lost)), number(flips.map(|flips| flips.gained)));
-        offsets.push(vec![
-            offset.clone(),
+        let (lost, gained) = (flips.map(|flips| flips.lost), flips.map(|flips| flips.gained));
+        offsets.push(cells![
+            offset,
             share,
             lost,
             gained,
-            at.verdict.in_words().to_owned(),
+            at.verdict.in_words(),
             at.changes.join("; "),
-            reason,
+            reason
         ]);
-        all.extend(
-            spread(&at.quantities).into_iter().map(|row| [vec![offset.clone()], row].concat()),
+        if at.selections.counted().is_ok() {
+            all.extend(
+                spread(&at.quantities).into_iter().map(|row| [vec![offset.into()], row].concat()),
+            );
+        }
+        one.extend(
+            at.selected
+                .iter()
+                .map(|one| cells![offset, one.id, one.name, one.scope, one.normalised, one.holds]),
         );
-        one.extend(at.selected.iter().map(|one| {
-            vec![
-                offset.clone(),
-                one.id.clone(),
-                one.name.to_string(),
-                one.scope.to_string(),
-                number(one.normalised),
-                one.holds.to_string(),
-            ]
-        }));
     }
-    let estimates = found
-        .estimates
-        .iter()
-        .map(|one| {
-            let mut row = vec![one.section.clone(), one.zone.clone().unwrap_or_default()];
-            row.extend([one.shift, one.low, one.high, one.correlation].map(number));
-            row
-        })
-        .collect();
+    let estimates = found.estimates.iter().map(|one| {
+        let mut row = cells![one.section, one.zone];
+        row.extend([one.shift, one.low, one.high, one.correlation].map(Cell::from));
+        row
+    });
     let head = [&["offset"][..], &SPREAD[..]].concat();
     Ok(vec![
         csv_file(
@@ -215,14 +178,14 @@ fn parameters(found: &ParameterStudy) -> Result<Tables, csv::Error> {
         for at in &parameter.values {
             values.push(value(&parameter.name, at));
             statistics.extend(at.statistics.iter().map(|one| {
-                vec![
-                    parameter.name.clone(),
-                    at.value.clone(),
-                    one.id.clone(),
-                    one.name.to_string(),
-                    one.scope.to_string(),
-                    number(one.normalised),
-                    one.holds.to_string(),
+                cells![
+                    parameter.name,
+                    at.value,
+                    one.id,
+                    one.name,
+                    one.scope,
+                    one.normalised,
+                    one.holds
                 ]
             }));
         }
@@ -251,14 +214,14 @@ fn parameters(found: &ParameterStudy) -> Result<Tables, csv::Error> {
 }
 
 fn value(name: &str, at: &AtValue) -> Row {
-    vec![
-        name.to_owned(),
-        at.value.clone(),
-        at.is_base.to_string(),
-        at.verdict.in_words().to_owned(),
-        at.largest.as_ref().map_or_else(String::new, |largest| largest.statistic.clone()),
-        number(at.largest.as_ref().map(|largest| largest.normalised)),
-        number(at.share),
-        at.reason.clone().unwrap_or_default(),
+    cells![
+        name,
+        at.value,
+        at.is_base,
+        at.verdict.in_words(),
+        at.largest.as_ref().map(|largest| largest.statistic.clone()),
+        at.largest.as_ref().map(|largest| largest.normalised),
+        at.share,
+        at.reason
     ]
 }

@@ -8,7 +8,6 @@ mod date;
 mod text;
 mod world;
 
-use serde::Serialize;
 use serde_json::{Value, json};
 use typst::diag::SourceDiagnostic;
 use typst::foundations::Smart;
@@ -17,52 +16,28 @@ use typst_pdf::{PdfOptions, PdfStandard, PdfStandards, Timestamp};
 
 use crate::hash::Hasher;
 use crate::problem::{Problem, Problems};
+use crate::report::document::{Document, Medium};
 use crate::report::pdf::{Attachment, Pdf};
-use crate::report::study::Document;
-use crate::report::view::ReportData;
 use text::Printable;
 use world::Files;
 
-/// Typesets a report as PDF/A-3a and PDF/UA-1.
+/// Typesets a document as PDF/A-3a and PDF/UA-1.
 ///
-/// `figures` are SVG texts by their names in the view ([`super::view::FigureView::name`]); a
+/// `figures` are SVG texts by their names in the document ([`super::document::Figure::name`]); a
 /// missing figure is omitted. The same arguments give the same bytes.
 ///
 /// # Errors
 ///
-/// `report-template`: a template cannot be filled, or Typst refuses it or a figure.
+/// `report-template`: Typst refuses the template or a figure.
 /// `report-attachment`: a name is not a file name.
 pub fn typeset(
-    data: &ReportData,
-    figures: &[(String, String)],
-    attachments: &[Attachment<'_>],
-) -> Result<Pdf, Problems> {
-    framed(filled(data)?, data, figures, attachments)
-}
-
-/// Typesets a study, as [`typeset`] does a certification.
-///
-/// # Errors
-///
-/// As [`typeset`].
-pub fn typeset_study(
-    data: &Document,
-    figures: &[(String, String)],
-    attachments: &[Attachment<'_>],
-) -> Result<Pdf, Problems> {
-    framed(world::STUDY.to_owned(), data, figures, attachments)
-}
-
-/// Typesets data with a frame and its parts.
-fn framed(
-    frame: String,
-    data: &impl Serialize,
+    document: &Document,
     figures: &[(String, String)],
     attachments: &[Attachment<'_>],
 ) -> Result<Pdf, Problems> {
     let printable = Printable::of(world::fonts());
-    let mut files = Files::new(frame);
-    let mut value = serde_json::to_value(data)
+    let mut files = Files::new();
+    let mut value = serde_json::to_value(document.on(Medium::Paper))
         .map_err(|error| one(Problem::error("report-template", error.to_string())))?;
     printable.clean(&mut value);
     let mut drawn = serde_json::Map::new();
@@ -89,8 +64,7 @@ fn framed(
     }
     files.add("/data.json", value.to_string().into_bytes())?;
     let ident = ident(&value, figures, attachments);
-    let issued =
-        value.pointer("/campaign/report/issued").and_then(Value::as_str).and_then(date::issued);
+    let issued = document.issued.as_deref().and_then(date::issued);
     let pdf = compile(&files, ident, issued);
     // Typst's caches are global and would keep the data of all reports.
     typst::comemo::evict(0);
@@ -118,21 +92,6 @@ fn compile(files: &Files, ident: String, issued: Option<Timestamp>) -> Result<Pd
         date::remove_placeholder(&mut bytes);
     }
     Ok(Pdf { bytes, pages: document.pages().len(), warnings })
-}
-
-/// `report.typ` with the parts of this report.
-fn filled(data: &ReportData) -> Result<String, Problems> {
-    let mut environment = minijinja::Environment::new();
-    environment.set_undefined_behavior(minijinja::UndefinedBehavior::Strict);
-    let context = minijinja::context! {
-        sections => !data.section_tables.is_empty() || !data.zones.is_empty(),
-        quantities => !data.quantities.is_empty() || data.brief.is_some(),
-        traces => !data.traces.is_empty(),
-        domain => !data.domain.is_empty() || !data.application.is_empty(),
-    };
-    environment
-        .render_str(world::REPORT, context)
-        .map_err(|error| one(Problem::error("report-template", error.to_string())))
 }
 
 /// Document identifier: the hash of all inputs.

@@ -12,31 +12,11 @@ use typst::{Library, LibraryExt, World, WorldExt};
 
 use crate::problem::{Problem, Problems};
 
-/// The frame of the report, which lists its parts in order; filled by minijinja.
-pub(super) const REPORT: &str = include_str!("../../../templates/report.typ");
+/// The template of all documents.
+const REPORT: &str = include_str!("../../../templates/report.typ");
 
-/// The frame of a study.
-pub(super) const STUDY: &str = include_str!("../../../templates/study.typ");
-
-/// Templates that are not filled.
-const TEMPLATES: &[(&str, &str)] = &[
-    ("/theme.typ", include_str!("../../../templates/theme.typ")),
-    ("/data.typ", "#let data = json(\"/data.json\")\n"),
-    ("/parts/cover.typ", include_str!("../../../templates/parts/cover.typ")),
-    ("/parts/verdicts.typ", include_str!("../../../templates/parts/verdicts.typ")),
-    ("/parts/identity.typ", include_str!("../../../templates/parts/identity.typ")),
-    ("/parts/notation.typ", include_str!("../../../templates/parts/notation.typ")),
-    ("/parts/summary.typ", include_str!("../../../templates/parts/summary.typ")),
-    ("/parts/vehicle.typ", include_str!("../../../templates/parts/vehicle.typ")),
-    ("/parts/sections.typ", include_str!("../../../templates/parts/sections.typ")),
-    ("/parts/quantities.typ", include_str!("../../../templates/parts/quantities.typ")),
-    ("/parts/traces.typ", include_str!("../../../templates/parts/traces.typ")),
-    ("/parts/domain.typ", include_str!("../../../templates/parts/domain.typ")),
-    ("/parts/protocol.typ", include_str!("../../../templates/parts/protocol.typ")),
-    ("/parts/provenance.typ", include_str!("../../../templates/parts/provenance.typ")),
-    ("/parts/study.typ", include_str!("../../../templates/parts/study.typ")),
-    ("/parts/statements.typ", include_str!("../../../templates/parts/statements.typ")),
-];
+/// What it imports.
+const TEMPLATES: &[(&str, &str)] = &[("/theme.typ", include_str!("../../../templates/theme.typ"))];
 
 const FONTS: &[&[u8]] = &[
     include_bytes!("../../../templates/fonts/IBMPlexSans-Regular.ttf"),
@@ -64,17 +44,15 @@ pub(super) struct Files {
 }
 
 impl Files {
-    pub(super) fn new(report: String) -> Self {
+    pub(super) fn new() -> Self {
         let source = |(path, text): &(&str, &str)| Some(Source::new(id(path)?, (*text).to_owned()));
         let templates =
             TEMPLATES.iter().filter_map(source).map(|source| (source.id(), source)).collect();
         Self {
             standard: LazyHash::new(Library::default()),
             book: LazyHash::new(FontBook::from_fonts(fonts())),
-            main: id("/report.typ").map_or_else(
-                || Source::detached(report.clone()),
-                |main| Source::new(main, report.clone()),
-            ),
+            main: id("/report.typ")
+                .map_or_else(|| Source::detached(REPORT), |main| Source::new(main, REPORT.into())),
             templates,
             files: IndexMap::new(),
         }

@@ -1,10 +1,8 @@
 //! Wanted operation inside and outside what the sections cover.
 
-use serde::Serialize;
-
-use super::{FigureView, Finding};
-use crate::report::number;
-use crate::result::{Certification, DomainResult, WantedPoint};
+use crate::report::document::{Block, Cell, Column, Figure, Finding, Format, Table, cells};
+use crate::report::{figure, number};
+use crate::result::{CoordinateRange, DomainResult, WantedPoint};
 
 /// Digits of a distance, which is a share of ranges.
 const DISTANCE: usize = 3;
@@ -12,50 +10,36 @@ const DISTANCE: usize = 3;
 const VALUE: usize = 4;
 
 /// One domain and group of sections.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ApplicationView {
-    /// `Application domain: State laden`.
-    pub title: String,
-    /// What the hull is of, or why there is none.
-    pub says: String,
-    pub clause: Option<String>,
-    pub source: Option<String>,
-    pub notes: Vec<String>,
-    pub coordinates: Vec<CoordinateHead>,
-    pub figure: Option<FigureView>,
-    pub rows: Vec<PointRow>,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct CoordinateHead {
-    pub name: String,
-    pub unit: String,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct PointRow {
-    /// As in the figure, from 1.
-    pub number: usize,
-    pub point: String,
-    pub finding: Finding,
-    /// One text for each coordinate.
-    pub values: Vec<String>,
-    /// From the nearest point covered, one for each coordinate; a dash where it is 0.
-    pub away: Vec<String>,
-    pub distance: String,
-    pub section: String,
-}
-
-pub(super) fn views(found: &Certification) -> Vec<ApplicationView> {
-    found.application.iter().enumerate().map(view).collect()
-}
-
-fn view((at, result): (usize, &DomainResult)) -> ApplicationView {
-    let title = if result.group.is_empty() {
+pub(super) fn blocks((at, result): (usize, &DomainResult)) -> Vec<Block> {
+    let title = if result.scope == "all" {
         result.title.clone()
     } else {
         format!("{}: {}", result.title, result.scope)
     };
+    let mut says = says(result);
+    for (name, text) in [("Clause", &result.clause), ("Source", &result.source)] {
+        if let Some(text) = text {
+            says.push_str(&format!(" {name}: {text}."));
+        }
+    }
+    let mut blocks = vec![Block::heading(&title), Block::text(says)];
+    blocks.extend(result.notes.iter().map(|note| Block::text(number::raised(note))));
+    if figure::has_application(result) {
+        let caption = format!(
+            "{title}: sections and wanted operation, two coordinates at a time, numbered as in the table. The line is the outline of the sections seen from this \
+             side; a point inside every outline may still lie outside the hull, and is then marked so."
+        );
+        let alt = "Sections and points of wanted operation; the numbers are in the table below.";
+        blocks.push(Figure::new(format!("application-{at}"), caption, alt, 200).into());
+    }
+    if !result.points.is_empty() {
+        blocks.push(table(result).into());
+    }
+    blocks
+}
+
+/// What the hull is of, or why there is none.
+fn says(result: &DomainResult) -> String {
     let outside = result.points.iter().filter(|point| point.inside == Some(false)).count();
     let corners = result.sections.iter().filter(|section| section.corner).count();
     let counted = match (&result.reason, result.points.len()) {
@@ -75,53 +59,42 @@ fn view((at, result): (usize, &DomainResult)) -> ApplicationView {
         [] => String::new(),
         names => format!(" Sections without a value: {}.", names.join(", ")),
     };
-    ApplicationView {
-        says: number::formula(&format!("{counted}{left_out}")),
-        clause: result.clause.clone(),
-        source: result.source.clone(),
-        notes: result.notes.iter().map(|note| number::raised(note)).collect(),
-        coordinates: result.coordinates.iter().map(|of| CoordinateHead { name: of.name.clone(), unit: number::unit(&of.unit) }).collect(),
-        figure: drawn(result).then(|| FigureView {
-            name: format!("application-{at}"),
-            caption: format!(
-                "{title}: sections and wanted operation, two coordinates at a time, numbered as in the table. The line is the outline of the sections seen from this \
-                 side; a point inside every outline may still lie outside the hull, and is then marked so."
-            ),
-            alt: "Sections and points of wanted operation; the numbers are in the table below.".into(),
-        }),
-        rows: result.points.iter().enumerate().map(|(at, point)| row(result, at + 1, point)).collect(),
-        title,
+    number::formula(&format!("{counted}{left_out}"))
+}
+
+fn table(result: &DomainResult) -> Table {
+    let mut columns = vec![
+        Column::number("No.").names_row(false),
+        Column::text("Point").wide(1.5).names_row(true),
+    ];
+    columns.push(Column::short("Result"));
+    for coordinate in &result.coordinates {
+        columns.push(Column::number(&coordinate.name).wide(1.0).unit(&coordinate.unit));
+        columns.push(Column::number("away").wide(1.0));
     }
+    columns.push(Column::number("Distance"));
+    columns.push(Column::short("Nearest section"));
+    let rows = result.points.iter().enumerate().map(|(at, point)| row(result, at + 1, point));
+    let caption = "Wanted operation: values, and how far each lies from the nearest point that the sections cover. The distance is in ranges of the sections.";
+    Table::new(caption, columns, rows).size(8.0)
 }
 
-/// Whether there is a figure: two coordinates or more, and something to show in them.
-pub fn drawn(result: &DomainResult) -> bool {
-    result.coordinates.len() > 1 && !(result.sections.is_empty() && result.points.is_empty())
-}
-
-fn row(result: &DomainResult, nth: usize, point: &WantedPoint) -> PointRow {
-    let none = || vec![number::NONE.to_owned(); result.coordinates.len()];
-    let by = |(by, of): (&f64, &crate::result::CoordinateRange)| {
-        let range = of.high.zip(of.low).map_or(0.0, |(high, low)| high - low);
+fn row(result: &DomainResult, nth: usize, point: &WantedPoint) -> Vec<Cell> {
+    let by = |by: f64, coordinate: &CoordinateRange| {
+        let range = coordinate.high.zip(coordinate.low).map_or(0.0, |(high, low)| high - low);
         // Rounding of the nearest point.
-        if by.abs() <= 1e-9 * range {
-            return number::NONE.to_owned();
-        }
-        format!("{}{}", if *by > 0.0 { "+" } else { "" }, number::significant(*by, DISTANCE))
+        let known = Some(by).filter(|by| by.abs() > 1e-9 * range);
+        Cell::number(known, Format::Change(DISTANCE))
     };
-    PointRow {
-        number: nth,
-        point: point.point.clone(),
-        finding: Finding::new(point.inside, "inside", "outside", "not assessed"),
-        values: point.values.iter().map(|value| number::significant(*value, VALUE)).collect(),
-        away: point
-            .outside_by
-            .as_ref()
-            .map_or_else(none, |all| all.iter().zip(&result.coordinates).map(by).collect()),
-        distance: point.distance.map_or_else(
-            || number::NONE.to_owned(),
-            |distance| number::significant(distance, DISTANCE),
-        ),
-        section: point.nearest_section.clone().unwrap_or_else(|| number::NONE.to_owned()),
+    let finding = Finding::new(point.inside, "inside", "outside", "not assessed");
+    let mut cells = cells![nth, Cell::from(&point.point).strong(), finding];
+    for (at, coordinate) in result.coordinates.iter().enumerate() {
+        let value = point.values.get(at).copied();
+        let away = point.outside_by.as_ref().and_then(|all| all.get(at));
+        cells.push(Cell::number(value, Format::Significant(VALUE)));
+        cells.push(away.map_or(Cell::MISSING, |away| by(*away, coordinate)));
     }
+    cells.push(Cell::number(point.distance, Format::Significant(DISTANCE)));
+    cells.push(Cell::or_missing(point.nearest_section.as_ref()));
+    cells
 }

@@ -1,50 +1,18 @@
 //! Many quantities: one line for each comparison, one column for each signal, and small diagrams.
 
-use serde::Serialize;
-
-use super::{FigureView, Finding, with_work};
+use super::View;
 use crate::report::brief::{self, Line, Matrix};
+use crate::report::document::{
+    Block, Cell, Column, Figure, Finding, Medium, Run, Table, Text, cells,
+};
 use crate::report::{figure, number};
 use crate::result::QuantityResult;
 
-/// In place of a chapter for each quantity.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct BriefView {
-    /// What is printed of which quantities.
-    pub sentence: String,
-    pub tables: Vec<BriefTable>,
-    pub figures: Vec<FigureView>,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct BriefTable {
-    /// Signals; a single empty one where a row is one quantity.
-    pub columns: Vec<String>,
-    pub rows: Vec<BriefRow>,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct BriefRow {
-    /// Comparison, or title of the one quantity.
-    pub title: String,
-    pub filter: String,
-    pub source: Option<String>,
-    /// One for each column.
-    pub cells: Vec<Option<BriefCell>>,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct BriefCell {
-    /// Mean of the values, with the unit.
-    pub mean: String,
-    /// `0.12 to 0.48`
-    pub range: String,
-    pub holds: Finding,
-}
-
-pub(super) fn view(quantities: &[QuantityResult], work: Option<&str>) -> Option<BriefView> {
+/// In place of a chapter for each of many quantities: what is printed of which, tables, diagrams.
+pub(super) fn blocks(view: &View<'_>) -> Vec<Block> {
+    let quantities = &view.found.quantities;
     if !brief::is_brief(quantities) {
-        return None;
+        return Vec::new();
     }
     let matrices = brief::matrices(quantities);
     let full = brief::in_full(quantities).len();
@@ -59,27 +27,24 @@ pub(super) fn view(quantities: &[QuantityResult], work: Option<&str>) -> Option<
             " Of the {open} that do not meet their limits, the {full} with the largest ratios have a chapter each."
         ),
     };
-    let figures =
-        matrices.iter().enumerate().flat_map(|(at, matrix)| figures(at, matrix)).collect();
-    Some(BriefView {
-        sentence: format!(
-            "{} quantities are more than are read one by one. The table has the mean of the values of each over the sections, and the smallest and the largest value; the diagrams have every value.{chapters} All values are in tables/values.csv.",
-            quantities.len()
-        ),
-        tables: matrices.iter().map(|matrix| table(matrix, work)).collect(),
-        figures,
-    })
+    let sentence = format!(
+        "{} quantities are more than are read one by one. The table has the mean of the values of each over the sections, and the smallest and the largest value; the diagrams have every value.{chapters} All values are in tables/values.csv.",
+        quantities.len()
+    );
+    let tables = matrices.iter().map(|matrix| table(matrix, view.work).into());
+    let figures = matrices.iter().enumerate().flat_map(|(at, matrix)| figures(at, matrix));
+    std::iter::once(Block::text(sentence)).chain(tables).chain(figures).collect()
 }
 
-fn figures(at: usize, matrix: &Matrix<'_>) -> Vec<FigureView> {
+fn figures(at: usize, matrix: &Matrix<'_>) -> Vec<Block> {
     let all = matrix.lines.chunks(figure::LINES).enumerate();
-    all.map(|(page, lines)| FigureView {
-        name: figure::multiples_name(at, page),
-        caption: format!("Values in the order of the sections: {}", contents(lines)),
-        alt: format!(
+    all.map(|(page, lines)| {
+        let caption = format!("Values in the order of the sections: {}", contents(lines));
+        let alt = format!(
             "Small diagrams of {} quantities; their means and ranges are in the table.",
             lines.iter().flat_map(|line| line.cells.iter().flatten()).count()
-        ),
+        );
+        Figure::new(figure::multiples_name(at, page), caption, alt, 225).into()
     })
     .collect()
 }
@@ -98,32 +63,44 @@ fn title(quantity: &QuantityResult) -> String {
     if quantity.has_sides { format!("{}, {comparison}", quantity.processing) } else { comparison }
 }
 
-fn table(matrix: &Matrix<'_>, work: Option<&str>) -> BriefTable {
+fn table(matrix: &Matrix<'_>, work: Option<&str>) -> Table {
+    let single = matrix.columns == [""];
     let row = |line: &Line<'_>| {
-        let first = line.first();
-        let single = matrix.columns == [""];
-        BriefRow {
-            title: first.map_or_else(String::new, |first| {
-                if single { first.title.clone() } else { title(first) }
-            }),
-            filter: first.map_or_else(String::new, |first| first.filter.clone()),
-            source: first
-                .and_then(|first| first.source.as_deref())
-                .map(|source| with_work(source, work)),
-            cells: line
-                .cells
-                .iter()
-                .map(|cell| cell.map(|(_, quantity)| self::cell(quantity)))
-                .collect(),
-        }
+        let first = line.first()?;
+        let title = if single { first.title.clone() } else { title(first) };
+        let source = first.source.as_deref().map(|source| super::with_work(source, work));
+        let quiet = |says: String| {
+            let title = [Text::from(&title), Run::Quiet(says).into()];
+            Text::lines(title.into_iter().filter(|text| !text.letters().is_empty()))
+        };
+        let paper = source.as_ref().map(|source| format!("; {source}")).unwrap_or_default();
+        let mut cells = cells![
+            quiet(first.filter.clone() + &paper),
+            quiet(source.unwrap_or_default()),
+            first.filter
+        ];
+        let quantity = |cell: &Option<(usize, &QuantityResult)>| {
+            Cell::or_missing(cell.map(|(_, quantity)| self::cell(quantity)))
+        };
+        cells.extend(line.cells.iter().map(quantity));
+        Some(cells)
     };
-    BriefTable {
-        columns: matrix.columns.iter().map(ToString::to_string).collect(),
-        rows: matrix.lines.iter().map(row).collect(),
-    }
+    let head = if single { "Quantity" } else { "Comparison" };
+    let mut columns = vec![
+        Column::text(head).wide(2.0).only(Medium::Paper),
+        Column::text(head).only(Medium::Screen).names_row(true),
+        Column::text("Filter").only(Medium::Screen),
+    ];
+    let signals = matrix.columns.iter().map(|one| if one.is_empty() { "Values" } else { one });
+    columns.extend(signals.map(|signal| Column::number(signal).wide(1.0)));
+    let several = if single { "" } else { "; one column for each signal" };
+    let caption =
+        format!("Mean of the values over the sections, smallest to largest value{several}");
+    Table::new(caption, columns, matrix.lines.iter().filter_map(row)).class("brief").size(7.0)
 }
 
-fn cell(quantity: &QuantityResult) -> BriefCell {
+/// The mean of the values, what it came to, and their range.
+fn cell(quantity: &QuantityResult) -> Text {
     let values = || quantity.values.iter().map(|pair| pair.difference);
     let decimals = number::decimals_of(values(), 3);
     let (low, high, sum) = values()
@@ -140,5 +117,9 @@ fn cell(quantity: &QuantityResult) -> BriefCell {
             format!("{} to {}", number::fixed(low, decimals), number::fixed(high, decimals)),
         )
     };
-    BriefCell { mean, range, holds: Finding::of_quantity(quantity) }
+    let mut text = Text::from(Run::Strong(mean));
+    if !quantity.decides_nothing() {
+        text = text.and(" ").then(Run::Mark(Finding::of_quantity(quantity)));
+    }
+    text.then(Run::Break(())).then(Run::Quiet(range))
 }

@@ -1,122 +1,92 @@
 //! Estimates by group: one row for each limit in the summary, one table for each limit with its
 //! groups.
 
-use serde::Serialize;
-
-use super::summary::Limited;
 use super::wording::limit_in_words;
-use super::{Finding, name, summary};
+use super::{View, caption, name, statistic};
+use crate::report::document::{Cell, Column, Finding, Format, Medium, Row, Table, cells};
 use crate::report::estimates::{self, OfLimit};
 use crate::report::number;
 use crate::report::sides::capital;
 use crate::result::{QuantityResult, StatisticResult};
 
-/// A limit in the summary, with the group that is nearest to it or farthest beyond.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct EstimateRow {
-    /// The values of the decisive group; the finding is that of all.
-    #[serde(flatten)]
-    pub limited: Limited,
-    pub estimate: String,
-    /// Groups that hold: `14 of 16`.
-    pub holding: String,
-    /// Where the decisive group is.
-    pub place: String,
+/// The condensed limits of all quantities, each with the group that is nearest to it or farthest
+/// beyond.
+pub(super) fn summary(view: &View<'_>) -> Table {
+    let columns = vec![
+        Column::short("Quantity"),
+        Column::text("Estimate").wide(1.5),
+        Column::short("Groups met"),
+        Column::short("Unit"),
+        Column::number("Values / n").only(Medium::Screen),
+        Column::number("Largest"),
+        Column::number("Limit"),
+        Column::number("|Value| / limit"),
+        Column::text("Where").wide(1.2),
+        Column::short("Criterion"),
+    ];
+    let limits = view.found.quantities.iter().flat_map(|quantity| {
+        let row = move |limit: OfLimit<'_>| row(quantity, &limit);
+        estimates::condensed(quantity).into_iter().map(row).collect::<Vec<_>>()
+    });
+    let caption =
+        "Estimates and their limits: how many groups hold, and the group with the largest ratio";
+    Table::new(caption, columns, limits).size(7.5)
 }
 
-/// All groups of one limit.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct GroupTable {
-    pub estimate: String,
-    pub limit_text: String,
-    /// Unit of estimate and limit.
-    pub unit: String,
-    /// `Zone`, `Wheelset`
-    pub keys: Vec<String>,
-    /// Whether some estimate has a confidence interval.
-    pub intervals: bool,
-    pub rows: Vec<GroupRow>,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct GroupRow {
-    /// The member of each key.
-    pub of: Vec<String>,
-    pub count: String,
-    /// Of the values, in the unit of the quantity.
-    pub mean: String,
-    pub std: String,
-    pub value: String,
-    pub low: String,
-    pub high: String,
-    pub limit: String,
-    pub normalised: String,
-    pub holds: Finding,
-    pub reason: Option<String>,
-}
-
-/// The condensed limits of a quantity for the summary.
-pub(super) fn rows(quantity: &QuantityResult) -> Vec<EstimateRow> {
-    estimates::condensed(quantity).iter().map(|limit| row(quantity, limit)).collect()
-}
-
-fn row(quantity: &QuantityResult, limit: &OfLimit<'_>) -> EstimateRow {
+/// The values of the decisive group; the finding is that of all.
+fn row(quantity: &QuantityResult, limit: &OfLimit<'_>) -> Row {
     let decisive = limit.decisive();
-    EstimateRow {
-        limited: Limited {
-            holds: Finding::of(limit.holds())
-                .marginal(limit.holds().is_some() && limit.results.iter().any(|one| one.marginal)),
-            reason: limit.reason().map(str::to_owned),
-            ..summary::limited(quantity, decisive)
-        },
-        estimate: number::formula(&decisive.title),
-        holding: limit.holding(),
-        place: if decisive.value.is_some() {
-            decisive.scope.to_string()
-        } else {
-            number::NONE.to_owned()
-        },
-    }
+    let marginal = limit.holds().is_some() && limit.results.iter().any(|one| one.marginal);
+    let finding = Finding::of(limit.holds()).marginal(marginal);
+    let place = decisive.value.map(|_| decisive.scope.to_string());
+    Row::from(cells![
+        statistic::symbol(quantity),
+        Cell::formula(&decisive.title),
+        limit.holding(),
+        number::unit(&decisive.unit),
+        statistic::pairs_and_n(decisive.count, decisive.n),
+        statistic::value(Some(decisive)),
+        statistic::limit(Some(decisive)),
+        statistic::normalised(Some(decisive)).toned(finding.tone),
+        Cell::or_missing(place)
+    ])
+    .ending(finding, limit.reason())
 }
 
-/// A table for each condensed limit that has several groups.
-pub(super) fn tables(quantity: &QuantityResult) -> Vec<GroupTable> {
-    estimates::condensed(quantity)
-        .iter()
-        .filter(|limit| limit.by_group())
-        .map(|limit| table(quantity, limit))
-        .collect()
+/// A table for each condensed limit that has several groups; `rows` is what the values are called.
+pub(super) fn tables(quantity: &QuantityResult, rows: &str) -> Vec<Table> {
+    let limits = estimates::condensed(quantity);
+    limits.iter().filter(|limit| limit.by_group()).map(|one| table(quantity, one, rows)).collect()
 }
 
-fn table(quantity: &QuantityResult, limit: &OfLimit<'_>) -> GroupTable {
+fn table(quantity: &QuantityResult, limit: &OfLimit<'_>, rows: &str) -> Table {
     let first = limit.results[0];
     let keys = heads(limit);
     let decimals =
         number::decimals(&quantity.unit, limit.results.iter().filter_map(|one| one.sample.mean));
     let row = |one: &&StatisticResult| {
-        let own = summary::decimals(one);
-        GroupRow {
-            of: members(one, &keys),
-            count: summary::pairs_and_n(one.count, one.n),
-            mean: number::optional(one.sample.mean, decimals),
-            std: number::optional(one.sample.std, decimals),
-            value: summary::value(Some(one)),
-            low: number::optional(one.interval.map(|(low, _)| low), own),
-            high: number::optional(one.interval.map(|(_, high)| high), own),
-            limit: summary::limit(Some(one)),
-            normalised: summary::normalised(Some(one)),
-            holds: Finding::of_statistic(Some(one)),
-            reason: one.reason.clone(),
-        }
+        let mut cells: Vec<Cell> = members(one, &keys).into_iter().map(Cell::from).collect();
+        cells.push(statistic::pairs_and_n(one.count, one.n));
+        cells.push(Cell::number(one.sample.mean, Format::Fixed(decimals)));
+        cells.push(Cell::number(one.sample.std, Format::Fixed(decimals)));
+        cells.push(statistic::value(Some(one)).strong());
+        cells.extend(statistic::interval(one));
+        cells.push(statistic::limit(Some(one)));
+        cells.push(statistic::normalised(Some(one)));
+        Row::from(cells).ending(Finding::of_statistic(Some(one)), one.reason.as_deref())
     };
-    GroupTable {
-        estimate: number::formula(&first.title),
-        limit_text: limit_in_words(first, quantity),
-        unit: number::unit(&first.unit),
-        intervals: limit.results.iter().any(|one| one.interval.is_some()),
-        rows: limit.results.iter().map(row).collect(),
-        keys: keys.iter().map(|key| capital(key)).collect(),
-    }
+    let mut columns: Vec<Column> =
+        keys.iter().map(|key| Column::name(capital(key)).names_row(false)).collect();
+    columns.push(Column::number(format!("{rows} / n")));
+    columns.extend(["Mean", "s"].map(|title| Column::number(title).unit(&quantity.unit)));
+    columns.push(Column::number("Estimate").unit(&first.unit));
+    columns.extend(statistic::intervals().map(Column::sparse));
+    columns.push(Column::number("Limit").unit(&first.unit));
+    columns.push(Column::number("|Value| / limit"));
+    columns.push(Column::text("Finding").wide(1.0));
+    let caption = caption(&format!("{} of ", number::formula(&first.title)), quantity)
+        .and(format!(", limit {}", limit_in_words(first, quantity)));
+    Table::new(caption, columns, limit.results.iter().map(row)).size(8.0)
 }
 
 /// Head of a column with the whole scope.

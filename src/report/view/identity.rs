@@ -1,35 +1,13 @@
 //! Identification of the report: the items that an assessor expects; missing ones are listed as not
 //! stated.
 
-use serde::Serialize;
-
-use super::Fact;
+use super::View;
+use crate::report::document::{Block, Cell, Chapter, Column, Fact, Run, Table, cells};
 use crate::result::report::stated;
 use crate::result::{Certification, ReportItem};
 
 /// Printed for an item that the campaign does not state.
 const NOT_STATED: &str = "not stated";
-
-/// Items of the cover and the page header.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct ReportHead {
-    /// `Report R-17, revision B`; empty if no number is stated.
-    pub line: String,
-    /// The date of issue, `2026-03-31`; `None` if it is not stated.
-    pub issued: Option<String>,
-    /// Items on the cover.
-    pub cover: Vec<Fact>,
-}
-
-/// A row of the checklist.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct IdentityRow {
-    /// Clause of ISO/IEC 17025:2017; empty for an item without a clause.
-    pub clause: String,
-    pub title: String,
-    pub value: String,
-    pub stated: bool,
-}
 
 /// Items on the cover, in its order.
 const COVER: [&[&str]; 7] = [
@@ -42,49 +20,51 @@ const COVER: [&[&str]; 7] = [
     &["test item", "vehicle number"],
 ];
 
-pub(super) fn head(items: &[ReportItem]) -> ReportHead {
-    let line = match (stated(items, &["number"]), stated(items, &["revision"])) {
+/// `Report R-17, revision B`; empty if no number is stated.
+pub(super) fn line(items: &[ReportItem]) -> String {
+    match (stated(items, &["number"]), stated(items, &["revision"])) {
         (Some(number), Some(revision)) => format!("Report {number}, revision {revision}"),
         (Some(number), None) => format!("Report {number}"),
         (None, Some(revision)) => format!("Revision {revision}"),
         (None, None) => String::new(),
-    };
-    let item = |path: &&[&str]| {
-        let found = items.iter().find(|item| item.path == *path)?;
-        Some(Fact {
-            name: found.title.clone(),
-            value: found.value.clone().unwrap_or_else(|| NOT_STATED.to_owned()),
-        })
-    };
-    ReportHead {
-        line,
-        issued: stated(items, &["dates", "issue"]).map(str::to_owned),
-        cover: COVER.iter().filter_map(item).collect(),
     }
 }
 
+/// The date of issue, if it is stated.
+pub(super) fn issued(items: &[ReportItem]) -> Option<String> {
+    stated(items, &["dates", "issue"]).map(str::to_owned)
+}
+
+/// Items on the cover.
+pub(super) fn on_cover(items: &[ReportItem]) -> Vec<Fact> {
+    let item = |path: &&[&str]| {
+        let found = items.iter().find(|item| item.path == *path)?;
+        Some(Fact::new(&found.title, found.value.as_deref().unwrap_or(NOT_STATED)))
+    };
+    COVER.iter().filter_map(item).collect()
+}
+
 /// The checklist: items stated by the campaign, and items known to the program.
-pub(super) fn checklist(found: &Certification) -> Vec<IdentityRow> {
-    let row = |clause: &str, title: &str, value: &str| IdentityRow {
-        clause: unbroken(clause),
-        title: title.to_owned(),
-        value: value.to_owned(),
-        stated: true,
+pub(super) fn chapter(view: &View<'_>) -> Chapter {
+    let found = view.found;
+    let row = |clause: &str, title: &str, value: &str| {
+        cells![Cell::or_missing(unbroken(clause)), Cell::text(title).strong(), Cell::text(value)]
     };
     let protocol = &found.protocol;
-    let method = match &protocol.edition {
-        Some(edition) => format!(
-            "{} ({edition}); protocol “{}”, printed in this report",
-            protocol.title, protocol.name
-        ),
-        None => format!("{}; protocol “{}”, printed in this report", protocol.title, protocol.name),
-    };
-    let mut rows = vec![row("7.8.2.1 a)", "Title", &super::title(found))];
-    rows.extend(found.campaign.report.iter().map(|item| IdentityRow {
-        clause: unbroken(item.clause.as_deref().unwrap_or_default()),
-        title: item.title.clone(),
-        value: item.value.clone().unwrap_or_else(|| NOT_STATED.to_owned()),
-        stated: item.value.is_some(),
+    let edition =
+        protocol.edition.as_ref().map_or_else(String::new, |edition| format!(" ({edition})"));
+    let method = format!(
+        "{}{edition}; protocol “{}”, printed in this report",
+        protocol.title, protocol.name
+    );
+    let mut rows = vec![row("7.8.2.1 a)", "Title", &super::title(view))];
+    rows.extend(found.campaign.report.iter().map(|item| {
+        let value = item
+            .value
+            .as_ref()
+            .map_or_else(|| Cell::text(Run::Emphasis(NOT_STATED.into())), Cell::from);
+        let clause = Cell::or_missing(item.clause.as_deref().and_then(unbroken));
+        cells![clause, Cell::text(&item.title).strong(), value]
     }));
     rows.extend([
         row("7.8.2.1 f)", "Method", &method),
@@ -96,12 +76,20 @@ pub(super) fn checklist(found: &Certification) -> Vec<IdentityRow> {
         ),
         row("7.8.3.1 b)", "Statement of conformity", super::wording::sentence(found)),
     ]);
-    rows
+    let columns = vec![
+        Column::short("Clause").names_row(false),
+        Column::text("Item").wide(0.5).names_row(true),
+        Column::text("Statement").wide(1.0),
+    ];
+    let about = "The items follow the checklist of ISO/IEC 17025:2017, clause 7.8. An item that the campaign does not state is listed as “not stated”.";
+    let table = Table::new("Items of the report", columns, rows).class("");
+    let title = "Identification of the report";
+    Chapter::new("identity", title, vec![Block::text(about), table.into()]).called("Identification")
 }
 
-/// A clause number without line breaks.
-fn unbroken(clause: &str) -> String {
-    clause.replace(' ', "\u{a0}")
+/// A clause number without line breaks, if there is one.
+fn unbroken(clause: &str) -> Option<String> {
+    (!clause.is_empty()).then(|| clause.replace(' ', "\u{a0}"))
 }
 
 fn deviations(found: &Certification) -> String {
@@ -141,13 +129,13 @@ mod tests {
 
     #[test]
     fn the_head_says_what_is_stated_and_no_more() {
-        let line = |number, revision| {
-            head(&[item(&["number"], number), item(&["revision"], revision)]).line
-        };
+        let line =
+            |number, revision| line(&[item(&["number"], number), item(&["revision"], revision)]);
         assert_eq!(line(Some("7"), Some("B")), "Report 7, revision B");
         assert_eq!(line(Some("7"), None), "Report 7");
         assert_eq!(line(None, None), "");
-        assert_eq!(head(&[item(&["dates", "issue"], None)]).issued, None);
-        assert_eq!(head(&[item(&["dates", "issue"], None)]).cover[0].value, NOT_STATED);
+        let unstated = [item(&["dates", "issue"], None)];
+        assert_eq!(issued(&unstated), None);
+        assert_eq!(on_cover(&unstated)[0].value.letters(), NOT_STATED);
     }
 }

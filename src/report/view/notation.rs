@@ -1,44 +1,10 @@
 //! Symbols, signs and terms used in tables and figures.
 
-use serde::Serialize;
-
-use super::Finding;
+use super::{View, verdicts};
 use crate::report::brief::in_full;
+use crate::report::document::{Block, Cell, Chapter, Column, Finding, Table, cells};
 use crate::report::number;
-use crate::result::{Certification, Outcome, QuantityResult};
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct NotationView {
-    pub channels: Vec<ChannelRow>,
-    pub symbols: Vec<SymbolRow>,
-    pub comparisons: Vec<Term>,
-    pub words: Vec<Term>,
-    pub findings: Vec<(Finding, String)>,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct ChannelRow {
-    pub name: String,
-    pub title: String,
-    pub unit: String,
-    pub note: String,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct SymbolRow {
-    pub symbol: String,
-    pub title: String,
-    pub unit: String,
-    pub of: String,
-    pub comparison: String,
-}
-
-/// A term and its meaning.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Term {
-    pub word: String,
-    pub meaning: String,
-}
+use crate::result::{Certification, ChannelInfo, Outcome, QuantityResult};
 
 /// Comparisons with an explanation of their sign, of values called ONE and OTHER. Others are
 /// self-explanatory.
@@ -65,7 +31,7 @@ const VALUES: [([&str; 2], [&str; 2]); 6] = [
 ];
 
 /// Each comparison that quantities use, with its meaning.
-fn comparisons(found: &Certification) -> Vec<Term> {
+fn comparisons(found: &Certification) -> Vec<Vec<Cell>> {
     let put =
         |text: &str, [one, other]: [&str; 2]| text.replace("ONE", one).replace("OTHER", other);
     let of_values = |(in_words, named)| {
@@ -75,7 +41,7 @@ fn comparisons(found: &Certification) -> Vec<Term> {
     };
     let used = |words: &str| found.quantities.iter().any(|quantity| quantity.comparison == words);
     let all = VALUES.into_iter().flat_map(of_values).filter(|(words, _)| used(words));
-    all.map(|(words, meaning)| Term { word: number::formula(&words), meaning }).collect()
+    all.map(|(words, meaning)| cells![Cell::formula(words), meaning]).collect()
 }
 
 /// Terms of a comparison of simulated with measured records.
@@ -211,54 +177,71 @@ fn terms(found: &Certification) -> Vec<(&'static str, &'static str)> {
     all
 }
 
-pub(super) fn view(found: &Certification) -> NotationView {
-    let term = |(word, meaning): &(&str, &str)| Term {
-        word: (*word).to_owned(),
-        meaning: (*meaning).to_owned(),
+pub(super) fn chapter(view: &View<'_>) -> Chapter {
+    let found = view.found;
+    let known = |table: Table| (!table.rows.is_empty()).then_some(table);
+    let meanings = |caption: &str, head: &str, rows: Vec<Vec<Cell>>| {
+        let columns = vec![Column::text(head).wide(0.4), Column::text("Meaning").wide(1.0)];
+        known(Table::new(caption, columns, rows).class(""))
     };
-    let finding = |holds, says: &str| (Finding::of(holds), says.to_owned());
-    NotationView {
-        channels: found
-            .protocol
-            .channels
-            .iter()
-            .map(|channel| ChannelRow {
-                name: channel.name.clone(),
-                title: channel.title.clone(),
-                unit: number::unit(&channel.unit),
-                note: channel.note.clone(),
-            })
-            .collect(),
-        // Of many quantities, those with a chapter: the table of all has their words.
-        symbols: in_full(&found.quantities)
-            .into_iter()
-            .map(|at| &found.quantities[at])
-            .map(|quantity| SymbolRow {
-                symbol: super::symbol(&quantity.symbol),
-                title: quantity.title.clone(),
-                unit: number::unit(&quantity.unit),
-                of: quantity.of.clone(),
-                comparison: number::formula(&quantity.comparison),
-            })
-            .collect(),
-        comparisons: comparisons(found),
-        words: if found.quantities.is_empty() {
-            Vec::new()
-        } else {
-            terms(found).iter().map(term).collect()
-        },
-        findings: [
-            finding(Some(true), "The acceptance criterion or requirement is met."),
-            finding(Some(false), "It is not met."),
-            finding(None, "It could not be assessed; the reason is stated."),
+    let terms = if found.quantities.is_empty() { Vec::new() } else { terms(found) };
+    let terms = terms.into_iter().map(|(word, meaning)| cells![word, meaning]);
+    let tables = [
+        known(quantities(view)),
+        known(channels(&found.protocol.channels)),
+        meanings("Sign of the differences", "Difference", comparisons(found)),
+        meanings("Statistics and terms", "Term", terms.collect()),
+        meanings("Findings", "Sign", findings(found)),
+    ];
+    Chapter::new("notation", "Notation", tables.into_iter().flatten().map(Block::from).collect())
+}
+
+/// Of many quantities, those with a chapter: the table of all has their words.
+fn quantities(view: &View<'_>) -> Table {
+    let all = &view.found.quantities;
+    let rows = in_full(all).into_iter().map(|at| &all[at]).map(|quantity| {
+        cells![
+            Cell::symbol(&super::symbol(&quantity.symbol), ""),
+            quantity.title,
+            number::unit(&quantity.unit),
+            quantity.of,
+            Cell::formula(&quantity.comparison)
         ]
-        .into_iter()
-        .chain(found.verdicts.iter().any(|verdict| verdict.outcome == Outcome::Open).then(|| {
-            (
-                super::verdicts::finding(Outcome::Open, ""),
-                "A person decides it, whom the protocol names.".to_owned(),
-            )
-        }))
-        .collect(),
+    });
+    let columns = vec![
+        Column::short("Symbol"),
+        Column::text("Quantity").wide(1.5),
+        Column::short("Unit"),
+        Column::text("Signals").wide(1.1),
+        Column::text(view.words.comparison).wide(1.7),
+    ];
+    Table::new("Quantities", columns, rows).class("").size(8.0)
+}
+
+fn channels(all: &[ChannelInfo]) -> Table {
+    let row = |channel: &ChannelInfo| {
+        let note = Some(&channel.note).filter(|note| !note.is_empty());
+        cells![channel.name, channel.title, number::unit(&channel.unit), Cell::or_missing(note)]
+    };
+    let columns = vec![
+        Column::name("Channel"),
+        Column::text("Meaning").wide(1.2),
+        Column::short("Unit"),
+        Column::text("Sign and remarks").wide(1.6),
+    ];
+    Table::new("Channels and their signs", columns, all.iter().map(row)).class("").size(8.0)
+}
+
+fn findings(found: &Certification) -> Vec<Vec<Cell>> {
+    let row = |finding: Finding, meaning: &str| cells![finding, meaning];
+    let mut rows = vec![
+        row(Finding::of(Some(true)), "The acceptance criterion or requirement is met."),
+        row(Finding::of(Some(false)), "It is not met."),
+        row(Finding::of(None), "It could not be assessed; the reason is stated."),
+    ];
+    if found.verdicts.iter().any(|verdict| verdict.outcome == Outcome::Open) {
+        let open = verdicts::finding(Outcome::Open, "");
+        rows.push(row(open, "A person decides it, whom the protocol names."));
     }
+    rows
 }

@@ -1,136 +1,127 @@
 //! The protocol: identification, text, parameters, and deviations from its parent.
 
-use serde::Serialize;
-
-use super::FigureView;
+use crate::report::document::{
+    Block, Cell, Chapter, Column, Figure, Run, Table, Text, cells, facts,
+};
 use crate::report::number;
 use crate::result::{Deviation, FilterInfo, ParameterInfo, ProtocolFile, ProtocolInfo};
 
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct ProtocolView {
-    pub name: String,
-    pub title: String,
-    pub edition: Option<String>,
-    pub source: Option<String>,
-    pub scope: Option<String>,
-    pub notes: Vec<String>,
-    pub sha256: String,
-    pub verdict_rule: String,
-    /// The protocol first, then its parent, and so on.
-    pub files: Vec<SourceFile>,
-    pub deviations: Vec<DeviationView>,
-    pub parameters: Vec<ParameterView>,
-    pub filters: Vec<FilterView>,
-    pub graph_nodes: usize,
-    /// `None` if there is no drawing.
-    pub graph: Option<FigureView>,
-}
-
-/// A file of the protocol, line by line.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct SourceFile {
-    pub name: String,
-    pub sha256: String,
-    pub lines: Vec<SourceLine>,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct SourceLine {
-    pub number: usize,
-    /// Tabs as four spaces, without trailing white space.
-    pub text: String,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct DeviationView {
-    pub rule: String,
-    pub before: Option<String>,
-    pub after: Option<String>,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct ParameterView {
-    pub name: String,
-    pub title: String,
-    pub value: String,
-    pub default: String,
-    pub set_by: String,
-    /// Differs from the default.
-    pub changed: bool,
-    pub unconfirmed: Option<String>,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct FilterView {
-    pub name: String,
-    pub title: String,
-    pub steps: String,
-    pub source: Option<String>,
-}
-
-/// The protocol as printed.
-pub fn view(protocol: &ProtocolInfo) -> ProtocolView {
-    ProtocolView {
-        name: protocol.name.clone(),
-        title: protocol.title.clone(),
-        edition: protocol.edition.clone(),
-        source: protocol.source.clone(),
-        scope: protocol.scope.clone(),
-        notes: protocol.notes.iter().map(|note| number::raised(note)).collect(),
-        sha256: protocol.sha256.clone(),
-        verdict_rule: protocol.verdict_rule.clone(),
-        files: protocol.files.iter().map(source_file).collect(),
-        deviations: protocol.deviations.iter().map(deviation).collect(),
-        parameters: protocol.parameters.iter().map(parameter).collect(),
-        filters: protocol.filters.iter().map(|one| filter(one, protocol.source.as_deref())).collect(),
-        graph_nodes: protocol.graph_nodes,
-        graph: (!protocol.graph_svg.trim().is_empty()).then(|| FigureView {
-            name: "graph".into(),
-            caption: format!("Processing graph, {} operations; those of plausibility rules alone are not drawn", protocol.graph_nodes),
-            alt: format!("Processing graph of the protocol with {} operations, from the channels to the statistics.", protocol.graph_nodes),
-        }),
+/// The complete protocol.
+pub(super) fn chapter(protocol: &ProtocolInfo) -> Chapter {
+    let hash = Run::Hash(protocol.sha256.clone());
+    let mut blocks = vec![Block::Facts(vec![facts([
+        ("Name", (&protocol.name).into()),
+        ("Title", (&protocol.title).into()),
+        ("Edition", (&protocol.edition).into()),
+        ("Source", (&protocol.source).into()),
+        ("Scope", (&protocol.scope).into()),
+        ("Verdict rule", (&protocol.verdict_rule).into()),
+        ("Hash", hash.into()),
+    ])])];
+    if !protocol.notes.is_empty() {
+        blocks.push(Block::list(protocol.notes.iter().map(|note| number::raised(note))));
     }
+    if protocol.files.len() > 1 || !protocol.deviations.is_empty() {
+        blocks.push(Block::heading("Deviations from the parent protocol"));
+        blocks.push(deviations(&protocol.deviations));
+    }
+    if !protocol.parameters.is_empty() {
+        blocks.push(Block::heading("Parameters"));
+        blocks.push(parameters(protocol).into());
+    }
+    let graph: Vec<Block> = graph(protocol).into_iter().map(Block::from).collect();
+    // A page of its own; what follows it on paper is long, so that no page stays nearly empty.
+    blocks.push(Block::on_paper(graph.iter().cloned()));
+    if !protocol.filters.is_empty() {
+        blocks.push(Block::heading("Filters"));
+        blocks.push(filters(protocol).into());
+    }
+    blocks.push(Block::on_screen(graph));
+    blocks.extend(protocol.files.iter().flat_map(listing));
+    Chapter::new("protocol", "Protocol", blocks)
 }
 
-fn source_file(file: &ProtocolFile) -> SourceFile {
-    let lines = file.text.lines().enumerate();
-    SourceFile {
-        name: file.name.clone(),
-        sha256: file.sha256.clone(),
-        lines: lines
-            .map(|(at, text)| SourceLine {
-                number: at + 1,
-                text: text.replace('\t', "    ").trim_end().to_owned(),
-            })
-            .collect(),
+fn deviations(all: &[Deviation]) -> Block {
+    if all.is_empty() {
+        return Block::text("No rule differs from the parent protocol.");
     }
+    let row = |one: &Deviation| {
+        let side = |text: &Option<String>, none: &str| Cell::from(text.as_deref().unwrap_or(none));
+        cells![one.rule, side(&one.before, "not present"), side(&one.after, "removed")]
+    };
+    let columns = vec![
+        Column::text("Rule").wide(1.1),
+        Column::text("Parent").wide(1.0),
+        Column::text("This protocol").wide(1.0),
+    ];
+    Table::new("Rules that differ in meaning", columns, all.iter().map(row)).class("").into()
 }
 
-fn deviation(deviation: &Deviation) -> DeviationView {
-    DeviationView {
-        rule: deviation.rule.clone(),
-        before: deviation.before.clone(),
-        after: deviation.after.clone(),
-    }
+/// What each parameter is, and whether its number is to be confirmed: against the standard, if the
+/// protocol names its source.
+fn parameters(protocol: &ProtocolInfo) -> Table {
+    let against = if protocol.source.is_some() { " against the standard" } else { "" };
+    let row = |parameter: &ParameterInfo| {
+        let confirm = |why: &String| {
+            Text::from(Run::Emphasis(format!("To be confirmed{against}."))).and(format!(" {why}"))
+        };
+        let title = Some(Text::from(&parameter.title));
+        let used = Cell::from(&parameter.value);
+        vec![
+            Run::Code(parameter.name.clone()).into(),
+            Text::lines(title.into_iter().chain(parameter.unconfirmed.as_ref().map(confirm)))
+                .into(),
+            if parameter.value == parameter.default { used } else { used.strong() },
+            (&parameter.default).into(),
+            (&parameter.set_by).into(),
+        ]
+    };
+    let columns = vec![
+        Column::text("Name").wide(1.0),
+        Column::text("Meaning").wide(2.0),
+        Column::short("Used"),
+        Column::short("Default"),
+        Column::short("Set by"),
+    ];
+    let caption = "Parameters of the protocol, values used and defaults";
+    Table::new(caption, columns, protocol.parameters.iter().map(row))
 }
 
-fn parameter(parameter: &ParameterInfo) -> ParameterView {
-    ParameterView {
-        name: parameter.name.clone(),
-        title: parameter.title.clone(),
-        value: parameter.value.clone(),
-        default: parameter.default.clone(),
-        set_by: parameter.set_by.clone(),
-        changed: parameter.value != parameter.default,
-        unconfirmed: parameter.unconfirmed.clone(),
-    }
+fn filters(protocol: &ProtocolInfo) -> Table {
+    let row = |filter: &FilterInfo| {
+        let source = filter.source.as_deref();
+        let source = source.map(|one| super::with_work(one, protocol.source.as_deref()));
+        cells![Run::Code(filter.name.clone()), filter.title, filter.steps, Cell::or_missing(source)]
+    };
+    let columns = vec![
+        Column::short("Name"),
+        Column::text("Title").wide(1.0),
+        Column::text("Steps").wide(1.2),
+        Column::text("Source").wide(1.7),
+    ];
+    let rows = protocol.filters.iter().map(row);
+    Table::new("Filters with the settings used", columns, rows).class("")
 }
 
-fn filter(filter: &FilterInfo, work: Option<&str>) -> FilterView {
-    FilterView {
-        name: filter.name.clone(),
-        title: filter.title.clone(),
-        steps: filter.steps.clone(),
-        source: filter.source.as_deref().map(|source| super::with_work(source, work)),
-    }
+fn graph(protocol: &ProtocolInfo) -> Option<Figure> {
+    let nodes = protocol.graph_nodes;
+    let caption = format!(
+        "Processing graph, {nodes} operations; those of plausibility rules alone are not drawn"
+    );
+    let alt = format!(
+        "Processing graph of the protocol with {nodes} operations, from the channels to the statistics."
+    );
+    let figure = Figure::new("graph", caption, alt, 220);
+    let drawn = !protocol.graph_svg.trim().is_empty();
+    drawn.then_some(Figure { page: Some("Processing graph"), ..figure })
+}
+
+/// A file line by line, with tabs as four spaces and no trailing white space.
+fn listing(file: &ProtocolFile) -> [Block; 3] {
+    let line = |line: &str| line.replace('\t', "    ").trim_end().to_owned();
+    [
+        Block::heading(format!("Text: {}", file.name)),
+        Block::text(Run::Hash(file.sha256.clone())),
+        Block::Listing(file.text.lines().map(line).collect()),
+    ]
 }

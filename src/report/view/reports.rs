@@ -1,9 +1,9 @@
 //! Estimates without a limit as tables: groups are rows, estimates are columns.
 
 use indexmap::{IndexMap, IndexSet};
-use serde::Serialize;
 
-use super::{ColumnHead, name};
+use super::name;
+use crate::report::document::{Block, Cell, Column, Format, Table, Text};
 use crate::report::number;
 use crate::report::sides::capital;
 use crate::result::Reported;
@@ -13,43 +13,25 @@ const ABREAST: usize = 6;
 /// Head of the first column where rows are no groups of keys.
 const GROUP: &str = "group";
 
-/// Estimates of the same groups.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct ReportTable {
-    /// `Zone`, `Wheelset`
-    pub keys: Vec<String>,
-    pub columns: Vec<ColumnHead>,
-    pub rows: Vec<ReportRow>,
-    /// Why numbers are missing.
-    pub reasons: Vec<String>,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct ReportRow {
-    /// The member of each key.
-    pub of: Vec<String>,
-    /// Values or sections of the estimates in the row: `12`, `9 to 12`.
-    pub count: String,
-    pub values: Vec<String>,
-}
-
-pub(super) fn tables(reported: &[Reported]) -> Vec<ReportTable> {
+/// Tables of all estimates, and why numbers are missing; `counted` is what they are of.
+pub(super) fn tables(reported: &[Reported], caption: &Text, counted: &str) -> Vec<Block> {
     let mut by_keys: IndexMap<Vec<&str>, Vec<&Reported>> = IndexMap::new();
     for one in reported {
         by_keys.entry(keys(one)).or_default().push(one);
     }
     let abreast = |(keys, all): (Vec<&str>, Vec<&Reported>)| {
-        let columns: IndexSet<Column<'_>> = all.iter().map(|one| column(one)).collect();
-        let columns: Vec<Column<'_>> = columns.into_iter().collect();
-        columns.chunks(ABREAST).map(|columns| table(&keys, columns, &all)).collect::<Vec<_>>()
+        let columns: IndexSet<Estimate<'_>> = all.iter().map(|one| column(one)).collect();
+        let columns: Vec<Estimate<'_>> = columns.into_iter().collect();
+        let table = |columns: &[Estimate<'_>]| table((caption, counted), &keys, columns, &all);
+        columns.chunks(ABREAST).flat_map(table).collect::<Vec<_>>()
     };
     by_keys.into_iter().flat_map(abreast).collect()
 }
 
 /// Estimate, condition and unit.
-type Column<'a> = (&'a str, Option<&'a str>, &'a str);
+type Estimate<'a> = (&'a str, Option<&'a str>, &'a str);
 
-fn column(one: &Reported) -> Column<'_> {
+fn column(one: &Reported) -> Estimate<'_> {
     (&one.title, one.condition.as_deref(), &one.unit)
 }
 
@@ -67,53 +49,49 @@ fn members(one: &Reported) -> Vec<String> {
     }
 }
 
-fn table(keys: &[&str], columns: &[Column<'_>], all: &[&Reported]) -> ReportTable {
+fn table(
+    (caption, counted): (&Text, &str),
+    keys: &[&str],
+    estimates: &[Estimate<'_>],
+    all: &[&Reported],
+) -> Vec<Block> {
     let mut rows: IndexMap<Vec<String>, Vec<&Reported>> = IndexMap::new();
-    for one in all.iter().filter(|one| columns.contains(&column(one))) {
+    for one in all.iter().filter(|one| estimates.contains(&column(one))) {
         rows.entry(members(one)).or_default().push(one);
     }
-    let of = |wanted: &Column<'_>| {
-        all.iter()
-            .filter(|one| column(one) == *wanted)
-            .filter_map(|one| one.value)
-            .collect::<Vec<_>>()
+    let format = |wanted: &Estimate<'_>| {
+        let same = all.iter().filter(|one| column(one) == *wanted);
+        Format::Fixed(number::decimals(wanted.2, same.filter_map(|one| one.value)))
     };
-    let decimals: Vec<usize> =
-        columns.iter().map(|wanted| number::decimals(wanted.2, of(wanted))).collect();
-    let cell = |cells: &[&Reported], (wanted, decimals): (&Column<'_>, &usize)| {
-        let value = cells.iter().find(|one| column(one) == *wanted).and_then(|one| one.value);
-        number::optional(value, *decimals)
-    };
-    let head = |(title, condition, unit): &Column<'_>| {
-        let title = capital(&number::formula(title));
-        let title = condition.map_or_else(
-            || title.clone(),
-            |condition| format!("{title}, {}", number::formula(condition)),
-        );
-        ColumnHead { title, unit: number::unit(unit), numeric: true }
+    let formats: Vec<Format> = estimates.iter().map(format).collect();
+    let row = |(members, cells): (&Vec<String>, &Vec<&Reported>)| {
+        let mut row: Vec<Cell> =
+            members.iter().map(|member| Cell::from(name(member)).strong()).collect();
+        row.push(count(cells).into());
+        row.extend(estimates.iter().zip(&formats).map(|(wanted, format)| {
+            let value = cells.iter().find(|one| column(one) == *wanted).and_then(|one| one.value);
+            Cell::number(value, *format)
+        }));
+        row
     };
     let reason = |one: &&Reported| {
-        one.reason.as_ref().map(|reason| {
-            number::raised(&format!(
-                "{}, {}: {reason}",
-                capital(&number::formula(&one.title)),
-                one.scope
-            ))
-        })
+        let title = capital(&number::formula(&one.title));
+        let reason = one.reason.as_ref()?;
+        Some(number::raised(&format!("{title}, {}: {reason}", one.scope)))
     };
-    ReportTable {
-        keys: keys.iter().map(|key| capital(key)).collect(),
-        columns: columns.iter().map(head).collect(),
-        reasons: rows.values().flatten().filter_map(reason).collect(),
-        rows: rows
-            .iter()
-            .map(|(members, cells)| ReportRow {
-                of: members.iter().map(|member| name(member)).collect(),
-                count: count(cells),
-                values: columns.iter().zip(&decimals).map(|column| cell(cells, column)).collect(),
-            })
-            .collect(),
-    }
+    let head = |(title, condition, unit): &Estimate<'_>| {
+        let condition = condition.map(|condition| format!(", {}", number::formula(condition)));
+        let title = capital(&number::formula(title)) + &condition.unwrap_or_default();
+        Column::number(title).wide(1.0).unit(unit)
+    };
+    let mut columns: Vec<Column> =
+        keys.iter().map(|key| Column::name(capital(key)).names_row(true)).collect();
+    columns.push(Column::number(counted));
+    columns.extend(estimates.iter().map(head));
+    let table = Table::new(caption.clone(), columns, rows.iter().map(row)).size(8.0);
+    let reasons: Vec<String> = rows.values().flatten().filter_map(reason).collect();
+    let reasons = (!reasons.is_empty()).then(|| Block::list(reasons));
+    std::iter::once(Block::from(table)).chain(reasons).collect()
 }
 
 fn count(cells: &[&Reported]) -> String {

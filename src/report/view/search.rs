@@ -1,132 +1,99 @@
 //! How the sections were found in runs, and which were kept.
 
-use serde::Serialize;
-
+use super::name;
+use crate::report::document::{Block, Cell, Column, Format, Table, cells};
 use crate::report::found::{drift_in_words, in_words};
 use crate::report::number;
-use crate::result::Certification;
-use crate::result::found::{FoundInRun, FoundSections};
+use crate::report::sides::capital;
+use crate::result::found::{FoundInRun, FoundSections, Rejected};
 use crate::result::study::Reduction;
 
 /// The search in the runs of a campaign.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct SearchView {
-    /// Which of several campaigns, with a colon; else empty.
-    pub campaign: String,
-    pub sentence: String,
-    pub runs: Vec<RunRow>,
-    pub rejected: Vec<RejectedRow>,
-    /// The shift of the measurement of each run, in a sentence.
-    pub drifts: Vec<String>,
+pub(super) fn search(found: &FoundSections) -> Vec<Block> {
+    let title = "search for sections in runs";
+    let title = match &found.campaign {
+        Some(campaign) => format!("{campaign}: {title}"),
+        None => capital(title),
+    };
+    let mut blocks = vec![Block::heading(title), Block::text(format!("{}.", in_words(found)))];
+    blocks.push(runs(found).into());
+    let rejected = found.rejected();
+    if !rejected.is_empty() {
+        blocks.push(self::rejected(&rejected, found.tried()).into());
+    }
+    let drifts = found.runs.iter().filter_map(|run| drift_in_words(run, &found.axis_unit));
+    blocks.extend(drifts.map(|says| Block::text(format!("{}.", capital(&says)))));
+    blocks
 }
 
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct RunRow {
-    pub run: String,
-    pub start: String,
-    pub end: String,
-    pub tried: String,
-    pub found: String,
+fn runs(found: &FoundSections) -> Table {
+    let length = |x: f64| Cell::text(format!("{} {}", number::significant(x, 7), found.axis_unit));
+    let row = |run: &FoundInRun| {
+        cells![
+            Cell::from(name(&run.run)).strong(),
+            length(run.start),
+            length(run.end),
+            run.tried as u64,
+            run.found
+        ]
+    };
+    let columns = vec![
+        Column::name("Run").wide(2.0),
+        Column::number("From"),
+        Column::number("To"),
+        Column::number("Places tried"),
+        Column::number("Sections found"),
+    ];
+    Table::new("Runs, and sections found in them", columns, found.runs.iter().map(row))
 }
 
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct RejectedRow {
-    pub reason: String,
-    pub places: String,
-    pub share: String,
+fn rejected(all: &[Rejected], tried: usize) -> Table {
+    let row = |rejected: &Rejected| {
+        let share = 100.0 * rejected.places as f64 / tried.max(1) as f64;
+        cells![
+            capital(&rejected.reason),
+            (rejected.places as u64),
+            Cell::text(format!("{share:.1} %"))
+        ]
+    };
+    let columns = vec![
+        Column::text("Reason").wide(2.0),
+        Column::number("Places"),
+        Column::number("Share of those tried"),
+    ];
+    let caption = "Places where no section begins, by the first reason; the stretches are in tables/rejected.csv";
+    Table::new(caption, columns, all.iter().map(row))
 }
 
 /// The sections that were kept, and the scatter of all and of these.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct ReductionView {
-    pub sentence: String,
-    pub groups: Vec<GroupRow>,
-    pub scatter: Vec<ScatterRow>,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct GroupRow {
-    pub group: String,
-    pub kept: String,
-    pub sections: String,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct ScatterRow {
-    pub symbol: String,
-    pub all: String,
-    pub kept: String,
-}
-
-pub fn searches(found: &Certification) -> Vec<SearchView> {
-    found.found.iter().map(search).collect()
-}
-
-fn search(found: &FoundSections) -> SearchView {
-    let tried = found.tried();
-    let length = |x: f64| format!("{} {}", number::significant(x, 7), found.axis_unit);
-    let run = |run: &FoundInRun| RunRow {
-        run: run.run.clone(),
-        start: length(run.start),
-        end: length(run.end),
-        tried: number::count(run.tried as u64),
-        found: run.found.to_string(),
-    };
-    let rejected = found.rejected().into_iter().map(|rejected| RejectedRow {
-        share: format!("{:.1} %", 100.0 * rejected.places as f64 / tried.max(1) as f64),
-        places: number::count(rejected.places as u64),
-        reason: super::capital(&rejected.reason),
-    });
-    SearchView {
-        campaign: found.campaign.as_ref().map_or_else(String::new, |name| format!("{name}: ")),
-        sentence: format!("{}.", in_words(found)),
-        runs: found.runs.iter().map(run).collect(),
-        rejected: rejected.collect(),
-        drifts: found
-            .runs
-            .iter()
-            .filter_map(|run| drift_in_words(run, &found.axis_unit))
-            .map(|says| format!("{}.", super::capital(&says)))
-            .collect(),
-    }
-}
-
-pub fn reduction(found: &Certification) -> Option<ReductionView> {
-    found.reduction.as_ref().map(view)
-}
-
-fn view(reduction: &Reduction) -> ReductionView {
+pub(super) fn reduction(reduction: &Reduction) -> Vec<Block> {
     let highest =
         |of: fn(&(String, f64, f64)) -> f64| reduction.scatter.iter().map(of).fold(0.0, f64::max);
-    let (all, kept) = (highest(|row| row.1), highest(|row| row.2));
-    let (left, used): (usize, usize) =
-        (reduction.left_out.len(), reduction.kept.iter().map(|(_, kept)| kept.len()).sum());
-    ReductionView {
-        sentence: format!(
-            "{used} of {} sections were kept, at most {} of each group, so that the highest standard deviation divided by its limit stays \
-             almost the same: {} of all sections, {} of those kept.",
-            used + left,
-            reduction.most,
-            number::fixed(all, 3),
-            number::fixed(kept, 3)
-        ),
-        groups: reduction
-            .kept
-            .iter()
-            .map(|(group, kept)| GroupRow {
-                group: group.clone(),
-                kept: kept.len().to_string(),
-                sections: kept.join(", "),
-            })
-            .collect(),
-        scatter: reduction
-            .scatter
-            .iter()
-            .map(|(symbol, all, kept)| ScatterRow {
-                symbol: symbol.clone(),
-                all: number::fixed(*all, 3),
-                kept: number::fixed(*kept, 3),
-            })
-            .collect(),
-    }
+    let used: usize = reduction.kept.iter().map(|(_, kept)| kept.len()).sum();
+    let sentence = format!(
+        "{used} of {} sections were kept, at most {} of each group, so that the highest standard deviation divided by its limit stays \
+         almost the same: {} of all sections, {} of those kept.",
+        used + reduction.left_out.len(),
+        reduction.most,
+        number::fixed(highest(|row| row.1), 3),
+        number::fixed(highest(|row| row.2), 3)
+    );
+    let kept = reduction
+        .kept
+        .iter()
+        .map(|(group, kept)| cells![Cell::from(name(group)).strong(), kept.len(), kept.join(", ")]);
+    let columns =
+        vec![Column::name("Group"), Column::number("Kept"), Column::text("Sections").wide(1.0)];
+    let groups = Table::new("Sections kept of each group", columns, kept);
+    let scatter = reduction.scatter.iter().map(|(symbol, all, kept)| {
+        let ratio = |value: f64| Cell::number(value, Format::Fixed(3));
+        cells![Cell::symbol(symbol, "").strong(), ratio(*all), ratio(*kept)]
+    });
+    let columns = vec![
+        Column::text("Quantity").wide(1.0),
+        Column::number("All sections"),
+        Column::number("Sections kept"),
+    ];
+    let scatter = Table::new("Standard deviations divided by their limits", columns, scatter);
+    vec![Block::heading("Sections kept"), Block::text(sentence), groups.into(), scatter.into()]
 }

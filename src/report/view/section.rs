@@ -1,274 +1,173 @@
-//! The sections by zone, their requirements, and the validity domain.
+//! The sections by zone, and their requirements.
 
 use indexmap::IndexSet;
-use serde::Serialize;
 
-use super::{Finding, name};
+use super::{View, name, reports, search};
+use crate::report::document::{
+    Block, Cell, Chapter, Column, Finding, Format, Row, Run, Table, Text, cells,
+};
 use crate::report::number;
-use crate::result::{Certification, DomainRange, SectionResult, ZoneResult};
+use crate::result::{CheckResult, SectionResult, ZoneResult};
 
 /// Number of checks side by side that fit a page.
 const CHECKS_ABREAST: usize = 4;
 
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct ZoneView {
-    pub zone: String,
-    pub title: String,
-    pub condition: String,
-    pub used: String,
-    pub given: String,
-    pub minimum: String,
-    pub holds: Finding,
+/// Sections, their use, and the requirements on them; none without sections and zones.
+pub(super) fn chapter(view: &View<'_>) -> Option<Chapter> {
+    let found = view.found;
+    let mut blocks: Vec<Block> = found.found.iter().flat_map(search::search).collect();
+    blocks.extend(found.reduction.iter().flat_map(search::reduction));
+    if !found.zones.is_empty() {
+        blocks.push(zones(&found.zones).into());
+    }
+    let caption = "Data of the sections used".into();
+    blocks.extend(reports::tables(&found.reported, &caption, "Sections"));
+    let tables = by_zone(view);
+    // One table of all sections needs no heading of its own.
+    let several = tables.len() > 1;
+    for (zone, sections) in tables {
+        blocks.push(of_zone(view, zone, &sections, several));
+    }
+    let none = found.sections.is_empty() && found.zones.is_empty();
+    (!none).then(|| Chapter::new("sections", "Sections", blocks))
 }
 
-/// The sections of one zone.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct SectionTable {
-    pub zone: Option<String>,
-    /// `Zone 1: Straight track`; `Sections` where there are no zones.
-    pub title: String,
-    pub condition: String,
-    /// Unit of start, end and length.
-    pub axis_unit: String,
-    pub columns: Vec<ColumnHead>,
-    pub rows: Vec<SectionRow>,
-    /// Requirements, up to four side by side; empty if the protocol has none.
-    pub checks: Vec<CheckTable>,
+fn zones(all: &[ZoneResult]) -> Table {
+    let row = |zone: &ZoneResult| {
+        Row::from(cells![
+            Cell::from(name(&zone.zone)).strong(),
+            zone.title,
+            Cell::formula(&zone.condition),
+            zone.given,
+            zone.used,
+            zone.minimum,
+            Finding::of(Some(zone.holds))
+        ])
+        .in_zone(Some(&name(&zone.zone)))
+    };
+    let columns = vec![
+        Column::name("Zone"),
+        Column::text("Title").wide(1.4),
+        Column::text("Condition").wide(2.0),
+        Column::number("Given"),
+        Column::number("Used"),
+        Column::number("Required"),
+        Column::short("Criterion"),
+    ];
+    Table::new("Test zones: sections used and required", columns, all.iter().map(row)).size(8.5)
 }
 
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct ColumnHead {
-    pub title: String,
-    pub unit: String,
-    /// All values are numbers: aligned to the right.
-    pub numeric: bool,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct SectionRow {
-    pub section: String,
-    pub start: String,
-    pub end: String,
-    pub length: String,
-    /// One text per column.
-    pub values: Vec<String>,
-    pub used: Finding,
-    pub reason: Option<String>,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct CheckTable {
-    pub titles: Vec<String>,
-    pub rows: Vec<CheckRow>,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct CheckRow {
-    pub section: String,
-    /// One per title; `None` where the requirement does not apply to the section.
-    pub cells: Vec<Option<CheckCell>>,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct CheckCell {
-    pub holds: Finding,
-    pub says: String,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct DomainView {
-    pub name: String,
-    pub unit: String,
-    pub rows: Vec<DomainRow>,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct DomainRow {
-    pub scope: String,
-    pub low: String,
-    pub high: String,
-    pub count: String,
-}
-
-pub(super) fn zones(found: &Certification) -> Vec<ZoneView> {
-    found
-        .zones
-        .iter()
-        .map(|zone| ZoneView {
-            zone: name(&zone.zone),
-            title: zone.title.clone(),
-            condition: number::formula(&zone.condition),
-            used: zone.used.to_string(),
-            given: zone.given.to_string(),
-            minimum: zone.minimum.to_string(),
-            holds: Finding::of(Some(zone.holds)),
-        })
-        .collect()
-}
-
-pub(super) fn tables(found: &Certification) -> Vec<SectionTable> {
+/// Sections by zone, in the order of the zones; sections without a zone last.
+fn by_zone<'a>(view: &View<'a>) -> Vec<(Option<&'a str>, Vec<&'a SectionResult>)> {
+    let found = view.found;
     let mut zones: IndexSet<Option<&str>> =
         found.zones.iter().map(|zone| Some(zone.zone.as_str())).collect();
     zones.extend(found.sections.iter().filter_map(|section| section.zone.as_deref()).map(Some));
     zones.insert(None);
-    zones
-        .into_iter()
-        .filter_map(|zone| {
-            let sections: Vec<&SectionResult> =
-                found.sections.iter().filter(|section| section.zone.as_deref() == zone).collect();
-            let known = found.zones.iter().find(|known| Some(known.zone.as_str()) == zone);
-            (!sections.is_empty()).then(|| table(zone, known, &sections))
-        })
-        .collect()
-}
-
-/// Section data that were found have more digits than they are worth: of a number as long as this,
-/// three decimals are printed.
-fn short(text: String) -> String {
-    /// Decimals from which on a number is not one that was written by hand.
-    const MANY: usize = 5;
-    let decimals = text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
-    match text.parse::<f64>() {
-        // A small number, such as a curvature, keeps its digits.
-        Ok(value) if decimals >= MANY && value.abs() >= 1.0 => {
-            format!("{value:.3}").trim_end_matches('0').trim_end_matches('.').to_string()
-        }
-        _ => text,
-    }
-}
-
-fn table(
-    zone: Option<&str>,
-    known: Option<&ZoneResult>,
-    sections: &[&SectionResult],
-) -> SectionTable {
-    let names: IndexSet<&str> = sections
-        .iter()
-        .flat_map(|section| &section.columns)
-        .map(|column| column.name.as_str())
-        .collect();
-    let text = |section: &SectionResult, name: &str| {
-        section
-            .columns
-            .iter()
-            .find(|column| column.name == name)
-            .map(|column| column.value.trim().to_owned())
+    let within = |zone: Option<&'a str>| {
+        let sections = found.sections.iter().filter(|section| section.zone.as_deref() == zone);
+        (zone, sections.collect::<Vec<_>>())
     };
-    let columns = names
-        .iter()
-        .map(|name| ColumnHead {
-            title: (*name).to_owned(),
-            unit: sections
-                .iter()
-                .flat_map(|section| &section.columns)
-                .find(|column| column.name == *name)
-                .and_then(|column| column.unit.as_deref())
-                .filter(|unit| *unit != "-")
-                .map(number::unit)
-                .unwrap_or_default(),
-            numeric: sections
-                .iter()
-                .filter_map(|section| text(section, name))
-                .filter(|text| !text.is_empty())
-                .all(|text| number::is_number(&text)),
-        })
-        .collect();
-    let axis_unit = sections.first().map(|section| section.axis_unit.as_str()).unwrap_or_default();
-    let decimals = number::decimals(axis_unit, []);
-    SectionTable {
-        zone: zone.map(name),
-        title: match (zone, known) {
+    zones.into_iter().map(within).filter(|(_, sections)| !sections.is_empty()).collect()
+}
+
+fn of_zone(
+    view: &View<'_>,
+    zone: Option<&str>,
+    sections: &[&SectionResult],
+    several: bool,
+) -> Block {
+    let known = view.found.zones.iter().find(|known| Some(known.zone.as_str()) == zone);
+    let mut blocks = Vec::new();
+    if zone.is_some() || several {
+        blocks.push(Block::heading(match (zone, known) {
             (Some(zone), Some(known)) if !known.title.is_empty() && known.title != zone => {
                 format!("Zone {zone}: {}", known.title)
             }
             (Some(zone), _) => format!("Zone {zone}"),
             (None, _) => "Sections".to_owned(),
-        },
-        condition: known.map(|zone| number::formula(&zone.condition)).unwrap_or_default(),
-        axis_unit: number::unit(axis_unit),
-        columns,
-        rows: sections
-            .iter()
-            .map(|section| SectionRow {
-                section: name(&section.section),
-                start: number::fixed(section.start, decimals),
-                end: number::fixed(section.end, decimals),
-                length: number::fixed(section.length, decimals),
-                values: names
-                    .iter()
-                    .map(|name| {
-                        text(section, name).filter(|text| !text.is_empty()).map_or_else(
-                            || number::NONE.to_owned(),
-                            |text| number::in_text(&short(text)),
-                        )
-                    })
-                    .collect(),
-                used: Finding::new(Some(section.used), "used", "not used", ""),
-                reason: section.reason.as_deref().map(number::raised),
-            })
-            .collect(),
-        checks: checks(sections),
+        }));
     }
+    let condition = known.map(|known| number::formula(&known.condition)).unwrap_or_default();
+    if !condition.is_empty() {
+        blocks.push(Block::text(format!("Condition: {condition}")));
+    }
+    let here = if zone.is_some() { " of this zone" } else { "" };
+    blocks.push(table(sections, format!("Sections{here}")).into());
+    let caption = format!("Requirements on the sections{here}");
+    blocks.extend(checks(sections, &caption).into_iter().map(Block::from));
+    Block::Zone(zone.map(name), blocks)
 }
 
-fn checks(sections: &[&SectionResult]) -> Vec<CheckTable> {
-    let mut names: Vec<(&str, &str)> = Vec::new();
-    for check in sections.iter().flat_map(|section| &section.checks) {
-        if !names.iter().any(|(name, _)| *name == check.name) {
-            names.push((
-                &check.name,
-                if check.title.is_empty() { &check.name } else { &check.title },
-            ));
+fn table(sections: &[&SectionResult], caption: String) -> Table {
+    let all = || sections.iter().flat_map(|section| &section.columns);
+    let names: IndexSet<&str> = all().map(|column| column.name.as_str()).collect();
+    let text = |section: &SectionResult, name: &str| {
+        let column = section.columns.iter().find(|column| column.name == name)?;
+        Some(column.value.trim().to_owned()).filter(|text| !text.is_empty())
+    };
+    let head = |name: &&str| {
+        let mut texts = sections.iter().filter_map(|section| text(section, name));
+        let unit = all().find(|column| column.name == **name).and_then(|one| one.unit.as_deref());
+        let column = if texts.all(|text| number::is_number(&text)) {
+            Column::number(*name)
+        } else {
+            Column::name(*name).wide(1.0)
+        };
+        column.unit(unit.unwrap_or_default())
+    };
+    let axis = sections.first().map(|section| section.axis_unit.as_str()).unwrap_or_default();
+    let format = Format::Fixed(number::decimals(axis, []));
+    let row = |section: &&SectionResult| {
+        let used = Finding::new(Some(section.used), "used", "not used", "");
+        let mut cells = vec![Cell::from(name(&section.section)).strong()];
+        cells.extend([section.start, section.end, section.length].map(|x| Cell::number(x, format)));
+        cells.extend(
+            names.iter().map(|name| text(section, name).map_or(Cell::MISSING, Cell::given)),
+        );
+        Row::from(cells).ending(used, section.reason.as_deref())
+    };
+    let mut columns = vec![Column::name("Section").wide(1.3)];
+    columns.extend(["Start", "End", "Length"].map(|title| Column::number(title).unit(axis)));
+    columns.extend(names.iter().map(head));
+    columns.push(Column::text("Use").wide(2.0));
+    let size = match names.len() {
+        0..=5 => 8.5,
+        6..=8 => 7.5,
+        _ => 6.5,
+    };
+    Table::new(caption, columns, sections.iter().map(row)).size(size)
+}
+
+/// Requirements, a column each.
+fn checks(sections: &[&SectionResult], caption: &str) -> Vec<Table> {
+    let all = sections.iter().flat_map(|section| &section.checks);
+    let mut known: Vec<&CheckResult> = Vec::new();
+    for check in all {
+        if !known.iter().any(|other| other.name == check.name) {
+            known.push(check);
         }
     }
-    names
-        .chunks(CHECKS_ABREAST)
-        .map(|names| CheckTable {
-            titles: names.iter().map(|(_, title)| (*title).to_owned()).collect(),
-            rows: sections
-                .iter()
-                .map(|section| CheckRow {
-                    section: name(&section.section),
-                    cells: names
-                        .iter()
-                        .map(|(name, _)| {
-                            let check = section.checks.iter().find(|check| check.name == *name)?;
-                            Some(CheckCell {
-                                holds: Finding::of(check.holds),
-                                says: number::formula(&check.says),
-                            })
-                        })
-                        .collect(),
-                })
-                .collect(),
-        })
-        .collect()
-}
-
-/// Ranges grouped by condition; scopes in order of occurrence.
-pub(super) fn domain(found: &Certification) -> Vec<DomainView> {
-    let names: IndexSet<(&str, &str)> =
-        found.domain.iter().map(|range| (range.name.as_str(), range.unit.as_str())).collect();
-    names
-        .into_iter()
-        .map(|(name, unit)| DomainView {
-            name: name.to_owned(),
-            unit: number::unit(unit),
-            rows: found
-                .domain
-                .iter()
-                .filter(|range| range.name == name && range.unit == unit)
-                .map(domain_row)
-                .collect(),
-        })
-        .collect()
-}
-
-fn domain_row(range: &DomainRange) -> DomainRow {
-    DomainRow {
-        scope: range.scope.to_string(),
-        low: number::significant(range.low, 6),
-        high: number::significant(range.high, 6),
-        count: range.count.to_string(),
-    }
+    let cell = |check: &CheckResult| {
+        let mark = Run::Mark(Finding::of(check.holds));
+        Text::from(mark).and(format!(" {}", number::formula(&check.says)))
+    };
+    let table = |known: &[&CheckResult]| {
+        let row = |section: &&SectionResult| {
+            let check = |wanted: &&CheckResult| {
+                let found = section.checks.iter().find(|check| check.name == wanted.name);
+                Cell::or_missing(found.map(cell))
+            };
+            let section = Cell::from(name(&section.section)).strong();
+            std::iter::once(section).chain(known.iter().map(check)).collect::<Vec<_>>()
+        };
+        let title = |check: &&CheckResult| {
+            let title = if check.title.is_empty() { &check.name } else { &check.title };
+            Column::text(title).wide(1.0)
+        };
+        let section = Column::name("Section").wide(0.35);
+        let columns = std::iter::once(section).chain(known.iter().map(title)).collect();
+        Table::new(caption, columns, sections.iter().map(row)).size(7.5)
+    };
+    known.chunks(CHECKS_ABREAST).map(table).collect()
 }

@@ -1,9 +1,8 @@
 //! How far several records of one side are apart, as tables: a column for each record, a block of
 //! rows for each class of sections.
 
-use serde::Serialize;
-
-use super::name;
+use super::{caption, in_unit, name};
+use crate::report::document::{Cell, Column, Format, Row, Table};
 use crate::report::number;
 use crate::result::{ClassSpread, Furthest, OfRecord, QuantityResult, Spread};
 
@@ -11,61 +10,30 @@ use crate::result::{ClassSpread, Furthest, OfRecord, QuantityResult, Spread};
 const RECORDS: usize = 6;
 
 /// A table; several where there are more records than fit a page.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct SpreadTable {
-    /// `codes`, `runs`
-    pub between: &'static str,
-    /// `mean`, `median`
-    pub center: String,
-    pub records: Vec<String>,
-    pub classes: Vec<SpreadClass>,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct SpreadClass {
-    /// `Zone 1`, `All`
-    pub title: String,
-    pub rows: Vec<SpreadRow>,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct SpreadRow {
-    pub title: String,
-    /// One for each record; none of a row about all of them.
-    pub cells: Vec<String>,
-    /// In place of cells: where the records are farthest apart.
-    pub place: Option<String>,
-    /// Cells are words, numbers otherwise.
-    pub words: bool,
-    /// Between the records: largest less smallest, and standard deviation; empty where a row has
-    /// none.
-    pub range: String,
-    pub std: String,
-}
-
-pub(super) fn tables(quantity: &QuantityResult) -> Vec<SpreadTable> {
+pub(super) fn tables(quantity: &QuantityResult) -> Vec<Table> {
     let Some(spread) = &quantity.spread else { return Vec::new() };
     let between = between(quantity);
-    let decimals = decimals(quantity, spread);
     let most = spread.classes.iter().map(|class| class.records.len()).max().unwrap_or(0);
-    let table = |from: usize| SpreadTable {
-        between,
-        center: spread.center.clone(),
-        records: spread
-            .classes
-            .last()
-            .map_or(&[][..], |class| part(class, from))
-            .iter()
-            .map(|one| name(&one.record))
-            .collect(),
-        classes: spread
-            .classes
-            .iter()
-            .map(|class| self::class(class, part(class, from), between, decimals))
-            .collect(),
+    let format = Format::Fixed(decimals(quantity, spread));
+    let table = |from: usize| {
+        let records = spread.classes.last().map_or(&[][..], |class| part(class, from));
+        let mut columns = vec![Column::short("Sections"), Column::short("")];
+        let titles = records.iter().map(|one| name(&one.record));
+        columns.extend(titles.map(|title| Column::number(title).wide(1.0).breaks(UNBROKEN)));
+        columns.push(Column::number(format!("Max. − min. of the {between}")));
+        columns.push(Column::number(format!("s of the {between}")));
+        let class = |class| rows(class, part(class, from), between, format);
+        let rows: Vec<Row> = spread.classes.iter().flat_map(class).collect();
+        let caption = self::caption(&format!("Spread of the {between} in "), quantity)
+            .and(in_unit(quantity))
+            .and(format!(": deviations from the {} of all {between}", spread.center));
+        Table::new(caption, columns, rows).class("spread").size(7.5)
     };
     (0..most).step_by(RECORDS).map(table).collect()
 }
+
+/// Letters of a word that is not broken in a column of a record.
+const UNBROKEN: usize = 10;
 
 /// What the records of a side are called where there are several.
 pub(super) fn between(quantity: &QuantityResult) -> &'static str {
@@ -83,54 +51,36 @@ fn decimals(quantity: &QuantityResult, spread: &Spread) -> usize {
     )
 }
 
-fn class(class: &ClassSpread, records: &[OfRecord], between: &str, decimals: usize) -> SpreadClass {
-    let shown = |value: f64| number::fixed(value, decimals);
-    let place = |at: &Furthest| format!("{}, {}", name(&at.section), name(&at.signal));
-    let row = |title: &str, of: &dyn Fn(&OfRecord) -> String, words: bool| SpreadRow {
-        title: title.to_owned(),
-        cells: records.iter().map(of).collect(),
-        place: None,
-        words,
-        range: String::new(),
-        std: String::new(),
+/// The rows of a class of sections, under its title.
+fn rows(class: &ClassSpread, records: &[OfRecord], between: &str, format: Format) -> Vec<Row> {
+    let shown = |value: f64| Cell::number(value, format);
+    let place = |at: &Furthest| Cell::text(format!("{}, {}", name(&at.section), name(&at.signal)));
+    let row = |title: &str, cell: &dyn Fn(&OfRecord) -> Cell| {
+        let mut row = vec![Cell::text(title)];
+        row.extend(records.iter().map(cell));
+        row.extend([Cell::BLANK, Cell::BLANK]);
+        row
     };
-    let of_all = |title: String, place: Option<String>, range: f64, std: f64| SpreadRow {
-        title,
-        cells: Vec::new(),
-        place: Some(place.unwrap_or_default()),
-        words: true,
-        range: shown(range),
-        std: shown(std),
+    // A row about all records: where they are farthest apart.
+    let all = |title: &str, place: Cell, range: f64, std: f64| {
+        let title = Cell::text(format!("Spread of the {between}, {title}"));
+        vec![title, place.across(records.len()), shown(range), shown(std)]
     };
-    let mean = SpreadRow {
-        range: shown(class.range_of_means),
-        std: shown(class.std_of_means),
-        ..row("Mean deviation", &|one| shown(one.mean), false)
-    };
-    SpreadClass {
-        title: class
-            .zone
-            .as_ref()
-            .map_or_else(|| "All".to_owned(), |zone| name(&format!("Zone {zone}"))),
-        rows: vec![
-            mean,
-            row("Standard deviation", &|one| number::optional(one.std, decimals), false),
-            row("Largest deviation", &|one| shown(one.largest.value), false),
-            row("Where", &|one| place(&one.largest), true),
-            row("Root mean square", &|one| shown(one.rms), false),
-            row("Rank", &|one| one.rank.to_string(), false),
-            of_all(
-                format!("Spread of the {between}, mean"),
-                None,
-                class.mean_range,
-                class.mean_std,
-            ),
-            of_all(
-                format!("Spread of the {between}, largest"),
-                Some(place(&class.widest)),
-                class.widest.value,
-                class.std_at_widest,
-            ),
-        ],
-    }
+    let mut mean = row("Mean deviation", &|one| shown(one.mean));
+    mean.truncate(mean.len() - 2);
+    mean.extend([shown(class.range_of_means), shown(class.std_of_means)]);
+    let mut rows = vec![
+        mean,
+        row("Standard deviation", &|one| Cell::number(one.std, format)),
+        row("Largest deviation", &|one| shown(one.largest.value)),
+        row("Where", &|one| place(&one.largest)),
+        row("Root mean square", &|one| shown(one.rms)),
+        row("Rank", &|one| Cell::from(one.rank.to_string()).strong()),
+        all("mean", Cell::BLANK, class.mean_range, class.mean_std),
+        all("largest", place(&class.widest), class.widest.value, class.std_at_widest),
+    ];
+    let title = class.zone.as_ref().map(|zone| name(&format!("Zone {zone}")));
+    let title = Cell::from(title.unwrap_or_else(|| "All".into())).strong().down(rows.len());
+    rows[0].insert(0, title);
+    rows.into_iter().map(Row::from).collect()
 }

@@ -1,68 +1,51 @@
 //! The summary: one row per quantity with mean and standard deviation, and one row per other
 //! statistic.
 
-use serde::Serialize;
+use super::{View, cover, groups, statistic, verdicts, wording};
+use crate::report::document::{
+    Block, Cell, Chapter, Column, Figure, Finding, Medium, Row, Run, Table, Text, cells,
+};
+use crate::report::{estimates, findings, number};
+use crate::result::{Certification, QuantityResult, StatisticName, StatisticResult};
 
-use super::Finding;
-use crate::report::{estimates, number};
-use crate::result::{QuantityResult, StatisticName, StatisticResult};
-
-/// A quantity as in EN 14363: limits, mean and standard deviation, and both divided by their
-/// limits.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SummaryRow {
-    pub id: String,
-    pub symbol: String,
-    pub title: String,
-    pub unit: String,
-    pub filter: String,
-    pub processing: String,
-    pub limit_std: String,
-    pub limit_mean: String,
-    /// Pairs / n: `48 / 12`, n being the number of sites.
-    pub count: String,
-    pub mean: String,
-    pub std: String,
-    pub normalised_mean: String,
-    pub normalised_std: String,
-    pub mean_finding: Finding,
-    pub std_finding: Finding,
-    pub holds: Finding,
-    pub reason: Option<String>,
+pub(super) fn chapter(view: &View<'_>) -> Chapter {
+    let found = view.found;
+    let finding = cover::finding(view);
+    let tone = finding.tone;
+    let verdict = Text::from(Run::Finding(finding)).and(format!(": {}", wording::sentence(found)));
+    let mut opening = vec![Block::text(verdict)];
+    let reasons = verdicts::reasons(view);
+    if !reasons.is_empty() {
+        opening.push(Block::Boxed { tone: Some(tone), title: "", entries: reasons });
+    }
+    if found.verdicts.len() > cover::VERDICTS {
+        opening.push(verdicts::table(view, true).into());
+    }
+    let mut remarks = Vec::new();
+    if !found.findings.is_empty() {
+        remarks.push(findings::table(&found.findings).into());
+    }
+    if !found.notes.is_empty() {
+        let notes = found.notes.iter().map(|note| view.symbols.text(&number::raised(note)));
+        let title = "Remarks that do not affect the verdict";
+        remarks.push(Block::Boxed { tone: None, title, entries: notes.collect() });
+    }
+    opening.extend(remarks.iter().cloned());
+    let mut blocks = vec![Block::on_paper(opening)];
+    blocks.extend(tables(view).into_iter().map(Block::from));
+    let estimates = groups::summary(view);
+    blocks.extend((!estimates.rows.is_empty()).then(|| estimates.into()));
+    blocks.extend(overview(found).map(Block::from));
+    blocks.push(Block::on_screen(remarks));
+    Chapter { on_new_page: true, ..Chapter::new("summary", "Summary", blocks) }
 }
 
-/// A statistic of a quantity against its limit.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Limited {
-    pub id: String,
-    pub symbol: String,
-    pub title: String,
-    pub unit: String,
-    /// Pairs / n: `48 / 12`, n being the number of sites.
-    pub count: String,
-    pub value: String,
-    pub limit: String,
-    pub normalised: String,
-    pub holds: Finding,
-    pub reason: Option<String>,
-}
-
-/// A statistic other than mean and standard deviation over all pairs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct FurtherRow {
-    #[serde(flatten)]
-    pub limited: Limited,
-    pub filter: String,
-    pub processing: String,
-    pub comparison: String,
-    pub statistic: String,
-    pub scope: String,
-}
-
-pub(super) fn tables(quantities: &[QuantityResult]) -> (Vec<SummaryRow>, Vec<FurtherRow>) {
+/// Quantities judged by mean and standard deviation over all pairs, as in EN 14363, and all other
+/// statistics.
+fn tables(view: &View<'_>) -> Vec<Table> {
     let mut summary = Vec::new();
-    let mut further = Vec::new();
-    for quantity in quantities {
+    let mut further: Vec<Row> = Vec::new();
+    for quantity in &view.found.quantities {
         // An assessed quantity has its estimates in a table of its own.
         if quantity.from.is_some() && !quantity.statistics.is_empty() {
             continue;
@@ -77,102 +60,115 @@ pub(super) fn tables(quantities: &[QuantityResult]) -> (Vec<SummaryRow>, Vec<Fur
             summary.push(summary_row(quantity, mean, std));
         }
         let single = estimates::single(quantity).into_iter();
-        let others = single.filter(|one| {
-            !one.is_overall(&StatisticName::Mean)
-                && !one.is_overall(&StatisticName::StandardDeviation)
-        });
-        further.extend(others.map(|statistic| further_row(quantity, statistic)));
+        let named = [StatisticName::Mean, StatisticName::StandardDeviation];
+        let others = single.filter(|one| !named.iter().any(|name| one.is_overall(name)));
+        further.extend(others.map(|one| further_row(quantity, one)));
     }
-    (summary, further)
+    let count = || Column::number(view.words.count);
+    let mut tables = Vec::new();
+    if !summary.is_empty() {
+        let columns = vec![
+            Column::text("Quantity").wide(0.75),
+            Column::short("Unit"),
+            Column::text("Filter").wide(1.6),
+            Column::text("Processing").wide(1.1),
+            Column::number("Limit std"),
+            Column::number("Limit mean"),
+            count(),
+            Column::number("Mean"),
+            Column::number("Std"),
+            Column::number("|Mean| / limit"),
+            Column::number("Std / limit"),
+            Column::text("Criterion"),
+        ];
+        let caption =
+            "Mean and standard deviation of the differences over all pairs, and their limits";
+        tables.push(Table::new(caption, columns, summary).class("sortable worded").size(7.5));
+    }
+    if !further.is_empty() {
+        let columns = vec![
+            Column::text("Quantity").wide(0.8),
+            Column::text("Filter").wide(1.7).once(),
+            Column::text("Processing").wide(1.1).once(),
+            Column::text("Comparison").only(Medium::Screen),
+            Column::text("Statistic").wide(1.2),
+            Column::name("Scope").wide(0.5),
+            Column::short("Unit"),
+            count(),
+            Column::number("Value"),
+            Column::number("Limit"),
+            Column::number("|Value| / limit"),
+            Column::text("Criterion"),
+        ];
+        let caption = if tables.is_empty() {
+            "Statistics and their limits"
+        } else {
+            "Further statistics and their limits"
+        };
+        tables.push(Table::new(caption, columns, further).size(7.5));
+    }
+    tables
 }
 
+/// Limits, mean and standard deviation, and both divided by their limits.
 fn summary_row(
     quantity: &QuantityResult,
     mean: Option<&StatisticResult>,
     std: Option<&StatisticResult>,
-) -> SummaryRow {
-    let either = mean.or(std);
-    SummaryRow {
-        id: quantity.id.clone(),
-        symbol: super::symbol(&quantity.symbol),
-        title: quantity.title.clone(),
-        unit: number::unit(&quantity.unit),
-        filter: quantity.filter.clone(),
-        processing: quantity.processing.clone(),
-        limit_std: limit(std),
-        limit_mean: limit(mean),
-        count: either.map_or_else(
-            || pairs_and_n(quantity.values.len(), quantity.n),
-            |one| pairs_and_n(one.count, one.n),
-        ),
-        mean: value(mean),
-        std: value(std),
-        normalised_mean: normalised(mean),
-        normalised_std: normalised(std),
-        mean_finding: Finding::of_statistic(mean),
-        std_finding: Finding::of_statistic(std),
-        holds: Finding::of_quantity(quantity),
-        reason: quantity.reason.clone(),
-    }
+) -> Row {
+    let either = mean.or(std).map(|one| (one.count, one.n));
+    let (pairs, n) = either.unwrap_or((quantity.values.len(), quantity.n));
+    Row::from(cells![
+        statistic::symbol(quantity),
+        number::unit(&quantity.unit),
+        quantity.filter,
+        quantity.processing,
+        statistic::limit(std),
+        statistic::limit(mean),
+        statistic::pairs_and_n(pairs, n),
+        statistic::value(mean),
+        statistic::value(std),
+        statistic::normalised(mean),
+        statistic::normalised(std)
+    ])
+    .ending(Finding::of_quantity(quantity), quantity.reason.as_deref())
 }
 
-pub(super) fn limited(quantity: &QuantityResult, statistic: &StatisticResult) -> Limited {
+fn further_row(quantity: &QuantityResult, statistic: &StatisticResult) -> Row {
     let one = Some(statistic);
-    Limited {
-        id: quantity.id.clone(),
-        symbol: super::symbol(&quantity.symbol),
-        title: quantity.title.clone(),
-        unit: number::unit(&statistic.unit),
-        count: pairs_and_n(statistic.count, statistic.n),
-        value: value(one),
-        limit: limit(one),
-        normalised: normalised(one),
-        holds: Finding::of_statistic(one),
-        reason: statistic.reason.clone(),
-    }
+    Row::from(cells![
+        statistic::symbol(quantity),
+        quantity.filter,
+        quantity.processing,
+        quantity.comparison,
+        Cell::formula(&statistic.title),
+        statistic.scope,
+        number::unit(&statistic.unit),
+        statistic::pairs_and_n(statistic.count, statistic.n),
+        statistic::value(one),
+        statistic::limit(one),
+        statistic::normalised(one)
+    ])
+    .ending(Finding::of_statistic(one), statistic.reason.as_deref())
 }
 
-fn further_row(quantity: &QuantityResult, statistic: &StatisticResult) -> FurtherRow {
-    FurtherRow {
-        limited: limited(quantity, statistic),
-        filter: quantity.filter.clone(),
-        processing: quantity.processing.clone(),
-        comparison: quantity.comparison.clone(),
-        statistic: number::formula(&statistic.title),
-        scope: statistic.scope.to_string(),
-    }
-}
-
-/// Number of pairs and of sites.
-pub(super) fn pairs_and_n(pairs: usize, n: usize) -> String {
-    format!("{} / {}", number::count(pairs as u64), number::count(n as u64))
-}
-
-/// The limit, with the decimals of the value.
-pub(super) fn limit(statistic: Option<&StatisticResult>) -> String {
-    let Some(statistic) = statistic else { return number::NONE.to_owned() };
-    number::optional(statistic.limit, decimals(statistic))
-}
-
-/// Decimals of a statistic: those of its unit, or more if the limit (or else the value) needs them
-/// to show two digits.
-pub(super) fn decimals(statistic: &StatisticResult) -> usize {
-    number::decimals(&statistic.unit, statistic.limit.or(statistic.value))
-}
-
-/// The value with the decimals of its unit, or more if the comparison with the limit needs them.
-pub(super) fn value(statistic: Option<&StatisticResult>) -> String {
-    let Some(statistic) = statistic else { return number::NONE.to_owned() };
-    let Some(value) = statistic.value else { return number::NONE.to_owned() };
-    match statistic.limit {
-        Some(limit) => number::beside(value, limit, decimals(statistic)),
-        None => number::fixed(value, decimals(statistic)),
-    }
-}
-
-/// |value| / limit with two decimals, or more close to 1.
-pub(super) fn normalised(statistic: Option<&StatisticResult>) -> String {
-    statistic
-        .and_then(|statistic| statistic.normalised)
-        .map_or_else(|| number::NONE.to_owned(), number::ratio)
+fn overview(found: &Certification) -> Option<Figure> {
+    let shown = found.quantities.iter().flat_map(estimates::representatives);
+    let normalised: Vec<f64> = shown.filter_map(|statistic| statistic.normalised).collect();
+    let by_group = found
+        .quantities
+        .iter()
+        .any(|quantity| estimates::condensed(quantity).iter().any(estimates::OfLimit::by_group));
+    let beyond = normalised.iter().filter(|value| **value > 1.0).count();
+    let caption = if by_group {
+        "Estimates of all quantities divided by their limits, of each the largest of its groups; a criterion is met up to 1"
+    } else {
+        "Statistics of all quantities divided by their limits; a criterion is met up to 1"
+    };
+    let alt = format!(
+        "Chart of {} normalised statistics of {} quantities against the limit 1: {beyond} beyond the limit. The numbers are in the summary table.",
+        normalised.len(),
+        found.quantities.len()
+    );
+    (!normalised.is_empty()).then(|| Figure::new("overview", caption, alt, 190))
 }

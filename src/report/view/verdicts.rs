@@ -1,49 +1,71 @@
 //! The verdicts with a name: a table, and a box for each that a person decides.
 
-use serde::Serialize;
-
-use super::Finding;
+use super::View;
+use crate::report::document::{Cell, Column, Finding, Row, Run, Table, Text, Tone, cells};
 use crate::report::number;
 use crate::result::{Certification, Outcome, Verdict, VerdictResult};
-
-/// A verdict with its reasons in symbols.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct VerdictRow {
-    pub finding: Finding,
-    #[serde(flatten)]
-    pub verdict: VerdictResult,
-}
 
 /// In place of the reasons of the overall verdict, in the table beside it.
 const TOO_FEW: &str = "too few usable sections, see the reasons of the verdict";
 
-pub(super) fn rows(found: &Certification) -> Vec<VerdictRow> {
+/// All verdicts with a name; a short table has not all of their reasons.
+pub(super) fn table(view: &View<'_>, short: bool) -> Table {
+    let found = view.found;
     let together = lacks(found).map(|(_, together)| together);
-    let above = together.filter(|together| reasons(found).contains(together));
-    let short =
-        |reason: String| if above.as_ref() == Some(&reason) { TOO_FEW.to_owned() } else { reason };
-    let row = |verdict: &VerdictResult| VerdictRow {
-        finding: finding(verdict.outcome, &verdict.word),
-        verdict: VerdictResult {
-            reasons: merged(&verdict.reasons, found).into_iter().map(short).collect(),
-            ..verdict.clone()
-        },
+    let above = together.filter(|together| merged(&found.reasons, found).contains(together));
+    let text = |reason: String| {
+        view.symbols.text(if above.as_ref() == Some(&reason) { TOO_FEW } else { &reason })
     };
-    found.verdicts.iter().map(row).collect()
+    let row = |verdict: &VerdictResult| {
+        let title = verdict.title.clone() + if verdict.overall { " (overall)" } else { "" };
+        let places = [&verdict.clause, &verdict.source].into_iter().flatten();
+        let rule = std::iter::once(Text::from(&verdict.criterion))
+            .chain(places.map(|place| Run::Quiet(place.clone()).into()));
+        let reasons = merged(&verdict.reasons, found);
+        let says = reasons.into_iter().chain(verdict.notes.clone()).map(text).collect();
+        let finding = finding(verdict.outcome, &verdict.word);
+        let tone = finding.tone;
+        Row::from(cells![
+            Cell::text(title).strong(),
+            finding,
+            Cell::text(Text::lines(rule)),
+            Cell::text(first_of(says, short))
+        ])
+        .toned(tone)
+    };
+    let columns = vec![
+        Column::text("Verdict").wide(1.2),
+        Column::text("Result").wide(0.75),
+        Column::text("Rule").wide(1.6),
+        Column::text("Reasons and remarks").wide(2.4),
+    ];
+    Table::new("Verdicts", columns, found.verdicts.iter().map(row)).class("").size(8.0)
+}
+
+/// Reasons and remarks, a line each: all, or the first and how many more there are.
+fn first_of(mut lines: Vec<Text>, short: bool) -> Text {
+    /// Reasons of a verdict in a table on paper; the others would fill pages of it.
+    const SHOWN: usize = 1;
+    let more = lines.len() - SHOWN.min(lines.len());
+    if short && more > 1 {
+        lines.truncate(SHOWN);
+        lines.push(format!("and {more} more; see the chapter Quantities").into());
+    }
+    Text::lines(lines)
 }
 
 /// What a verdict came to: one that a person still has to give is no lack of data.
 pub(super) fn finding(outcome: Outcome, word: &str) -> Finding {
     match outcome {
         Outcome::Open => {
-            Finding { class: "open", sign: TO_BE_JUDGED.0, word: TO_BE_JUDGED.1.into() }
+            Finding { tone: Tone::Open, sign: TO_BE_JUDGED.0, word: TO_BE_JUDGED.1.into() }
         }
         _ => Finding::new(outcome.holds(), word, word, word),
     }
 }
 
 /// Sign and word of a judgement that is open.
-pub(super) const TO_BE_JUDGED: (&str, &str) = ("\u{25cb}", "to be judged");
+const TO_BE_JUDGED: (&str, &str) = ("\u{25cb}", "to be judged");
 
 /// What the overall verdict came to. One that is not assessable only since a judgement is open, its
 /// own or one that it is about, is open.
@@ -71,8 +93,8 @@ fn lacks_data(found: &Certification) -> bool {
 }
 
 /// The reasons of the overall verdict.
-pub(super) fn reasons(found: &Certification) -> Vec<String> {
-    merged(&found.reasons, found)
+pub(super) fn reasons(view: &View<'_>) -> Vec<Text> {
+    merged(&view.found.reasons, view.found).iter().map(|one| view.symbols.text(one)).collect()
 }
 
 /// Reasons in symbols. Zones with too few sections are one reason, also where a verdict has it from
@@ -85,7 +107,7 @@ fn merged(reasons: &[String], found: &Certification) -> Vec<String> {
             Some((each, together)) if each.iter().any(|lack| lack == own(reason, found)) => {
                 together.clone()
             }
-            _ => number::raised(&super::in_symbols(reason, found)),
+            _ => number::raised(&in_symbols(reason, found)),
         };
         if !all.contains(&shown) {
             all.push(shown);
@@ -129,9 +151,15 @@ fn lacks(found: &Certification) -> Option<(Vec<String>, String)> {
     Some((short.into_iter().map(|(_, lack)| lack).collect(), together))
 }
 
-/// Title of the overall verdict, if it has a name.
-pub(super) fn title(found: &Certification) -> Option<String> {
-    found.verdicts.iter().find(|verdict| verdict.overall).map(|verdict| verdict.title.clone())
+/// Replaces the id of a quantity at the start of a sentence by its symbol.
+fn in_symbols(reason: &str, found: &Certification) -> String {
+    let of = reason.split_once(": ").and_then(|(id, says)| {
+        Some((found.quantities.iter().find(|quantity| quantity.id == id)?, says))
+    });
+    of.map_or_else(
+        || reason.to_owned(),
+        |(quantity, says)| format!("{}: {says}", super::symbol(&quantity.symbol)),
+    )
 }
 
 /// What is said of an overall verdict with words of its own: the protocol says what it means.

@@ -1,14 +1,12 @@
 //! Words that depend on what the protocol is about: a validation, an assessment, a comparison of
 //! records.
 
-use serde::Serialize;
-
 use crate::report::number;
 use crate::result::{Certification, Kind, QuantityResult, StatisticResult, Verdict};
 
 /// Words of a report.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Wording {
+#[derive(Clone, Debug)]
+pub(super) struct Wording {
     /// Above the name of the campaign on the cover.
     pub over: String,
     /// `Validation report`
@@ -19,8 +17,6 @@ pub struct Wording {
     pub outside: &'static str,
     /// `Pairs / n`
     pub count: &'static str,
-    /// `Pairs`
-    pub rows: &'static str,
     /// Head of what the values of a quantity are.
     pub comparison: &'static str,
 }
@@ -54,7 +50,7 @@ pub(super) fn wording(found: &Certification) -> Wording {
         Kind::Comparison => "Difference",
         Kind::Mixed => "Difference, metric or values",
     };
-    Wording { over: over(found), report, domain, outside, count, rows, comparison }
+    Wording { over: over(found), report, domain, outside, count, comparison }
 }
 
 const NOT_DEMONSTRATED: &str =

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use fishplate::foreign::{Format, Options, read};
 use fishplate::problem::{Problem, Problems};
+use fishplate::yaml::Words;
 
 use super::{FILES, data, text};
 
@@ -119,14 +120,14 @@ fn a_file_that_is_cut_off_is_refused() {
 fn a_wrong_label_is_told() {
     let folder = Folder::new();
     for (name, content) in binary() {
-        for form in Format::ALL {
+        for (word, form) in Format::WORDS.iter().copied() {
             let path = folder.file("x");
             std::fs::write(&path, &content).expect("written");
             let said = Options { form: Some(form), ..Options::default() };
             match read(&path, "x", &said) {
                 Ok(file) => assert_eq!(file.format, form, "{name}"),
                 Err(problems) => {
-                    assert_eq!(problems[0].code, "format-mislabelled", "{name} as {}", form.word())
+                    assert_eq!(problems[0].code, "format-mislabelled", "{name} as {word}")
                 }
             }
         }

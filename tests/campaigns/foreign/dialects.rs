@@ -127,8 +127,6 @@ fn faults_have_their_place() {
     assert_eq!(refused(b"t;y\n0;1\n1;2\n", &said).0, "no-numbers");
     let said = Options { units_line: Some(1), names_line: Some(2), ..Options::default() };
     assert_eq!(refused(b"one\nt;y\n0;1\n1;2\n", &said).0, "header-line");
-    let said = Options { decimal: Some(';'), ..Options::default() };
-    assert_eq!(refused(b"t;y\n0;1\n", &said).0, "dialect");
     assert_eq!(
         text("x.csv", b"", &none).map(|_| ()).map_err(|problems| problems[0].code),
         Err("file-empty")

@@ -14,6 +14,7 @@ use fishplate::source::Source;
 use fishplate::syntax::keys::{KINDS, Kind, Sort};
 use fishplate::syntax::read_text;
 use fishplate::units::{Dimension, SYMBOLS};
+use fishplate::yaml::Words;
 use serde_json::Value;
 
 /// The part of a name such as `block quantity` or `registry step`.
@@ -52,7 +53,7 @@ pub fn wanted() -> Vec<String> {
         ["blocks", "units", "percentile rules", "protocols", "commands", "results.json"]
             .map(str::to_string),
     );
-    all.extend(Acts::ALL.map(|acts| format!("effects {}", acts.in_words())));
+    all.extend(Acts::WORDS.iter().map(|(word, _)| format!("effects {word}")));
     all
 }
 

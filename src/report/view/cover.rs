@@ -1,0 +1,190 @@
+//! The cover: verdict, reasons, key facts.
+
+use super::{View, campaign, identity, verdicts, wording};
+use crate::report::document::{Block, Cover, Fact, Finding, ResultBox, Run, facts};
+use crate::report::number;
+use crate::result::{CampaignInfo, Kind, ProtocolInfo, QuantityResult, Verdict};
+
+/// Reasons on the cover, and where a table of verdicts takes their room; the summary lists all.
+const REASONS: usize = 8;
+const REASONS_BESIDE_VERDICTS: usize = 3;
+/// Verdicts with a name that the cover has room for.
+pub(super) const VERDICTS: usize = 6;
+/// Letters of a hash in the margin of each page.
+const HASH: usize = 16;
+
+/// What the covers of all documents have in common; `over` is the kind of document, `result` what
+/// it came to.
+pub(super) fn margins(
+    campaign: &CampaignInfo,
+    protocol: &ProtocolInfo,
+    over: &str,
+    result: ResultBox,
+) -> Cover {
+    let subject = if protocol.title.is_empty() { &protocol.name } else { &protocol.title };
+    Cover {
+        short: "Result",
+        over: over.to_owned(),
+        name: campaign.name.clone(),
+        subject: subject.clone(),
+        edition: protocol.edition.clone(),
+        line: identity::line(&campaign.report),
+        sha256: protocol.sha256.chars().take(HASH).collect(),
+        result,
+        blocks: Vec::new(),
+        parts_in_contents: false,
+    }
+}
+
+pub(super) fn cover(view: &View<'_>) -> Cover {
+    let found = view.found;
+    let title = found.verdicts.iter().find(|verdict| verdict.overall).map(|one| &one.title);
+    let origin = found.campaign.origin.as_ref().map(|origin| format!(" {}.", origin.says));
+    let result = ResultBox {
+        label: Some(title.map_or("Verdict".into(), |title| format!("Verdict: {title}"))),
+        finding: finding(view),
+        note: found.verdict_note.clone(),
+        sentence: wording::sentence(found).to_owned() + &origin.unwrap_or_default(),
+    };
+    let mut blocks = reasons(view);
+    blocks.extend(verdicts_with_a_name(view));
+    blocks.push(Block::Tiles(key_facts(view)));
+    blocks.extend(identification(view));
+    Cover {
+        short: "Verdict",
+        blocks,
+        parts_in_contents: true,
+        ..margins(&found.campaign, &found.protocol, &view.words.over, result)
+    }
+}
+
+/// What the overall verdict came to.
+pub(super) fn finding(view: &View<'_>) -> Finding {
+    let (found, word) = (view.found, view.found.verdict_word());
+    let holds = match found.verdict {
+        Verdict::Validated => Some(true),
+        Verdict::NotValidated => Some(false),
+        Verdict::NotAssessable => None,
+    };
+    match verdicts::overall(found) {
+        Some(outcome) => verdicts::finding(outcome, word),
+        None => Finding::new(holds, word, word, word),
+    }
+}
+
+fn on_cover(view: &View<'_>) -> bool {
+    (1..=VERDICTS).contains(&view.found.verdicts.len())
+}
+
+fn reasons(view: &View<'_>) -> Vec<Block> {
+    let all = verdicts::reasons(view);
+    if all.is_empty() {
+        return Vec::new();
+    }
+    let most = if on_cover(view) { REASONS_BESIDE_VERDICTS } else { REASONS };
+    let more = if all.len() > REASONS {
+        format!("All {} reasons are listed in the summary.", all.len())
+    } else {
+        "All reasons are listed in the summary.".to_owned()
+    };
+    let mut first = vec![
+        Block::text(Run::Strong("Reasons".into())),
+        Block::List(all.iter().take(most).cloned().collect()),
+    ];
+    if all.len() > most {
+        first.push(Block::text(more));
+    }
+    let screen = [Block::heading("Reasons"), Block::List(all)];
+    vec![Block::on_paper(first), Block::on_screen(screen)]
+}
+
+fn verdicts_with_a_name(view: &View<'_>) -> Vec<Block> {
+    let count = view.found.verdicts.len();
+    let paper = if on_cover(view) {
+        vec![verdicts::table(view, true).into()]
+    } else if count > 0 {
+        vec![Block::text(format!(
+            "The results of the {count} verdicts with a name stand in the summary."
+        ))]
+    } else {
+        return Vec::new();
+    };
+    let screen = [verdicts::table(view, false).into()];
+    vec![Block::on_paper(paper), Block::on_screen(screen)]
+}
+
+/// What is known of campaign and protocol, in two columns, so that the cover stays one page with as
+/// many reasons as it lists.
+fn identification(view: &View<'_>) -> Vec<Block> {
+    let (campaign, protocol) = (&view.found.campaign, &view.found.protocol);
+    let stated = identity::on_cover(&campaign.report);
+    let rules = facts([
+        ("Protocol", (&protocol.name).into()),
+        ("Verdict rule", (&protocol.verdict_rule).into()),
+        ("Source", (&protocol.source).into()),
+    ]);
+    let hash = Fact::new("Protocol hash", Run::Hash(protocol.sha256.clone()));
+    let all = [&stated[..], &rules, std::slice::from_ref(&hash)].concat();
+    let plain = CampaignInfo {
+        facts: campaign.facts.iter().filter(|one| !one.name.contains(": ")).cloned().collect(),
+        ..campaign.clone()
+    };
+    let own = campaign::on_cover(&campaign::facts(&plain));
+    let mut paper = vec![Block::Facts(vec![stated, [rules, own].concat()])];
+    // With a table of verdicts there is no room; the data stand in the chapter of the vehicle.
+    let mut used = campaign::on_cover(&campaign::vehicle(campaign, true));
+    if !used.is_empty() && !on_cover(view) {
+        let other = used.split_off(used.len().div_ceil(2));
+        paper.push(Block::text(Run::Strong("Vehicle data used by the protocol".into())));
+        paper.push(Block::Facts(vec![used, other]));
+    }
+    paper.push(Block::Facts(vec![vec![hash]]));
+    vec![Block::on_paper(paper), Block::on_screen([Block::Facts(vec![all])])]
+}
+
+fn key_facts(view: &View<'_>) -> Vec<Fact> {
+    let found = view.found;
+    let used = found.sections.iter().filter(|section| section.used).count();
+    let deciding: Vec<&QuantityResult> =
+        found.quantities.iter().filter(|quantity| !quantity.decides_nothing()).collect();
+    let holding = deciding.iter().filter(|quantity| quantity.holds == Some(true)).count();
+    let failing = deciding.iter().filter(|quantity| quantity.holds == Some(false)).count();
+    let open = deciding.len() - holding - failing;
+    let mut quantities = format!("{holding} of {} met", deciding.len());
+    if failing > 0 {
+        quantities.push_str(&format!(", {failing} not met"));
+    }
+    if open > 0 {
+        quantities.push_str(&format!(", {open} not assessed"));
+    }
+    let rows = |assessed: bool| {
+        let kind = found.quantities.iter().filter(|quantity| quantity.from.is_some() == assessed);
+        number::count(kind.map(|quantity| quantity.values.len() as u64).sum())
+    };
+    let mut facts = vec![Fact::new("Criteria by quantity", quantities)];
+    if !found.campaign.members.is_empty() {
+        facts.push(Fact::new("Campaigns", found.campaign.members.len().to_string()));
+    }
+    facts.push(Fact::new("Sections", format!("{used} of {} used", found.sections.len())));
+    let compared = |name: &str| Fact::new(name, rows(false));
+    let assessed = Fact::new("Assessed values", rows(true));
+    match found.kind() {
+        Kind::Validation => facts.push(compared("Compared pairs")),
+        Kind::Comparison => facts.push(compared("Compared values")),
+        Kind::Assessment => facts.push(assessed),
+        Kind::Mixed => facts.extend([compared("Compared pairs"), assessed]),
+    }
+    // Of wanted operation, which the verdict does not speak of.
+    let wanted = || found.application.iter().flat_map(|domain| &domain.points);
+    if wanted().next().is_some() {
+        let inside = wanted().filter(|point| point.inside == Some(true)).count();
+        let says = format!("{inside} of {} points inside", wanted().count());
+        facts.push(Fact::new("Wanted operation", says));
+    }
+    if !found.zones.is_empty() {
+        let filled = found.zones.iter().filter(|zone| zone.holds).count();
+        let says = format!("{filled} of {} with enough sections", found.zones.len());
+        facts.push(Fact::new("Test zones", says));
+    }
+    facts
+}
