@@ -261,6 +261,7 @@ fn equal(kind: &str, a: &Field, b: &Field) -> bool {
 
 /// What a field means, independent of how it is written.
 #[derive(PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "there are few at a time")]
 enum Meaning {
     Expression(Phrase),
     Limit(Limit),

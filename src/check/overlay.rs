@@ -56,6 +56,7 @@ pub fn overlay(parent: &mut Block, variant: &Block) {
 
 /// What identifies a field when it is overridden.
 #[derive(Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "there are few at a time")]
 pub enum Slot {
     Key(String),
     /// A limit that was not understood, by its text.

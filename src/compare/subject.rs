@@ -121,7 +121,8 @@ pub fn opened(
         }
     }
     // Campaigns that set the same parameters share the compiled protocols.
-    let mut known: Vec<(Vec<(String, String)>, Arc<CompiledAll>)> = Vec::new();
+    type Known = (Vec<(String, String)>, Arc<CompiledAll>);
+    let mut known: Vec<Known> = Vec::new();
     let mut all = Vec::new();
     for (name, campaign) in campaigns {
         let overrides = overrides(&settings.set, std::slice::from_ref(&campaign), problems)?;

@@ -170,6 +170,9 @@ fn read(bytes: &[u8], shown: &str) -> Result<(String, Value, Certification), Pro
         return Err(unreadable(format!("more than {VALUES} values")));
     }
     let value: Value = serde_json::from_str(text).map_err(|error| unreadable(error.to_string()))?;
+    if value.get("fishplate").is_none() {
+        return Err(unreadable("missing field `fishplate`".into()));
+    }
     let mut current = value.clone();
     if before::states_no_format(&value) {
         before::upgrade(&mut current);

@@ -69,14 +69,6 @@ pub struct QuantityResult {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Figures {
-    Moments {
-        mean: Option<f64>,
-        std: Option<f64>,
-        limit_mean: Option<f64>,
-        limit_std: Option<f64>,
-        normalised_mean: Option<f64>,
-        normalised_std: Option<f64>,
-    },
     /// Of the records of one side.
     Assessed {
         assessed: String,
@@ -89,6 +81,15 @@ pub enum Figures {
         statistic: Option<StatisticName>,
         value: Option<f64>,
         limit: Option<f64>,
+    },
+    /// Last, since a file in which all of these are missing would be read as it.
+    Moments {
+        mean: Option<f64>,
+        std: Option<f64>,
+        limit_mean: Option<f64>,
+        limit_std: Option<f64>,
+        normalised_mean: Option<f64>,
+        normalised_std: Option<f64>,
     },
 }
 

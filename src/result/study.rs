@@ -49,6 +49,7 @@ impl Study {
 /// The result of a study of one kind.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
+#[expect(clippy::large_enum_variant, reason = "a study is one value")]
 pub enum Found {
     Sections(SelectionStudy),
     Sync(SyncStudy),

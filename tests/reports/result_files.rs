@@ -84,7 +84,7 @@ fn studies_are_read_as_they_are_written() {
         &["sections"][..],
         &["sections", "--enumerate", "1000", "--width", "0.2"],
         &["sync"],
-        &["sync", "--take", "100"],
+        &["sync", "--take", "2"],
         &["parameters", "--vary", "lowpass_frequency=15..25 step 5 Hz"],
     ] {
         let arguments = [&["study", more[0], "examples/coach"], &more[1..]].concat();

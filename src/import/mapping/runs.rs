@@ -57,7 +57,8 @@ pub(super) fn read(reader: &mut Reader<'_>, tree: &Node) -> Option<(Runs, Sectio
         "write `runs: [R1, R2]`, or with what holds for each run `runs: {R1: {country: DE}}`";
     let before = reader.problems.errors();
     let (key, node) = tree.entry(RUNS)?;
-    let (names, facts): (Vec<Spanned<String>>, Vec<Vec<(Key, Node)>>) = match &node.value {
+    type Facts = Vec<(Key, Node)>;
+    let (names, facts): (Vec<Spanned<String>>, Vec<Facts>) = match &node.value {
         Value::List(items) if !items.is_empty() => {
             let names: Vec<Spanned<String>> = Vec::from_node(reader, key, node)?;
             names.into_iter().map(|name| (name, Vec::new())).unzip()

@@ -458,8 +458,9 @@ fn decimals(number: &Text) -> usize {
     number.letters().split_once('.').map_or(0, |(_, after)| after.chars().count())
 }
 
-/// What a number lacks in width of the longest fraction of its column.
+/// What a number lacks in width of the longest fraction of its column; nothing where the column is
+/// not aligned.
 fn padding(own: usize, most: usize) -> String {
     let point = if own == 0 && most > 0 { "." } else { "" };
-    format!("{point}{}", "0".repeat(most - own))
+    format!("{point}{}", "0".repeat(most.saturating_sub(own)))
 }

@@ -169,8 +169,11 @@ impl Group<'_> {
     pub fn groups(&self, keys: &[Key]) -> IndexMap<String, Vec<usize>> {
         let mut groups: IndexMap<String, Vec<usize>> = IndexMap::new();
         for (row, member) in self.members.iter().enumerate() {
-            let name: Vec<String> =
-                keys.iter().map(|key| of_key(self.plan, self.positions, key, member).1).collect();
+            let named = |key: &Key| {
+                let (key, member) = of_key(self.plan, self.positions, key, member);
+                format!("{key} {member}")
+            };
+            let name: Vec<String> = keys.iter().map(named).collect();
             groups.entry(name.join(", ")).or_default().push(row);
         }
         groups

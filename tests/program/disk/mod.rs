@@ -18,13 +18,13 @@ fn alone(test: &str) -> bool {
     if std::env::var_os(SET).is_some() {
         return true;
     }
-    let this = std::env::current_exe().expect("a path");
+    let (this, test) = (std::env::current_exe().expect("a path"), format!("disk::{test}"));
     // In memory, where syncing takes no time.
     let memory = std::path::Path::new("/dev/shm");
     let place = if memory.is_dir() { memory.to_path_buf() } else { std::env::temp_dir() };
     let ran = Command::new(this)
         .env("TMPDIR", place)
-        .args(["--exact", test, "--nocapture", "--test-threads", "1"])
+        .args(["--exact", test.as_str(), "--nocapture", "--test-threads", "1"])
         .env(SET, "1")
         .output()
         .expect("it starts");
