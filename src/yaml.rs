@@ -367,7 +367,10 @@ mod tests {
             &[("left", Self::Left), ("right", Self::Right)];
     }
 
-    fn row(text: &str) -> (Option<Row>, Vec<(&'static str, String, Option<String>)>) {
+    /// Code, place and help of a problem.
+    type Told = (&'static str, String, Option<String>);
+
+    fn row(text: &str) -> (Option<Row>, Vec<Told>) {
         let mut problems = Problems::default();
         let source = Source::new("t", text);
         let tree = load(&source, &mut problems).expect("YAML");

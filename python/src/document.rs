@@ -15,7 +15,7 @@ use fishplate::deliver::{self, Files, Reports};
 use fishplate::diagnose::Outcome;
 use fishplate::prepare::set_by_hand;
 use fishplate::problem::Problems;
-use fishplate::report::study::Document;
+use fishplate::report::document::{Block, Document, Fact, ResultBox, Tone};
 use fishplate::report::{comparison, diagnosis, study as report};
 use fishplate::result::comparison::Comparison;
 use fishplate::result::study::Study;
@@ -84,21 +84,21 @@ impl Report {
     fn verdict(&self) -> String {
         match &*self.found {
             Found::Diagnosis(found) => found.diagnosis.verdict.to_string(),
-            _ => self.document.headline.word.clone(),
+            _ => self.result().map_or_else(String::new, |result| result.finding.word.clone()),
         }
     }
 
     #[getter]
     fn sentence(&self) -> &str {
-        &self.document.sentence
+        self.result().map_or("", |result| &result.sentence)
     }
 
     /// Short facts: name and value.
     #[getter]
     fn facts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let facts = PyDict::new(py);
-        for fact in &self.document.key_facts {
-            facts.set_item(&fact.name, &fact.value)?;
+        for fact in self.tiles() {
+            facts.set_item(&fact.name, fact.value.letters())?;
         }
         Ok(facts)
     }
@@ -152,29 +152,37 @@ impl Report {
 
     fn _repr_html_(&self) -> String {
         let document = &self.document;
-        let holds = match document.headline.class {
-            "good" => Some(true),
-            "bad" => Some(false),
-            _ => None,
-        };
-        let facts: Vec<Vec<String>> = document
-            .key_facts
-            .iter()
-            .map(|fact| vec![fact.name.clone(), fact.value.clone()])
-            .collect();
+        let holds = self.result().and_then(|result| match result.finding.tone {
+            Tone::Good => Some(true),
+            Tone::Bad => Some(false),
+            Tone::Open => None,
+        });
+        let facts: Vec<Vec<String>> =
+            self.tiles().map(|fact| vec![fact.name.clone(), fact.value.letters()]).collect();
         let drawn = self
             .found
             .figures()
             .into_iter()
             .take(FIGURES)
             .map(|(name, svg)| html::figure(&svg, &name));
-        html::head(
-            &document.title,
-            holds,
-            &self.verdict(),
-            std::slice::from_ref(&document.sentence),
-        ) + &drawn.collect::<String>()
+        html::head(&document.title, holds, &self.verdict(), &[self.sentence().to_owned()])
+            + &drawn.collect::<String>()
             + &html::table(&[String::new(), String::new()], &facts, None)
+    }
+}
+
+impl Report {
+    fn result(&self) -> Option<&ResultBox> {
+        Some(&self.document.cover.as_ref()?.result)
+    }
+
+    /// The short facts of the first page.
+    fn tiles(&self) -> impl Iterator<Item = &Fact> {
+        let blocks = self.document.cover.iter().flat_map(|cover| &cover.blocks);
+        blocks.flat_map(|block| match block {
+            Block::Tiles(facts) => &facts[..],
+            _ => &[],
+        })
     }
 }
 

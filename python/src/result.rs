@@ -81,7 +81,7 @@ impl Result {
     /// The bytes of results.json.
     fn json<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         let found = Arc::clone(&self.found);
-        PyBytes::new(py, py.detach(|| text(&found)).as_bytes())
+        PyBytes::new(py, py.detach(|| text(&*found)).as_bytes())
     }
 
     /// One row for each statistic of each quantity.

@@ -18,10 +18,10 @@ use crate::result::{FileHash, RecordName};
 use crate::run::record::{NodeValue, Opened, Rate, Samples, Work};
 use crate::run::sections::{Extent, Known, Unit};
 
-/// Values of the requested nodes of one record, in the order in which they were computed.
 /// What is computed of two records, and of how many samples.
-type OfTwo = dyn Fn(&Two<'_>) -> Result<(f64, usize), String>;
+type OfTwo<'a> = dyn Fn(&Two<'_>) -> Result<(f64, usize), String> + 'a;
 
+/// Values of the requested nodes of one record, in the order in which they were computed.
 #[derive(Clone, Debug, Default)]
 pub struct NodeValues {
     all: Vec<(NodeId, NodeValue)>,
@@ -249,7 +249,7 @@ impl<'a> Sides<'a> {
         let Operation::Compare(evaluation) = &self.work.graph.nodes[nodes.compare].operation else {
             return Err("this node gives no rows".into());
         };
-        let of_pairs = |pairing: Pairing, of_two: &OfTwo| -> Result<Vec<Row>, String> {
+        let of_pairs = |pairing: Pairing, of_two: &OfTwo<'_>| -> Result<Vec<Row>, String> {
             let one = |Joined { record, two, .. }: Joined<'_>| {
                 Ok(Row::single(position, 0, record, of_two(&two)?))
             };
