@@ -47,4 +47,5 @@ pub mod study;
 pub mod syntax;
 pub mod units;
 pub mod values;
+pub mod words;
 pub mod yaml;

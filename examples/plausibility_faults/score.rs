@@ -66,12 +66,12 @@ pub fn score(sound: &Folder, fault: &Fault) -> Score {
                 .iter()
                 .filter(|section| !section.used && told.sections.contains(&section.section));
             let checked = checks
-                .filter_map(|section| section.reason.clone())
+                .filter_map(|section| Some(section.reason.as_ref()?.text().to_string()))
                 .next()
                 .filter(|_| told.channels.is_empty());
             let finding = found.findings.iter().find(|finding| names(finding, &told));
             let says =
-                finding.map(|finding| format!("[{}] {}", finding.code, finding.says)).or(checked);
+                finding.map(|finding| format!("[{}] {}", finding.code, finding.text())).or(checked);
             let validated = found.verdict == Verdict::Validated;
             Score {
                 fault: fault.name,
@@ -89,6 +89,9 @@ fn names(finding: &Finding, told: &Told) -> bool {
         told.sections.is_empty() || section.is_some_and(|section| told.sections.contains(section));
     let channel = finding.channel.as_deref().unwrap_or_default();
     let right_channel = told.channels.is_empty()
-        || told.channels.iter().any(|name| channel.contains(name) || finding.says.contains(name));
+        || told
+            .channels
+            .iter()
+            .any(|name| channel.contains(name) || finding.text().to_string().contains(name));
     right_section && right_channel
 }

@@ -12,6 +12,7 @@ use fishplate::report::figure::canvas::{Canvas, Font, Group};
 use fishplate::report::figure::figures;
 use fishplate::report::html::html;
 use fishplate::report::view::document;
+use fishplate::result::Reason;
 
 use super::campaign::certified;
 
@@ -88,7 +89,7 @@ fn whole(text: &str) -> String {
         text.clone_into(place);
     }
     found.notes = vec![text.into()];
-    found.reasons = vec![text.into()];
+    found.reasons = vec![Reason::said(text)];
     found.protocol.notes = vec![text.into()];
     found.protocol.edition = Some(text.into());
     for item in found.campaign.facts.iter_mut().chain(&mut found.campaign.vehicle) {

@@ -70,7 +70,7 @@ impl Result {
 
     #[getter]
     fn reasons(&self) -> Vec<String> {
-        self.found.reasons.clone()
+        self.found.reasons.iter().map(|reason| reason.text().into()).collect()
     }
 
     #[getter]
@@ -115,7 +115,7 @@ impl Result {
             ("limit", number(&|s| s.limit)),
             ("ratio", number(&|s| s.normalised)),
             ("holds", Arc::new(all.iter().map(|(_, s)| s.holds).collect::<BooleanArray>())),
-            ("reason", text(&|_, s| s.reason.clone())),
+            ("reason", text(&|_, s| s.reason.as_ref().map(|reason| reason.text().into()))),
         ])
     }
 
@@ -159,7 +159,14 @@ impl Result {
             ),
             ("zone", Arc::new(all.iter().map(|s| s.zone.as_deref()).collect::<StringArray>())),
             ("used", Arc::new(all.iter().map(|s| Some(s.used)).collect::<BooleanArray>())),
-            ("reason", Arc::new(all.iter().map(|s| s.reason.as_deref()).collect::<StringArray>())),
+            (
+                "reason",
+                Arc::new(
+                    all.iter()
+                        .map(|s| s.reason.as_ref().map(|reason| String::from(reason.text())))
+                        .collect::<StringArray>(),
+                ),
+            ),
         ])
     }
 
@@ -253,7 +260,7 @@ impl Result {
         }
         let (shown, all) = (rows.len().min(MOST_SHOWN), rows.len());
         let note = (all > shown).then(|| format!("{all} rows; all are in `result.summary`"));
-        html::head(&title, holds, &found.verdict_in_words(), &found.reasons)
+        html::head(&title, holds, &found.verdict_in_words(), &self.reasons())
             + &chart
             + &html::table(&names, &rows[..shown], note)
     }

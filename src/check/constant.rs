@@ -7,6 +7,7 @@ use super::plan::{Expr, Input, InputSide, Kind, Scalar, Taken};
 use super::values::{Nothing, Values};
 use crate::metrics::rounded;
 use crate::problem::error;
+use crate::result::Reason;
 use crate::source::Span;
 
 /// Number of sets of inputs that are tried. Arithmetic that gives the same for three sets without a
@@ -33,19 +34,19 @@ struct Trial<'a> {
 }
 
 impl Values for Trial<'_> {
-    fn vehicle(&self, index: usize) -> Result<Scalar, String> {
+    fn vehicle(&self, index: usize) -> Result<Scalar, Reason> {
         self.values.vehicle(index)
     }
-    fn column(&self, index: usize) -> Result<Scalar, String> {
+    fn column(&self, index: usize) -> Result<Scalar, Reason> {
         self.values.column(index)
     }
-    fn extent(&self) -> Result<(f64, f64), String> {
+    fn extent(&self) -> Result<(f64, f64), Reason> {
         self.values.extent()
     }
-    fn input(&self, index: usize) -> Result<f64, String> {
+    fn input(&self, index: usize) -> Result<f64, Reason> {
         Ok(tried(self.set, self.alike.get(index).copied().unwrap_or(index)))
     }
-    fn sides(&self) -> Result<(f64, f64), String> {
+    fn sides(&self) -> Result<(f64, f64), Reason> {
         Ok((tried(self.set, 0), tried(self.set, 1)))
     }
 }

@@ -3,13 +3,14 @@
 use super::plan::{Expr, Kind, Operator, Scalar};
 use super::possible::possible;
 use super::values::{Values, leaf};
+use crate::result::Reason;
 
 /// The value of an expression. Where names have no value, the result is the value that the
 /// expression has for every value of them, if there is one.
 ///
 /// # Errors
 /// The name that has no value, or the operation that is not defined (such as a division by zero).
-pub fn evaluate(expr: &Expr, values: &dyn Values) -> Result<Scalar, String> {
+pub fn evaluate(expr: &Expr, values: &dyn Values) -> Result<Scalar, Reason> {
     match exactly(expr, values) {
         // The other operands cannot decide a leaf without a value.
         Err(reason) if matches!(expr.kind, Kind::Binary(..) | Kind::Not(_) | Kind::Cases(..)) => {
@@ -19,7 +20,7 @@ pub fn evaluate(expr: &Expr, values: &dyn Values) -> Result<Scalar, String> {
     }
 }
 
-fn exactly(expr: &Expr, values: &dyn Values) -> Result<Scalar, String> {
+fn exactly(expr: &Expr, values: &dyn Values) -> Result<Scalar, Reason> {
     let result = match &expr.kind {
         Kind::Negative(inner) => Scalar::Number(-number(inner, values)?),
         Kind::Not(inner) => Scalar::Flag(!flag(inner, values)?),
@@ -42,14 +43,14 @@ fn exactly(expr: &Expr, values: &dyn Values) -> Result<Scalar, String> {
             }
             match otherwise {
                 Some(value) => evaluate(value, values)?,
-                None => return Err(format!("no case of `{}` applies", words(expr))),
+                None => return Err(Reason::NoCaseOf { expression: words(expr) }),
             }
         }
         name => leaf(name, values)?,
     };
     match result {
         Scalar::Number(value) if !value.is_finite() => {
-            Err(format!("`{}` is not a finite number", words(expr)))
+            Err(Reason::NotFinite { expression: words(expr) })
         }
         value => Ok(value),
     }
@@ -59,10 +60,10 @@ fn exactly(expr: &Expr, values: &dyn Values) -> Result<Scalar, String> {
 ///
 /// # Errors
 /// As [`evaluate`], or it is no number.
-pub fn number(expr: &Expr, values: &dyn Values) -> Result<f64, String> {
+pub fn number(expr: &Expr, values: &dyn Values) -> Result<f64, Reason> {
     match evaluate(expr, values)? {
         Scalar::Number(value) => Ok(value),
-        other => Err(format!("`{}` is {other:?}, not a number", words(expr))),
+        other => Err(Reason::NotNumber { expression: words(expr), value: format!("{other:?}") }),
     }
 }
 
@@ -70,10 +71,10 @@ pub fn number(expr: &Expr, values: &dyn Values) -> Result<f64, String> {
 ///
 /// # Errors
 /// As [`evaluate`], or it is no condition.
-pub fn flag(expr: &Expr, values: &dyn Values) -> Result<bool, String> {
+pub fn flag(expr: &Expr, values: &dyn Values) -> Result<bool, Reason> {
     match evaluate(expr, values)? {
         Scalar::Flag(value) => Ok(value),
-        other => Err(format!("`{}` is {other:?}, not a condition", words(expr))),
+        other => Err(Reason::NotCondition { expression: words(expr), value: format!("{other:?}") }),
     }
 }
 
@@ -82,7 +83,7 @@ fn binary(
     left: &Expr,
     right: &Expr,
     values: &dyn Values,
-) -> Result<Scalar, String> {
+) -> Result<Scalar, Reason> {
     let flag = |part: &Expr| flag(part, values);
     let (a, b) = match operator {
         // If one side decides the result, the other may be missing: `direction is straight or

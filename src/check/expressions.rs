@@ -314,7 +314,7 @@ impl Checker<'_> {
         match evaluate(&expr, &Nothing) {
             Ok(value) if !scope.samples => Some(Expr { kind: Kind::Constant(value), ..expr }),
             Err(reason) if !expr.any(&|part| !known(part)) => {
-                self.refuse(error("not-finite", reason, &expr.span))
+                self.refuse(error("not-finite", reason.text(), &expr.span))
             }
             _ => Some(expr),
         }

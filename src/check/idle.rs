@@ -9,6 +9,7 @@ use super::values::Values;
 use crate::catalog::Statistic;
 use crate::metrics::rounded;
 use crate::problem::{Problem, error, warning};
+use crate::result::Reason;
 use crate::source::Span;
 use crate::syntax::document::Block;
 
@@ -133,7 +134,7 @@ struct Apart {
 }
 
 impl Values for Apart {
-    fn sides(&self) -> Result<(f64, f64), String> {
+    fn sides(&self) -> Result<(f64, f64), Reason> {
         Ok((self.simulated, self.measured))
     }
 }

@@ -13,6 +13,7 @@ use super::{Checker, overlap};
 use crate::catalog::Best;
 use crate::metrics::rounded;
 use crate::problem::{Problems, error};
+use crate::result::Reason;
 use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
@@ -439,8 +440,8 @@ struct Others<'a> {
 }
 
 impl Values for Others<'_> {
-    fn limit_of(&self, statistic: &str) -> Result<f64, String> {
-        let unknown = || format!("the limit of {statistic} is not known here");
+    fn limit_of(&self, statistic: &str) -> Result<f64, Reason> {
+        let unknown = || Reason::LimitUnknown { estimate: statistic.into() };
         let mut found = self.limits.iter().filter(|limit| {
             limit.estimate.name == statistic && same_sections(&limit.scope, &self.of.scope)
         });

@@ -17,6 +17,7 @@ use super::values::Values;
 use super::{Checker, if_written};
 use crate::catalog::{Best, DIFFERENCES, NOT_CHECKED};
 use crate::problem::{error, warning};
+use crate::result::Reason;
 use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
@@ -625,7 +626,7 @@ fn of_equal_sides(difference: &Expr) -> Option<f64> {
 struct Alike(f64);
 
 impl Values for Alike {
-    fn sides(&self) -> Result<(f64, f64), String> {
+    fn sides(&self) -> Result<(f64, f64), Reason> {
         Ok((self.0, self.0))
     }
 }

@@ -1,5 +1,6 @@
 //! Values of the names in an expression.
 
+use crate::result::Reason;
 use std::cell::RefCell;
 
 use super::plan::{Kind, Scalar, Side};
@@ -7,25 +8,25 @@ use super::plan::{Kind, Scalar, Side};
 /// Values of the names in an expression. Each method may return an error that states why the value
 /// is missing; by default it is missing.
 pub trait Values {
-    fn vehicle(&self, _: usize) -> Result<Scalar, String> {
-        Err("vehicle data are not known here".into())
+    fn vehicle(&self, _: usize) -> Result<Scalar, Reason> {
+        Err(Reason::VehicleDataUnknown)
     }
-    fn column(&self, _: usize) -> Result<Scalar, String> {
-        Err("section data are not known here".into())
+    fn column(&self, _: usize) -> Result<Scalar, Reason> {
+        Err(Reason::SectionDataUnknown)
     }
     /// Start and end of the section on the axis, SI.
-    fn extent(&self) -> Result<(f64, f64), String> {
-        Err("there is no section here".into())
+    fn extent(&self) -> Result<(f64, f64), Reason> {
+        Err(Reason::NoSectionHere)
     }
-    fn input(&self, _: usize) -> Result<f64, String> {
-        Err("there is no signal here".into())
+    fn input(&self, _: usize) -> Result<f64, Reason> {
+        Err(Reason::NoSignalHere)
     }
     /// Simulated and measured value of a pair, in this order.
-    fn sides(&self) -> Result<(f64, f64), String> {
-        Err("there is no pair of values here".into())
+    fn sides(&self) -> Result<(f64, f64), Reason> {
+        Err(Reason::NoPairHere)
     }
-    fn limit_of(&self, statistic: &str) -> Result<f64, String> {
-        Err(format!("the limit of {statistic} is not known here"))
+    fn limit_of(&self, statistic: &str) -> Result<f64, Reason> {
+        Err(Reason::LimitUnknown { estimate: statistic.into() })
     }
     /// By what share of the right side `<=` and `>=` may be missed: the rounding of numbers that
     /// were converted to SI and subtracted.
@@ -60,26 +61,26 @@ impl<'a, V: Values> Watched<'a, V> {
 }
 
 impl<V: Values> Values for Watched<'_, V> {
-    fn vehicle(&self, index: usize) -> Result<Scalar, String> {
+    fn vehicle(&self, index: usize) -> Result<Scalar, Reason> {
         self.values.vehicle(index)
     }
-    fn column(&self, index: usize) -> Result<Scalar, String> {
+    fn column(&self, index: usize) -> Result<Scalar, Reason> {
         let mut columns = self.columns.borrow_mut();
         if !columns.contains(&index) {
             columns.push(index);
         }
         self.values.column(index)
     }
-    fn extent(&self) -> Result<(f64, f64), String> {
+    fn extent(&self) -> Result<(f64, f64), Reason> {
         self.values.extent()
     }
-    fn input(&self, index: usize) -> Result<f64, String> {
+    fn input(&self, index: usize) -> Result<f64, Reason> {
         self.values.input(index)
     }
-    fn sides(&self) -> Result<(f64, f64), String> {
+    fn sides(&self) -> Result<(f64, f64), Reason> {
         self.values.sides()
     }
-    fn limit_of(&self, statistic: &str) -> Result<f64, String> {
+    fn limit_of(&self, statistic: &str) -> Result<f64, Reason> {
         self.values.limit_of(statistic)
     }
     fn rounding(&self) -> f64 {
@@ -91,7 +92,7 @@ impl<V: Values> Values for Watched<'_, V> {
 ///
 /// # Errors
 /// The name has no value; an expression of parts is not evaluated here.
-pub fn leaf(kind: &Kind, values: &dyn Values) -> Result<Scalar, String> {
+pub fn leaf(kind: &Kind, values: &dyn Values) -> Result<Scalar, Reason> {
     match kind {
         Kind::Constant(value) => Ok(value.clone()),
         Kind::Vehicle(index) => values.vehicle(*index),
@@ -103,7 +104,6 @@ pub fn leaf(kind: &Kind, values: &dyn Values) -> Result<Scalar, String> {
             Scalar::Number(if *side == Side::Simulated { simulated } else { measured })
         }),
         Kind::LimitOf(statistic) => values.limit_of(statistic).map(Scalar::Number),
-        Kind::Channel { column, .. } => Err(format!("{column} has a number for each sample")),
-        _ => Err("an expression of several parts is no name".into()),
+        _ => Err(Reason::Internal),
     }
 }

@@ -30,6 +30,7 @@ use crate::result::Finding;
 use crate::run::needs::needs;
 use crate::run::{Settings, consequence, find};
 use crate::source::{Source, Spanned};
+use crate::words;
 
 #[derive(Debug, Args)]
 pub struct Import {
@@ -197,7 +198,7 @@ fn look(mapping: &Mapping, compiled: Option<&Compiled>, out: &Path, console: &Co
                 console.say(&format!(
                     "section {} is not used: {}",
                     section.section,
-                    section.reason.clone().unwrap_or_default()
+                    words::or_nothing(section.reason.as_ref())
                 ));
             }
             let rows = findings::rows(&as_stated(&compiled.plan, found.findings));

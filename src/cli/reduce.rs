@@ -92,7 +92,7 @@ fn told(values: &Values) -> String {
     let fault = |(number, of_section): &(usize, SectionValues)| {
         let unit = units.get(*number)?;
         let fault = unit.fault.as_ref().or(of_section.fault.as_ref())?;
-        Some(format!("  {} not used: {fault}\n", unit.name))
+        Some(format!("  {} not used: {}\n", unit.name, fault.text()))
     };
     let faults: Vec<String> = values.sections.iter().filter_map(fault).collect();
     format!(

@@ -16,6 +16,7 @@ use crate::report::estimates::{self, OfLimit};
 use crate::report::{findings, number};
 use crate::result::{Certification, QuantityResult, StatisticResult, Verdict};
 use crate::run::Settings;
+use crate::words;
 
 /// Default number of distance plots of a report.
 pub const PLOTS: usize = 8;
@@ -115,7 +116,7 @@ fn summary(found: &Certification, console: &Console) -> String {
         out += &format!(
             "  {} not used: {}\n",
             section.section,
-            section.reason.clone().unwrap_or_default()
+            words::or_nothing(section.reason.as_ref())
         );
     }
     for row in findings::rows(&found.findings) {
@@ -135,7 +136,7 @@ fn summary(found: &Certification, console: &Console) -> String {
         paint(format!("Verdict{title}: {}", found.verdict_in_words()), Some(holds))
     );
     for reason in &found.reasons {
-        out += &format!("  {reason}\n");
+        out += &format!("  {}\n", reason.text());
     }
     for verdict in found.verdicts.iter().filter(|verdict| !verdict.overall) {
         out += &format!(
@@ -144,7 +145,7 @@ fn summary(found: &Certification, console: &Console) -> String {
             paint(verdict.word.clone(), verdict.outcome.holds())
         );
         for reason in &verdict.reasons {
-            out += &format!("  {reason}\n");
+            out += &format!("  {}\n", reason.text());
         }
     }
     out
@@ -207,9 +208,11 @@ fn statistics(found: &Certification, console: &Console) -> String {
         }
         match &quantity.reason {
             Some(reason) if quantity.statistics.is_empty() => {
-                out += &format!("{:width$}  {reason}\n", quantity.id)
+                out += &format!("{:width$}  {}\n", quantity.id, reason.text())
             }
-            Some(reason) if open => out += &format!("{:width$}  not assessable: {reason}\n", ""),
+            Some(reason) if open => {
+                out += &format!("{:width$}  not assessable: {}\n", "", reason.text());
+            }
             _ => {}
         }
     }

@@ -125,7 +125,8 @@ fn words(found: &FoundSections) -> String {
             let _ = writeln!(out, "  {says}");
         }
         for rejected in &run.rejected {
-            let _ = writeln!(out, "  {:>8}  {}", count(rejected.places as u64), rejected.reason);
+            let _ =
+                writeln!(out, "  {:>8}  {}", count(rejected.places as u64), rejected.reason.text());
         }
         let mut longest: Vec<_> = run.stretches.iter().collect();
         longest.sort_by(|a, b| b.places.cmp(&a.places).then(a.from.total_cmp(&b.from)));
@@ -136,7 +137,9 @@ fn words(found: &FoundSections) -> String {
             let _ = writeln!(
                 out,
                 "  {:>10} to {:>10} {unit}  {}",
-                stretch.from, stretch.to, stretch.reason
+                stretch.from,
+                stretch.to,
+                stretch.reason.text()
             );
         }
     }

@@ -162,8 +162,8 @@ impl Study {
         let joined = console.sound(joined, &problems)?;
         robustness::countable(&joined.compiled)?;
         let evaluated = joined.evaluated()?;
-        if let Some(says) = &evaluated.missing {
-            let problem = Problem::error("values-missing", says);
+        if let Some(missing) = &evaluated.missing {
+            let problem = Problem::error("values-missing", missing.text());
             return Err(problem.help("give the files of all parts").into());
         }
         let campaign = joined.head.about.info(evaluated.files.clone());

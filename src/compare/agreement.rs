@@ -2,6 +2,7 @@
 
 use super::found::Found;
 use crate::metrics::rank::spearman;
+use crate::result::Reason;
 use crate::result::comparison::{Agreement, Cell, Score};
 
 /// Every pair of protocols, then every pair of metrics of each protocol.
@@ -70,9 +71,9 @@ fn pair(a: &[&Score], b: &[&Score]) -> Agreement {
     let spearman = spearman(&scores);
     let reason = match scores.len() {
         _ if spearman.is_some() => None,
-        0 => Some("no section has a score of both".to_string()),
-        1 | 2 => Some("fewer than three sections have a score of both".to_string()),
-        _ => Some("all scores of one are equal".to_string()),
+        0 => Some(Reason::NoCommonScore),
+        1 | 2 => Some(Reason::TooFewCommonScores),
+        _ => Some(Reason::EqualScores),
     };
     Agreement {
         of: String::new(),

@@ -13,7 +13,7 @@ use crate::check::plan::Decision;
 use crate::data::Campaign;
 use crate::problem::{Problems, Severity};
 use crate::result::comparison::{Applicability, Cell, Ratio, Score};
-use crate::result::{FileHash, Outcome, Verdict};
+use crate::result::{FileHash, Outcome, Reason, Verdict};
 use crate::run::several::{Rules, several};
 use crate::run::trial::Trial;
 use crate::run::{Evaluated, Judged, Progress};
@@ -151,10 +151,10 @@ fn not_assessable(campaign: &str, protocol: &str, problems: &Problems) -> Cell {
         .filter(|problem| problem.severity == Severity::Error)
         .map(|problem| problem.says.as_str())
         .collect();
-    let mut reasons: Vec<String> =
-        errors.iter().take(REASONS).map(|says| (*says).to_string()).collect();
+    let mut reasons: Vec<Reason> =
+        errors.iter().take(REASONS).map(|says| Reason::said((*says).to_string())).collect();
     if errors.len() > REASONS {
-        reasons.push(format!("and {} more", errors.len() - REASONS));
+        reasons.push(Reason::AndMore { more: errors.len() - REASONS });
     }
     Cell {
         campaign: campaign.into(),

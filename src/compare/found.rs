@@ -1,7 +1,7 @@
 //! What the protocols made of a campaign.
 
-use crate::result::FileHash;
 use crate::result::comparison::{Applicability, Cell, Ratio, Score};
+use crate::result::{FileHash, Reason};
 use crate::run::Counts;
 
 /// What all protocols made of a campaign.
@@ -35,7 +35,7 @@ pub struct Moved {
     pub verdicts: usize,
     pub verdicts_changed: usize,
     /// Why nothing is known.
-    pub reason: Option<String>,
+    pub reason: Option<Reason>,
 }
 
 #[derive(Clone, Debug, PartialEq)]

@@ -4,6 +4,7 @@ use super::Subject;
 use super::found::{Found, Judgement};
 use super::subject::WithProtocols;
 use crate::check::diff::{self, Change};
+use crate::result::Reason;
 use crate::result::comparison::{Difference, Ratio};
 
 /// The differences from one protocol to another.
@@ -34,6 +35,7 @@ pub fn differences(
             let deviation = &change.deviation;
             let reason =
                 opened.compiled.changed.get(at).and_then(|changed| changed.as_ref().err().cloned());
+            let reason = reason.map(Reason::said);
             let after = found.changed.get(at).and_then(Option::as_ref);
             let one = Difference {
                 before: deviation.before.clone(),
@@ -77,7 +79,7 @@ fn words(before: &Option<String>, after: &Option<String>) -> String {
     }
 }
 
-fn difference(found: &Found, after: Option<&Judgement>, reason: Option<String>) -> Difference {
+fn difference(found: &Found, after: Option<&Judgement>, reason: Option<Reason>) -> Difference {
     let before = found.judgements.first();
     Difference {
         rule: String::new(),

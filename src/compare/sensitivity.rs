@@ -7,6 +7,7 @@ use super::metric::{self, Base, Number};
 use super::{KINDS, Settings};
 use crate::metrics::disturb::stream;
 use crate::metrics::random::mixed;
+use crate::result::Reason;
 use crate::result::comparison::{OfCampaign, Sensitivity};
 use crate::run::Evaluated;
 
@@ -72,7 +73,7 @@ pub fn moved<'a>(
                     Some(reason) => moved.reason = Some(reason),
                     None => moved.judge(base, evaluated),
                 },
-                None => moved.reason = Some("it was not evaluated".into()),
+                None => moved.reason = Some(Reason::NotTried),
             }
             moved
         };
@@ -84,10 +85,9 @@ pub fn moved<'a>(
 }
 
 /// Why a section that was used is not in a trial.
-fn lost(base: &Evaluated, trial: &Evaluated) -> Option<String> {
+fn lost(base: &Evaluated, trial: &Evaluated) -> Option<Reason> {
     let both = base.sections().zip(trial.sections());
-    both.into_iter()
-        .find_map(|((_, before), (_, now))| now.filter(|_| before.is_none()).map(str::to_string))
+    both.into_iter().find_map(|((_, before), (_, now))| now.filter(|_| before.is_none()).cloned())
 }
 
 /// Some sections left out, in several draws.
@@ -100,7 +100,7 @@ fn chosen(base: &Base<'_>, size: f64) -> Moved {
         .collect();
     let mut moved = Moved::default();
     if used.len() < 2 {
-        moved.reason = Some("there is one section".into());
+        moved.reason = Some(Reason::SectionAlone);
         return moved;
     }
     let out = ((size * used.len() as f64).round() as usize).clamp(1, used.len() - 1);
@@ -191,7 +191,7 @@ fn curve<'a, I: Iterator<Item = (&'a Found, &'a Moved)>>(
                 .or(largest);
         }
         let value = (count > 0 && reason.is_none()).then(|| (squares / count as f64).sqrt());
-        let none = || reason.clone().unwrap_or_else(|| "the metric has no number".into());
+        let none = || reason.clone().unwrap_or(Reason::MetricWithoutNumber);
         curve.reasons.push(value.is_none().then(none));
         curve.values.push(value);
         curve.largest.push(largest.filter(|_| limited));

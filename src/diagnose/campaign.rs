@@ -19,14 +19,15 @@ use crate::diagnose::levels::campaign::{EARNED, STRONG};
 use crate::diagnose::uncertainty::whiten::{dot, less};
 use crate::effects::{Applied, Catalogue, Gauss, Signals};
 use crate::problem::{Problem, Problems};
-use crate::result::Certification;
 use crate::result::diagnosis::{Diagnosis, HeldOut as OnHeldOut};
+use crate::result::{Certification, Reason};
 use crate::run::Settings as RunSettings;
 use crate::simulate::{
     Made, Section, Simulator, Units, effects_of_origin, record_file, recorded, with_records,
     write_campaign,
 };
 use crate::units::Unit;
+use crate::words;
 
 /// The diagnosis and the data it was derived from.
 #[derive(Debug)]
@@ -102,11 +103,14 @@ pub fn diagnose(
     let settings = RunSettings { traces: 0 };
     let before = certify(compiled, inputs.campaign, settings, &quiet)?;
     // The records were read before by `find`: both must compare the same sections.
-    if let Some(section) = before.sections.iter().find(|section| section.unreadable) {
+    let unread = |section: &&crate::result::SectionResult| {
+        section.reason.as_ref().is_some_and(Reason::is_unreadable)
+    };
+    if let Some(section) = before.sections.iter().find(unread) {
         let says = format!(
             "section {} could not be read again: {}",
             section.section,
-            section.reason.as_deref().unwrap_or_default()
+            words::or_nothing(section.reason.as_ref())
         );
         return Err(one(Problem::error("file-unreadable", says)));
     }

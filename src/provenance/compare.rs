@@ -78,13 +78,21 @@ impl Compared {
     fn values(&mut self, before: &Value, after: &Value, way: &Way) {
         match (before, after) {
             (Value::Object(old), Value::Object(new)) => {
-                for (key, old) in old {
+                // The data of a reason or finding say no more than the text beside them, which a
+                // version before has alone.
+                let text = |key: &str| match key {
+                    "reason_data" | "reasons_data" => false,
+                    "data" => !old.contains_key("says") || !new.contains_key("says"),
+                    _ => true,
+                };
+                for (key, old) in old.iter().filter(|(key, _)| text(key)) {
                     match new.get(key) {
                         Some(new) => self.values(old, new, &way.key(key)),
                         None => self.differs(&way.key(key), Some(old), None),
                     }
                 }
-                for (key, new) in new.iter().filter(|(key, _)| !old.contains_key(*key)) {
+                for (key, new) in new.iter().filter(|(key, _)| text(key) && !old.contains_key(*key))
+                {
                     self.differs(&way.key(key), None, Some(new));
                 }
             }

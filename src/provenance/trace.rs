@@ -161,7 +161,7 @@ fn find<'a>(
     if let Some(reason) = section.reason.as_ref().filter(|_| !section.used) {
         return Err(Problem::error(
             "not-evaluated",
-            format!("section {} is not used: {reason}", section.section),
+            format!("section {} is not used: {}", section.section, reason.text()),
         ));
     }
     let here: Vec<&PairValue> =
@@ -393,7 +393,7 @@ fn statistics(out: &mut String, carried: &Carried, quantity: &QuantityResult, pa
             said(&statistic.rule)
         );
         if let Some(reason) = &statistic.reason {
-            let _ = writeln!(out, "    {reason}");
+            let _ = writeln!(out, "    {}", reason.text());
         }
     }
     let _ = writeln!(

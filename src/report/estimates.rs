@@ -1,7 +1,7 @@
 //! The estimates of a quantity, limit by limit: a limit by group has one result for each group,
 //! often hundreds in all.
 
-use crate::result::{QuantityResult, StatisticResult};
+use crate::result::{QuantityResult, Reason, StatisticResult};
 
 /// A limit of a quantity and what was found of it.
 #[derive(Clone, Debug)]
@@ -52,11 +52,11 @@ impl<'a> OfLimit<'a> {
 
     /// Why the limit is not assessed: the first reason of a group. Where a group fails, that is no
     /// reason of what the limit came to.
-    pub fn reason(&self) -> Option<&'a str> {
+    pub fn reason(&self) -> Option<&'a Reason> {
         if self.holds().is_some() {
             return None;
         }
-        self.results.iter().find(|one| one.holds.is_none()).and_then(|one| one.reason.as_deref())
+        self.results.iter().find(|one| one.holds.is_none()).and_then(|one| one.reason.as_ref())
     }
 
     /// Whether there are several groups.
@@ -163,13 +163,14 @@ mod tests {
     #[test]
     fn a_reason_is_one_of_what_the_limit_came_to() {
         let open = StatisticResult {
-            reason: Some("cant_deficiency does not vary".into()),
+            reason: Some(Reason::said("cant_deficiency does not vary")),
             ..result("c", None, None)
         };
         let [holds, fails] =
             [result("a", Some(true), Some(0.9)), result("b", Some(false), Some(1.4))];
-        let reason =
-            |results: Vec<&StatisticResult>| OfLimit { results }.reason().map(str::to_string);
+        let reason = |results: Vec<&StatisticResult>| {
+            OfLimit { results }.reason().map(|reason| reason.text().to_string())
+        };
         assert_eq!(reason(vec![&holds, &open]).as_deref(), Some("cant_deficiency does not vary"));
         assert_eq!((reason(vec![&open, &fails]), reason(vec![&holds])), (None, None));
     }

@@ -39,7 +39,7 @@ pub fn rows(findings: &[Finding]) -> Vec<Row> {
                     &finding.cause,
                     finding.consequence,
                 )
-                && (first.section.is_some() && section.is_some() || first.says == finding.says)
+                && (first.section.is_some() && section.is_some() || first.data == finding.data)
         });
         match alike {
             Some((_, sections)) => sections.extend(section.filter(|name| !sections.contains(name))),
@@ -78,7 +78,7 @@ fn row(first: &Finding, sections: &[&str]) -> Row {
         code: first.code.clone(),
         subject: subject.into_iter().flatten().collect::<Vec<_>>().join(", "),
         sections: named(sections),
-        says: number::raised(&first.says),
+        says: number::raised(&String::from(first.text())),
         cause: first.cause.clone().unwrap_or_default(),
         consequence: first.consequence.in_words(),
         tone: if first.consequence == Consequence::Note { Tone::Open } else { Tone::Bad },
@@ -112,12 +112,13 @@ pub fn line(row: &Row) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::result::FindingData;
 
     fn finding(section: Option<&str>, says: &str) -> Finding {
         Finding {
             section: section.map(str::to_string),
             channel: Some("Y_1R".into()),
-            ..Finding::note("wheel-load", says)
+            ..Finding::note("wheel-load", FindingData::Said { says: says.into() })
         }
     }
 

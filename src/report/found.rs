@@ -59,7 +59,11 @@ pub fn drift_in_words(run: &FoundInRun, unit: &str) -> Option<String> {
 /// `rejected first by: steady speed 5 120, in no zone 311`.
 pub fn rejected_in_words(found: &FoundSections) -> String {
     let one = |rejected: &Rejected| {
-        format!("{} {}", rejected.reason.to_lowercase(), count(rejected.places as u64))
+        format!(
+            "{} {}",
+            rejected.reason.text().to_string().to_lowercase(),
+            count(rejected.places as u64)
+        )
     };
     let all: Vec<String> = found.rejected().iter().map(one).collect();
     if all.is_empty() {

@@ -170,7 +170,7 @@ pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Erro
             finding.value,
             finding.expected,
             finding.unit,
-            finding.says,
+            String::from(finding.text()),
             finding.cause,
             finding.consequence.in_words()
         ];

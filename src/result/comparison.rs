@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{FileHash, Scope};
+use super::{FileHash, Reason, Scope, told};
 
 /// Every number of a comparison; the keys of `comparison.json`.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -64,7 +64,9 @@ pub struct Cell {
     pub ratio: Option<f64>,
     pub sections_used: usize,
     /// Why the verdict does not hold or is not assessable.
-    pub reasons: Vec<String>,
+    #[serde(flatten, with = "told::reasons")]
+    #[schemars(with = "told::Reasons<Reason>")]
+    pub reasons: Vec<Reason>,
 }
 
 /// One limit of one protocol on one campaign.
@@ -84,7 +86,9 @@ pub struct Ratio {
     /// |value| / limit; limit / value where the limit is a least value.
     pub ratio: Option<f64>,
     pub holds: Option<bool>,
-    pub reason: Option<String>,
+    #[serde(flatten, with = "told::reason")]
+    #[schemars(with = "told::NoneOrReason<Reason>")]
+    pub reason: Option<Reason>,
 }
 
 /// The largest ratio of a section, of a metric or of a protocol.
@@ -117,7 +121,9 @@ pub struct Agreement {
     /// Spearman's rank correlation of the scores.
     pub spearman: Option<f64>,
     /// Why there is no correlation.
-    pub reason: Option<String>,
+    #[serde(flatten, with = "told::reason")]
+    #[schemars(with = "told::NoneOrReason<Reason>")]
+    pub reason: Option<Reason>,
     /// Campaigns by verdict: holds, does not hold, not assessable; of protocols only.
     pub verdicts: Option<[[usize; 3]; 3]>,
 }
@@ -134,7 +140,9 @@ pub struct Sensitivity {
     /// limit.
     pub values: Vec<Option<f64>>,
     /// Why a value is missing.
-    pub reasons: Vec<Option<String>>,
+    #[serde(flatten, with = "told::reasons")]
+    #[schemars(with = "told::EachReason<Reason>")]
+    pub reasons: Vec<Option<Reason>>,
     /// The largest |value| / limit.
     pub largest: Vec<Option<f64>>,
     /// Number of verdicts of the protocol that differ from those of the records as they are.
@@ -208,7 +216,9 @@ pub struct Difference {
     /// Number of limits whose value or bound is another, or that are new or gone.
     pub limits_changed: Option<usize>,
     /// Why the rule cannot be applied alone.
-    pub reason: Option<String>,
+    #[serde(flatten, with = "told::reason")]
+    #[schemars(with = "told::NoneOrReason<Reason>")]
+    pub reason: Option<Reason>,
 }
 
 /// What sharing saved.

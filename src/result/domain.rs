@@ -4,7 +4,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::RulePlace;
+use super::{Reason, RulePlace, told};
 
 /// A domain of the protocol, of the sections of one group.
 ///
@@ -25,7 +25,9 @@ pub struct DomainResult {
     /// Sections used without a value of some coordinate.
     pub left_out: Vec<String>,
     /// Why there is no hull.
-    pub reason: Option<String>,
+    #[serde(flatten, with = "told::reason")]
+    #[schemars(with = "told::NoneOrReason<Reason>")]
+    pub reason: Option<Reason>,
     /// Wanted operation of the group.
     pub points: Vec<WantedPoint>,
     /// Consequence of a point outside.

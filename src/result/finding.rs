@@ -1,7 +1,10 @@
-//! Plausibility findings of the data, with the value found and the expected value.
+//! Findings about the data, with the value found and the expected value.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+use super::{FindingData, told};
+use crate::words::{self, Text};
 
 /// A finding for the attention of the assessor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -22,8 +25,10 @@ pub struct Finding {
     /// The expected value, or the bound that is exceeded, in `unit`.
     pub expected: Option<f64>,
     pub unit: Option<String>,
-    /// The finding as a sentence without a full stop.
-    pub says: String,
+    /// What it says.
+    #[serde(flatten, with = "told::says")]
+    #[schemars(with = "told::Says<FindingData>")]
+    pub data: FindingData,
     /// The likely cause, if known.
     pub cause: Option<String>,
     pub consequence: Consequence,
@@ -53,7 +58,7 @@ impl Consequence {
 
 impl Finding {
     /// A finding about the campaign that is reported only.
-    pub fn note(code: impl Into<String>, says: impl Into<String>) -> Self {
+    pub fn note(code: impl Into<String>, data: FindingData) -> Self {
         Self {
             code: code.into(),
             channel: None,
@@ -63,9 +68,14 @@ impl Finding {
             value: None,
             expected: None,
             unit: None,
-            says: says.into(),
+            data,
             cause: None,
             consequence: Consequence::Note,
         }
+    }
+
+    /// The finding as a sentence without a full stop.
+    pub fn text(&self) -> Text {
+        words::text(&self.data)
     }
 }

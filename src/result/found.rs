@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::{Reason, told};
+
 /// What the search for sections gave.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FoundSections {
@@ -71,18 +73,22 @@ pub struct CoursePoint {
     pub correlation: f64,
 }
 
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Rejected {
-    pub reason: String,
+    #[serde(flatten, with = "told::reason")]
+    #[schemars(with = "told::OneReason<Reason>")]
+    pub reason: Reason,
     pub places: usize,
 }
 
 /// Places next to each other where no section begins, for the same reason.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Stretch {
     pub from: f64,
     pub to: f64,
-    pub reason: String,
+    #[serde(flatten, with = "told::reason")]
+    #[schemars(with = "told::OneReason<Reason>")]
+    pub reason: Reason,
     pub places: usize,
 }
 

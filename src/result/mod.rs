@@ -11,12 +11,15 @@ pub mod finding;
 pub mod found;
 mod kind;
 pub mod origin;
+mod parts;
 mod quantity;
+mod reason;
 pub mod report;
 mod scope;
 mod shrink;
 mod spread;
 pub mod study;
+mod told;
 pub mod verdict;
 
 use schemars::JsonSchema;
@@ -26,10 +29,15 @@ pub use domain::{CoordinateRange, DomainResult, DomainSection, WantedPoint};
 pub use finding::{Consequence, Finding};
 pub use kind::{Kind, VerdictWords};
 pub use origin::{FittedTo, ImportedOne, ImportedSide, OriginInfo};
+pub use parts::{
+    Beyond, Channels, Datum, GivenVerdict, LimitNotMet, OfVehicle, Sections, ShortZone, Subject,
+    VehicleValue,
+};
 pub use quantity::{
     Count, Figures, GroupRegression, GroupResult, LimitFactor, Outside, PairValue, QuantityResult,
     RegressionAt, RegressionFigure, RegressionPoint, Reported, Sample, StatisticResult,
 };
+pub use reason::{FindingData, Reason, UnusedSection};
 pub use report::{Identification, ReportItem};
 pub use scope::{RecordName, Scope, StatisticName, zones};
 pub use spread::{ClassSpread, Furthest, OfRecord, Spread};
@@ -65,7 +73,9 @@ pub struct Certification {
     /// Note on the verdict if the simulation was changed after the comparison.
     pub verdict_note: Option<String>,
     /// Why the verdict is not "validated"; empty if it is.
-    pub reasons: Vec<String>,
+    #[serde(flatten, with = "told::reasons")]
+    #[schemars(with = "told::Reasons<Reason>")]
+    pub reasons: Vec<Reason>,
     /// The verdicts with a name.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub verdicts: Vec<VerdictResult>,
@@ -283,10 +293,9 @@ pub struct SectionResult {
     #[schemars(with = "Option<zones::InFile>")]
     pub zone: Option<String>,
     pub used: bool,
-    pub reason: Option<String>,
-    /// A file of it could not be read.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub unreadable: bool,
+    #[serde(flatten, with = "told::reason")]
+    #[schemars(with = "told::NoneOrReason<Reason>")]
+    pub reason: Option<Reason>,
     /// Length in `axis_unit`.
     pub length: f64,
     pub start: f64,
@@ -304,8 +313,10 @@ pub struct CheckResult {
     pub title: String,
     /// `None`: could not be checked; the reason is in `says`.
     pub holds: Option<bool>,
-    /// The result in words: `length 250 m, at least 250 m`.
-    pub says: String,
+    /// Why it holds or not.
+    #[serde(flatten, with = "told::says")]
+    #[schemars(with = "told::Says<Reason>")]
+    pub says: Reason,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -327,28 +338,14 @@ pub struct ZoneResult {
 
 impl ZoneResult {
     /// Why the zone has too few sections.
-    pub fn lack(&self) -> Option<String> {
-        let says = || {
-            format!(
-                "zone {} has {}; at least {} required",
-                self.zone,
-                usable_sections(self.used, self.sites),
-                self.minimum
-            )
-        };
-        (!self.holds).then(says)
+    pub fn lack(&self) -> Option<Reason> {
+        (!self.holds).then(|| Reason::ZoneTooSmall {
+            zone: self.zone.clone(),
+            used: self.used,
+            sites: self.sites,
+            minimum: self.minimum,
+        })
     }
-}
-
-/// `2 usable sections`; with repeats, `3 usable sections of 2 sites (a repeat is no further
-/// section)`.
-pub fn usable_sections(sections: usize, sites: usize) -> String {
-    let plural = |count: usize| if count == 1 { "" } else { "s" };
-    let in_words = format!("{sections} usable section{}", plural(sections));
-    if sections == sites {
-        return in_words;
-    }
-    format!("{in_words} of {sites} site{} (a repeat is no further section)", plural(sites))
 }
 
 /// Range of a numeric section column over the sections used.

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::scope::map;
-use super::{RecordName, RulePlace, Scope, Spread, StatisticName, zones};
+use super::{Reason, RecordName, RulePlace, Scope, Spread, StatisticName, told, zones};
 
 /// One quantity of the protocol: its processing, its values and its verdict.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -23,7 +23,9 @@ pub struct QuantityResult {
     /// All criteria are met; `None` if not assessable.
     pub holds: Option<bool>,
     /// Why it is not assessable.
-    pub reason: Option<String>,
+    #[serde(flatten, with = "told::reason")]
+    #[schemars(with = "told::NoneOrReason<Reason>")]
+    pub reason: Option<Reason>,
     /// Place of its definition in the protocol.
     pub rule: RulePlace,
     pub statistics: Vec<StatisticResult>,
@@ -191,7 +193,9 @@ pub struct StatisticResult {
     pub factors: Vec<LimitFactor>,
     /// The limit in the words of the protocol: `2/3 of std`.
     pub limit_text: String,
-    pub reason: Option<String>,
+    #[serde(flatten, with = "told::reason")]
+    #[schemars(with = "told::NoneOrReason<Reason>")]
+    pub reason: Option<Reason>,
     /// Place of the limit in the protocol.
     pub rule: RulePlace,
 }
@@ -223,7 +227,9 @@ pub struct GroupResult {
     pub limit: Option<f64>,
     pub ratio: Option<f64>,
     pub holds: Option<bool>,
-    pub reason: Option<String>,
+    #[serde(flatten, with = "told::reason")]
+    #[schemars(with = "told::NoneOrReason<Reason>")]
+    pub reason: Option<Reason>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub regression: Option<GroupRegression>,
 }
@@ -292,7 +298,9 @@ pub struct Reported {
     pub low: Option<f64>,
     pub high: Option<f64>,
     /// Why there is no value.
-    pub reason: Option<String>,
+    #[serde(flatten, with = "told::reason")]
+    #[schemars(with = "told::NoneOrReason<Reason>")]
+    pub reason: Option<Reason>,
     /// Place of the report in the protocol.
     pub rule: RulePlace,
 }

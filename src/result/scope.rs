@@ -54,6 +54,11 @@ impl Scope {
         self.members().into_iter().map(owned).collect()
     }
 
+    /// The text; nothing of all values.
+    pub fn told(&self) -> Option<String> {
+        (!self.is_all()).then(|| self.to_string())
+    }
+
     /// The text after a title: `, zone 1`; nothing of all values.
     pub fn suffix(&self) -> String {
         if self.is_all() { String::new() } else { format!(", {self}") }

@@ -5,7 +5,10 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize, Serializer};
 
-use super::{CampaignInfo, FORMAT, ProtocolInfo, Scope, StatisticName, THIS, Verdict};
+use super::{
+    CampaignInfo, FORMAT, ProtocolInfo, Reason, Scope, StatisticName, THIS, UnusedSection, Verdict,
+    told,
+};
 
 /// A study with its inputs, in the form of `study.json`.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -104,7 +107,7 @@ fn whole<S: Serializer>(count: &f64, to: S) -> Result<S::Ok, S::Error> {
 }
 
 /// A zone, or all sections if there are no zones.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Stratum {
     pub zone: String,
     pub title: String,
@@ -113,7 +116,7 @@ pub struct Stratum {
     /// Usable sections.
     pub sections: Vec<String>,
     /// Sections that are not usable, with the reason.
-    pub not_used: Vec<(String, String)>,
+    pub not_used: Vec<UnusedSection>,
 }
 
 /// Share of the selections that are validated.
@@ -327,7 +330,9 @@ pub struct AtOffset {
     /// Verdict over all usable sections.
     #[serde(rename = "verdict_all_sections")]
     pub verdict: Verdict,
-    pub reasons: Vec<String>,
+    #[serde(flatten, with = "told::reasons")]
+    #[schemars(with = "told::Reasons<Reason>")]
+    pub reasons: Vec<Reason>,
     /// Normalised statistics of the single selection.
     #[serde(rename = "one_selection")]
     pub selected: Vec<Selected>,
@@ -335,7 +340,7 @@ pub struct AtOffset {
     pub quantities: Vec<QuantitySpread>,
     /// Sections that cannot be used at this offset.
     #[serde(rename = "sections_lost")]
-    pub lost: Vec<LostSection>,
+    pub lost: Vec<UnusedSection>,
 }
 
 /// Added to the measurement's axis, in the unit of the axis.
@@ -355,23 +360,21 @@ impl Offset {
     }
 }
 
-/// A section that cannot be used, with the reason.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct LostSection {
-    pub section: String,
-    pub reason: String,
-}
-
 /// The selections at an offset, or why none can be made.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Selections {
     Counted(Counted),
-    Impossible { share_validated: (), reason: String },
+    Impossible {
+        share_validated: (),
+        #[serde(flatten, with = "told::reason")]
+        #[schemars(with = "told::OneReason<Reason>")]
+        reason: Reason,
+    },
 }
 
-impl From<Result<Counted, String>> for Selections {
-    fn from(found: Result<Counted, String>) -> Self {
+impl From<Result<Counted, Reason>> for Selections {
+    fn from(found: Result<Counted, Reason>) -> Self {
         found.map_or_else(|reason| Self::Impossible { share_validated: (), reason }, Self::Counted)
     }
 }
@@ -379,7 +382,7 @@ impl From<Result<Counted, String>> for Selections {
 impl Selections {
     /// # Errors
     /// No selection can be made; the reason.
-    pub fn counted(&self) -> Result<&Counted, &str> {
+    pub fn counted(&self) -> Result<&Counted, &Reason> {
         match self {
             Self::Counted(counted) => Ok(counted),
             Self::Impossible { reason, .. } => Err(reason),
@@ -392,7 +395,11 @@ impl Selections {
 #[serde(untagged)]
 pub enum Flipped {
     Compared(Flips),
-    Impossible { reason: String },
+    Impossible {
+        #[serde(flatten, with = "told::reason")]
+        #[schemars(with = "told::OneReason<Reason>")]
+        reason: Reason,
+    },
 }
 
 impl Flipped {
@@ -479,7 +486,9 @@ pub struct AtValue {
     #[serde(rename = "as_it_is")]
     pub is_base: bool,
     pub verdict: Verdict,
-    pub reasons: Vec<String>,
+    #[serde(flatten, with = "told::reasons")]
+    #[schemars(with = "told::Reasons<Reason>")]
+    pub reasons: Vec<Reason>,
     /// The largest of the statistics.
     pub largest: Option<Largest>,
     #[serde(serialize_with = "whole")]
@@ -492,7 +501,9 @@ pub struct AtValue {
     #[serde(rename = "interval_95")]
     pub interval: Option<(f64, f64)>,
     /// Why there is no share.
-    pub reason: Option<String>,
+    #[serde(flatten, with = "told::reason")]
+    #[schemars(with = "told::NoneOrReason<Reason>")]
+    pub reason: Option<Reason>,
     /// Normalised statistics over all usable sections, in the order of the protocol.
     pub statistics: Vec<Selected>,
 }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::RulePlace;
+use super::{Reason, RulePlace, told};
 
 /// The overall verdict, whatever its words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -71,7 +71,7 @@ impl Outcome {
 }
 
 /// A verdict with a name.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct VerdictResult {
     pub name: String,
     pub title: String,
@@ -85,7 +85,9 @@ pub struct VerdictResult {
     /// `accepted when every limit holds (of SigmaY, YQ)`
     pub criterion: String,
     /// Why it does not hold, is not assessable or is open.
-    pub reasons: Vec<String>,
+    #[serde(flatten, with = "told::reasons")]
+    #[schemars(with = "told::Reasons<Reason>")]
+    pub reasons: Vec<Reason>,
     /// Who decides it, if a person does.
     pub judged_by: Option<String>,
     pub clause: Option<String>,

@@ -12,8 +12,8 @@ use crate::certify::{Compiled, campaign_info, protocol_info};
 use crate::check::plan::{Decision, Plan};
 use crate::data::Campaigns;
 use crate::problem::{Problem, Problems};
-use crate::result::CampaignInfo;
 use crate::result::study::{Found, Reduction, SelectionStudy, Study};
+use crate::result::{CampaignInfo, Reason};
 use crate::run::{Evaluated, Progress, Shifts, evaluate};
 use crate::study::case::Case;
 use crate::study::{self, reduced, selections};
@@ -96,9 +96,9 @@ pub fn countable(compiled: &Compiled) -> Result<(), Problems> {
     )]))
 }
 
-fn too_few(says: String) -> Problems {
+fn too_few(reason: Reason) -> Problems {
     Problems(vec![
-        Problem::error("too-few-sections", says)
+        Problem::error("too-few-sections", reason.text())
             .help("provide more sections, or reduce the number per selection with `--take`"),
     ])
 }
@@ -108,7 +108,7 @@ fn case_of(
     evaluated: &Evaluated,
     plan: &Plan,
     settings: &Settings,
-) -> Result<(Case, Option<Reduction>), String> {
+) -> Result<(Case, Option<Reduction>), Reason> {
     let case = Case::of(&evaluated.pool(plan), settings.take)?;
     Ok(match settings.reduce {
         None => (case, None),

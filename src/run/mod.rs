@@ -29,7 +29,6 @@ mod reduce;
 mod sections;
 mod values;
 mod verdict;
-mod words;
 
 pub use campaign::{
     Outcome, Reduced, Settings, evaluate, evaluated, judge, reduce, run, several, single,

@@ -3,12 +3,14 @@
 use crate::catalog::Statistic;
 use crate::metrics::moments::Moment;
 use crate::metrics::percentile::{Method, percentile};
-use crate::result::{Scope, StatisticName, usable_sections};
+use crate::result::{Reason, Scope, StatisticName, UnusedSection};
 use crate::run::pool::{Estimator, Pool, Pooled, PooledLimit, PooledMinimum, PooledQuantity, Rule};
 
 /// Tolerance for rounding where a value equals its limit, which counts as met. Relative to the
 /// limit.
 const EQUAL: f64 = 1e-12;
+/// Sections that are not used and named where too few are left.
+const NAMED: usize = 3;
 
 /// Sections to select from, and the criteria for a selection.
 #[derive(Clone, Debug)]
@@ -28,7 +30,7 @@ pub struct Stratum {
     /// Usable sections by index.
     pub members: Vec<usize>,
     /// Other sections of the zone, with the reason.
-    pub not_used: Vec<(usize, String)>,
+    pub not_used: Vec<UnusedSection>,
 }
 
 #[derive(Clone, Debug)]
@@ -85,9 +87,6 @@ pub enum Kind {
     Values,
 }
 
-/// Reason why a study of a campaign is not possible.
-pub type Refusal = String;
-
 impl Case {
     /// Takes the pooled values of a run.
     ///
@@ -95,16 +94,14 @@ impl Case {
     ///
     /// # Errors
     /// A zone has fewer usable sections than a selection takes, or the protocol has no criterion.
-    pub fn of(pool: &Pool, take: Option<usize>) -> Result<Self, Refusal> {
+    pub fn of(pool: &Pool, take: Option<usize>) -> Result<Self, Reason> {
         let Some(rule) = pool.rule else {
-            return Err("the overall verdict is over other verdicts or judged by a person, so no selection of sections decides it".into());
+            return Err(Reason::NoSelectionDecides);
         };
         if !pool.quantities.is_empty()
             && pool.quantities.iter().all(|quantity| quantity.limits.is_empty())
         {
-            return Err(
-                "no acceptance criterion applies, so no verdict depends on the sections".into()
-            );
+            return Err(Reason::NothingDependsOnSections);
         }
         let mut strata = Vec::new();
         let of_zone = |inside: &dyn Fn(Option<&str>) -> bool| {
@@ -118,7 +115,8 @@ impl Case {
                 if section.used {
                     members.push(at);
                 } else {
-                    not_used.push((at, section.reason.clone().unwrap_or_default()));
+                    let reason = section.reason.clone().unwrap_or(Reason::LeftOut);
+                    not_used.push(UnusedSection { section: section.name.clone(), reason });
                 }
             }
             (members, not_used)
@@ -150,33 +148,33 @@ impl Case {
             quantities: pool.quantities.iter().map(quantity).collect(),
             rule,
         };
-        case.enough(|stratum| {
-            let (has, needs) = (stratum.members.len(), stratum.take);
-            let mut why: Vec<String> = Vec::new();
-            for (at, reason) in stratum.not_used.iter().take(3) {
-                why.push(format!("{} is not used: {reason}", case.sections[*at]));
-            }
-            let why = if why.is_empty() { String::new() } else { format!(" ({})", why.join("; ")) };
-            format!("{}, and a selection takes {needs}{why}", usable_sections(has, has))
+        case.enough(|stratum, zone, sections| Reason::TooFewToSelect {
+            zone,
+            sections,
+            take: stratum.take,
+            unused: stratum.not_used.iter().take(NAMED).cloned().collect(),
         })?;
         for (first, repeat) in repeats(pool) {
             case.take_together(first, repeat);
         }
-        case.enough(|stratum| {
-            let (has, needs) = (stratum.members.len(), stratum.take);
-            format!(
-                "{has} usable sites, and a selection takes {needs} (a repeat is no further section)"
-            )
+        case.enough(|stratum, zone, sites| Reason::TooFewSitesToSelect {
+            zone,
+            sites,
+            take: stratum.take,
         })?;
         Ok(case)
     }
 
+    /// `lack` makes the reason of a zone and the number of its members.
+    ///
     /// # Errors
-    /// A zone has fewer sections than a selection takes, in words.
-    fn enough(&self, says: impl Fn(&Stratum) -> String) -> Result<(), Refusal> {
+    /// A zone has fewer sections than a selection takes.
+    fn enough(&self, lack: impl Fn(&Stratum, String, usize) -> Reason) -> Result<(), Reason> {
         let short = self.strata.iter().find(|stratum| stratum.members.len() < stratum.take);
-        let says = short.map(|stratum| format!("zone {} has {}", stratum.zone, says(stratum)));
-        says.map_or(Ok(()), Err)
+        match short {
+            Some(stratum) => Err(lack(stratum, stratum.zone.clone(), stratum.members.len())),
+            None => Ok(()),
+        }
     }
 
     /// A repeat is taken with the section that it repeats, as one member of its zone.
@@ -210,15 +208,16 @@ impl Case {
     ///
     /// # Errors
     /// A zone has fewer common sections than a selection takes.
-    pub fn with_sections_of(&self, other: &Self) -> Result<Self, Refusal> {
+    pub fn with_sections_of(&self, other: &Self) -> Result<Self, Reason> {
         let mut case = self.clone();
         let theirs = other.usable();
         for stratum in &mut case.strata {
             stratum.members.retain(|section| theirs.contains(section));
         }
-        case.enough(|stratum| {
-            let (has, needs) = (stratum.members.len(), stratum.take);
-            format!("{has} sections usable in both cases, and a selection takes {needs}")
+        case.enough(|stratum, zone, sections| Reason::TooFewInBoth {
+            zone,
+            sections,
+            take: stratum.take,
         })?;
         Ok(case)
     }

@@ -8,8 +8,8 @@ use super::halves::Halves;
 use super::judged::Judge;
 use super::random::{Count, draw_until};
 use crate::metrics::interval::wilson;
-use crate::result::Verdict;
 use crate::result::study::Flips;
+use crate::result::{Reason, Verdict};
 
 /// A case, and the selections that are not validated if all were evaluated.
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +23,7 @@ pub struct Marked<'a> {
 ///
 /// # Errors
 /// A zone has fewer sections usable in both cases than a selection takes.
-pub fn flips(before: Marked<'_>, after: Marked<'_>, settings: &Settings) -> Result<Flips, String> {
+pub fn flips(before: Marked<'_>, after: Marked<'_>, settings: &Settings) -> Result<Flips, Reason> {
     let (one, two) =
         (before.case.with_sections_of(after.case)?, after.case.with_sections_of(before.case)?);
     let combinations = one.combinations();

@@ -153,6 +153,6 @@ fn named(case: &Case, stratum: &case::Stratum) -> Stratum {
         title: stratum.title.clone(),
         take: stratum.take,
         sections: stratum.members.iter().map(|&at| name(at)).collect(),
-        not_used: stratum.not_used.iter().map(|(at, why)| (name(*at), why.clone())).collect(),
+        not_used: stratum.not_used.clone(),
     }
 }

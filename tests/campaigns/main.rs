@@ -4,6 +4,7 @@
 mod common {
     pub mod campaign;
     pub mod program;
+    pub mod texts;
 }
 
 // Faults of campaigns, put in by the example.

@@ -1,6 +1,7 @@
 //! Plausibility rules: faults of the kinds that real campaigns have are told by name, sound
 //! campaigns are left alone.
 
+use crate::common::texts::{text, texts};
 use std::fs;
 use std::path::Path;
 
@@ -101,12 +102,11 @@ fn a_finding_says_what_was_found_what_was_expected_and_why() {
         "{finding:?}"
     );
     assert!(
-        found
-            .reasons
+        texts(&found.reasons)
             .iter()
             .any(|reason| reason.contains("Vertical wheel force against the static load")),
         "{:?}",
-        found.reasons
+        texts(&found.reasons)
     );
 }
 
@@ -123,7 +123,10 @@ fn a_finding_with_two_bounds_has_its_value() {
         found.findings.iter().find(|finding| finding.code == "acceleration_level").expect("told");
     assert!(finding.value.expect("a number") > 2.0 && finding.expected == Some(2.0), "{finding:?}");
     assert!(
-        finding.says.contains("required: 0.02 m/s^2 <= rms and rms <= 2 m/s^2 (2 m/s^2)"),
+        finding
+            .text()
+            .to_string()
+            .contains("required: 0.02 m/s^2 <= rms and rms <= 2 m/s^2 (2 m/s^2)"),
         "{finding:?}"
     );
     assert!(
@@ -178,8 +181,8 @@ fn a_rule_that_cannot_be_asked_is_told() {
     );
     let says = "the table of sections does not state `direction` (sections S05,";
     assert!(
-        finding.says.starts_with(says)
-            && finding.says.contains("Guiding force of the outer leading wheel"),
+        finding.text().to_string().starts_with(says)
+            && finding.text().to_string().contains("Guiding force of the outer leading wheel"),
         "{finding:?}"
     );
     let sound = done(Path::new(SOUND));
@@ -202,7 +205,9 @@ fn a_section_that_is_not_plausible_is_not_used_and_the_others_are() {
     };
     assert!(!section("S05").used && section("S01").used);
     assert!(
-        section("S05").reason.as_deref().is_some_and(|reason| reason.contains("Constant channel")),
+        text(&section("S05").reason)
+            .as_deref()
+            .is_some_and(|reason| reason.contains("Constant channel")),
         "{:?}",
         section("S05").reason
     );
@@ -219,9 +224,9 @@ fn a_rule_may_make_the_campaign_not_assessable() {
     let found = with(|folder| folder.vehicle("running_gear", |_| "single_axles".into()));
     assert_eq!(found.verdict, Verdict::NotAssessable);
     assert!(
-        found.reasons.iter().any(|reason| reason.contains("implausible in")),
+        texts(&found.reasons).iter().any(|reason| reason.contains("implausible in")),
         "{:?}",
-        found.reasons
+        texts(&found.reasons)
     );
 }
 

@@ -2,7 +2,7 @@
 //! wheelset, an estimate and a prediction for each zone and wheelset, and a limit of every value.
 
 use fishplate::result::{
-    Certification, Curve, Figures, PairValue, QuantityResult, RecordName, RegressionAt,
+    Certification, Curve, Figures, PairValue, QuantityResult, Reason, RecordName, RegressionAt,
     RegressionFigure, RegressionPoint, RulePlace, Sample, Scope, StatisticName, StatisticResult,
     Verdict,
 };
@@ -28,7 +28,7 @@ pub fn certification() -> Certification {
     found.protocol.title = "On-track assessment".into();
     found.protocol.source = None;
     found.protocol.verdict_rule = "requirements met when every limit holds".into();
-    found.reasons = vec![format!("SigmaY: estimate ({FAILS}) exceeds the limit")];
+    found.reasons = vec![Reason::said(format!("SigmaY: estimate ({FAILS}) exceeds the limit"))];
     found
 }
 
@@ -102,7 +102,7 @@ fn quantity(found: &Certification) -> QuantityResult {
         n: 30,
         values,
         holds: None,
-        reason: Some(format!("prediction, {OPEN}: `cant` does not vary")),
+        reason: Some(Reason::said(format!("prediction, {OPEN}: `cant` does not vary"))),
         rule: RulePlace { file: "on-track.fp".into(), line: 20 },
     }
 }
@@ -165,7 +165,7 @@ fn estimate(name: &str, zone: &str, wheelset: &str, values: &[PairValue]) -> Sta
         holds: (!open).then_some(value <= 46.0),
         factors: Vec::new(),
         limit_text: "10 kN + 2/3 * Q0".into(),
-        reason: open.then(|| "`cant` does not vary".into()),
+        reason: open.then(|| Reason::said("`cant` does not vary")),
         rule: RulePlace {
             file: "on-track.fp".into(),
             line: if name == "safety" { 27 } else { 28 },

@@ -2,6 +2,7 @@
 //! failing, one not assessable, names nobody would choose. The numbers come from a fixed recurrence
 //! and mean nothing.
 
+use fishplate::result::Reason;
 use fishplate::result::*;
 use fishplate::result::{
     FORMAT, Figures, Identification, ProtocolFile, Scope, StatisticName, THIS,
@@ -70,19 +71,19 @@ pub fn certification() -> Certification {
         KINDS.iter().map(|kind| quantity(kind, &sections, &mut noise)).collect();
     make_unassessable(&mut quantities[9]);
     quantities.push(metric(&sections, &mut noise));
-    let mut reasons: Vec<String> = quantities
-        .iter()
-        .flat_map(|quantity| {
-            let symbol = quantity.symbol.clone();
-            quantity
-                .statistics
-                .iter()
-                .filter(|one| one.holds == Some(false))
-                .map(move |one| format!("{symbol}: {} beyond its limit", one.title))
-        })
-        .collect();
-    reasons
-        .push(format!("z̈*rms is not assessable: channel {LONG} has samples that are no numbers"));
+    let mut reasons: Vec<Reason> =
+        quantities
+            .iter()
+            .flat_map(|quantity| {
+                let symbol = quantity.symbol.clone();
+                quantity.statistics.iter().filter(|one| one.holds == Some(false)).map(move |one| {
+                    Reason::said(format!("{symbol}: {} beyond its limit", one.title))
+                })
+            })
+            .collect();
+    reasons.push(Reason::said(format!(
+        "z̈*rms is not assessable: channel {LONG} has samples that are no numbers"
+    )));
     let traces = (0..6).map(|at| trace(at, &quantities[at], &mut noise)).collect();
     Certification {
         fishplate: THIS.into(),
@@ -175,7 +176,7 @@ fn application() -> Vec<DomainResult> {
         coordinates: coordinates((!sections.is_empty()).then_some((0.0, 100.0))),
         sections,
         left_out: vec![LONG.into()],
-        reason: reason.map(Into::into),
+        reason: reason.map(Reason::said),
         points,
         otherwise: Consequence::Note,
         clause: Some("T.3".into()),
@@ -294,7 +295,6 @@ fn sections(noise: &mut Noise) -> Vec<SectionResult> {
                 of: None,
             };
             SectionResult {
-                unreadable: false,
                 campaign: None,
                 vehicle: None,
                 section: if at == 12 {
@@ -306,8 +306,8 @@ fn sections(noise: &mut Noise) -> Vec<SectionResult> {
                 zone: Some(zone.to_string()),
                 used,
                 reason: match at {
-                    5 => Some("measured Q_1R has 12 samples that are no numbers".into()),
-                    18 => Some(HOSTILE.into()),
+                    5 => Some(Reason::said("measured Q_1R has 12 samples that are no numbers")),
+                    18 => Some(Reason::said(HOSTILE)),
                     _ => None,
                 },
                 length,
@@ -326,19 +326,19 @@ fn sections(noise: &mut Noise) -> Vec<SectionResult> {
                         name: "length".into(),
                         title: "Length".into(),
                         holds: Some(true),
-                        says: format!("{length:.0} m, at least 70 m"),
+                        says: Reason::said(format!("{length:.0} m, at least 70 m")),
                     },
                     CheckResult {
                         name: "deficiency".into(),
                         title: "Cant deficiency within the zone's range".into(),
                         holds: if at == 7 { None } else { Some(at != 18) },
-                        says: "cant deficiency 112.4 mm, 75 mm to 165 mm".into(),
+                        says: Reason::said("cant deficiency 112.4 mm, 75 mm to 165 mm"),
                     },
                     CheckResult {
                         name: "margin".into(),
                         title: "Record around the section".into(),
                         holds: Some(true),
-                        says: "31 m before, 38 m after".into(),
+                        says: Reason::said("31 m before, 38 m after"),
                     },
                 ],
             }
@@ -442,7 +442,7 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
 fn make_unassessable(quantity: &mut QuantityResult) {
     quantity.values.clear();
     quantity.holds = None;
-    quantity.reason = Some(format!("channel {LONG} has samples that are no numbers"));
+    quantity.reason = Some(Reason::said(format!("channel {LONG} has samples that are no numbers")));
     for statistic in &mut quantity.statistics {
         *statistic = StatisticResult {
             count: 0,
@@ -451,7 +451,7 @@ fn make_unassessable(quantity: &mut QuantityResult) {
             interval: None,
             normalised: None,
             holds: None,
-            reason: Some("no pairs".into()),
+            reason: Some(Reason::said("no pairs")),
             ..statistic.clone()
         };
     }

@@ -5,8 +5,8 @@
 use fishplate::result::{
     CampaignInfo, Certification, CheckResult, Curve, DataItem, Deviation, DomainRange, FORMAT,
     Figures, FileHash, FilterInfo, Identification, PairValue, ParameterInfo, ProtocolFile,
-    ProtocolInfo, QuantityResult, RulePlace, Sample, Scope, SectionResult, StatisticResult, THIS,
-    Trace, Verdict, ZoneResult,
+    ProtocolInfo, QuantityResult, Reason, RulePlace, Sample, Scope, SectionResult, StatisticResult,
+    THIS, Trace, Verdict, ZoneResult,
 };
 
 /// A vehicle's name that would run if it were taken for markup.
@@ -135,8 +135,8 @@ pub fn certification() -> Certification {
         verdict_note: None,
         verdicts: Vec::new(),
         reasons: vec![
-            "ÿ*_max: standard deviation above its limit".into(),
-            "z̈*_max: not assessable, channel `az_I` is missing in 33 records".into(),
+            Reason::said("ÿ*_max: standard deviation above its limit"),
+            Reason::said("z̈*_max: not assessable, channel `az_I` is missing in 33 records"),
         ],
         found: Vec::new(),
         reduction: None,
@@ -158,7 +158,7 @@ pub fn certification() -> Certification {
 pub fn empty() -> Certification {
     let mut found = certification();
     found.verdict = Verdict::NotAssessable;
-    found.reasons = vec!["no section".into()];
+    found.reasons = vec![Reason::said("no section")];
     (found.quantities, found.sections, found.zones) = (Vec::new(), Vec::new(), Vec::new());
     (found.domain, found.traces, found.notes) = (Vec::new(), Vec::new(), Vec::new());
     (found.campaign.vehicle, found.campaign.facts, found.campaign.files) =
@@ -173,7 +173,7 @@ pub fn empty() -> Certification {
 pub fn unassessed() -> Certification {
     let mut found = certification();
     for quantity in &mut found.quantities {
-        (quantity.holds, quantity.reason) = (None, Some("no channel".into()));
+        (quantity.holds, quantity.reason) = (None, Some(Reason::said("no channel")));
         for pair in &mut quantity.values {
             (pair.simulated, pair.measured, pair.zone) = (None, None, None);
         }
@@ -204,7 +204,6 @@ fn sections(noise: &mut Noise) -> Vec<SectionResult> {
             let used = number != 20;
             let name = if number == 12 { BREAKOUT.to_owned() } else { format!("S{number:02}") };
             sections.push(SectionResult {
-                unreadable: false,
                 campaign: None,
                 vehicle: None,
                 section: name,
@@ -212,7 +211,7 @@ fn sections(noise: &mut Noise) -> Vec<SectionResult> {
                 zone: Some(zone.to_string()),
                 used,
                 reason: (!used).then(|| {
-                    "record of the measurement has a gap of 0.31 s at 20041.5 m".to_owned()
+                    Reason::said("record of the measurement has a gap of 0.31 s at 20041.5 m")
                 }),
                 length,
                 start,
@@ -262,7 +261,7 @@ fn sections(noise: &mut Noise) -> Vec<SectionResult> {
 }
 
 fn check(name: &str, title: &str, holds: Option<bool>, says: &str) -> CheckResult {
-    CheckResult { name: name.into(), title: title.into(), holds, says: says.into() }
+    CheckResult { name: name.into(), title: title.into(), holds, says: Reason::said(says) }
 }
 
 fn item(name: &str, value: &str, unit: Option<&str>) -> DataItem {
@@ -333,7 +332,7 @@ fn quantity(made: &Made, sections: &[SectionResult], noise: &mut Noise) -> Quant
         n: values.len() / 2,
         values,
         holds,
-        reason: missing.then(|| "channel `az_I` is missing in 33 records".to_owned()),
+        reason: missing.then(|| Reason::said("channel `az_I` is missing in 33 records")),
         rule: RulePlace { file: "annex-t.fp".into(), line: 345 },
     }
 }

@@ -1,6 +1,7 @@
 //! Wanted operation against what the sections cover: numbers against SciPy, groups, flat hulls,
 //! faults of the table.
 
+use crate::common::texts::{text, texts};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -154,7 +155,7 @@ fn every_group_has_its_own_hull() {
     assert_eq!(scopes, ["State tare", "State laden", "State empty"]);
     let tare = of(&found, "State tare");
     assert_eq!(
-        (tare.group["state"].as_str(), tare.sections.len(), tare.reason.as_deref()),
+        (tare.group["state"].as_str(), tare.sections.len(), text(&tare.reason).as_deref()),
         ("tare", 6, None)
     );
     // The table is in m/s, results are in the unit of the section data.
@@ -164,7 +165,7 @@ fn every_group_has_its_own_hull() {
     let beyond = tare.points[1].beyond_range.as_ref().expect("sections");
     assert!((beyond[0] - 34.0).abs() < 1e-9 && beyond[1] == 0.0, "{beyond:?}");
     let empty = of(&found, "State empty");
-    assert_eq!(empty.reason.as_deref(), Some("no section of State empty is used"));
+    assert_eq!(text(&empty.reason).as_deref(), Some("no section of State empty is used"));
     assert_eq!((empty.points[0].inside, empty.points[0].nearest_section.as_deref()), (None, None));
     let codes: Vec<&str> = found
         .findings
@@ -182,15 +183,14 @@ fn what_lies_outside_can_decide() {
     let found = run(folder.path(), &format!("{STATES}  otherwise  not assessable\n"));
     assert_eq!(found.verdict, Verdict::NotAssessable);
     assert_eq!(
-        found.reasons[0],
+        texts(&found.reasons)[0],
         "Wanted, State tare: 1 of 2 points of wanted operation outside what the sections cover; see the findings"
     );
     assert!(
-        found
-            .reasons
+        texts(&found.reasons)
             .contains(&"Wanted, State empty: no section of State empty is used".to_string()),
         "{:?}",
-        found.reasons
+        texts(&found.reasons)
     );
 }
 
@@ -209,7 +209,7 @@ fn flat_hulls_are_said_to_be_flat() {
         ),
     ] {
         let found = run(folder.path(), &format!("domain flat \"Flat\"\n  over  {over}\n"));
-        assert_eq!(found.application[0].reason.as_deref(), Some(reason), "{over}");
+        assert_eq!(text(&found.application[0].reason).as_deref(), Some(reason), "{over}");
         assert!(
             found.application[0]
                 .points

@@ -1,6 +1,7 @@
 //! Weighted estimates, numbers of several groups, minimum counts of groups, regressions outside
 //! their data and over repeats.
 
+use crate::common::texts::{text, texts};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -154,7 +155,7 @@ fn weights_without_a_number_are_a_reason() {
     let reason = |name: &str| {
         all(&found)
             .find(|one| one.name.to_string().contains(name))
-            .and_then(|one| one.reason.clone())
+            .and_then(|one| text(&one.reason))
             .expect("a reason")
     };
     assert_eq!(
@@ -183,12 +184,12 @@ fn groups_need_their_pairs() {
     assert_eq!(found.verdict, Verdict::NotAssessable);
     // Zones 1 to 3 have three sections, zone 4 four; straight track (zone 1) has two sides.
     let reason = "zone 2, wheelset 1: 3 pairs of section and signal; at least 4 required; also too few in 7 other groups";
-    assert_eq!(found.quantities[0].reason.as_deref(), Some(reason));
+    assert_eq!(text(&found.quantities[0].reason).as_deref(), Some(reason));
     for one in all(&found).filter(|one| one.name.to_string() == "mean") {
         let short = ["2", "3"].iter().any(|zone| one.scope.zones == [*zone]);
         assert_eq!((one.value.is_none(), one.holds.is_none()), (short, short), "{}", one.scope);
         let says = "3 pairs of section and signal; at least 4 required";
-        assert_eq!(one.reason.as_deref(), short.then_some(says), "{}", one.scope);
+        assert_eq!(text(&one.reason).as_deref(), short.then_some(says), "{}", one.scope);
     }
     assert!(all(&found).any(|one| one.name.to_string() == "std" && one.value.is_some()));
     let enough =
@@ -214,7 +215,7 @@ fn groups_need_their_pairs() {
         "{limit}\nverdict\n  minimum signals  1\n  minimum pairs  1\n  minimum pairs  4 for each zone and wheelset\n"
     );
     assert_eq!(
-        certified(&assessed(&of_all), &coach()).quantities[0].reason.as_deref(),
+        text(&certified(&assessed(&of_all), &coach()).quantities[0].reason).as_deref(),
         Some(reason)
     );
     let own = format!("  minimum pairs  3 for each zone\n{of_all}");
@@ -306,13 +307,17 @@ fn regressions_outside_their_data_are_told() {
         "{} mm above the data, which reach from {low} to {high} mm",
         fishplate::metrics::rounded(143.0 - high)
     );
-    assert!(told[0].says.contains(&says), "{} without {says}", told[0].says);
+    assert!(
+        told[0].text().to_string().contains(&says),
+        "{} without {says}",
+        told[0].text().to_string()
+    );
     let groups = "(zone 4, wheelset 1; zone 4, wheelset 2; zone 4, wheelset 3; zone 4, wheelset 4)";
-    assert!(told[0].says.ends_with(groups), "{}", told[0].says);
+    assert!(told[0].text().to_string().ends_with(groups), "{}", told[0].text().to_string());
     assert!(
         near(told[1].value, 60.0)
             && near(told[1].expected, of_zone("3").0)
-            && told[1].says.contains("below the data")
+            && told[1].text().to_string().contains("below the data")
     );
     assert!(all(&found).all(|one| one.value.is_some()));
 }
@@ -419,7 +424,7 @@ fn a_verdict_with_confidence() {
             .expect("a value");
         assert!((value - want).abs() <= 1e-9 * want.abs(), "{name}: {value} in place of {want}");
     }
-    assert_eq!(found.verdict, Verdict::Validated, "{:?}", found.reasons);
+    assert_eq!(found.verdict, Verdict::Validated, "{:?}", texts(&found.reasons));
     let between =
         recipe.replace("of std 9 kN", &format!("of std {:.3} kN", f64::midpoint(std, upper)));
     assert_eq!(

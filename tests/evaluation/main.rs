@@ -6,6 +6,7 @@ mod common {
     pub mod pools;
     pub mod program;
     pub mod straight;
+    pub mod texts;
 }
 
 mod domain;

@@ -2,6 +2,7 @@
 //! straight lines.
 
 use crate::common::straight;
+use crate::common::texts::texts;
 
 use std::fs;
 use std::path::PathBuf;
@@ -93,11 +94,15 @@ fn verdicts_over_others_follow_them() {
     let found = certified(&[(MEASURED, MEASURED_FAILS)]);
     assert_eq!((found.verdict, found.verdict_word()), (Verdict::NotValidated, "not accepted"));
     assert_eq!(named(&found, "measured_test").outcome, Outcome::DoesNotHold);
-    assert!(found.reasons[0].starts_with("measured_right: "), "{:?}", found.reasons);
+    assert!(
+        texts(&found.reasons)[0].starts_with("measured_right: "),
+        "{:?}",
+        texts(&found.reasons)
+    );
     let states =
         "Acceptance by the simulation: accepted, Acceptance by the measurement: not accepted";
     assert_eq!(
-        named(&found, "agrees").reasons,
+        texts(&named(&found, "agrees").reasons),
         [format!("{states}; required: virtual_test is measured_test")]
     );
     // The second way of `both`: the tests differ.
@@ -127,17 +132,20 @@ fn verdicts_over_others_follow_them() {
     let found = certified(&far);
     let close = named(&found, "close");
     assert_eq!(close.word, "far");
-    assert_eq!(close.reasons[0], "0 of 2 quantities meet their criteria; at least 1 required");
-    assert_eq!(close.reasons.len(), 3, "{:?}", close.reasons);
     assert_eq!(
-        named(&found, "both").reasons,
+        texts(&close.reasons)[0],
+        "0 of 2 quantities meet their criteria; at least 1 required"
+    );
+    assert_eq!(close.reasons.len(), 3, "{:?}", texts(&close.reasons));
+    assert_eq!(
+        texts(&named(&found, "both").reasons),
         ["Simulation near the measurement: far; required: close holds"]
     );
     let enough = "at least 2 of measured_test, virtual_test, close hold";
     assert!(
-        named(&found, "enough").reasons[0].ends_with(enough),
+        texts(&named(&found, "enough").reasons)[0].ends_with(enough),
         "{:?}",
-        named(&found, "enough").reasons
+        texts(&named(&found, "enough").reasons)
     );
 }
 
@@ -162,13 +170,13 @@ fn what_is_not_assessable_bars_its_own_verdicts() {
     assert_eq!(found.verdict, Verdict::NotAssessable);
     assert_eq!(named(&found, "measured_test").word, "not assessable");
     assert_eq!(
-        named(&found, "measured_test").reasons,
+        texts(&named(&found, "measured_test").reasons),
         ["measured_right: 4 pairs of section and signal; at least 9 required"]
     );
     assert_eq!(named(&found, "virtual_test").word, "accepted");
     assert_eq!(named(&found, "close").word, "near");
     let over = "Acceptance by the measurement: measured_right: 4 pairs of section and signal; at least 9 required";
-    assert_eq!(named(&found, "agrees").reasons, [over]);
+    assert_eq!(texts(&named(&found, "agrees").reasons), [over]);
     assert_eq!(named(&found, "agrees").outcome, Outcome::NotAssessable);
     let found = certified(&[("minimum sections  2", "minimum sections  4")]);
     assert!(
@@ -179,7 +187,7 @@ fn what_is_not_assessable_bars_its_own_verdicts() {
             .all(|one| one.outcome == Outcome::NotAssessable)
     );
     assert_eq!(
-        named(&found, "virtual_test").reasons,
+        texts(&named(&found, "virtual_test").reasons),
         ["zone 2 has 3 usable sections; at least 4 required"]
     );
     assert_eq!(named(&found, "inspection").outcome, Outcome::Open);
@@ -194,9 +202,9 @@ fn a_person_decides_and_the_program_does_not() {
         (inspection.outcome, inspection.judged_by.as_deref()),
         (Outcome::Open, Some("the responsible test engineer"))
     );
-    assert_eq!(inspection.reasons, ["to be judged by the responsible test engineer"]);
+    assert_eq!(texts(&inspection.reasons), ["to be judged by the responsible test engineer"]);
     let over = ["Condition of the contact surfaces: to be judged by the responsible test engineer"];
-    assert_eq!(named(&found, "released").reasons, over);
+    assert_eq!(texts(&named(&found, "released").reasons), over);
     for rule in [
         "inspection holds",
         "inspection does not hold",
@@ -212,7 +220,7 @@ fn a_person_decides_and_the_program_does_not() {
             (Verdict::NotAssessable, "not assessable"),
             "{rule}"
         );
-        assert_eq!(found.reasons, over, "{rule}");
+        assert_eq!(texts(&found.reasons), over, "{rule}");
     }
     let overall = certified(&[(
         "verdict measured_test",
@@ -222,7 +230,7 @@ fn a_person_decides_and_the_program_does_not() {
         (overall.verdict, overall.verdict_word()),
         (Verdict::NotAssessable, "not assessable")
     );
-    assert_eq!(overall.reasons, ["to be judged by an engineer"]);
+    assert_eq!(texts(&overall.reasons), ["to be judged by an engineer"]);
 }
 
 /// The verdict without a name is the overall one wherever it stands, of all quantities unless its

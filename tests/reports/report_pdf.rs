@@ -11,7 +11,7 @@ use crate::common::{assessment, certification};
 use fishplate::report::pdf::{Attachment, Pdf};
 use fishplate::report::typst::typeset;
 use fishplate::report::view::document;
-use fishplate::result::{Certification, Verdict};
+use fishplate::result::{Certification, Reason, Verdict};
 
 const RESULTS: &[u8] = b"{\"verdict\": \"not validated\"}\n";
 
@@ -152,7 +152,7 @@ fn text_of_users_is_printed_as_it_is() {
     found.campaign.name = HOSTILE.into();
     found.protocol.title = format!("{HOSTILE} {HOSTILE}");
     // The same reason is printed once.
-    found.reasons = (0..40).map(|number| format!("{HOSTILE} {number}")).collect();
+    found.reasons = (0..40).map(|number| Reason::said(format!("{HOSTILE} {number}"))).collect();
     let Some(text) = text(&rendered(&found)) else { return };
     let text = dense(&text);
     // In a sentence of the program, a name between backticks is set in another font instead.

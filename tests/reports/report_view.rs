@@ -9,7 +9,9 @@ use fishplate::report::document::{Document, Medium, Tone};
 use fishplate::report::figure::figures;
 use fishplate::report::html::html;
 use fishplate::report::view::document;
-use fishplate::result::{Certification, Kind, Outcome, RulePlace, Verdict, VerdictResult};
+use fishplate::result::{
+    Certification, Kind, Outcome, Reason, RulePlace, Subject, Verdict, VerdictResult,
+};
 
 fn data() -> Document {
     on_screen(&certification::certification())
@@ -150,14 +152,11 @@ fn what_a_person_decides_is_no_lack_of_data() {
         word: outcome.word(&["sufficient".into(), "not sufficient".into()]).into(),
         words: ["sufficient".into(), "not sufficient".into()],
         criterion: String::new(),
-        reasons: vec![
-            if outcome == Outcome::NotAssessable {
-                "no section is used"
-            } else {
-                "to be judged by the engineer"
-            }
-            .into(),
-        ],
+        reasons: vec![if outcome == Outcome::NotAssessable {
+            Reason::NoSectionUsed { group: None }
+        } else {
+            Reason::ToBeJudged { person: "the engineer".into() }
+        }],
         judged_by: (outcome == Outcome::Open).then(|| "the engineer".into()),
         clause: None,
         source: None,
@@ -180,7 +179,8 @@ fn what_a_person_decides_is_no_lack_of_data() {
     let findings = |data: &Document| table(data, "Findings").rows.len();
     // A verdict over others that is not assessable only since one of them is open.
     let mut over = of(Outcome::NotAssessable, Outcome::Open);
-    over.verdicts[0].reasons = vec!["part: to be judged by the engineer".into()];
+    over.verdicts[0].reasons =
+        vec![Reason::ToBeJudged { person: "the engineer".into() }.about(Subject::Verdict, "part")];
     over.reasons = over.verdicts[0].reasons.clone();
     assert_eq!(result(&on_screen(&over)).1, "to be judged");
     let open = viewed(Outcome::Open, Outcome::Open);
@@ -216,7 +216,7 @@ fn sentences_are_printed_as_tables_are() {
 #[test]
 fn many_reasons_are_listed_in_the_summary_only() {
     let mut found = certification::certification();
-    found.reasons = (0..20).map(|at| format!("reason {at}")).collect();
+    found.reasons = (0..20).map(|at| Reason::said(format!("reason {at}"))).collect();
     let mut paper = document(&found).on(Medium::Paper);
     let reasons =
         |data: &Document| sentences(data).iter().filter(|says| says.starts_with("reason ")).count();

@@ -221,7 +221,10 @@ fn a_report_without_a_number_says_why() {
     let one = found.reported.iter().find(|one| one.scope.to_string() == "zone 1").expect("zone 1");
     assert!(
         one.value.is_none()
-            && one.reason.as_deref().is_some_and(|reason| reason.contains("radius")),
+            && one
+                .reason
+                .as_ref()
+                .is_some_and(|reason| reason.text().to_string().contains("radius")),
         "{one:?}"
     );
     assert_eq!(found.verdict, Verdict::Validated);
@@ -239,7 +242,7 @@ fn values_that_no_record_can_change_are_not_assessable() {
         )
     };
     let found = certified(&text("weight * (1 - correlation)", "each 0.5"));
-    let reason = found.quantities[0].reason.as_deref().expect("a reason");
+    let reason = found.quantities[0].reason.as_ref().expect("a reason").text().to_string();
     assert!(reason.starts_with("every value is 0 whatever the records are"), "{reason}");
     assert_eq!(found.verdict, Verdict::NotAssessable);
     // Where the records decide a little, they decide.

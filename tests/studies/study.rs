@@ -334,6 +334,6 @@ fn too_few_sections_are_told() {
         rule: Some(Rule::EveryLimit),
     };
     let says = Case::of(&pool, None).expect_err("too few");
-    assert_eq!(says, "zone 1 has 2 usable sections, and a selection takes 3");
+    assert_eq!(says.text().to_string(), "zone 1 has 2 usable sections, and a selection takes 3");
     assert!(Case::of(&pool, Some(2)).is_ok());
 }

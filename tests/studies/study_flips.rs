@@ -127,7 +127,9 @@ fn flips_are_those_of_selections_judged_one_by_one() {
     let (one, two) = (case(1, Rule::EveryLimit, &[]), case(2, Rule::EveryLimit, &[]));
     let says = one
         .with_sections_of(&Case { strata: two.strata[2..].to_vec(), ..two })
-        .expect_err("too few");
+        .expect_err("too few")
+        .text()
+        .to_string();
     assert!(says.starts_with("zone 1 has 0 sections usable in both"), "{says}");
 }
 

@@ -49,7 +49,7 @@ fn row(one: &Agreement) -> Vec<Cell> {
         None => row.extend([Cell::MISSING; 4]),
     }
     row.push(match (one.spearman, &one.reason) {
-        (None, Some(reason)) => Cell::sentence(reason),
+        (None, Some(reason)) => Cell::sentence(reason.text()),
         (spearman, _) => three(spearman),
     });
     if let Some(verdicts) = one.verdicts {

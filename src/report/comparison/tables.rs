@@ -18,7 +18,7 @@ pub fn tables(found: &Comparison) -> Result<Vec<(String, Vec<u8>)>, csv::Error> 
             one.decided_by,
             one.ratio,
             one.sections_used,
-            one.reasons.join("; ")
+            one.reasons.iter().map(|one| one.text().into()).collect::<Vec<String>>().join("; ")
         ]
     });
     let ratios = found.ratios.iter().map(|one| {

@@ -45,7 +45,7 @@ pub fn verdicts(found: &Comparison) -> Chapter {
         .iter()
         .filter(|cell| cell.holds.is_none())
         .filter_map(|cell| {
-            Some(format!("{}, {}: {}", cell.campaign, cell.protocol, cell.reasons.first()?))
+            Some(format!("{}, {}: {}", cell.campaign, cell.protocol, cell.reasons.first()?.text()))
         })
         .collect();
     if !open.is_empty() {
@@ -126,7 +126,8 @@ pub fn differences(found: &Comparison) -> Option<Chapter> {
 fn rules(found: &Comparison) -> Table {
     let row = |one: &Difference| {
         let ratio = |ratio: Option<f64>| three(ratio).printed().letters();
-        let after = one.verdict_after.as_ref().or(one.reason.as_ref());
+        let reason = || one.reason.as_ref().map(|reason| reason.text().into());
+        let after = one.verdict_after.clone().or_else(reason);
         vec![
             Cell::sentence(&one.rule),
             Cell::sentence(&one.words),

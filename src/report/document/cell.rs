@@ -6,7 +6,7 @@ use super::finding::{Finding, Tone};
 use super::symbol::Symbol;
 use super::text::{Run, Text};
 use crate::report::number;
-use crate::result::{RecordName, Scope, StatisticName};
+use crate::result::{Reason, RecordName, Scope, StatisticName};
 
 /// A cell of a table.
 #[derive(Clone, Debug, PartialEq)]
@@ -209,6 +209,18 @@ impl From<Option<String>> for Cell {
     }
 }
 
+impl From<Reason> for Cell {
+    fn from(reason: Reason) -> Self {
+        Self::text(String::from(reason.text()))
+    }
+}
+
+impl From<Option<Reason>> for Cell {
+    fn from(reason: Option<Reason>) -> Self {
+        reason.map_or(Self::BLANK, Self::from)
+    }
+}
+
 impl From<Finding> for Cell {
     fn from(finding: Finding) -> Self {
         Self::finding(finding)
@@ -291,6 +303,8 @@ macro_rules! from_borrowed {
 }
 
 from_borrowed!(
+    Reason,
+    Option<Reason>,
     Cell,
     Text,
     Run,

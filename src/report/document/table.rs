@@ -1,5 +1,6 @@
 //! Tables: columns with their titles, units and alignment, and rows of cells.
 
+use crate::result::Reason;
 use serde::{Serialize, Serializer};
 
 use super::Medium;
@@ -157,9 +158,10 @@ impl Row {
     }
 
     /// With what the row came to as its last cell, and the reason.
-    pub fn ending(mut self, finding: Finding, reason: Option<&str>) -> Self {
+    pub fn ending(mut self, finding: Finding, reason: Option<&Reason>) -> Self {
         let tone = finding.tone;
-        let reason = reason.map(|reason| format!(": {}", number::raised(reason)));
+        let reason =
+            reason.map(|reason| format!(": {}", number::raised(&String::from(reason.text()))));
         let text = Text::from(Run::Finding(finding)).and(reason.unwrap_or_default());
         self.cells.push(Cell::text(text));
         self.toned(tone)

@@ -11,7 +11,7 @@ use crate::report::view::Opening;
 use crate::result::study::{
     Importance, QuantitySpread, Reduction, Removal, SelectionStudy, Spread,
 };
-use crate::result::{Verdict, VerdictWords};
+use crate::result::{Reason, UnusedSection, Verdict, VerdictWords};
 
 /// Maximum number of rows of a table; the CSV tables contain all.
 const MOST_ROWS: usize = 60;
@@ -369,13 +369,15 @@ fn reduction(reduction: &Reduction) -> Chapter {
 
 /// Sections that are not used for the same reason, with the reason once: `S01, S02: left out by the
 /// reduction`.
-fn by_reason(sections: &[(String, String)]) -> Vec<String> {
-    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
-    for (section, why) in sections {
-        match reasons.iter_mut().find(|(reason, _)| *reason == why.as_str()) {
+fn by_reason(sections: &[UnusedSection]) -> Vec<String> {
+    let mut reasons: Vec<(&Reason, Vec<&str>)> = Vec::new();
+    for UnusedSection { section, reason } in sections {
+        match reasons.iter_mut().find(|(known, _)| *known == reason) {
             Some((_, names)) => names.push(section),
-            None => reasons.push((why, vec![section])),
+            None => reasons.push((reason, vec![section])),
         }
     }
-    reasons.into_iter().map(|(reason, names)| format!("{}: {reason}", names.join(", "))).collect()
+    let row =
+        |(reason, names): (&Reason, Vec<&str>)| format!("{}: {}", names.join(", "), reason.text());
+    reasons.into_iter().map(row).collect()
 }

@@ -5,8 +5,8 @@ use crate::report::document::{Block, Cell, Chapter, Column, Fact, Figure, Format
 use crate::report::number;
 use crate::report::sides::capital;
 use crate::report::view::Opening;
-use crate::result::VerdictWords;
-use crate::result::study::{AtOffset, LostSection, SyncStudy};
+use crate::result::study::{AtOffset, SyncStudy};
+use crate::result::{Reason, UnusedSection, VerdictWords};
 
 fn shown(found: &SyncStudy, offset: f64) -> String {
     number::with_unit(&number::significant(offset, 4), &found.axis_unit)
@@ -120,14 +120,13 @@ fn shares(found: &SyncStudy, words: &VerdictWords) -> Vec<Block> {
     let none: Vec<String> = found
         .offsets
         .iter()
-        // What stands in brackets are the sections that are lost, which a table of their own lists.
         .filter_map(|at| {
-            let reason = at.selections.counted().err()?;
-            Some(format!(
-                "Offset {}: {}",
-                shown(found, at.offset.value()),
-                reason.split(" (").next().unwrap_or(reason)
-            ))
+            let mut reason = at.selections.counted().err()?.clone();
+            // A table of their own lists the sections that are lost.
+            if let Reason::TooFewToSelect { unused, .. } = &mut reason {
+                unused.clear();
+            }
+            Some(format!("Offset {}: {}", shown(found, at.offset.value()), reason.text()))
         })
         .collect();
     if !none.is_empty() {
@@ -147,17 +146,16 @@ fn shares(found: &SyncStudy, words: &VerdictWords) -> Vec<Block> {
 
 /// A row for each rule that sections do not meet at an offset.
 fn lost(at: &AtOffset, offset: &str) -> Vec<Vec<Cell>> {
-    let rule = |reason: &str| reason.split(": ").next().unwrap_or(reason).to_owned();
-    let mut rules: Vec<(String, Vec<&str>, &str)> = Vec::new();
-    for LostSection { section, reason } in &at.lost {
-        match rules.iter_mut().find(|(known, ..)| *known == rule(reason)) {
-            Some((_, sections, _)) => sections.push(section),
-            None => rules.push((rule(reason), vec![section], reason)),
+    let mut rules: Vec<(&Reason, Vec<&str>)> = Vec::new();
+    for UnusedSection { section, reason } in &at.lost {
+        match rules.iter_mut().find(|(known, _)| known.same_rule(reason)) {
+            Some((_, sections)) => sections.push(section),
+            None => rules.push((reason, vec![section])),
         }
     }
     rules
         .into_iter()
-        .map(|(_, sections, reason)| cells![offset, sections.join(", "), reason])
+        .map(|(reason, sections)| cells![offset, sections.join(", "), reason.clone()])
         .collect()
 }
 

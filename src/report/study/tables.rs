@@ -115,7 +115,7 @@ fn sync(found: &SyncStudy) -> Result<Tables, csv::Error> {
     for at in &found.offsets {
         let offset = at.offset.value();
         let share = at.selections.counted().ok().map(|counted| counted.share.share);
-        let reason = at.selections.counted().err().map(str::to_owned);
+        let reason = at.selections.counted().err().cloned();
         let flips = at.flips.compared();
         let (lost, gained) = (flips.map(|flips| flips.lost), flips.map(|flips| flips.gained));
         offsets.push(cells![

@@ -43,7 +43,9 @@ fn says(result: &DomainResult) -> String {
     let outside = result.points.iter().filter(|point| point.inside == Some(false)).count();
     let corners = result.sections.iter().filter(|section| section.corner).count();
     let counted = match (&result.reason, result.points.len()) {
-        (Some(reason), _) => format!("Nothing can be said of wanted operation here: {reason}."),
+        (Some(reason), _) => {
+            format!("Nothing can be said of wanted operation here: {}.", reason.text())
+        }
         (None, 0) => {
             format!(
                 "{} sections span the domain, {corners} of them as corners; no operation is wanted here.",

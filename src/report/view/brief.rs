@@ -7,6 +7,7 @@ use crate::report::document::{
 };
 use crate::report::{figure, number};
 use crate::result::QuantityResult;
+use crate::words;
 
 /// In place of a chapter for each of many quantities: what is printed of which, tables, diagrams.
 pub(super) fn blocks(view: &View<'_>) -> Vec<Block> {
@@ -109,7 +110,7 @@ fn cell(quantity: &QuantityResult) -> Text {
         });
     let count = quantity.values.len();
     let (mean, range) = if count == 0 {
-        (number::NONE.to_owned(), quantity.reason.clone().unwrap_or_default())
+        (number::NONE.to_owned(), words::or_nothing(quantity.reason.as_ref()))
     } else {
         let mean = number::fixed(sum / count as f64, decimals);
         (

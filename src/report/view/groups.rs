@@ -73,7 +73,7 @@ fn table(quantity: &QuantityResult, limit: &OfLimit<'_>, rows: &str) -> Table {
         cells.extend(statistic::interval(one));
         cells.push(statistic::limit(Some(one)));
         cells.push(statistic::normalised(Some(one)));
-        Row::from(cells).ending(Finding::of_statistic(Some(one)), one.reason.as_deref())
+        Row::from(cells).ending(Finding::of_statistic(Some(one)), one.reason.as_ref())
     };
     let mut columns: Vec<Column> =
         keys.iter().map(|key| Column::name(capital(key)).names_row(false)).collect();

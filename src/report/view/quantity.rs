@@ -24,7 +24,8 @@ pub(super) fn chapter(view: &View<'_>) -> Option<Chapter> {
 fn part(at: usize, quantity: &QuantityResult, view: &View<'_>) -> Part {
     let finding = Finding::of_quantity(quantity);
     let rows = if sides_apart(quantity) { "Pairs" } else { "Values" };
-    let reason = quantity.reason.as_deref().map(number::raised);
+    let reason =
+        quantity.reason.as_ref().map(|reason| number::raised(&String::from(reason.text())));
     let reason = reason.map_or_else(String::new, |reason| format!(": {reason}"));
     let mut opening = vec![
         Block::text(Text::from(Run::Finding(finding.clone())).and(reason)),
@@ -125,7 +126,7 @@ fn statistics(quantity: &QuantityResult, rows: &str) -> Table {
             limit_in_words(one, quantity).into(),
             statistic::normalised(Some(one)),
         ]);
-        Row::from(cells).ending(Finding::of_statistic(Some(one)), one.reason.as_deref())
+        Row::from(cells).ending(Finding::of_statistic(Some(one)), one.reason.as_ref())
     };
     let mut columns = vec![
         Column::text("Statistic").wide(1.5).only(Medium::Paper),

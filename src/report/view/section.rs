@@ -125,7 +125,7 @@ fn table(sections: &[&SectionResult], caption: String) -> Table {
         cells.extend(
             names.iter().map(|name| text(section, name).map_or(Cell::MISSING, Cell::given)),
         );
-        Row::from(cells).ending(used, section.reason.as_deref())
+        Row::from(cells).ending(used, section.reason.as_ref())
     };
     let mut columns = vec![Column::name("Section").wide(1.3)];
     columns.extend(["Start", "End", "Length"].map(|title| Column::number(title).unit(axis)));
@@ -150,7 +150,7 @@ fn checks(sections: &[&SectionResult], caption: &str) -> Vec<Table> {
     }
     let cell = |check: &CheckResult| {
         let mark = Run::Mark(Finding::of(check.holds));
-        Text::from(mark).and(format!(" {}", number::formula(&check.says)))
+        Text::from(mark).and(format!(" {}", number::formula(&String::from(check.says.text()))))
     };
     let table = |known: &[&CheckResult]| {
         let row = |section: &&SectionResult| {

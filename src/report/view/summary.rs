@@ -131,7 +131,7 @@ fn summary_row(
         statistic::normalised(mean),
         statistic::normalised(std)
     ])
-    .ending(Finding::of_quantity(quantity), quantity.reason.as_deref())
+    .ending(Finding::of_quantity(quantity), quantity.reason.as_ref())
 }
 
 fn further_row(quantity: &QuantityResult, statistic: &StatisticResult) -> Row {
@@ -149,7 +149,7 @@ fn further_row(quantity: &QuantityResult, statistic: &StatisticResult) -> Row {
         statistic::limit(one),
         statistic::normalised(one)
     ])
-    .ending(Finding::of_statistic(one), statistic.reason.as_deref())
+    .ending(Finding::of_statistic(one), statistic.reason.as_ref())
 }
 
 fn overview(found: &Certification) -> Option<Figure> {

@@ -3,26 +3,24 @@
 use super::View;
 use crate::report::document::{Cell, Column, Finding, Row, Run, Table, Text, Tone, cells};
 use crate::report::number;
-use crate::result::{Certification, Outcome, Verdict, VerdictResult};
-
-/// In place of the reasons of the overall verdict, in the table beside it.
-const TOO_FEW: &str = "too few usable sections, see the reasons of the verdict";
+use crate::result::{Certification, Outcome, Reason, ShortZone, Verdict, VerdictResult};
 
 /// All verdicts with a name; a short table has not all of their reasons.
 pub(super) fn table(view: &View<'_>, short: bool) -> Table {
     let found = view.found;
-    let together = lacks(found).map(|(_, together)| together);
-    let above = together.filter(|together| merged(&found.reasons, found).contains(together));
-    let text = |reason: String| {
-        view.symbols.text(if above.as_ref() == Some(&reason) { TOO_FEW } else { &reason })
+    let above = lacks(found).filter(|lack| merged(&found.reasons, found).contains(lack));
+    let reason = |reason: Reason| {
+        // The reasons of the overall verdict stand beside the table.
+        let reason = if above.as_ref() == Some(&reason) { Reason::SeeVerdict } else { reason };
+        view.symbols.text(&told(&reason))
     };
     let row = |verdict: &VerdictResult| {
         let title = verdict.title.clone() + if verdict.overall { " (overall)" } else { "" };
         let places = [&verdict.clause, &verdict.source].into_iter().flatten();
         let rule = std::iter::once(Text::from(&verdict.criterion))
             .chain(places.map(|place| Run::Quiet(place.clone()).into()));
-        let reasons = merged(&verdict.reasons, found);
-        let says = reasons.into_iter().chain(verdict.notes.clone()).map(text).collect();
+        let notes = verdict.notes.iter().map(|note| view.symbols.text(note));
+        let says = merged(&verdict.reasons, found).into_iter().map(reason).chain(notes).collect();
         let finding = finding(verdict.outcome, &verdict.word);
         let tone = finding.tone;
         Row::from(cells![
@@ -80,34 +78,32 @@ pub(super) fn overall(found: &Certification) -> Option<Outcome> {
 
 /// Whether a verdict is not assessable for another reason than an open judgement.
 fn lacks_data(found: &Certification) -> bool {
-    let judged: Vec<&str> =
-        found.verdicts.iter().filter_map(|verdict| verdict.judged_by.as_deref()).collect();
-    let of_judgement = |reason: &String| {
-        judged.iter().any(|person| own(reason, found).ends_with(&format!("judged by {person}")))
-    };
     let lacking = found.verdicts.iter().filter(|verdict| verdict.outcome == Outcome::NotAssessable);
     lacking
         .flat_map(|verdict| &verdict.reasons)
         .chain(&found.reasons)
-        .any(|reason| !of_judgement(reason))
+        .any(|reason| !matches!(reason.root(), Reason::ToBeJudged { .. }))
 }
 
 /// The reasons of the overall verdict.
 pub(super) fn reasons(view: &View<'_>) -> Vec<Text> {
-    merged(&view.found.reasons, view.found).iter().map(|one| view.symbols.text(one)).collect()
+    let reasons = merged(&view.found.reasons, view.found);
+    reasons.iter().map(|reason| view.symbols.text(&told(reason))).collect()
 }
 
 /// Reasons in symbols. Zones with too few sections are one reason, also where a verdict has it from
 /// others.
-fn merged(reasons: &[String], found: &Certification) -> Vec<String> {
+fn merged(reasons: &[Reason], found: &Certification) -> Vec<Reason> {
     let lacks = lacks(found);
-    let mut all: Vec<String> = Vec::new();
+    let called = |id: &str| {
+        let quantity = found.quantities.iter().find(|quantity| quantity.id == id);
+        quantity.map_or_else(|| id.to_owned(), |quantity| super::symbol(&quantity.symbol))
+    };
+    let mut all: Vec<Reason> = Vec::new();
     for reason in reasons {
-        let shown = match &lacks {
-            Some((each, together)) if each.iter().any(|lack| lack == own(reason, found)) => {
-                together.clone()
-            }
-            _ => number::raised(&in_symbols(reason, found)),
+        let shown = match (&lacks, reason.root()) {
+            (Some(together), Reason::ZoneTooSmall { .. }) => together.clone(),
+            _ => reason.naming(called),
         };
         if !all.contains(&shown) {
             all.push(shown);
@@ -116,50 +112,23 @@ fn merged(reasons: &[String], found: &Certification) -> Vec<String> {
     all
 }
 
-/// The reason without the titles of the verdicts that it comes through.
-fn own<'a>(reason: &'a str, found: &Certification) -> &'a str {
-    let mut rest = reason;
-    let through = |rest: &'a str| {
-        found
-            .verdicts
-            .iter()
-            .find_map(|verdict| rest.strip_prefix(verdict.title.as_str())?.strip_prefix(": "))
-    };
-    while let Some(inner) = through(rest) {
-        rest = inner;
-    }
-    rest
-}
-
-/// The reasons of zones with too few sections, and one sentence for them, if there are several that
-/// it can stand for.
-fn lacks(found: &Certification) -> Option<(Vec<String>, String)> {
-    let short: Vec<_> = found.zones.iter().filter_map(|zone| Some((zone, zone.lack()?))).collect();
-    let (first, _) = short.first()?;
+/// One reason for zones with too few sections, if there are several that it can stand for.
+fn lacks(found: &Certification) -> Option<Reason> {
+    let short: Vec<_> = found.zones.iter().filter(|zone| !zone.holds).collect();
+    let minimum = short.first()?.minimum;
     if short.len() < 2
-        || short.iter().any(|(zone, _)| zone.minimum != first.minimum || zone.used != zone.sites)
+        || short.iter().any(|zone| zone.minimum != minimum || zone.used != zone.sites)
     {
         return None;
     }
-    let each: Vec<String> =
-        short.iter().map(|(zone, _)| format!("zone {} has {}", zone.zone, zone.used)).collect();
-    let together = format!(
-        "too few usable sections: {}; at least {} required in each",
-        each.join(", "),
-        first.minimum
-    );
-    Some((short.into_iter().map(|(_, lack)| lack).collect(), together))
+    let zones =
+        short.iter().map(|zone| ShortZone { zone: zone.zone.clone(), used: zone.used }).collect();
+    Some(Reason::ZonesTooSmall { zones, minimum })
 }
 
-/// Replaces the id of a quantity at the start of a sentence by its symbol.
-fn in_symbols(reason: &str, found: &Certification) -> String {
-    let of = reason.split_once(": ").and_then(|(id, says)| {
-        Some((found.quantities.iter().find(|quantity| quantity.id == id)?, says))
-    });
-    of.map_or_else(
-        || reason.to_owned(),
-        |(quantity, says)| format!("{}: {says}", super::symbol(&quantity.symbol)),
-    )
+/// A reason for print.
+fn told(reason: &Reason) -> String {
+    number::raised(&String::from(reason.text()))
 }
 
 /// What is said of an overall verdict with words of its own: the protocol says what it means.

@@ -62,14 +62,14 @@ pub fn single<'a>(
         problem.suggest(section, prepared.basis.units.iter().map(|unit| unit.name.as_str()))
     })?;
     if let Some(fault) = &unit.fault {
-        let says = format!("section {section} is not used: {fault}");
+        let says = format!("section {section} is not used: {}", fault.text());
         return Err(Problem::error("not-evaluated", says).into());
     }
     let found = computed(&prepared.work(), unit, quantity, signal).map_err(|fault| {
         let mut problems = Problems(fault.problems);
         problems.push(Problem::error(
             "not-evaluated",
-            format!("section {section} cannot be evaluated: {}", fault.says),
+            format!("section {section} cannot be evaluated: {}", fault.reason.text()),
         ));
         problems
     })?;

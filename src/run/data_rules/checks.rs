@@ -7,11 +7,16 @@ use crate::check::evaluate::flag;
 use crate::check::plan::{Check, Input, InputSide, Side};
 use crate::data::RecordKind;
 use crate::graph::{InputNode, NodeId};
-use crate::result::{CheckResult, RecordName};
+use crate::result::{CheckResult, Datum, Reason, RecordName, Subject};
 use crate::run::record::{Fault, Work};
+use crate::run::sections::requirements::met;
 use crate::run::sections::{Known, Unit};
 use crate::run::values::{NodeValues, SectionValues, Sides, Two, one_record};
 use crate::units::Dimension;
+use crate::words::digits;
+
+/// Significant digits of a value found.
+const DIGITS: usize = 4;
 
 /// Checks that use the track record; without one their result is "not checked". Returns the values
 /// of the track record.
@@ -36,7 +41,9 @@ pub fn track_checks(
         Ok(_) => Ok(true),
         // A missing track record is stated for each check; a track record that cannot be read is a
         // fault.
-        Err(problem) if problem.code == "file-unreadable" => Err(Fault::new(problem.says)),
+        Err(problem) if problem.code == "file-unreadable" => {
+            Err(Fault::new(Reason::Unreadable { says: problem.says }))
+        }
         Err(_) => Ok(false),
     };
     let found = if !wanted.is_empty() && campaign.has(RecordKind::Track) && there()? {
@@ -47,22 +54,18 @@ pub fn track_checks(
     for (check, inputs) in work.plan.checks.iter().zip(&work.graph.checks) {
         if !inputs.is_empty() && !inputs.iter().all(|input| work.graph.nodes[input.node].track) {
             // Replaced after both records are evaluated.
-            let says = "not checked: the records could not be evaluated".into();
             values.checks.push(CheckResult {
                 name: check.name.clone(),
                 title: check.title.clone(),
                 holds: None,
-                says,
+                says: Reason::RecordsNotEvaluated,
             });
             continue;
         }
         let value = |input: &InputNode| {
-            found
-                .number(input.node)
-                .map(|(value, _)| value)
-                .map_err(|_| "not checked: there is no track record".to_string())
+            found.number(input.node).map(|(value, _)| value).map_err(|_| Reason::NoTrackRecord)
         };
-        let inputs: Vec<Result<f64, String>> = inputs.iter().map(value).collect();
+        let inputs: Vec<Result<f64, Reason>> = inputs.iter().map(value).collect();
         values.checks.push(checked(work, check, known, &inputs));
     }
     Ok(found)
@@ -77,12 +80,14 @@ pub fn record_checks(sides: &Sides<'_>, values: &mut SectionValues) {
             continue;
         }
         let of_pair = |(record, two): (Option<RecordName>, Two<'_>)| {
-            let inputs: Vec<Result<f64, String>> =
+            let inputs: Vec<Result<f64, Reason>> =
                 inputs.iter().map(|input| two.input(input, side)).collect();
             let found = checked(work, check, two.known, &inputs);
             CheckResult {
-                says: record
-                    .map_or_else(|| found.says.clone(), |name| format!("{name}: {}", found.says)),
+                says: match record {
+                    Some(name) => found.says.about(Subject::Record, name.to_string()),
+                    None => found.says,
+                },
                 ..found
             }
         };
@@ -98,9 +103,9 @@ fn checked(
     work: &Work<'_>,
     check: &Check,
     known: &Known<'_>,
-    inputs: &[Result<f64, String>],
+    inputs: &[Result<f64, Reason>],
 ) -> CheckResult {
-    let result = |holds: Option<bool>, says: String| CheckResult {
+    let result = |(holds, says): (Option<bool>, Reason)| CheckResult {
         name: check.name.clone(),
         title: check.title.clone(),
         holds,
@@ -108,34 +113,23 @@ fn checked(
     };
     let spared = check.unless.as_ref().map_or(Ok(false), |unless| flag(unless, known));
     match spared {
-        Ok(true) => return result(Some(true), "does not apply to this section".into()),
-        Err(reason) => return result(None, reason),
+        Ok(true) => return result((Some(true), Reason::DoesNotApply)),
+        Err(reason) => return result((None, reason)),
         Ok(false) => {}
     }
-    match flag(&check.require, &Known { inputs, ..*known }) {
-        Ok(true) => {
-            result(Some(true), format!("{}{}", check.words, found_values(work, check, inputs)))
-        }
-        Ok(false) => result(
-            Some(false),
-            format!("not met: {}{}", check.words, found_values(work, check, inputs)),
-        ),
-        Err(reason) => result(None, reason),
-    }
+    let holds = flag(&check.require, &Known { inputs, ..*known });
+    result(met(holds, &check.words, || found_values(work, check, inputs)))
 }
 
-/// The values found, as text: `; found: range of curvature 0.00021 1/m, mean of curvature 0.002
-/// 1/m`.
-fn found_values(work: &Work<'_>, check: &Check, inputs: &[Result<f64, String>]) -> String {
-    let one = |(input, value): (&Input, &Result<f64, String>)| {
-        let value: f64 = format!("{:.3e}", value.as_ref().ok()?).parse().ok()?;
+/// The values found: range of curvature 0.00021 1/m, mean of curvature 0.002 1/m.
+fn found_values(work: &Work<'_>, check: &Check, inputs: &[Result<f64, Reason>]) -> Vec<Datum> {
+    let one = |(input, value): (&Input, &Result<f64, Reason>)| {
+        let value = digits(*value.as_ref().ok()?, DIGITS).to_string();
         let signal = input.signal.as_ref()?;
         let dimension = input.taken.gives(signal.dimension(), work.plan.axis.unit.dimension);
-        let unit =
-            if dimension == Dimension::ONE { String::new() } else { format!(" {dimension}") };
-        let words = input.span.text().split_whitespace().collect::<Vec<_>>().join(" ");
-        Some(format!("{words} {value}{unit}"))
+        let unit = (dimension != Dimension::ONE).then(|| dimension.to_string());
+        let name = input.span.text().split_whitespace().collect::<Vec<_>>().join(" ");
+        Some(Datum { name, value, unit })
     };
-    let found = check.inputs.iter().zip(inputs).filter_map(one).collect::<Vec<_>>().join(", ");
-    if found.is_empty() { found } else { format!("; found: {found}") }
+    check.inputs.iter().zip(inputs).filter_map(one).collect()
 }

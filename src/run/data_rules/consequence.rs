@@ -4,11 +4,12 @@ use std::collections::HashMap;
 
 use crate::check::plan::{OnFault, Plan};
 use crate::problem::{Problem, Problems};
-use crate::result::{Consequence, Finding};
-use crate::run::sections::requirements::{asked, not_stated};
-use crate::run::sections::{Facts, Unit, sections_in_words};
+use crate::result::{Consequence, Finding, Reason, Sections};
+use crate::run::sections::requirements::{asked, not_stated, of_check};
+use crate::run::sections::{Facts, Unit};
 use crate::run::values::SectionValues;
 use crate::run::values::margins::margin_note;
+use crate::words;
 
 /// The consequence of a finding, from the rule's `otherwise`. For `stop`, the run ends elsewhere.
 pub fn consequence(otherwise: OnFault) -> Consequence {
@@ -40,14 +41,14 @@ pub fn take_over(
         for (check, rule) in
             values.checks.iter().zip(&plan.checks).filter(|(check, _)| check.holds == Some(false))
         {
-            let says = format!("{}: {}", check.title.to_lowercase(), check.says);
+            let reason = of_check(check);
             match rule.otherwise {
-                OnFault::NotUsed | OnFault::NotAssessable => unit.refuse(says, false),
-                OnFault::Note => notes.push(format!("Section {}: {says}.", unit.name)),
-                OnFault::Stop => stop.push(
-                    Problem::error("section-check", format!("section {}: {says}", unit.name))
-                        .at(&rule.span),
-                ),
+                OnFault::NotUsed | OnFault::NotAssessable => unit.refuse(reason, false),
+                OnFault::Note => notes.push(format!("Section {}: {}.", unit.name, reason.text())),
+                OnFault::Stop => {
+                    let says = format!("section {}: {}", unit.name, reason.text());
+                    stop.push(Problem::error("section-check", says).at(&rule.span));
+                }
             }
         }
         let name = unit.name.clone();
@@ -57,18 +58,16 @@ pub fn take_over(
             .chain(of_section.get(name.as_str()).into_iter().flatten().copied())
         {
             if finding.consequence == Consequence::NotUsed {
-                unit.refuse(finding.says.clone(), false);
+                let finding = Box::new(finding.data.clone());
+                unit.refuse(Reason::Finding { finding }, false);
             }
             let rule = plan.plausibility.iter().find(|rule| rule.name == finding.code);
             if let Some(rule) = rule.filter(|rule| rule.otherwise == OnFault::Stop) {
-                stop.push(
-                    Problem::error("not-plausible", format!("section {name}: {}", finding.says))
-                        .at(&rule.span),
-                );
+                let says = format!("section {name}: {}", finding.text());
+                stop.push(Problem::error("not-plausible", says).at(&rule.span));
             }
         }
         unit.covered = unit.extent.or(values.extent);
-        unit.unreadable = values.problems.iter().any(|problem| problem.code == "file-unreadable");
         unit.checks.extend(values.checks.iter().cloned());
         if let Some(fault) = &values.fault {
             unit.refuse(fault.clone(), true);
@@ -83,7 +82,7 @@ pub fn take_over(
 
 /// One note for each requirement that could not be checked in sections that are used nevertheless.
 fn unchecked(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<String> {
-    let mut found: Vec<(&str, &str, Vec<&str>)> = Vec::new();
+    let mut found: Vec<(&str, &Reason, Vec<&str>)> = Vec::new();
     for unit in units.iter().filter(|unit| unit.fault.is_none()) {
         for check in unit.checks.iter().filter(|check| check.holds.is_none()) {
             // A datum missing from the vehicle file is reported by a finding.
@@ -94,15 +93,16 @@ fn unchecked(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<String> {
             }
             match found
                 .iter_mut()
-                .find(|(title, says, _)| *title == check.title && *says == check.says)
+                .find(|(title, says, _)| *title == check.title && **says == check.says)
             {
                 Some((_, _, names)) => names.push(&unit.name),
                 None => found.push((&check.title, &check.says, vec![&unit.name])),
             }
         }
     }
-    let sentence = |(title, says, names): (&str, &str, Vec<&str>)| {
-        format!("{title}: {says} ({}).", sections_in_words(&names, units.len()))
+    let sentence = |(title, says, names): (&str, &Reason, Vec<&str>)| {
+        let of = words::text(&Sections::of(&names, units.len()));
+        format!("{title}: {} ({of}).", says.text())
     };
     found.into_iter().map(sentence).collect()
 }

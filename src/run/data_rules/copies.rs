@@ -7,16 +7,17 @@ use rayon::slice::ParallelSliceMut;
 use super::consequence::consequence;
 use crate::check::plan::{Distinct, Plan, Plausibility, Test};
 use crate::data::{RecordKind, WhichRecord};
-use crate::result::Finding;
+use crate::result::{Channels, Finding, FindingData};
 use crate::run::sections::Unit;
 use crate::run::values::SectionValues;
+use crate::words;
 
 /// Two signals are copies if they share at least this part of the marks of the shorter one ...
 const SHARED: f64 = 0.3;
 /// ... and at least this many marks, which is about 100 samples.
 const LEAST: usize = 6;
-/// Largest number of channels that a finding names; the others are counted.
-const NAMED: usize = 4;
+/// Number of earlier signals that a copy is counted against.
+const EARLIER: usize = 4;
 
 /// Where a print was taken: section, and index among its prints.
 type PrintIndex = (usize, usize);
@@ -120,7 +121,7 @@ fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Sh
     for alike in all.chunk_by(|a, b| a.0 == b.0).filter(|alike| alike.len() > 1) {
         // A copy is counted against one earlier signal; not all pairs of many copies are counted.
         for (number, (_, later)) in alike.iter().enumerate().skip(1) {
-            for (_, earlier) in &alike[..number.min(NAMED)] {
+            for (_, earlier) in &alike[..number.min(EARLIER)] {
                 *counts.entry((*earlier, *later)).or_default() += 1;
             }
         }
@@ -156,38 +157,24 @@ fn finding(
     channels: &[(&str, &str)],
 ) -> Finding {
     let (own, other): (Vec<&str>, Vec<&str>) = channels.iter().copied().unzip();
-    let place = match (section == of_section, record == of_record) {
-        (true, true) => String::new(),
-        (true, false) => format!(" of the {of_record}"),
-        (false, true) => format!(" of section {of_section}"),
-        (false, false) => format!(" of the {of_record} of section {of_section}"),
-    };
-    let what =
-        if own == other && own.len() > 1 { "the same channels".to_string() } else { named(&other) };
+    let names = Channels::of(&own);
     Finding {
-        channel: Some(named(&own)),
+        channel: Some(words::text(&names).to_string()),
         section: Some(section.to_string()),
         record: Some(record.to_string()),
         cause: rule.cause.clone(),
         consequence: consequence(rule.otherwise),
         ..Finding::note(
             &rule.name,
-            format!("{}: {} repeats the samples of {what}{place}", rule.title, named(&own)),
+            FindingData::Copies {
+                rule: rule.title.clone(),
+                channels: names,
+                copied: (own != other || own.len() == 1).then(|| Channels::of(&other)),
+                record: (record != of_record).then(|| of_record.to_string()),
+                section: (section != of_section).then(|| of_section.to_string()),
+            },
         )
     }
-}
-
-fn named(channels: &[&str]) -> String {
-    let mut names: Vec<&str> = Vec::new();
-    channels.iter().for_each(|name| {
-        if !names.contains(name) {
-            names.push(name)
-        }
-    });
-    if names.len() <= NAMED + 1 {
-        return names.join(", ");
-    }
-    format!("{} and {} more", names[..NAMED].join(", "), names.len() - NAMED)
 }
 
 #[cfg(test)]

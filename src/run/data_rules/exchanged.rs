@@ -9,7 +9,7 @@ use crate::check::plan::{Exchanged, Plausibility};
 use crate::graph::NodeId;
 use crate::metrics::resample::Located;
 use crate::metrics::statistics::correlation;
-use crate::result::Finding;
+use crate::result::{Finding, FindingData};
 use crate::run::record::{Along, Samples, Work};
 use crate::run::sections::Unit;
 use crate::run::values::{RecordOfSide, Sides};
@@ -73,11 +73,13 @@ fn in_record(
             value: Some(with_own),
             expected: Some(with_other),
             unit: Some("-".into()),
-            says: format!(
-                "{}: the measured {name} agrees with the simulated {other} (correlation {with_other:.2}) better than with its own \
-                 ({with_own:.2})",
-                rule.title
-            ),
+            data: FindingData::Exchanged {
+                rule: rule.title.clone(),
+                channel: (*name).to_string(),
+                other: other.to_string(),
+                correlation: with_other,
+                own_correlation: with_own,
+            },
             cause: rule.cause.clone(),
             consequence: consequence(rule.otherwise),
         });

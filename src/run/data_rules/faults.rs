@@ -30,7 +30,7 @@ pub fn stop_on_fault(
             .fault
             .as_ref()
             .filter(|_| told.is_empty())
-            .map_or(String::new(), |fault| format!(": {fault}"));
+            .map_or(String::new(), |fault| format!(": {}", fault.text()));
         let says = format!(
             "section {} is faulty, and the protocol states `stop` for faulty sections{why}",
             unit.name
@@ -53,7 +53,8 @@ pub fn nothing_usable(units: &[Unit], values: Vec<SectionValues>) -> Problems {
     for (unit, values) in units.iter().zip(values) {
         let mut problems = values.problems;
         if problems.is_empty() {
-            let says = format!("section {}: {}", unit.name, unit.fault.clone().unwrap_or_default());
+            let says =
+                format!("section {}: {}", unit.name, crate::words::or_nothing(unit.fault.as_ref()));
             let problem = Problem::error("section-not-usable", says);
             problems.push(match &unit.span {
                 Some(span) => problem.at(span),

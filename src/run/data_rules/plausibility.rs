@@ -10,14 +10,11 @@ use crate::check::plan::{
     Comparison, Exchanged, InputSide, Looks, Plausibility, Requirement, Test,
 };
 use crate::graph::{InputNode, NodeId, PositionNodes};
-use crate::result::Finding;
+use crate::result::{Finding, FindingData, Reason};
 use crate::run::record::Work;
-use crate::run::sections::{Known, Unit, needed, trimmed};
+use crate::run::sections::{Known, Unit, needed};
 use crate::run::values::{NodeValues, Print, RecordOfSide, SectionValues, Sides};
 use crate::units::Dimension;
-
-/// Significant digits of a number in the sentence of a finding; the result file has all digits.
-const DIGITS: usize = 4;
 
 /// A rule at a recorded position, its nodes and the name of the position.
 type Asked<'a> = (&'a Plausibility, &'a PositionNodes, &'a str);
@@ -185,7 +182,7 @@ impl Position<'_> {
     fn finding(
         &self,
         known: &Known<'_>,
-        inputs: &[Result<f64, String>],
+        inputs: &[Result<f64, Reason>],
         record: Option<String>,
     ) -> Option<Finding> {
         let known = Known { inputs, ..*known };
@@ -201,17 +198,6 @@ impl Position<'_> {
             let of = |expr| number(expr, &known).ok().map(|value| unit.from_si(value));
             Some((of(found)?, of(expected)?, unit, words(found), *about))
         });
-        let says = match &numbers {
-            Some((value, expected, unit, what, _)) => {
-                let unit = if unit.text == "-" { String::new() } else { format!(" {unit}") };
-                let (value, expected) = (rounded(*value), rounded(*expected));
-                format!(
-                    "{}: {what} is {value}{unit}; required: {} ({expected}{unit})",
-                    self.rule.title, self.requirement.words
-                )
-            }
-            None => format!("{}; required: {}", self.rule.title, self.requirement.words),
-        };
         // Units explain a ratio of two amounts that should be alike, not of two correlations, nor
         // of a value and a bound.
         let amounts = numbers
@@ -221,22 +207,28 @@ impl Position<'_> {
             causes::likely(*value, *expected, unit.dimension)
         });
         let cause: Vec<String> = guessed.into_iter().chain(self.rule.cause.clone()).collect();
+        let value = numbers.as_ref().map(|(value, ..)| *value);
+        let expected = numbers.as_ref().map(|(_, expected, ..)| *expected);
+        let unit = numbers.as_ref().map(|(_, _, unit, ..)| unit.text.clone());
         Some(Finding {
+            data: FindingData::Required {
+                rule: self.rule.title.clone(),
+                what: numbers.map(|(_, _, _, what, _)| what),
+                value,
+                expected,
+                unit: unit.clone().unwrap_or_default(),
+                required: self.requirement.words.clone(),
+            },
             code: self.rule.name.clone(),
             channel: (!self.name.is_empty()).then(|| self.name.to_string()),
             section: Some(self.unit.name.clone()),
             campaign: self.unit.campaign_name.clone(),
             record,
-            value: numbers.as_ref().map(|(value, ..)| *value),
-            expected: numbers.as_ref().map(|(_, expected, ..)| *expected),
-            unit: numbers.as_ref().map(|(_, _, unit, ..)| unit.text.clone()),
-            says,
+            value,
+            expected,
+            unit,
             cause: (!cause.is_empty()).then(|| cause.join("; ")),
             consequence: consequence(self.rule.otherwise),
         })
     }
-}
-
-fn rounded(value: f64) -> String {
-    trimmed(format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value))
 }

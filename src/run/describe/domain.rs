@@ -6,13 +6,12 @@ use indexmap::IndexMap;
 use crate::check::plan::{Coordinate, DatumKind, Domain, OnFault, Plan, Scalar};
 use crate::metrics::hull::{self, Nearest};
 use crate::result::{
-    Consequence, CoordinateRange, DomainRange, DomainResult, DomainSection, Finding, Scope,
-    WantedPoint,
+    Beyond, Consequence, CoordinateRange, DomainRange, DomainResult, DomainSection, Finding,
+    FindingData, Reason, Scope, WantedPoint,
 };
 use crate::run::limit::rule_place;
 use crate::run::sections::wanted::{Point, value, word};
 use crate::run::sections::{Facts, Unit};
-use crate::run::words::count;
 
 /// Code of the finding about wanted operation outside what the sections cover.
 const OUTSIDE: &str = "outside-domain";
@@ -299,37 +298,27 @@ fn without_hull(
     group: &str,
     scaled: &[Vec<f64>],
     scale: &Scale,
-) -> Option<String> {
-    let needed = domain.over.len() + 1;
+) -> Option<Reason> {
+    let coordinates = domain.over.len();
     if scaled.is_empty() {
-        let of = if domain.each.is_empty() { String::new() } else { format!(" of {group}") };
-        return Some(format!("no section{of} is used"));
+        let group = (!domain.each.is_empty()).then(|| group.to_owned());
+        return Some(Reason::NoSectionUsed { group });
     }
-    if scaled.len() < needed {
-        return Some(format!(
-            "{}; a hull over {} needs at least {needed}",
-            count(scaled.len(), "section"),
-            count(needed - 1, "coordinate")
-        ));
+    if scaled.len() <= coordinates {
+        return Some(Reason::TooFewForHull { sections: scaled.len(), coordinates });
     }
     let extends = hull::dimensions(scaled);
-    if extends == domain.over.len() {
+    if extends == coordinates {
         return None;
     }
-    let same: Vec<&str> = domain
+    let same = domain
         .over
         .iter()
         .enumerate()
         .filter(|(at, _)| scale.low[*at] == scale.high[*at])
-        .map(|(_, of)| of.name.as_str())
+        .map(|(_, of)| of.name.clone())
         .collect();
-    let lie = match (same.as_slice(), extends) {
-        ([], 1) => "the sections lie on one line".to_string(),
-        ([], 2) => "the sections lie in one plane".to_string(),
-        ([], _) => format!("the sections extend in {extends} of {} dimensions", domain.over.len()),
-        (same, _) => format!("all sections have the same value of {}", same.join(" and of ")),
-    };
-    Some(format!("{lie}: their hull is flat"))
+    Some(Reason::FlatHull { extends, coordinates, same })
 }
 
 /// A finding for each point of wanted operation outside, and for each group with such points and
@@ -343,16 +332,13 @@ pub fn findings(results: &[DomainResult]) -> Vec<Finding> {
         .collect()
 }
 
-fn no_hull(result: &DomainResult, reason: &str) -> Vec<Finding> {
+fn no_hull(result: &DomainResult, reason: &Reason) -> Vec<Finding> {
     if result.points.is_empty() {
         return Vec::new();
     }
-    let says = format!(
-        "{}: {reason}; nothing can be said of {}",
-        titled(result),
-        count(result.points.len(), "point")
-    );
-    vec![Finding { consequence: result.otherwise, ..Finding::note(WITHOUT_HULL, says) }]
+    let (title, scope, reason) = (result.title.clone(), scope(result), reason.clone());
+    let data = FindingData::NoDomain { title, scope, reason, points: result.points.len() };
+    vec![Finding { consequence: result.otherwise, ..Finding::note(WITHOUT_HULL, data) }]
 }
 
 fn outside(result: &DomainResult) -> Vec<Finding> {
@@ -364,68 +350,51 @@ fn outside(result: &DomainResult) -> Vec<Finding> {
             .zip(&result.coordinates)
             .filter(|(by, _)| by.abs() > 0.0);
         let far = |(by, of): (&f64, &CoordinateRange)| {
-            let unit = if of.unit == "-" { String::new() } else { format!(" {}", of.unit) };
             // What is left of a coordinate in which the nearest point is the same is rounding.
             let range = of.high.zip(of.low).map_or(0.0, |(high, low)| high - low);
-            (by.abs() > hull::INSIDE * range).then(|| {
-                format!(
-                    "{} {}{unit} {}",
-                    of.name.to_lowercase(),
-                    short(by.abs()),
-                    if *by > 0.0 { "above" } else { "below" }
-                )
+            (by.abs() > hull::INSIDE * range).then(|| Beyond {
+                name: of.name.to_lowercase(),
+                by: *by,
+                unit: of.unit.clone(),
             })
         };
-        let by: Vec<String> = by.filter_map(far).collect();
-        let section = point
-            .nearest_section
-            .as_ref()
-            .map_or(String::new(), |section| format!("; nearest section {section}"));
-        let distance = point.distance.unwrap_or(f64::NAN);
-        let says = format!(
-            "{}: `{}` lies outside what the sections cover, by {} of their range: {}{section}",
-            titled(result),
-            point.point,
-            short(distance),
-            by.join(", ")
-        );
+        let data = FindingData::OutsideDomain {
+            title: result.title.clone(),
+            scope: scope(result),
+            point: point.point.clone(),
+            distance: point.distance,
+            by: by.filter_map(far).collect(),
+            nearest: point.nearest_section.clone(),
+        };
         Finding {
             value: point.distance,
             expected: Some(0.0),
             consequence: result.otherwise,
-            ..Finding::note(OUTSIDE, says)
+            ..Finding::note(OUTSIDE, data)
         }
     };
     result.points.iter().filter(|point| point.inside == Some(false)).map(finding).collect()
 }
 
 /// Why the campaign is not assessable: for each group, as far as the protocol says so.
-pub fn barred(results: &[DomainResult]) -> Vec<String> {
+pub fn barred(results: &[DomainResult]) -> Vec<Reason> {
     let reason = |result: &DomainResult| {
         let outside = result.points.iter().filter(|point| point.inside == Some(false)).count();
-        match &result.reason {
-            _ if result.otherwise != Consequence::NotAssessable || result.points.is_empty() => None,
-            Some(reason) => Some(format!("{}: {reason}", titled(result))),
-            None if outside == 0 => None,
-            None => Some(format!(
-                "{}: {outside} of {} of wanted operation outside what the sections cover; see the findings",
-                titled(result),
-                count(result.points.len(), "point")
-            )),
-        }
+        let reason = match &result.reason {
+            _ if result.otherwise != Consequence::NotAssessable || result.points.is_empty() => {
+                return None;
+            }
+            Some(reason) => reason.clone(),
+            None if outside == 0 => return None,
+            None => Reason::PointsOutside { outside, points: result.points.len() },
+        };
+        let (title, scope, reason) = (result.title.clone(), scope(result), Box::new(reason));
+        Some(Reason::OfEstimate { title, scope, reason })
     };
     results.iter().filter_map(reason).collect()
 }
 
-fn titled(result: &DomainResult) -> String {
-    if result.group.is_empty() {
-        result.title.clone()
-    } else {
-        format!("{}, {}", result.title, result.scope)
-    }
-}
-
-/// A number of a sentence: three digits.
-fn short(value: f64) -> String {
-    format!("{}", format!("{value:.2e}").parse::<f64>().unwrap_or(value))
+/// The group, where sections are told apart.
+fn scope(result: &DomainResult) -> Option<String> {
+    (!result.group.is_empty()).then(|| result.scope.clone())
 }

@@ -3,8 +3,8 @@
 
 use crate::check::evaluate::flag;
 use crate::check::plan::{Plan, Plausibility, Test};
-use crate::result::Finding;
-use crate::run::sections::{Facts, Known, Unit, sections_in_words};
+use crate::result::{Finding, FindingData, Reason, Sections};
+use crate::run::sections::{Facts, Known, Unit};
 
 /// Code of the finding about rules that were not asked. It does not change the verdict.
 const NOT_ASKED: &str = "plausibility-not-checked";
@@ -30,12 +30,12 @@ pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
     }
     let finding = |(column, names, rules): (usize, Vec<&str>, Vec<&str>)| {
         let key = &plan.columns[column].key;
-        let of = sections_in_words(&names, units.len());
-        let says = format!(
-            "the table of sections does not state `{key}` ({of}); not checked there: {}",
-            rules.join("; ")
-        );
-        Finding { channel: Some(key.clone()), ..Finding::note(NOT_ASKED, says) }
+        let data = FindingData::RulesWithoutColumn {
+            column: key.clone(),
+            sections: Sections::of(&names, units.len()),
+            rules: rules.into_iter().map(Into::into).collect(),
+        };
+        Finding { channel: Some(key.clone()), ..Finding::note(NOT_ASKED, data) }
     };
     found.into_iter().map(finding).collect()
 }
@@ -43,7 +43,7 @@ pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
 /// The column without which the rule has no answer in this section.
 fn missing(rule: &Plausibility, facts: &Facts, unit: &Unit) -> Option<usize> {
     let Test::Require(requirement) = &rule.test else { return None };
-    let of = |reason: String| {
+    let of = |reason: Reason| {
         unit.columns.iter().position(|column| column.as_ref().err() == Some(&reason))
     };
     let known = unit.known(facts);
@@ -53,6 +53,6 @@ fn missing(rule: &Plausibility, facts: &Facts, unit: &Unit) -> Option<usize> {
         _ => {}
     }
     // Whatever the signals are: only data can be missing here.
-    let inputs: Vec<Result<f64, String>> = vec![Ok(1.0); requirement.inputs.len()];
+    let inputs: Vec<Result<f64, Reason>> = vec![Ok(1.0); requirement.inputs.len()];
     flag(&requirement.holds, &Known { inputs: &inputs, ..known }).err().and_then(of)
 }

@@ -2,7 +2,7 @@
 
 use crate::check::plan::{EstimateKind, Plan, Report};
 use crate::graph::{Graph, NodeId, Operation};
-use crate::result::{Count, Reported};
+use crate::result::{Count, Reason, Reported};
 use crate::run::estimate::{Group, Grouped, Member, Part, count_independent, parts};
 use crate::run::limit::{Estimated, Judging, rule_place};
 use crate::run::sections::{Facts, Unit};
@@ -43,7 +43,7 @@ pub fn of_sections<'a>(
             let inside = part.members(facts, &members);
             let value = match (&inside, &report.estimate.kind) {
                 (Err(reason), _) => Err(reason.clone()),
-                (Ok(inside), _) if inside.is_empty() => Err("no section is used".into()),
+                (Ok(inside), _) if inside.is_empty() => Err(Reason::NoSectionUsed { group: None }),
                 (Ok(inside), EstimateKind::Of(of)) => {
                     Group { plan, facts, positions: &[], members: inside, table: &[] }
                         .number(of)

@@ -2,7 +2,7 @@
 //! data.
 
 use crate::check::plan::Plan;
-use crate::result::{Finding, LimitFactor, QuantityResult};
+use crate::result::{DataItem, Datum, Finding, FindingData, LimitFactor, QuantityResult};
 use crate::run::sections::{Facts, Vehicle, is_dimensioned, vehicle_item};
 
 /// Code of the finding about units that the vehicle file does not state.
@@ -22,28 +22,19 @@ pub fn findings(plan: &Plan, facts: &Facts, quantities: &[QuantityResult]) -> Ve
 
 /// One finding for all numbers without a unit whose size depends on one.
 fn assumed(plan: &Plan, vehicle: &Vehicle) -> Option<Finding> {
-    let bare: Vec<String> = plan
+    let data: Vec<Datum> = plan
         .vehicle
         .iter()
         .zip(vehicle.data.iter().zip(&vehicle.assumed))
         .filter(|(datum, (_, assumed))| **assumed && is_dimensioned(&datum.kind))
         .map(|(datum, (value, _))| {
-            let item = vehicle_item(datum, value);
-            format!(
-                "{} = {}{}",
-                datum.key,
-                item.value,
-                item.unit.map_or(String::new(), |unit| format!(" {unit}"))
-            )
+            let DataItem { value, unit, .. } = vehicle_item(datum, value);
+            Datum { name: datum.key.clone(), value, unit }
         })
         .collect();
-    (!bare.is_empty()).then(|| {
-        let of = vehicle.of.as_ref().map_or_else(String::new, |of| format!(" of {of}"));
-        let says = format!(
-            "the vehicle file{of} states no unit; read in the unit of the protocol: {}",
-            bare.join(", ")
-        );
-        Finding::note(UNIT_ASSUMED, says)
+    (!data.is_empty()).then(|| {
+        let vehicle = vehicle.of.clone();
+        Finding::note(UNIT_ASSUMED, FindingData::UnitsAssumed { vehicle, data })
     })
 }
 
@@ -60,17 +51,12 @@ fn multiplied(quantities: &[QuantityResult]) -> Vec<Finding> {
         }
     }
     let finding = |(factor, of): (&LimitFactor, Vec<&str>)| {
-        let says = format!(
-            "the limits of {} are {}, because {}",
-            of.join(", "),
-            times(factor.by),
-            factor.because
-        );
-        Finding { value: Some(factor.by), ..Finding::note(LIMIT_FACTOR, says) }
+        let data = FindingData::FactorOfLimits {
+            quantities: of.into_iter().map(Into::into).collect(),
+            by: factor.by,
+            because: factor.because.clone(),
+        };
+        Finding { value: Some(factor.by), ..Finding::note(LIMIT_FACTOR, data) }
     };
     found.into_iter().map(finding).collect()
-}
-
-fn times(by: f64) -> String {
-    if by == 2.0 { "doubled".into() } else { format!("multiplied by {by}") }
 }

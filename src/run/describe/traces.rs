@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::check::plan::{Evaluation, Plan, Records, Side};
 use crate::data::WhichRecord;
 use crate::graph::{Graph, NodeId};
-use crate::result::{Curve, QuantityResult, RecordName, Trace};
+use crate::result::{Curve, QuantityResult, Reason, RecordName, Trace};
 use crate::run::data_rules::take_over;
 use crate::run::record::{NodeValue, Opened, Samples, Work, with_record};
 use crate::run::sections::{Extent, Unit as Section};
@@ -42,7 +42,7 @@ pub struct Kept {
     signal: usize,
     #[serde(flatten)]
     record: Option<RecordName>,
-    pub found: Result<Trace, String>,
+    pub found: Result<Trace, Reason>,
 }
 
 impl Kept {
@@ -109,15 +109,14 @@ pub fn traces(
                 .find(|kept| {
                     (kept.quantity, kept.unit, kept.signal, kept.record.as_ref()) == pick.key()
                 })
-                .map_or_else(
-                    || Err("its signals are not in the values".into()),
-                    |kept| kept.found.clone(),
-                ),
+                .map_or_else(|| Err(Reason::SignalsNotKept), |kept| kept.found.clone()),
         };
-        found.map_err(|why| {
+        found.map_err(|reason| {
             format!(
-                "there is no plot of {} in section {}: {why}",
-                quantities[pick.quantity].id, units[pick.unit].name
+                "there is no plot of {} in section {}: {}",
+                quantities[pick.quantity].id,
+                units[pick.unit].name,
+                reason.text()
             )
         })
     };
@@ -193,7 +192,7 @@ impl<'a> Pick<'a> {
 
 /// Values of nodes of a record, and the range that is shown.
 type Nodes = (Vec<(NodeId, NodeValue)>, Extent);
-type Signal = Result<Nodes, String>;
+type Signal = Result<Nodes, Reason>;
 /// Evaluates nodes of a record.
 type Evaluate<'a> = &'a dyn Fn(&Section, WhichRecord, &BTreeSet<NodeId>) -> Signal;
 
@@ -208,14 +207,14 @@ fn evaluated(
         opened.evaluate((work.plan, work.graph), needed, wanted, &known, None)
     };
     let (found, opened) =
-        with_record(work, unit, which, wanted, &known, evaluate).map_err(|fault| fault.says)?;
+        with_record(work, unit, which, wanted, &known, evaluate).map_err(|fault| fault.reason)?;
     let around = |found: NodeValue| match found {
         NodeValue::Samples(samples) => NodeValue::Samples(opened.around_section(samples)),
         other => other,
     };
     Ok((
         found
-            .map_err(|fault| fault.says)?
+            .map_err(|fault| fault.reason)?
             .into_iter()
             .map(|(node, found)| (node, around(found)))
             .collect(),
@@ -269,7 +268,7 @@ struct Over {
     unit: Unit,
 }
 
-fn trace(work: &Work<'_>, pick: Pick<'_>, evaluate: Evaluate<'_>) -> Result<Trace, String> {
+fn trace(work: &Work<'_>, pick: Pick<'_>, evaluate: Evaluate<'_>) -> Result<Trace, Reason> {
     let Pick { quantity: index, signal, record, .. } = pick;
     let unit = &work.units[pick.unit];
     let quantity = &work.plan.quantities[index];
@@ -294,13 +293,12 @@ fn trace(work: &Work<'_>, pick: Pick<'_>, evaluate: Evaluate<'_>) -> Result<Trac
                 }
             })
         };
-        let none = || "the signal has no samples".to_string();
-        let samples = of(node).ok_or_else(none)?;
+        let samples = of(node).ok_or(Reason::NoSamples)?;
         let x: &[f64] = match over.node {
-            Some(node) => &of(node).ok_or_else(none)?.values,
+            Some(node) => &of(node).ok_or(Reason::NoSamples)?.values,
             None => &samples.along.axis,
         };
-        Ok::<_, String>((thinned(samples, x, &quantity.signal_unit, &over.unit), extent))
+        Ok::<_, Reason>((thinned(samples, x, &quantity.signal_unit, &over.unit), extent))
     };
     let name = |which| work.campaign(unit).record_name(which).map(|name| name.as_ref());
     let curve = |unit: &Section, side: Side| {
@@ -310,10 +308,10 @@ fn trace(work: &Work<'_>, pick: Pick<'_>, evaluate: Evaluate<'_>) -> Result<Trac
             .find(|&which| RecordName::took_part(record, side == Side::Simulated, name(which)));
         curve_of(
             unit,
-            which.ok_or_else(|| format!("there is no {} record of it", side.in_words()))?,
+            which.ok_or_else(|| Reason::NoRecordOfSide { side: side.in_words().into() })?,
         )
     };
-    let of = |side: Side| -> Result<_, String> {
+    let of = |side: Side| -> Result<_, Reason> {
         if quantity.evaluation.reads(side) { curve(unit, side).map(Some) } else { Ok(None) }
     };
     let original = unit

@@ -16,7 +16,9 @@ use crate::metrics::cluster::{self, Bounds, Draws, Mean, StandardDeviation};
 use crate::metrics::percentile::{Method, percentile};
 use crate::metrics::regression::{self, Regression, Tails};
 use crate::metrics::weighted;
-use crate::result::{RegressionAt, RegressionFigure, RegressionPoint};
+use crate::result::{
+    Reason, RegressionAt, RegressionFigure, RegressionPoint, Subject, VehicleValue,
+};
 use crate::run::sections::{Facts, Known, Unit, Vehicle};
 use crate::units;
 
@@ -53,28 +55,28 @@ impl Group<'_> {
     ///
     /// # Errors
     /// What cannot be estimated from these rows, and why.
-    pub fn number(&self, of: &OfGroup) -> Result<f64, String> {
+    pub fn number(&self, of: &OfGroup) -> Result<f64, Reason> {
         let values = self.values();
         self.over(of, &values)
     }
 
     /// The numbers that an expression takes from the group, in order.
-    pub fn taken(&self, of: &OfGroup) -> Vec<Result<f64, String>> {
+    pub fn taken(&self, of: &OfGroup) -> Vec<Result<f64, Reason>> {
         let values = self.values();
         of.taken.iter().map(|taking| self.take(taking, &values)).collect()
     }
 
     /// As [`Self::number`], with other values in place of those of the rows.
-    fn over(&self, of: &OfGroup, values: &[f64]) -> Result<f64, String> {
-        let taken: Vec<Result<f64, String>> =
+    fn over(&self, of: &OfGroup, values: &[f64]) -> Result<f64, Reason> {
+        let taken: Vec<Result<f64, Reason>> =
             of.taken.iter().map(|taking| self.take(taking, values)).collect();
         let of_vehicle = |vehicle: &Vehicle| {
             number(&of.expr, &Known { inputs: &taken, ..Known::vehicle(vehicle) })
         };
-        self.facts.agreed(self.members, of_vehicle, |value| format!("{value} (SI)"))
+        self.facts.agreed(self.members, of_vehicle, |value| VehicleValue::Si { value })
     }
 
-    fn take(&self, taking: &Taking, values: &[f64]) -> Result<f64, String> {
+    fn take(&self, taking: &Taking, values: &[f64]) -> Result<f64, Reason> {
         match taking {
             Taking::Statistic(statistic, ddof) => statistic_of(*statistic, *ddof, values),
             Taking::Count => Ok(self.units().into_iter().collect::<BTreeSet<_>>().len() as f64),
@@ -93,10 +95,10 @@ impl Group<'_> {
                 share(holds, by.as_ref().map(|by| self.weights(by, sections.iter().copied())))
             }
             Taking::Share { condition, of_sections: false, others, by } => {
-                let others: Vec<Result<f64, String>> =
+                let others: Vec<Result<f64, Reason>> =
                     others.iter().map(|other| self.take(other, values)).collect();
                 let of_row = |(member, value): (&Member<'_>, &f64)| {
-                    let inputs: Vec<Result<f64, String>> =
+                    let inputs: Vec<Result<f64, Reason>> =
                         [Ok(*value)].into_iter().chain(others.iter().cloned()).collect();
                     flag(condition, &Known { inputs: &inputs, ..member.unit.known(self.facts) })
                 };
@@ -104,12 +106,15 @@ impl Group<'_> {
                 share(self.members.iter().zip(values).map(of_row), weights)
             }
             Taking::Other { quantity, id, statistic, ddof } => {
-                let rows = self.table.get(*quantity).ok_or_else(|| format!("{id} has no rows"))?;
+                let rows = self.table.get(*quantity);
+                let rows = rows.ok_or_else(|| Reason::NoRowsOf { quantity: id.clone() })?;
                 let found = rows.clone().and_then(|rows| {
                     let values: Vec<f64> = rows.iter().map(|member| member.row.value).collect();
                     statistic_of(*statistic, *ddof, &values)
                 });
-                found.map_err(|reason| format!("{} of {id}: {reason}", statistic.name()))
+                found.map_err(|reason| {
+                    reason.about(Subject::Statistic, format!("{} of {id}", statistic.name()))
+                })
             }
             Taking::Data { reducer, of, by } => {
                 let sections = self.sections();
@@ -140,11 +145,11 @@ impl Group<'_> {
         &self,
         of: &Expr,
         units: impl Iterator<Item = &'u Unit>,
-    ) -> Result<Vec<f64>, String> {
+    ) -> Result<Vec<f64>, Reason> {
         units
             .map(|unit| {
                 number(of, &unit.known(self.facts))
-                    .map_err(|reason| format!("section {}: {reason}", unit.name))
+                    .map_err(|reason| reason.about(Subject::Section, &unit.name))
             })
             .collect()
     }
@@ -154,11 +159,12 @@ impl Group<'_> {
         &self,
         by: &Expr,
         units: impl Iterator<Item = &'u Unit> + Clone,
-    ) -> Result<Vec<f64>, String> {
+    ) -> Result<Vec<f64>, Reason> {
         let weights = self.data(by, units.clone())?;
         match units.zip(&weights).find(|(_, weight)| **weight < 0.0) {
             Some((unit, _)) => {
-                Err(format!("section {}: its weight `{}` is negative", unit.name, words(by)))
+                Err(Reason::NegativeWeight { weight: words(by) }
+                    .about(Subject::Section, &unit.name))
             }
             None => Ok(weights),
         }
@@ -185,17 +191,20 @@ impl Group<'_> {
         keys: &[Key],
         of: &OfGroup,
         values: &[f64],
-    ) -> Result<f64, String> {
+    ) -> Result<f64, Reason> {
         let one = |(name, rows): (String, Vec<usize>)| {
             let members: Vec<Member<'_>> = rows.iter().map(|&row| self.members[row]).collect();
             let values: Vec<f64> = rows.iter().map(|&row| values[row]).collect();
             Group { members: &members, ..*self }
                 .over(of, &values)
-                .map_err(|reason| format!("{name}: {reason}"))
+                .map_err(|reason| reason.about(Subject::Group, name))
         };
         let numbers =
-            self.groups(keys).into_iter().map(one).collect::<Result<Vec<f64>, String>>()?;
-        reduced(reducer, &numbers).map_err(|reason| reason.replace("value", "group"))
+            self.groups(keys).into_iter().map(one).collect::<Result<Vec<f64>, Reason>>()?;
+        reduced(reducer, &numbers).map_err(|reason| match reason {
+            Reason::Undefined { count, .. } => Reason::Undefined { count, groups: true },
+            other => other,
+        })
     }
 
     /// An end of the one-sided confidence interval of an estimate: in closed form for a mean or a
@@ -207,9 +216,9 @@ impl Group<'_> {
         confidence: f64,
         bootstrap: bool,
         values: &[f64],
-    ) -> Result<f64, String> {
+    ) -> Result<f64, Reason> {
         let EstimateKind::Of(of_group) = &of.kind else {
-            return Err("a single value has no interval".into());
+            return Err(Reason::NoInterval);
         };
         some_scatter(values)?;
         let units = self.units();
@@ -221,7 +230,7 @@ impl Group<'_> {
             let rows: Vec<(f64, f64)> = values.iter().copied().zip(weights).collect();
             let found = cluster::by_site(&rows, &units)
                 .and_then(|sites| cluster::weighted_mean(&sites)?.bound(probability));
-            return found.map_err(|error| error.to_string());
+            return found.map_err(Reason::method);
         }
         let found = match of.statistic() {
             Some((Statistic::Named(entry), _)) if !bootstrap && entry.name == "mean" => {
@@ -243,7 +252,7 @@ impl Group<'_> {
                         cluster::bootstrap(&sites, &*Draws::usual(sites.len())?, estimate)?
                             .bound(probability)
                     });
-                    return found.map_err(|error| error.to_string());
+                    return found.map_err(Reason::method);
                 }
                 let rows: Vec<usize> = (0..values.len()).collect();
                 let estimate = |rows: &[usize]| {
@@ -258,13 +267,13 @@ impl Group<'_> {
                 })
             }
         };
-        found.map_err(|error| error.to_string())
+        found.map_err(Reason::method)
     }
 
-    fn fit(&self, fit: &Fit, values: &[f64]) -> Result<f64, String> {
+    fn fit(&self, fit: &Fit, values: &[f64]) -> Result<f64, Reason> {
         let Fitted { regression, at, .. } = self.fitted(fit, values)?;
         match fit.confidence {
-            None => regression.at(&at).map_err(|error| error.to_string()),
+            None => regression.at(&at).map_err(Reason::method),
             Some(confidence) => {
                 some_scatter(values)?;
                 bound_at(&regression, fit, confidence, &at)
@@ -272,7 +281,7 @@ impl Group<'_> {
         }
     }
 
-    pub(in crate::run) fn fitted(&self, fit: &Fit, values: &[f64]) -> Result<Fitted, String> {
+    pub(in crate::run) fn fitted(&self, fit: &Fit, values: &[f64]) -> Result<Fitted, Reason> {
         let regressors = fit
             .over
             .iter()
@@ -280,7 +289,7 @@ impl Group<'_> {
             .collect::<Result<Vec<_>, _>>()?;
         let at =
             fit.at.iter().map(|target| self.over(target, values)).collect::<Result<Vec<_>, _>>()?;
-        let regression = Regression::fit(values, &regressors).map_err(|error| error.to_string())?;
+        let regression = Regression::fit(values, &regressors).map_err(Reason::method)?;
         Ok(Fitted { regression, regressors, at })
     }
 
@@ -301,15 +310,16 @@ impl Group<'_> {
             return None;
         }
         let values = self.values();
-        let value = Err("the bound of a share is the same for all values".to_string());
-        let inputs: Vec<Result<f64, String>> = [value]
+        // The bound of a share is the same for all values.
+        let value = Err(Reason::Internal);
+        let inputs: Vec<Result<f64, Reason>> = [value]
             .into_iter()
             .chain(others.iter().map(|other| self.take(other, &values)))
             .collect();
         let of_vehicle = |vehicle: &Vehicle| {
             number(right, &Known { inputs: &inputs, ..Known::vehicle(vehicle) })
         };
-        self.facts.agreed(self.members, of_vehicle, f64::to_string).ok()
+        self.facts.agreed(self.members, of_vehicle, |value| VehicleValue::Si { value }).ok()
     }
 
     /// The diagram of a regression with one regressor, in the unit of the quantity; `None` for
@@ -392,19 +402,19 @@ fn bound_at(
     fit: &Fit,
     confidence: f64,
     at: &[f64],
-) -> Result<f64, String> {
+) -> Result<f64, Reason> {
     let kind = if fit.prediction { regression::Kind::Prediction } else { regression::Kind::Mean };
     let side = if fit.lower { regression::Side::Lower } else { regression::Side::Upper };
     let tails = if fit.one_sided { Tails::One } else { Tails::Two };
-    regression.bound(at, kind, side, tails, confidence).map_err(|error| error.to_string())
+    regression.bound(at, kind, side, tails, confidence).map_err(Reason::method)
 }
 
 /// Values that are all equal have no scatter from which an interval could follow: one of width zero
 /// would claim certainty.
-fn some_scatter(values: &[f64]) -> Result<(), String> {
+fn some_scatter(values: &[f64]) -> Result<(), Reason> {
     match values {
         [first, rest @ ..] if !rest.is_empty() && rest.iter().all(|value| value == first) => {
-            Err(format!("all {} values are equal, so their scatter is not known", values.len()))
+            Err(Reason::AllEqual { count: values.len() })
         }
         _ => Ok(()),
     }
@@ -420,23 +430,19 @@ fn rounded(percent: f64) -> f64 {
 ///
 /// # Errors
 /// It is not defined for so few values.
-pub fn statistic_of(statistic: Statistic, ddof: usize, values: &[f64]) -> Result<f64, String> {
+pub fn statistic_of(statistic: Statistic, ddof: usize, values: &[f64]) -> Result<f64, Reason> {
     let found = match statistic {
         Statistic::Percentile(percent) => percentile(values, percent, Method::Linear).ok(),
         Statistic::Named(entry) => (entry.run)(values, ddof),
         Statistic::Each => None,
     };
-    found.filter(|value| value.is_finite()).ok_or_else(|| {
-        format!(
-            "not defined for {} value{}",
-            values.len(),
-            if values.len() == 1 { "" } else { "s" }
-        )
-    })
+    found
+        .filter(|value| value.is_finite())
+        .ok_or(Reason::Undefined { count: values.len(), groups: false })
 }
 
 /// Of numbers of sections or of groups.
-fn reduced(reducer: DataReducer, numbers: &[f64]) -> Result<f64, String> {
+fn reduced(reducer: DataReducer, numbers: &[f64]) -> Result<f64, Reason> {
     match reducer {
         DataReducer::Total => Ok(numbers.iter().sum()),
         DataReducer::Statistic(statistic, ddof) => statistic_of(statistic, ddof, numbers),
@@ -450,10 +456,10 @@ fn weighted_statistic(
     ddof: usize,
     values: &[f64],
     weights: &[f64],
-) -> Result<f64, String> {
+) -> Result<f64, Reason> {
     let counting = weights.iter().filter(|weight| **weight > 0.0).count();
     if counting == 0 {
-        return Err("no weight is above zero".into());
+        return Err(Reason::NoPositiveWeight);
     }
     let found = match statistic {
         Statistic::Percentile(percent) => weighted::percentile(values, weights, percent),
@@ -466,21 +472,20 @@ fn weighted_statistic(
         },
         Statistic::Each => None,
     };
-    let s = if counting == 1 { "" } else { "s" };
-    found.ok_or_else(|| format!("not defined for {counting} value{s} with a weight above zero"))
+    found.ok_or(Reason::UndefinedWeighted { count: counting })
 }
 
 fn share(
-    found: impl Iterator<Item = Result<bool, String>>,
-    weights: Option<Result<Vec<f64>, String>>,
-) -> Result<f64, String> {
+    found: impl Iterator<Item = Result<bool, Reason>>,
+    weights: Option<Result<Vec<f64>, Reason>>,
+) -> Result<f64, Reason> {
     let found = found.collect::<Result<Vec<bool>, _>>()?;
     if found.is_empty() {
-        return Err("a share needs at least one value".into());
+        return Err(Reason::EmptyShare);
     }
     if let Some(weights) = weights {
         let holds: Vec<f64> = found.iter().map(|holds| if *holds { 1.0 } else { 0.0 }).collect();
-        return weighted::mean(&holds, &weights?).ok_or_else(|| "no weight is above zero".into());
+        return weighted::mean(&holds, &weights?).ok_or(Reason::NoPositiveWeight);
     }
     Ok(found.iter().filter(|holds| **holds).count() as f64 / found.len() as f64)
 }

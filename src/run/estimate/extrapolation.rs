@@ -3,8 +3,7 @@
 use super::estimates::Group;
 use super::table::Member;
 use crate::check::plan::{EstimateKind, Expr, Fit, OfGroup, Taking};
-use crate::metrics::rounded;
-use crate::result::{Finding, Outside, QuantityResult, Scope};
+use crate::result::{Finding, FindingData, Outside, QuantityResult, Scope};
 
 /// Code of the finding about regressions that are read outside their data.
 const EXTRAPOLATED: &str = "extrapolated";
@@ -96,38 +95,33 @@ pub fn findings(quantities: &[QuantityResult]) -> Vec<Finding> {
 }
 
 fn finding(outside: &Outside, reads: &[Read<'_>]) -> Finding {
-    let Outside { regressor, unit, target, low, high } = outside;
-    let suffix = if unit == "-" { String::new() } else { format!(" {unit}") };
-    let (beyond, side, edge) =
-        if target < low { (low - target, "below", *low) } else { (target - high, "above", *high) };
-    let share = 100.0 * beyond / (high - low);
-    let (of, groups) = match reads {
-        [one] => (format!("{}: {} is", one.quantity, one.estimate), one.groups.as_slice()),
-        several => {
-            let mut quantities: Vec<&str> = several.iter().map(|read| read.quantity).collect();
-            quantities.dedup();
-            (format!("{}: {} estimates are", quantities.join(", "), several.len()), &[][..])
+    let Outside { regressor, unit, target, low, high } = outside.clone();
+    let (beyond, edge) = if target < low { (low - target, low) } else { (target - high, high) };
+    let mut quantities: Vec<String> = reads.iter().map(|read| read.quantity.into()).collect();
+    quantities.dedup();
+    let (estimate, groups) = match reads {
+        [one] => {
+            let groups = one.groups.iter().filter_map(|group| group.told()).collect();
+            (Some(one.estimate.into()), groups)
         }
+        _ => (None, Vec::new()),
     };
-    let of_groups = match groups {
-        [] => String::new(),
-        [whole] if whole.is_all() => String::new(),
-        groups => {
-            let groups: Vec<String> = groups.iter().map(ToString::to_string).collect();
-            format!(" ({})", groups.join("; "))
-        }
+    let data = FindingData::ReadOutside {
+        quantities,
+        estimates: reads.len(),
+        estimate,
+        groups,
+        regressor,
+        target,
+        beyond,
+        low,
+        high,
+        unit: unit.clone(),
     };
-    let says = format!(
-        "{of} read at {regressor} = {}{suffix}, {}{suffix} {side} the data, which reach from {} to {}{suffix}; that is {share:.0} % of their range{of_groups}",
-        rounded(*target),
-        rounded(beyond),
-        rounded(*low),
-        rounded(*high)
-    );
     Finding {
-        value: Some(*target),
+        value: Some(target),
         expected: Some(edge),
-        unit: Some(unit.clone()),
-        ..Finding::note(EXTRAPOLATED, says)
+        unit: Some(unit),
+        ..Finding::note(EXTRAPOLATED, data)
     }
 }

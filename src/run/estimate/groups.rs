@@ -7,7 +7,7 @@ use indexmap::IndexSet;
 use super::table::Member;
 use crate::check::evaluate::flag;
 use crate::check::plan::{Key, Limit, Plan, Position, Quantity, Scalar, Scope};
-use crate::result;
+use crate::result::{self, Reason};
 use crate::run::sections::{Facts, Unit};
 
 /// The group of rows of an estimate.
@@ -67,7 +67,7 @@ pub fn parts<'a>(
         return Vec::new();
     }
     let whole = Part { scope, zones: scope.zones.clone(), keys: Vec::new(), rows: Vec::new() };
-    let inside: Vec<Result<bool, String>> =
+    let inside: Vec<Result<bool, Reason>> =
         members.iter().map(|member| whole.has_section(member.unit, facts)).collect();
     // Where it cannot be determined which rows belong to it, the limit is not assessable, and the
     // reason is given.
@@ -218,7 +218,7 @@ impl<'a> Part<'a> {
         &self,
         facts: &Facts,
         all: &[Member<'m>],
-    ) -> Result<Vec<Member<'m>>, String> {
+    ) -> Result<Vec<Member<'m>>, Reason> {
         if !self.keys.is_empty() {
             return Ok(self.rows.iter().map(|&row| all[row]).collect());
         }
@@ -232,18 +232,16 @@ impl<'a> Part<'a> {
     }
 
     /// Whether rows of a section belong to it, at any position.
-    pub fn has_section(&self, unit: &Unit, facts: &Facts) -> Result<bool, String> {
+    pub fn has_section(&self, unit: &Unit, facts: &Facts) -> Result<bool, Reason> {
         if !self.zones.is_empty()
             && !unit.zone.as_ref().is_some_and(|zone| self.zones.contains(zone))
         {
             return Ok(false);
         }
         let Some((condition, _)) = &self.scope.condition else { return Ok(true) };
-        flag(condition, &unit.known(facts)).map_err(|reason| {
-            format!(
-                "it cannot be determined whether section {} belongs to this group: {reason}",
-                unit.name
-            )
+        flag(condition, &unit.known(facts)).map_err(|reason| Reason::GroupUnknown {
+            section: unit.name.clone(),
+            reason: Box::new(reason),
         })
     }
 

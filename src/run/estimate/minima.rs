@@ -5,27 +5,26 @@ use std::collections::BTreeSet;
 use super::groups::{Grouped, parts};
 use super::table::{Member, independent};
 use crate::check::plan::{Plan, Quantity};
-use crate::result::Scope;
+use crate::result::{Reason, Scope};
 use crate::run::sections::Facts;
 use crate::run::values::Row;
-use crate::run::words::count;
 
 /// A group with too few pairs.
 #[derive(Debug)]
 pub struct TooFew {
     group: Scope,
-    says: String,
+    reason: Reason,
     /// Its rows, by where they are kept.
     rows: Vec<*const Row>,
 }
 
 impl TooFew {
     /// Why nothing is estimated of some rows: all of them are of this group.
-    pub fn reason(&self, members: &[Member<'_>]) -> Option<String> {
+    pub fn reason(&self, members: &[Member<'_>]) -> Option<Reason> {
         members
             .iter()
             .all(|member| self.rows.contains(&std::ptr::from_ref(member.row)))
-            .then(|| self.says.clone())
+            .then(|| self.reason.clone())
     }
 }
 
@@ -38,16 +37,6 @@ pub fn pairs(plan: &Plan, members: &[Member<'_>]) -> usize {
         .len()
 }
 
-/// `2 pairs of section and signal; at least 3 required`
-pub fn in_words(pairs: usize, rows: usize, needed: usize) -> String {
-    let of = if pairs == rows {
-        "section and signal"
-    } else {
-        "site and signal (a repeat is no further section)"
-    };
-    format!("{} of {of}; at least {needed} required", count(pairs, "pair"))
-}
-
 /// The groups of a quantity with too few pairs.
 pub fn too_few(
     plan: &Plan,
@@ -58,29 +47,30 @@ pub fn too_few(
     let mut found = Vec::new();
     for minimum in &quantity.minimum_of_groups {
         for part in parts(plan, Grouped::values(quantity), &minimum.scope, members, facts) {
-            let (says, inside) = match part.members(facts, members) {
+            let (reason, inside) = match part.members(facts, members) {
                 Ok(inside) => {
                     let pairs = pairs(plan, &inside);
                     if pairs >= minimum.needed {
                         continue;
                     }
-                    (in_words(pairs, inside.len(), minimum.needed), inside)
+                    let (rows, minimum) = (inside.len(), minimum.needed);
+                    (Reason::TooFewPairs { pairs, rows, minimum }, inside)
                 }
                 Err(reason) => (reason, Vec::new()),
             };
             let rows = inside.iter().map(|member| std::ptr::from_ref(member.row)).collect();
-            found.push(TooFew { group: part.scope(), says, rows });
+            found.push(TooFew { group: part.scope(), reason, rows });
         }
     }
     found
 }
 
 /// Why the quantity is not assessable: the first of its groups in full.
-pub fn reason(too_few: &[TooFew]) -> Option<String> {
+pub fn reason(too_few: &[TooFew]) -> Option<Reason> {
     let (first, others) = too_few.split_first()?;
-    let more = match others.len() {
-        0 => String::new(),
-        others => format!("; also too few in {}", count(others, "other group")),
-    };
-    Some(format!("{}: {}{more}", first.group, first.says))
+    Some(Reason::TooFewInGroups {
+        group: first.group.to_string(),
+        reason: Box::new(first.reason.clone()),
+        others: others.len(),
+    })
 }

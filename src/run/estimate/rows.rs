@@ -6,10 +6,9 @@ use super::minima::{self, TooFew};
 use super::table::Member;
 use crate::check::constant;
 use crate::check::plan::{Evaluation, Plan, Quantity, Records, Valued};
-use crate::metrics::rounded;
+use crate::result::Reason;
 use crate::run::sections::{Facts, Unit};
 use crate::run::values::SectionValues;
-use crate::run::words::count;
 
 /// The sections that are used, with their values.
 pub type Used<'a> = [(&'a Unit, &'a SectionValues)];
@@ -29,7 +28,7 @@ pub fn members<'a>(quantity: &'a Quantity, index: usize, used: &Used<'a>) -> Vec
 pub struct Rows<'a> {
     pub members: Vec<Member<'a>>,
     pub too_few: Vec<TooFew>,
-    pub reason: Option<String>,
+    pub reason: Option<Reason>,
 }
 
 impl<'a> Rows<'a> {
@@ -40,7 +39,7 @@ impl<'a> Rows<'a> {
     }
 
     /// The rows, for a quantity or limit that uses numbers of this one.
-    pub fn usable(&'a self) -> Result<&'a [Member<'a>], String> {
+    pub fn usable(&'a self) -> Result<&'a [Member<'a>], Reason> {
         self.reason.clone().map_or(Ok(&self.members), Err)
     }
 }
@@ -60,18 +59,12 @@ fn rows<'a>(
     let reason = if impossible.is_some() {
         impossible
     } else if members.is_empty() && quantity.evaluation.of_repeats() {
-        Some(
-            "no section with values repeats another one (column `repeat of` of the section table)"
-                .into(),
-        )
+        Some(Reason::NoRepeats)
     } else if recorded < quantity.minimum_signals {
-        Some(format!(
-            "{} recorded; at least {} required",
-            count(recorded, "signal"),
-            quantity.minimum_signals
-        ))
+        Some(Reason::TooFewSignals { signals: recorded, minimum: quantity.minimum_signals })
     } else if pairs < quantity.minimum_pairs {
-        Some(minima::in_words(pairs, members.len(), quantity.minimum_pairs))
+        let (rows, minimum) = (members.len(), quantity.minimum_pairs);
+        Some(Reason::TooFewPairs { pairs, rows, minimum })
     } else {
         minima::reason(&too_few).or_else(|| whatever_the_records(quantity, &members, facts))
     };
@@ -84,7 +77,7 @@ fn whatever_the_records(
     quantity: &Quantity,
     members: &[Member<'_>],
     facts: &Facts,
-) -> Option<String> {
+) -> Option<Reason> {
     let (first, others) = members.split_first()?;
     if others.iter().any(|member| member.row.value != first.row.value) {
         return None;
@@ -107,32 +100,25 @@ fn whatever_the_records(
             Evaluation::Metric { .. } => None,
         }
     };
-    let says = || {
-        let value = rounded(quantity.unit.from_si(first.row.value));
-        format!(
-            "every value is {value}{} whatever the records are, with the data of these sections and vehicles",
-            quantity.unit.suffix()
-        )
+    let reason = || Reason::SameWhateverRecords {
+        value: quantity.unit.from_si(first.row.value),
+        unit: quantity.unit.text.clone(),
     };
-    members.iter().all(|member| fixed(member).is_some()).then(says)
+    members.iter().all(|member| fixed(member).is_some()).then(reason)
 }
 
 /// Why a quantity cannot be evaluated in some of the sections: the first of them in full.
-fn impossible(index: usize, used: &Used<'_>) -> Option<String> {
+fn impossible(index: usize, used: &Used<'_>) -> Option<Reason> {
     let of_section = |values: &SectionValues| {
         values
             .impossible
             .iter()
             .find(|(quantity, _)| *quantity == index)
-            .map(|(_, says)| says.clone())
+            .map(|(_, reason)| reason.clone())
     };
     let mut found =
         used.iter().filter_map(|(unit, values)| Some((&unit.name, of_section(values)?)));
-    let (name, says) = found.next()?;
-    let more = match found.count() {
-        0 => String::new(),
-        1 => "; the same holds for 1 other section".into(),
-        more => format!("; the same holds for {more} other sections"),
-    };
-    Some(format!("it cannot be evaluated in section {name}, {says}{more}"))
+    let (section, reason) = found.next()?;
+    let (section, reason) = (section.clone(), Box::new(reason));
+    Some(Reason::NotEvaluated { section, reason, others: found.count() })
 }

@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 
 use crate::check::plan::{Independent, Plan, Scalar};
+use crate::result::{OfVehicle, Reason, VehicleValue};
 use crate::run::sections::{Facts, Unit, Vehicle};
 use crate::run::values::Row;
 
@@ -17,7 +18,7 @@ pub struct Member<'a> {
 }
 
 /// The rows of every quantity, or the reason why they cannot be used.
-pub type Table<'a> = [Result<&'a [Member<'a>], String>];
+pub type Table<'a> = [Result<&'a [Member<'a>], Reason>];
 
 /// The index of the independent unit of each member.
 pub fn independent(plan: &Plan, members: &[Member<'_>]) -> Vec<usize> {
@@ -71,9 +72,9 @@ impl Facts {
     pub fn agreed<T: PartialEq>(
         &self,
         members: &[Member<'_>],
-        mut of: impl FnMut(&Vehicle) -> Result<T, String>,
-        shown: impl Fn(&T) -> String,
-    ) -> Result<T, String> {
+        mut of: impl FnMut(&Vehicle) -> Result<T, Reason>,
+        shown: impl Fn(T) -> VehicleValue,
+    ) -> Result<T, Reason> {
         let mut found: Vec<(&Vehicle, T)> = Vec::new();
         for vehicle in self.among(members) {
             let value = of(vehicle).map_err(|reason| vehicle.told(reason))?;
@@ -82,14 +83,12 @@ impl Facts {
             }
         }
         if found.len() > 1 {
-            let each: Vec<String> = found
-                .iter()
-                .map(|(vehicle, value)| {
-                    format!("{} for {}", shown(value), vehicle.of.as_deref().unwrap_or_default())
-                })
-                .collect();
-            return Err(format!("it depends on the vehicle: {}", each.join(", ")));
+            let each = |(vehicle, value): (&Vehicle, T)| OfVehicle {
+                value: shown(value),
+                vehicle: vehicle.of.clone().unwrap_or_default(),
+            };
+            return Err(Reason::DependsOnVehicle { values: found.into_iter().map(each).collect() });
         }
-        found.pop().map(|(_, value)| value).ok_or_else(|| "there is no vehicle".to_string())
+        found.pop().map(|(_, value)| value).ok_or(Reason::NoVehicle)
     }
 }

@@ -16,6 +16,7 @@ use crate::data::record::Wanted;
 use crate::data::{Campaign, Campaigns};
 use crate::graph::{Graph, Operation};
 use crate::problem::{Problem, Problems};
+use crate::result::Reason;
 use crate::result::found::{FoundInRun, FoundSections, Rejected, Stretch};
 use crate::run::reduce::Progress;
 use crate::run::sections::Facts;
@@ -108,7 +109,7 @@ pub fn find(
                 "; of {} places, {} were rejected first by: {}",
                 told.tried(),
                 most.places,
-                most.reason
+                most.reason.text()
             )
         });
         let says = format!("no section was found in the runs of the campaign{why}");
@@ -269,9 +270,9 @@ fn in_run(
     rules: &Rules<'_>,
 ) -> Result<(Vec<Place>, FoundInRun), Problems> {
     let mut windows = Windows::open(plan, graph, campaign, run)?;
-    let reach = rules
-        .reach()
-        .map_err(|says| Problems(vec![Problem::error("find-length", says).at(&run.name.span)]))?;
+    let reach = rules.reach().map_err(|reason| {
+        Problems(vec![Problem::error("find-length", reason.text()).at(&run.name.span)])
+    })?;
     let piece = PIECE * (reach.before + reach.after);
     windows.fill(f64::NEG_INFINITY)?;
     let start = windows.start();
@@ -366,7 +367,7 @@ const WHOLE: f64 = 1e-9;
 
 /// Which places were rejected, by the first reason.
 struct Rejections {
-    reasons: Vec<String>,
+    reasons: Vec<Reason>,
     step: f64,
     tried: usize,
     counts: Vec<usize>,
@@ -374,7 +375,7 @@ struct Rejections {
 }
 
 impl Rejections {
-    fn new(reasons: Vec<String>, step: f64) -> Self {
+    fn new(reasons: Vec<Reason>, step: f64) -> Self {
         Self { counts: vec![0; reasons.len()], reasons, step, tried: 0, stretches: Vec::new() }
     }
 

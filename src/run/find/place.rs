@@ -8,6 +8,7 @@ use crate::check::values::Values;
 use crate::data::Campaign;
 use crate::data::campaign::Run;
 use crate::graph::{Graph, InputNode};
+use crate::result::Reason;
 use crate::run::sections::{Extent, Facts, Known, Vehicle, of_run};
 
 /// How often a length that depends on data of the section is computed again from those of the new
@@ -26,16 +27,16 @@ const DIGITS: usize = 8;
 struct Rounded<'a>(Known<'a>);
 
 impl Values for Rounded<'_> {
-    fn vehicle(&self, index: usize) -> Result<Scalar, String> {
+    fn vehicle(&self, index: usize) -> Result<Scalar, Reason> {
         self.0.vehicle(index)
     }
-    fn column(&self, index: usize) -> Result<Scalar, String> {
+    fn column(&self, index: usize) -> Result<Scalar, Reason> {
         self.0.column(index)
     }
-    fn extent(&self) -> Result<Extent, String> {
+    fn extent(&self) -> Result<Extent, Reason> {
         self.0.extent()
     }
-    fn input(&self, index: usize) -> Result<f64, String> {
+    fn input(&self, index: usize) -> Result<f64, Reason> {
         self.0.input(index)
     }
     fn rounding(&self) -> f64 {
@@ -50,7 +51,7 @@ pub struct Place {
     pub end: f64,
     pub zone: Option<String>,
     /// One for each [`Plan::columns`].
-    pub columns: Vec<Result<Scalar, String>>,
+    pub columns: Vec<Result<Scalar, Reason>>,
     /// By which it is preferred.
     pub value: f64,
 }
@@ -86,10 +87,10 @@ pub struct Rules<'a> {
     pub find: &'a Find,
     pub vehicle: &'a Vehicle,
     /// What the campaign says of the run, one for each column; an error where it must be found.
-    stated: Vec<Result<Scalar, String>>,
+    stated: Vec<Result<Scalar, Reason>>,
 }
 
-type Columns = Vec<Result<Scalar, String>>;
+type Columns = Vec<Result<Scalar, Reason>>;
 
 impl<'a> Rules<'a> {
     pub fn new(
@@ -115,45 +116,37 @@ impl<'a> Rules<'a> {
     }
 
     /// Why a place may be rejected, in the order in which it is looked at.
-    pub fn reasons(&self) -> Vec<String> {
-        let first =
-            ["the record ends too close".to_string(), "in no zone".to_string(), self.no_length()];
-        first
+    pub fn reasons(&self) -> Vec<Reason> {
+        let condition = |condition: &FindCondition| Reason::ConditionOfSearch {
+            condition: condition.title.clone(),
+        };
+        [Reason::RecordEnds, Reason::InNoZone, self.no_length()]
             .into_iter()
-            .chain(self.find.conditions.iter().map(|condition| condition.title.clone()))
+            .chain(self.find.conditions.iter().map(condition))
             .collect()
     }
 
     /// Why a length has no value: the vehicle data that are not stated, with the zones that need
     /// them.
-    fn no_length(&self) -> String {
-        let (mut zones, mut keys): (Vec<&str>, Vec<&str>) = (Vec::new(), Vec::new());
+    fn no_length(&self) -> Reason {
+        let (mut zones, mut keys): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
         for zone in self.zones() {
             let mut lacking = Vec::new();
             self.length_of(zone).into_iter().for_each(|length| {
                 length.visit(&mut |part| match part.kind {
                     Kind::Vehicle(index) if self.vehicle.data[index].is_err() => {
-                        lacking.push(self.plan.vehicle[index].key.as_str())
+                        lacking.push(self.plan.vehicle[index].key.clone())
                     }
                     _ => {}
                 });
             });
             if !lacking.is_empty() {
-                zones.extend(zone.map(|zone| zone.name.as_str()));
+                zones.extend(zone.map(|zone| zone.name.clone()));
             }
-            let new: Vec<&str> = lacking.into_iter().filter(|key| !keys.contains(key)).collect();
+            let new: Vec<String> = lacking.into_iter().filter(|key| !keys.contains(key)).collect();
             keys.extend(new);
         }
-        if keys.is_empty() {
-            return "the length has no value".to_string();
-        }
-        let keys = keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(" and ");
-        let of = if zones.is_empty() {
-            String::new()
-        } else {
-            format!(" of zone {}", zones.join(" and "))
-        };
-        format!("the length{of} has no value: the vehicle file does not state {keys}")
+        Reason::LengthWithoutValue { zones, keys }
     }
 
     fn zones(&self) -> Vec<Option<&'a Zone>> {
@@ -174,7 +167,7 @@ impl<'a> Rules<'a> {
 
     /// # Errors
     /// A length without an upper bound.
-    pub fn reach(&self) -> Result<Reach, String> {
+    pub fn reach(&self) -> Result<Reach, Reason> {
         let known = Known::vehicle(self.vehicle);
         let mut longest = 0.0_f64;
         for zone in self.zones() {
@@ -183,9 +176,7 @@ impl<'a> Rules<'a> {
                 (Ok(length), _) => longest.max(length),
                 (Err(_), Possible::Number(_, most)) if most.is_finite() => longest.max(most),
                 (Err(reason), _) => {
-                    return Err(format!(
-                        "the length of a found section has no upper bound: {reason}"
-                    ));
+                    return Err(Reason::LengthWithoutBound { reason: Box::new(reason) });
                 }
             };
         }
@@ -201,7 +192,7 @@ impl<'a> Rules<'a> {
         &'k self,
         columns: &'k Columns,
         extent: Extent,
-        inputs: &'k [Result<f64, String>],
+        inputs: &'k [Result<f64, Reason>],
     ) -> Known<'k> {
         Known {
             columns: Some(columns),

@@ -9,6 +9,7 @@ use crate::data::RecordKind;
 use crate::graph::{Graph, InputNode, NodeId, Operation};
 use crate::metrics::percentile::Method;
 use crate::problem::{Problem, Problems};
+use crate::result::Reason;
 use crate::run::record::{NodeValue, Opened, Samples};
 use crate::run::sections::{Extent, Known, Vehicle, needed};
 
@@ -87,7 +88,7 @@ pub struct Signals<'a> {
     graph: &'a Graph,
     own: Side,
     method: Method,
-    samples: Vec<(Source, NodeId, Result<Samples, String>)>,
+    samples: Vec<(Source, NodeId, Result<Samples, Reason>)>,
     /// What each record covers.
     covered: Vec<(Source, Extent)>,
 }
@@ -119,8 +120,8 @@ impl<'a> Signals<'a> {
                 continue;
             }
             let known = Known::vehicle(vehicle);
-            let failed = |says: String| {
-                let says = format!("`{}`: {says}", window.shown());
+            let failed = |reason: Reason| {
+                let says = format!("`{}`: {}", window.shown(), reason.text());
                 Problems(vec![Problem::error("find-signal", says)])
             };
             let needed = needed(graph, &wanted, &known).map_err(failed)?;
@@ -131,7 +132,7 @@ impl<'a> Signals<'a> {
                 let samples = match found {
                     NodeValue::Samples(samples) => Ok(samples),
                     NodeValue::Failed(reason) => Err(reason),
-                    NodeValue::Number(..) => Err("a number, and not a signal".to_string()),
+                    NodeValue::Number(..) => Err(Reason::Internal),
                 };
                 signals.samples.push((*of, id, samples));
             }
@@ -140,7 +141,7 @@ impl<'a> Signals<'a> {
     }
 
     /// The values that an expression takes from the part of the run.
-    pub fn values(&self, inputs: &[InputNode], extent: Extent) -> Vec<Result<f64, String>> {
+    pub fn values(&self, inputs: &[InputNode], extent: Extent) -> Vec<Result<f64, Reason>> {
         inputs.iter().map(|input| self.value(input, extent)).collect()
     }
 
@@ -154,29 +155,28 @@ impl<'a> Signals<'a> {
         inputs.iter().all(|input| covers(source(self.graph, input, self.own)))
     }
 
-    fn value(&self, input: &InputNode, extent: Extent) -> Result<f64, String> {
+    fn value(&self, input: &InputNode, extent: Extent) -> Result<f64, Reason> {
         let node = &self.graph.nodes[input.node];
         let Operation::Reduce(reducer) = &node.operation else {
-            return Err("no value of a signal".into());
+            return Err(Reason::Internal);
         };
         let of = source(self.graph, input, self.own);
         let (base, inside) = peeled(self.graph, node.inputs[0]);
         let samples = self.samples(of, base)?;
-        let undefined = || format!("the {} is not defined", reducer.in_words());
         // Cut only: the common case needs no copy.
         if let ([None], 1) = (inside.as_slice(), node.inputs.len()) {
             let range = samples.along.inside(extent);
             if range.is_empty() {
-                return Err("there is no sample here".into());
+                return Err(Reason::NoSampleInside);
             }
             let value = reducer.run(
                 &samples.along.axis[range.clone()],
                 &samples.values[range],
                 self.method,
             );
-            return value.filter(|value| value.is_finite()).ok_or_else(undefined);
+            return value.filter(|value| value.is_finite()).ok_or(Reason::NoValue);
         }
-        let processed = |node: NodeId| -> Result<Samples, String> {
+        let processed = |node: NodeId| -> Result<Samples, Reason> {
             let (base, inside) = peeled(self.graph, node);
             let mut samples = self.samples(of, base)?.clone();
             for step in inside {
@@ -193,10 +193,10 @@ impl<'a> Signals<'a> {
         reducer
             .run(axis, &samples.values, self.method)
             .filter(|value| value.is_finite())
-            .ok_or_else(undefined)
+            .ok_or(Reason::NoValue)
     }
 
-    fn samples(&self, of: Source, node: NodeId) -> Result<&Samples, String> {
+    fn samples(&self, of: Source, node: NodeId) -> Result<&Samples, Reason> {
         match self
             .samples
             .iter()
@@ -205,7 +205,7 @@ impl<'a> Signals<'a> {
         {
             Some(Ok(samples)) => Ok(samples),
             Some(Err(reason)) => Err(reason.clone()),
-            None => Err("the signal was not evaluated".into()),
+            None => Err(Reason::SignalMissing),
         }
     }
 }

@@ -8,6 +8,7 @@ use crate::data::campaign::{OFFSET, RUN_COLUMN, Run};
 use crate::data::table::Table;
 use crate::data::write::table_csv;
 use crate::problem::{Problem, Problems, nearest};
+use crate::result::Reason;
 use crate::run::sections::{of_run, trimmed};
 
 /// What the table of found sections is called in messages: it is in no file.
@@ -29,9 +30,9 @@ pub fn check_facts(plan: &Plan, find: &Find, campaign: &Campaign, problems: &mut
     for datum in stated() {
         for run in campaign.runs() {
             let Some(fact) = run.fact(&datum.key) else { continue };
-            if let Err(says) = of_run(datum, run, &campaign.short_name.value) {
+            if let Err(reason) = of_run(datum, run, &campaign.short_name.value) {
                 problems.push(
-                    Problem::error("wrong-run-data", says)
+                    Problem::error("wrong-run-data", reason.text())
                         .at(&fact.value.span)
                         .also(&datum.span, "what the protocol knows"),
                 );
@@ -104,7 +105,7 @@ pub fn table(
     Table::of_text(NAME, &table_csv(&rows))
 }
 
-fn cell(datum: &Datum, value: &Result<Scalar, String>) -> String {
+fn cell(datum: &Datum, value: &Result<Scalar, Reason>) -> String {
     match (value, &datum.kind) {
         (Ok(Scalar::Number(value)), DatumKind::Number(unit)) => trimmed(unit.from_si(*value)),
         (Ok(Scalar::Number(value)), _) => trimmed(*value),

@@ -7,6 +7,7 @@ use crate::catalog::Statistic;
 use crate::check::plan::{Keep, Plan, Scalar};
 use crate::metrics::moments::{Moment, Moments, Summed};
 use crate::metrics::reduction::{over, reduced};
+use crate::result::Reason;
 use crate::result::study::Reduction;
 use crate::run::sections::{Facts, Unit};
 use crate::run::values::SectionValues;
@@ -25,10 +26,7 @@ pub fn keep(
         before.cloned().unwrap_or_else(|| of(keep, &pool(plan, facts, units, values), units));
     let left_out: HashSet<&String> = reduction.left_out.iter().collect();
     for unit in units.iter_mut().filter(|unit| left_out.contains(&unit.name)) {
-        unit.refuse(
-            format!("left out by the reduction to {}, which keeps the scatter", keep.words),
-            false,
-        );
+        unit.refuse(Reason::LeftOutByReduction { kept: keep.words.clone() }, false);
     }
     Some(reduction)
 }

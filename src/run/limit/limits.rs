@@ -7,7 +7,10 @@ use crate::check::plan::{Estimate, EstimateKind, Limit, Plan, Quantity, Report, 
 use crate::check::values::Values;
 use crate::graph::{Graph, LimitNodes, Operation, QuantityNodes};
 use crate::metrics::statistics::{Divisor, mean, standard_deviation};
-use crate::result::{Outside, RegressionFigure, RulePlace, Sample, Scope, StatisticResult};
+use crate::result::{
+    LimitNotMet, Outside, Reason, RegressionFigure, RulePlace, Sample, Scope, StatisticResult,
+    Subject, VehicleValue,
+};
 use crate::run::estimate::{
     Closeness, Group, Grouped, Member, Part, Table, TooFew, count_independent, parts,
 };
@@ -24,7 +27,7 @@ pub struct Estimated<'a> {
     pub part: Part<'a>,
     pub members: Vec<Member<'a>>,
     /// In SI; `None` for limits of each value.
-    pub value: Result<Option<f64>, String>,
+    pub value: Result<Option<f64>, Reason>,
     pub interval: Option<(f64, f64)>,
     pub regression: Option<RegressionFigure>,
     /// In SI.
@@ -36,7 +39,7 @@ pub struct Estimated<'a> {
 impl<'a> Estimated<'a> {
     /// Of a group without an estimate.
     pub fn empty(part: Part<'a>, members: Vec<Member<'a>>) -> Self {
-        let value = Err("no value is available".into());
+        let value = Err(Reason::NoValueInGroup);
         Self {
             part,
             members,
@@ -49,12 +52,11 @@ impl<'a> Estimated<'a> {
     }
 }
 
-/// An estimate compared with its limit, and the sentence for the verdict where the limit is not
-/// met.
+/// An estimate compared with its limit, and the reason for the verdict where the limit is not met.
 #[derive(Debug)]
 pub struct Compared {
     pub result: StatisticResult,
-    pub fails: Option<String>,
+    pub fails: Option<Reason>,
 }
 
 /// Rows and rules of one quantity.
@@ -69,14 +71,14 @@ pub struct Judging<'a> {
     pub too_few: &'a [TooFew],
 }
 
-fn applies(limit: &Limit, vehicle: &Vehicle) -> Result<bool, String> {
+fn applies(limit: &Limit, vehicle: &Vehicle) -> Result<bool, Reason> {
     limit.only_when.as_ref().map_or(Ok(true), |condition| flag(condition, &Known::vehicle(vehicle)))
 }
 
 /// Whether a limit applies to the vehicles of some rows.
-fn applies_to(limit: &Limit, facts: &Facts, members: &[Member<'_>]) -> Result<bool, String> {
-    let words = |applies: &bool| if *applies { "applies" } else { "does not apply" }.to_string();
-    facts.agreed(members, |vehicle| applies(limit, vehicle), words)
+fn applies_to(limit: &Limit, facts: &Facts, members: &[Member<'_>]) -> Result<bool, Reason> {
+    let shown = |applies| VehicleValue::Applies { applies };
+    facts.agreed(members, |vehicle| applies(limit, vehicle), shown)
 }
 
 /// The rows of a group that a limit applies to: every value by itself has a vehicle of its own.
@@ -87,7 +89,7 @@ pub fn applying<'m>(
     limit: &Limit,
     facts: &Facts,
     mut members: Vec<Member<'m>>,
-) -> Result<Option<Vec<Member<'m>>>, String> {
+) -> Result<Option<Vec<Member<'m>>>, Reason> {
     if !matches!(limit.estimate.kind, EstimateKind::Each) || members.is_empty() {
         return Ok(applies_to(limit, facts, &members)?.then_some(members));
     }
@@ -105,7 +107,7 @@ impl<'a> Judging<'a> {
     ///
     /// # Errors
     /// It cannot be determined whether the limit applies.
-    pub fn estimate(&self, limit: &'a Limit) -> Result<Vec<Estimated<'a>>, String> {
+    pub fn estimate(&self, limit: &'a Limit) -> Result<Vec<Estimated<'a>>, Reason> {
         match applies_to(limit, self.facts, &[]) {
             Ok(false) => return Ok(Vec::new()),
             Err(reason) if self.facts.vehicles.len() == 1 => return Err(reason),
@@ -134,7 +136,7 @@ impl<'a> Judging<'a> {
 
     /// `None` of a group whose vehicle the limit does not apply to.
     fn of_part(&self, limit: &Limit, part: Part<'a>) -> Option<Estimated<'a>> {
-        let none = |reason: String| Estimated {
+        let none = |reason: Reason| Estimated {
             value: Err(reason),
             ..Estimated::empty(part.clone(), Vec::new())
         };
@@ -145,9 +147,7 @@ impl<'a> Judging<'a> {
             Ok(Ok(Some(members))) => members,
             Ok(Ok(None)) => return None,
             Ok(Err(reason)) => {
-                return Some(none(format!(
-                    "it cannot be determined whether the limit applies: {reason}"
-                )));
+                return Some(none(Reason::LimitApplicationUnknown { reason: Box::new(reason) }));
             }
             Err(reason) => return Some(none(reason)),
         };
@@ -210,14 +210,13 @@ impl<'a> Judging<'a> {
     pub fn against(
         &self,
         limit: &'a Limit,
-        estimated: Result<Vec<Estimated<'a>>, String>,
+        estimated: Result<Vec<Estimated<'a>>, Reason>,
     ) -> Vec<Compared> {
         match estimated {
             Ok(groups) => groups.iter().map(|group| self.of_group(limit, group)).collect(),
             Err(reason) => {
                 let mut result = self.empty(limit, Scope::default(), &[]);
-                result.reason =
-                    Some(format!("it cannot be determined whether the limit applies: {reason}"));
+                result.reason = Some(Reason::LimitApplicationUnknown { reason: Box::new(reason) });
                 vec![Compared { result, fails: None }]
             }
         }
@@ -270,7 +269,7 @@ impl<'a> Judging<'a> {
         match outcome {
             Ok(holds) => {
                 result.holds = Some(holds);
-                fails = (!holds).then(|| sentence(self.quantity, limit, &result));
+                fails = (!holds).then(|| not_met(self.quantity, limit, &result));
             }
             Err(reason) => result.reason = Some(reason),
         }
@@ -292,13 +291,11 @@ impl<'a> Judging<'a> {
         group: &Estimated<'a>,
         value: f64,
         result: &mut StatisticResult,
-    ) -> Result<bool, String> {
+    ) -> Result<bool, Reason> {
         let show = |value: f64| self.unit(limit).from_si(value);
         result.value = Some(show(value));
         result.interval = group.interval.map(|(low, high)| (show(low), show(high)));
-        let bound = self
-            .common_bound(limit, &group.part, &group.members)
-            .map_err(|reason| no_limit(&reason))?;
+        let bound = self.common_bound(limit, &group.part, &group.members).map_err(no_limit)?;
         result.limit = Some(show(bound));
         let (normalised, holds) = against(value, bound, limit.at_least);
         result.normalised = normalised;
@@ -313,7 +310,7 @@ impl<'a> Judging<'a> {
         limit: &'a Limit,
         members: &[Member<'_>],
         result: &mut StatisticResult,
-    ) -> Result<bool, String> {
+    ) -> Result<bool, Reason> {
         let mut worst: Option<(bool, f64, f64, f64)> = None;
         let mut all_hold = true;
         for member in members {
@@ -323,7 +320,7 @@ impl<'a> Judging<'a> {
             let part = Part::of_section(self.plan, limit, unit);
             let bound = self
                 .bound(limit, &part, &[*member], &unit.known(self.facts))
-                .map_err(|reason| format!("section {}: {}", unit.name, no_limit(&reason)))?;
+                .map_err(|reason| no_limit(reason).about(Subject::Section, &unit.name))?;
             let value = member.row.value;
             let (normalised, holds) = against(value, bound, limit.at_least);
             all_hold &= holds;
@@ -334,7 +331,7 @@ impl<'a> Judging<'a> {
                 worst = Some((holds, share, value, bound));
             }
         }
-        let (_, share, value, bound) = worst.ok_or("there is no value")?;
+        let (_, share, value, bound) = worst.ok_or(Reason::NoValue)?;
         result.value = Some(self.quantity.unit.from_si(value));
         result.limit = Some(self.quantity.unit.from_si(bound));
         result.normalised = share.is_finite().then_some(share);
@@ -347,22 +344,20 @@ impl<'a> Judging<'a> {
         limit: &Limit,
         part: &Part<'_>,
         members: &[Member<'_>],
-    ) -> Result<f64, String> {
+    ) -> Result<f64, Reason> {
         let unit = self.unit(limit);
         let of_vehicle =
             |vehicle: &Vehicle| self.bound(limit, part, members, &Known::vehicle(vehicle));
-        let found = self.facts.agreed(members, of_vehicle, |bound| {
-            format!("{}{}", significant(unit.from_si(*bound), 4), unit.suffix())
+        let found = self.facts.agreed(members, of_vehicle, |bound| VehicleValue::Amount {
+            value: unit.from_si(bound),
+            unit: unit.text.clone(),
         });
-        found.map_err(|reason| {
-            if self.facts.vehicles.len() > 1 {
-                format!(
-                    "{reason}; give each its own: `for each {}`",
-                    if self.facts.by_campaign { "campaign" } else { "state" }
-                )
-            } else {
-                reason
-            }
+        found.map_err(|reason| match self.facts.vehicles.len() {
+            1 => reason,
+            _ => Reason::GiveEachItsOwn {
+                reason: Box::new(reason),
+                campaigns: self.facts.by_campaign,
+            },
         })
     }
 
@@ -373,7 +368,7 @@ impl<'a> Judging<'a> {
         part: &Part<'_>,
         members: &[Member<'_>],
         known: &Known<'_>,
-    ) -> Result<f64, String> {
+    ) -> Result<f64, Reason> {
         let group = self.group(members);
         Bounds { quantity: self.quantity, part, group, known }.of(limit, 0)
     }
@@ -384,61 +379,17 @@ pub fn rule_place(span: &Span) -> RulePlace {
     RulePlace { file: span.source.file_name(), line: span.line() }
 }
 
-/// The sentence of a limit that is not met: `Y_qst: mean 4.33 kN exceeds the limit 3.33 kN by 30
-/// %`.
-fn sentence(quantity: &Quantity, limit: &Limit, result: &StatisticResult) -> String {
-    let scope = if result.scope.is_all() { String::new() } else { format!(" ({})", result.scope) };
-    let unit = if result.unit == "-" { String::new() } else { format!(" {}", result.unit) };
-    let (Some(value), Some(bound)) = (result.value, result.limit) else {
-        return format!("{}: {}{scope} does not meet its limit", quantity.id, result.title);
-    };
-    let (shown, shown_bound) = apart(value, bound);
-    let what = format!("{}: {}{scope} {shown}{unit}", quantity.id, result.title);
-    if limit.at_least {
-        return format!("{what} is below the limit {shown_bound}{unit}");
-    }
-    let of = if value < 0.0 { "exceeds in magnitude the limit" } else { "exceeds the limit" };
-    format!("{what} {of} {shown_bound}{unit}{}", excess(value.abs() / bound))
-}
-
-/// The excess as text, such as ` by 30 %`; empty where the ratio is not meaningful.
-fn excess(ratio: f64) -> String {
-    let percent = 100.0 * (ratio - 1.0);
-    match percent {
-        _ if !percent.is_finite() || percent <= 0.0 => String::new(),
-        _ if percent < 0.1 => " by less than 0.1 %".into(),
-        _ if percent < 10.0 => format!(" by {percent:.1} %"),
-        _ if percent < 1000.0 => format!(" by {percent:.0} %"),
-        _ => format!(", {ratio:.0} times the limit"),
-    }
-}
-
-/// Value and limit with three significant digits, or with more if the rounded texts would be equal
-/// or in the wrong order.
-fn apart(value: f64, bound: f64) -> (String, String) {
-    let read = |text: &str| text.replace('\u{2212}', "-").parse::<f64>().unwrap_or(f64::NAN).abs();
-    let shown = |digits: usize| (significant(value, digits), significant(bound, digits));
-    let right = |(a, b): &(String, String)| {
-        (read(a) > read(b)) == (value.abs() > bound.abs()) && read(a) != read(b)
-    };
-    (LEAST_DIGITS..MOST_DIGITS).map(shown).find(right).unwrap_or_else(|| shown(MOST_DIGITS))
-}
-
-/// Significant digits of a value in a sentence; more are used close to the limit.
-const LEAST_DIGITS: usize = 3;
-const MOST_DIGITS: usize = 12;
-/// Smaller numbers have a power of ten: zeros are hard to count.
-const SMALLEST: f64 = 1e-4;
-
-fn significant(value: f64, digits: usize) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    if value.abs() < SMALLEST {
-        return format!("{value:.*e}", digits - 1).replace('-', "\u{2212}");
-    }
-    let decimals = (digits as f64 - 1.0 - value.abs().log10().floor()).clamp(0.0, 17.0) as usize;
-    format!("{value:.decimals$}").replace('-', "\u{2212}")
+/// Why a limit is not met.
+fn not_met(quantity: &Quantity, limit: &Limit, result: &StatisticResult) -> Reason {
+    let reason = Reason::LimitNotMet(LimitNotMet {
+        estimate: result.title.clone(),
+        scope: result.scope.told(),
+        value: result.value,
+        limit: result.limit,
+        unit: result.unit.clone(),
+        at_least: limit.at_least,
+    });
+    reason.about(Subject::Quantity, &quantity.id)
 }
 
 /// Whether an interval contains values on both sides of a limit, so that the data do not decide.
@@ -448,8 +399,8 @@ fn spans((low, high): (f64, f64), bound: f64, at_least: bool) -> bool {
     inside(bound) || !at_least && inside(-bound)
 }
 
-fn no_limit(reason: &str) -> String {
-    format!("its limit cannot be evaluated: {reason}")
+fn no_limit(reason: Reason) -> Reason {
+    Reason::NoLimit { reason: Box::new(reason) }
 }
 
 /// Share of the limit used, and whether the limit is met. For "at least", the share is limit /
@@ -475,9 +426,9 @@ pub struct Bounds<'a> {
 impl Bounds<'_> {
     /// The limit with its factors. A reference to another statistic means the limit of that
     /// statistic, with its factors.
-    pub fn of(&self, limit: &Limit, depth: usize) -> Result<f64, String> {
+    pub fn of(&self, limit: &Limit, depth: usize) -> Result<f64, Reason> {
         if depth > self.quantity.limits.len() {
-            return Err("it depends on itself".into());
+            return Err(Reason::LimitDependsOnItself);
         }
         let taken = self.group.taken(&limit.bound);
         let names = Named { bounds: self, depth, taken: &taken };
@@ -488,13 +439,13 @@ impl Bounds<'_> {
             }
         }
         if value <= 0.0 && !limit.at_least {
-            return Err("it is not above zero".into());
+            return Err(Reason::LimitNotPositive);
         }
         Ok(value)
     }
 
     /// The limit of another statistic: one for just this group has priority over one for all.
-    fn of_statistic(&self, name: &str, depth: usize) -> Result<f64, String> {
+    fn of_statistic(&self, name: &str, depth: usize) -> Result<f64, Reason> {
         let mut found: Option<(Closeness, &Limit)> = None;
         for limit in self.quantity.limits.iter().filter(|limit| limit.estimate.name == name) {
             let Some(closeness) = self.part.covered_by(&limit.scope) else { continue };
@@ -504,7 +455,7 @@ impl Bounds<'_> {
                 found = Some((closeness, limit));
             }
         }
-        let (_, limit) = found.ok_or_else(|| format!("{name} has no limit here"))?;
+        let (_, limit) = found.ok_or_else(|| Reason::NoLimitOf { estimate: name.into() })?;
         self.of(limit, depth)
     }
 }
@@ -514,31 +465,31 @@ struct Named<'a> {
     bounds: &'a Bounds<'a>,
     depth: usize,
     /// The numbers that the limit takes from the group.
-    taken: &'a [Result<f64, String>],
+    taken: &'a [Result<f64, Reason>],
 }
 
 impl Values for Named<'_> {
-    fn vehicle(&self, index: usize) -> Result<Scalar, String> {
+    fn vehicle(&self, index: usize) -> Result<Scalar, Reason> {
         self.bounds.known.vehicle(index)
     }
 
-    fn column(&self, index: usize) -> Result<Scalar, String> {
+    fn column(&self, index: usize) -> Result<Scalar, Reason> {
         self.bounds.known.column(index)
     }
 
-    fn extent(&self) -> Result<(f64, f64), String> {
+    fn extent(&self) -> Result<(f64, f64), Reason> {
         self.bounds.known.extent()
     }
 
-    fn input(&self, index: usize) -> Result<f64, String> {
+    fn input(&self, index: usize) -> Result<f64, Reason> {
         self.taken.get(index).cloned().unwrap_or_else(|| self.bounds.known.input(index))
     }
 
-    fn sides(&self) -> Result<(f64, f64), String> {
+    fn sides(&self) -> Result<(f64, f64), Reason> {
         self.bounds.known.sides()
     }
 
-    fn limit_of(&self, statistic: &str) -> Result<f64, String> {
+    fn limit_of(&self, statistic: &str) -> Result<f64, Reason> {
         self.bounds.of_statistic(statistic, self.depth + 1)
     }
 }
@@ -562,17 +513,28 @@ pub fn compared(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) -> 
 mod tests {
     use super::*;
 
+    /// A limit that is not met, in words.
+    fn told(value: f64, limit: f64, at_least: bool) -> String {
+        let unit = "kN".to_owned();
+        let (estimate, scope) = ("mean".to_owned(), Some("zone 1".to_owned()));
+        let (value, limit) = (Some(value), Some(limit));
+        Reason::LimitNotMet(LimitNotMet { estimate, scope, value, limit, unit, at_least })
+            .text()
+            .to_string()
+    }
+
     #[test]
-    fn numbers_of_a_sentence_differ_where_the_values_do() {
-        assert_eq!(apart(0.06090123, 0.046_666_67), ("0.0609".into(), "0.0467".into()));
-        assert_eq!(apart(5.0001, 5.0), ("5.0001".into(), "5.0000".into()));
-        assert_eq!(apart(-12.34, 10.0), ("\u{2212}12.3".into(), "10.0".into()));
-        assert_eq!(excess(1.305), " by 30 %");
-        assert_eq!(
-            (excess(1.0004), excess(1.05), excess(f64::INFINITY)),
-            (" by less than 0.1 %".into(), " by 5.0 %".into(), String::new())
-        );
-        assert_eq!(excess(25.0), ", 25 times the limit");
+    fn the_excess_is_told_as_far_as_it_says_something() {
+        let exceeds = |value: f64, how: &str| {
+            assert_eq!(told(value, 10.0, false), format!("mean (zone 1) {how}"));
+        };
+        exceeds(13.05, "13.1 kN exceeds the limit 10.0 kN by 30 %");
+        exceeds(10.5, "10.5 kN exceeds the limit 10.0 kN by 5.0 %");
+        exceeds(10.004, "10.004 kN exceeds the limit 10.000 kN by less than 0.1 %");
+        exceeds(-12.34, "\u{2212}12.3 kN exceeds in magnitude the limit 10.0 kN by 23 %");
+        exceeds(250.0, "250 kN exceeds the limit 10.0 kN, 25 times the limit");
+        assert_eq!(told(3.0, 0.0, false), "mean (zone 1) 3.00 kN exceeds the limit 0 kN");
+        assert_eq!(told(3.0, 5.0, true), "mean (zone 1) 3.00 kN is below the limit 5.00 kN");
     }
 
     #[test]

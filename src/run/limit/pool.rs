@@ -11,7 +11,7 @@ use crate::check::plan::{
     Decision, EstimateKind, Kind, Limit, MinimumOfGroups, OfGroup, Plan, Quantity, Taking,
 };
 use crate::metrics::moments::{Moment, Moments};
-use crate::result::Scope;
+use crate::result::{Reason, Scope};
 use crate::run::estimate::{Group, Grouped, Member, Part, Rows, Table, Used, members, parts};
 use crate::run::sections::{Facts, Known, Unit, Vehicle};
 use crate::run::values::{Row, SectionValues};
@@ -37,7 +37,7 @@ pub struct Section {
     /// Index of the first section of its site; repeats have the same.
     pub site: usize,
     pub used: bool,
-    pub reason: Option<String>,
+    pub reason: Option<Reason>,
 }
 
 #[derive(Clone, Debug)]
@@ -89,7 +89,7 @@ pub struct Estimator {
     /// The rows of the group.
     rows: Arc<Vec<Numbered>>,
     /// The rows of every quantity, where the estimate uses numbers of other quantities.
-    others: Arc<Vec<Result<Vec<Numbered>, String>>>,
+    others: Arc<Vec<Result<Vec<Numbered>, Reason>>>,
     bound: f64,
 }
 
@@ -189,7 +189,7 @@ impl Estimator {
         let quantity = &plan.quantities[self.quantity];
         let limit = &quantity.limits[self.limit];
         let members = among(&self.rows, quantity, sections);
-        let others: Vec<Result<Vec<Member<'_>>, String>> = self
+        let others: Vec<Result<Vec<Member<'_>>, Reason>> = self
             .others
             .iter()
             .zip(&plan.quantities)
@@ -197,7 +197,7 @@ impl Estimator {
                 rows.as_ref().map(|rows| among(rows, quantity, sections)).map_err(Clone::clone)
             })
             .collect();
-        let table: Vec<Result<&[Member<'_>], String>> = others
+        let table: Vec<Result<&[Member<'_>], Reason>> = others
             .iter()
             .map(|rows| rows.as_ref().map(Vec::as_slice).map_err(Clone::clone))
             .collect();
@@ -225,15 +225,15 @@ impl FromSums<'_> {
     pub fn over(&self, total: Moments) -> Option<f64> {
         let Moments { n, x, .. } = total;
         let of = |moment: &Moment| match moment {
-            Moment::Deviation { ddof } if n <= *ddof => Err(String::new()),
-            _ if n < 1.0 => Err(String::new()),
+            Moment::Deviation { ddof } if n <= *ddof => Err(Reason::NoValue),
+            _ if n < 1.0 => Err(Reason::NoValue),
             Moment::Mean => Ok(self.centre + x / n),
             Moment::Deviation { ddof } => Ok((total.squares() / (n - ddof)).sqrt()),
             Moment::RootMeanSquare => {
                 Ok((total.squares() / n + (self.centre + x / n).powi(2)).sqrt())
             }
         };
-        let taken: Vec<Result<f64, String>> = self.taken.iter().map(of).collect();
+        let taken: Vec<Result<f64, Reason>> = self.taken.iter().map(of).collect();
         let value =
             number(&self.of.expr, &Known { inputs: &taken, ..Known::vehicle(self.vehicle) });
         value.ok().map(|value| value / self.bound).filter(|value| value.is_finite())
@@ -426,7 +426,7 @@ fn of_part(
     };
     let positions = part.positions(quantity);
     let shown =
-        |bound: Result<f64, String>| bound.ok().map(|bound| judging.unit(limit).from_si(bound));
+        |bound: Result<f64, Reason>| bound.ok().map(|bound| judging.unit(limit).from_si(bound));
     let bounds = if matches!(limit.estimate.kind, EstimateKind::Each) {
         let own = |unit: &Unit| match unit.fault {
             Some(_) => Some(f64::NAN),

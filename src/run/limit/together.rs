@@ -7,14 +7,14 @@ use std::sync::Arc;
 use super::limits::{Judging, compared};
 use crate::check::plan::{Chosen, Evaluation, Key, Limit, Pairing, Plan, Records, Side};
 use crate::graph::{Graph, QuantityNodes};
-use crate::result::RecordName;
+use crate::result::{Reason, RecordName};
 use crate::run::estimate::{Member, Table};
 
 /// Why limits that all simulations together meet do not decide the quantity: the first simulation
 /// that does not meet one by itself. Only for values of simulations, by themselves or with
 /// measurements, where neither quantity nor limit names a record: otherwise the protocol knows of
 /// several.
-pub fn fails_alone(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) -> Option<String> {
+pub fn fails_alone(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) -> Option<Reason> {
     let Judging { plan, quantity, members, table, .. } = *judging;
     let by_record = |limit: &Limit| limit.scope.each.contains(&Key::Record);
     let several = members.iter().any(|member| member.row.record.is_some());
@@ -39,12 +39,16 @@ pub fn fails_alone(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) 
             .into_iter()
             .filter(|compared| compared.result.scope.keys.iter().all(|(key, _)| key != "record"))
             .find_map(|compared| compared.fails)?;
-        let fails = fails.strip_prefix(&format!("{}: ", quantity.id)).map(str::to_string).unwrap_or(fails);
-        Some(format!(
-            "{} simulations together meet the limits, but {simulation} by itself does not: {fails}; add `for each record` to the limits, \
-             or certify one simulation at a time",
-            simulations.len()
-        ))
+        // The result is that of a quantity, which is not named once more.
+        let reason = match fails {
+            Reason::About { reason, .. } => reason,
+            other => Box::new(other),
+        };
+        Some(Reason::FailsAlone {
+            simulations: simulations.len(),
+            simulation: simulation.to_string(),
+            reason,
+        })
     })
 }
 

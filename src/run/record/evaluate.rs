@@ -11,6 +11,7 @@ use super::state::{NodeValue, State};
 use super::stretch::leading;
 use crate::check::plan::Plan;
 use crate::graph::{Graph, NodeId, Operation};
+use crate::result::Reason;
 use crate::run::sections::{Extent, Known};
 
 /// A record whose filters have run, to be cut at several places.
@@ -33,7 +34,7 @@ impl Held<'_> {
     }
 
     /// The part of the section that the shifted record covers.
-    fn covered(&self, shift: f64) -> Result<Extent, String> {
+    fn covered(&self, shift: f64) -> Result<Extent, Reason> {
         let (start, end) = self.state.extent;
         if shift == 0.0 {
             return Ok((start, end));
@@ -45,9 +46,7 @@ impl Held<'_> {
         let to = axis.last().map_or(end, |x| (x.min(last) + shift).min(end));
         let missing = (end - start) - (to - from);
         if missing > MOST_MISSING * (end - start) {
-            return Err(format!(
-                "shifted by {shift} along the axis, the record ends {missing:.3} short of the section"
-            ));
+            return Err(Reason::ShiftedOut { shift, missing });
         }
         Ok((from, to))
     }
@@ -57,7 +56,7 @@ impl Held<'_> {
     ///
     /// # Errors
     /// Where the moved record covers too little of the section; and the errors of an evaluation.
-    pub fn at(&self, shift: f64) -> Result<Vec<(NodeId, NodeValue)>, String> {
+    pub fn at(&self, shift: f64) -> Result<Vec<(NodeId, NodeValue)>, Reason> {
         let mut moved = Moved { shift, known: Vec::new() };
         let extent = self.covered(shift)?;
         let mut state = self.state.clone();
@@ -121,7 +120,7 @@ impl Opened {
         wanted: &BTreeSet<NodeId>,
         known: &Known<'_>,
         keys: Option<&Keys>,
-    ) -> Result<Vec<(NodeId, NodeValue)>, String> {
+    ) -> Result<Vec<(NodeId, NodeValue)>, Reason> {
         let mut state = State::new(self, of, known);
         state.memo = self.memo.as_deref().zip(keys);
         let left = match state.memo {
@@ -148,7 +147,7 @@ impl Opened {
         needed: &BTreeSet<NodeId>,
         wanted: &'a BTreeSet<NodeId>,
         known: &'a Known<'a>,
-    ) -> Result<Held<'a>, String> {
+    ) -> Result<Held<'a>, Reason> {
         let mut state = State::new(self, of, known);
         let levels = state.count(needed);
         let here = |operation: &Operation| {

@@ -9,34 +9,41 @@ use crate::data::campaign::ReadFile;
 use crate::data::checks::{Section, check_axis, whole};
 use crate::data::{Campaign, Record, RecordKind, WhichRecord, qualified};
 use crate::problem::Problem;
-use crate::result::{FileHash, RecordOf};
+use crate::result::{FileHash, Reason, RecordOf};
 use crate::run::sections::{Extent, Unit};
 use crate::units::Dimension;
+
+/// Code of the problem of a file that cannot be read.
+const UNREADABLE: &str = "file-unreadable";
 
 /// A reason why a record cannot be used, and the problems that caused it.
 #[derive(Debug)]
 pub struct Fault {
-    pub says: String,
+    pub reason: Reason,
     pub problems: Vec<Problem>,
 }
 
 impl Fault {
-    pub fn new(says: impl Into<String>) -> Self {
-        Self { says: says.into(), problems: Vec::new() }
+    pub fn new(reason: Reason) -> Self {
+        Self { reason, problems: Vec::new() }
     }
 
     /// What is wrong with a record of a campaign.
     pub(super) fn of(campaign: &Campaign, problems: Vec<Problem>) -> Self {
-        Self { says: said(campaign, &problems), problems }
+        let says = said(campaign, &problems);
+        let reason = match problems.iter().any(|problem| problem.code == UNREADABLE) {
+            true => Reason::Unreadable { says },
+            false => Reason::Said { says },
+        };
+        Self { reason, problems }
     }
 
     /// The faults of both records of a section.
     pub fn and(mut self, other: Self) -> Self {
-        self.says = if self.says == other.says {
-            self.says
-        } else {
-            format!("{}; {}", self.says, other.says)
-        };
+        if self.reason != other.reason {
+            self.reason =
+                Reason::Both { first: Box::new(self.reason), second: Box::new(other.reason) };
+        }
         self.problems.extend(other.problems);
         self
     }

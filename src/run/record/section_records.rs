@@ -15,6 +15,7 @@ use crate::data::table::Cell;
 use crate::data::{Campaign, Record, RecordKind, WhichRecord};
 use crate::graph::{Graph, Operation};
 use crate::problem::Problem;
+use crate::result::Reason;
 use crate::run::sections::{Extent, Unit};
 
 /// How much was read and filtered, and how much it would have been for each protocol by itself.
@@ -95,7 +96,7 @@ pub struct SectionRecords<'a> {
 /// A record with all columns that some protocol reads.
 #[derive(Debug)]
 struct SharedRecord {
-    record: Result<Option<(Record, ReadFile)>, String>,
+    record: Result<Option<(Record, ReadFile)>, Reason>,
     /// As protocols with the same axes and section see it.
     opened: Mutex<Vec<(View, Opened)>>,
     memo: Arc<Memo>,
@@ -157,7 +158,7 @@ impl<'a> SectionRecords<'a> {
         inside.unwrap_or(0..record.rows)
     }
 
-    fn changed(&self, mut record: Record) -> Result<Record, String> {
+    fn changed(&self, mut record: Record) -> Result<Record, Reason> {
         let rows = self.rows(&record);
         self.trial.apply(&self.cell.value, &mut record, &self.columns.axes, rows)?;
         Ok(record)
@@ -209,7 +210,7 @@ impl<'a> SectionRecords<'a> {
         shared.asked.fetch_add(1, Ordering::Relaxed);
         let (record, file) = match &shared.record {
             Ok(record) => record.as_ref()?,
-            Err(says) => return Some(Err(Fault::new(says.clone()))),
+            Err(reason) => return Some(Err(Fault::new(reason.clone()))),
         };
         for wanted in wanted {
             let column = record.column(&wanted.name)?;
@@ -244,7 +245,8 @@ impl<'a> SectionRecords<'a> {
             return Ok((record, file));
         }
         let changed = self.changed(record);
-        let record = changed.map_err(|says| vec![Problem::error("not-disturbed", says)])?;
+        let record =
+            changed.map_err(|reason| vec![Problem::error("not-disturbed", reason.text())])?;
         Ok((record, file))
     }
 

@@ -8,7 +8,8 @@ use crate::check::plan::{AxisOperation, Operator, StepSpec};
 use crate::check::values::Values;
 use crate::metrics::filter::Filter;
 use crate::metrics::window::{Kind, Sliding};
-use crate::metrics::{along, resample, rounded};
+use crate::metrics::{along, resample};
+use crate::result::Reason;
 use crate::run::sections::Extent;
 
 /// The axis of the samples, and their time, in SI; both increase strictly.
@@ -50,11 +51,11 @@ impl Along {
     }
 
     /// The same, of a section or of all; there must be one sample.
-    pub fn part_inside(&self, extent: Option<Extent>) -> Result<Range<usize>, String> {
+    pub fn part_inside(&self, extent: Option<Extent>) -> Result<Range<usize>, Reason> {
         let Some((start, end)) = extent else { return Ok(0..self.axis.len()) };
         let range = self.inside((start, end));
         if range.is_empty() {
-            Err(format!("no sample lies between {} and {}", rounded(start), rounded(end)))
+            Err(Reason::NoSampleBetween { from: start, to: end })
         } else {
             Ok(range)
         }
@@ -81,10 +82,11 @@ impl Along {
     }
 
     /// Where a sample is, as text.
-    fn place(&self, sample: usize) -> String {
+    /// The row of a sample in its file, or else where it is on the axis.
+    fn place(&self, sample: usize) -> (Option<usize>, Option<f64>) {
         match self.first_row {
-            Some(row) => format!("in row {}", row + sample),
-            None => format!("at {:.3} on the axis", self.axis[sample]),
+            Some(row) => (Some(row + sample), None),
+            None => (None, Some(self.axis[sample])),
         }
     }
 }
@@ -102,7 +104,7 @@ impl Cutter {
         Self { extent, known: Vec::new() }
     }
 
-    pub fn cut(&mut self, samples: &Samples) -> Result<Samples, String> {
+    pub fn cut(&mut self, samples: &Samples) -> Result<Samples, Reason> {
         let cut = match self.known.iter().position(|(whole, ..)| Arc::ptr_eq(whole, &samples.along))
         {
             Some(known) => &self.known[known],
@@ -126,11 +128,11 @@ impl Samples {
         Self { along: Arc::clone(&self.along), values: Arc::new(values) }
     }
 
-    pub fn cut(&self, extent: Extent) -> Result<Self, String> {
+    pub fn cut(&self, extent: Extent) -> Result<Self, Reason> {
         Cutter::new(extent).cut(self)
     }
 
-    pub fn designed(&self, spec: &StepSpec) -> Result<Filter, String> {
+    pub fn designed(&self, spec: &StepSpec) -> Result<Filter, Reason> {
         let (Rate::PerTime(rate) | Rate::PerLength(rate)) = self.along.rate;
         let designed = match spec {
             StepSpec::Butterworth { band, order, phase, cutoff } => {
@@ -139,29 +141,29 @@ impl Samples {
             StepSpec::Transfer { function, phase, warping } => {
                 Filter::transfer(function, rate, *phase, *warping)
             }
-            _ => return Err("not a filter".into()),
+            _ => return Err(Reason::Internal),
         };
-        designed.map_err(|error| error.to_string())
+        designed.map_err(Reason::method)
     }
 
     /// A step over the whole record that is not a filter.
-    pub fn stepped(&self, spec: &StepSpec) -> Result<Self, String> {
+    pub fn stepped(&self, spec: &StepSpec) -> Result<Self, Reason> {
         match spec {
             StepSpec::Magnitude => {
                 Ok(self.with(self.values.iter().map(|value| value.abs()).collect()))
             }
             StepSpec::Resample { step, over_time } => self.resampled(*step, *over_time),
-            _ => Err("this step works inside the section".into()),
+            _ => Err(Reason::Internal),
         }
     }
 
-    fn resampled(&self, step: f64, over_time: bool) -> Result<Self, String> {
-        let error = |error: resample::ResampleError| error.to_string();
+    fn resampled(&self, step: f64, over_time: bool) -> Result<Self, Reason> {
         let axis = &self.along.axis;
         let over = if over_time { self.along.time.as_ref().unwrap_or(axis) } else { axis };
-        let (grid, values) = resample::resample(over, &self.values, step).map_err(error)?;
+        let (grid, values) =
+            resample::resample(over, &self.values, step).map_err(Reason::method)?;
         let along = if over_time {
-            let axis = resample::interpolate(over, axis, &grid).map_err(error)?;
+            let axis = resample::interpolate(over, axis, &grid).map_err(Reason::method)?;
             Along {
                 axis: Arc::new(axis),
                 time: Some(Arc::new(grid)),
@@ -175,7 +177,7 @@ impl Samples {
                 .as_ref()
                 .map(|time| resample::interpolate(over, time, &grid))
                 .transpose()
-                .map_err(error)?;
+                .map_err(Reason::method)?;
             Along {
                 axis: Arc::new(grid),
                 time: time.map(Arc::new),
@@ -188,11 +190,11 @@ impl Samples {
 
     /// A step inside the section. A window uses the samples of the record and stays inside the
     /// section.
-    pub fn windowed(&self, spec: &StepSpec, extent: Extent) -> Result<Self, String> {
+    pub fn windowed(&self, spec: &StepSpec, extent: Extent) -> Result<Self, Reason> {
         match spec {
             StepSpec::RemoveMean => {
                 let mean =
-                    crate::metrics::statistics::mean(&self.values).ok_or("a mean of no samples")?;
+                    crate::metrics::statistics::mean(&self.values).ok_or(Reason::MeanOfNothing)?;
                 Ok(self.with(self.values.iter().map(|value| value - mean).collect()))
             }
             StepSpec::Magnitude => self.stepped(spec),
@@ -206,15 +208,15 @@ impl Samples {
                     ends: *ends,
                     short_sections: *short_sections,
                 };
-                let values = sliding
-                    .over(over, &self.values, start, end)
-                    .map_err(|error| error.in_words(if *over_time { "s" } else { "m" }))?;
-                let starts = sliding.starts(start, end).map_err(|error| error.to_string())?;
+                let values = sliding.over(over, &self.values, start, end).map_err(|error| {
+                    Reason::method(error.in_words(if *over_time { "s" } else { "m" }))
+                })?;
+                let starts = sliding.starts(start, end).map_err(Reason::method)?;
                 let middle: Vec<f64> =
                     starts.iter().map(|from| from + width.min(end - start) / 2.0).collect();
                 let along = if *over_time {
                     let axis = resample::interpolate(over, &self.along.axis, &middle)
-                        .map_err(|error| error.to_string())?;
+                        .map_err(Reason::method)?;
                     Along {
                         axis: Arc::new(axis),
                         time: Some(Arc::new(middle)),
@@ -231,7 +233,7 @@ impl Samples {
                 };
                 Ok(Self { along: Arc::new(along), values: Arc::new(values) })
             }
-            _ => Err("this step works on the whole record".into()),
+            _ => Err(Reason::Internal),
         }
     }
 
@@ -242,7 +244,7 @@ impl Samples {
         operation: &AxisOperation,
         known: &dyn Values,
         extent: Extent,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, Reason> {
         let axis = |over_time: bool| {
             if over_time {
                 self.along.time.as_ref().unwrap_or(&self.along.axis)
@@ -250,13 +252,12 @@ impl Samples {
                 &self.along.axis
             }
         };
-        let few = || "at least two samples are needed".to_string();
         let values = match operation {
             AxisOperation::Derivative { over_time } => {
-                along::derivative(axis(*over_time), &self.values).ok_or_else(few)?
+                along::derivative(axis(*over_time), &self.values).ok_or(Reason::TooFewSamples)?
             }
             AxisOperation::Integral { over_time } => {
-                along::integral(axis(*over_time), &self.values).ok_or_else(few)?
+                along::integral(axis(*over_time), &self.values).ok_or(Reason::TooFewSamples)?
             }
             AxisOperation::Shifted(distance) => {
                 let distance = number(distance, known)?;
@@ -268,22 +269,21 @@ impl Samples {
                 let (from, to) = (extent.0 - distance, extent.1 - distance);
                 let slack = 1e-9 * (last - first);
                 if !(first <= from + slack && to <= last + slack) {
-                    let (first, last, from, to) =
-                        (rounded(first), rounded(last), rounded(from), rounded(to));
-                    return Err(format!(
-                        "the record extends from {first} to {last}; {from} to {to} is needed"
-                    ));
+                    return Err(Reason::RecordTooShort { first, last, from, to });
                 }
-                along::moved(axis, &self.values, distance).map_err(|error| error.to_string())?
+                along::moved(axis, &self.values, distance).map_err(Reason::method)?
             }
         };
         match values.iter().position(|value| !value.is_finite()) {
             None => Ok(self.with(values)),
-            Some(at) => Err(format!("no finite number {}", self.along.place(at))),
+            Some(sample) => {
+                let (row, at) = self.along.place(sample);
+                Err(Reason::NotFiniteSample { row, at })
+            }
         }
     }
 
-    fn window_axis(&self, over_time: bool, extent: Extent) -> Result<(&[f64], Extent), String> {
+    fn window_axis(&self, over_time: bool, extent: Extent) -> Result<(&[f64], Extent), Reason> {
         if !over_time {
             return Ok((&self.along.axis, extent));
         }
@@ -292,7 +292,7 @@ impl Samples {
         let (Some(first), Some(last)) =
             (time.get(inside.start), time.get(inside.end.wrapping_sub(1)))
         else {
-            return Err("no sample lies in the section".into());
+            return Err(Reason::NoSampleInside);
         };
         Ok((time, (*first, *last)))
     }
@@ -302,7 +302,7 @@ impl Samples {
 ///
 /// # Errors
 /// The signals have different samples, or a result is not finite: which sample, and why.
-pub fn arithmetic(operator: Operator, left: &Signal, right: &Signal) -> Result<Signal, String> {
+pub fn arithmetic(operator: Operator, left: &Signal, right: &Signal) -> Result<Signal, Reason> {
     match operator {
         Operator::Add => each_pair(left, right, |a, b| a + b),
         Operator::Subtract => each_pair(left, right, |a, b| a - b),
@@ -315,11 +315,11 @@ pub fn arithmetic(operator: Operator, left: &Signal, right: &Signal) -> Result<S
 ///
 /// # Errors
 /// As [`arithmetic`].
-pub fn apply(inputs: &[&Signal], run: fn(&[f64]) -> f64) -> Result<Signal, String> {
+pub fn apply(inputs: &[&Signal], run: fn(&[f64]) -> f64) -> Result<Signal, Reason> {
     match *inputs {
         [of] => each(of, |value| run(&[value])),
         [left, right] => each_pair(left, right, |a, b| run(&[a, b])),
-        _ => Err(format!("a function of {} signals is not known", inputs.len())),
+        _ => Err(Reason::Internal),
     }
 }
 
@@ -327,7 +327,7 @@ pub fn apply(inputs: &[&Signal], run: fn(&[f64]) -> f64) -> Result<Signal, Strin
 ///
 /// # Errors
 /// As [`arithmetic`].
-pub fn each(of: &Signal, run: impl Fn(f64) -> f64) -> Result<Signal, String> {
+pub fn each(of: &Signal, run: impl Fn(f64) -> f64) -> Result<Signal, Reason> {
     match of {
         Signal::Constant(value) => constant(run(*value)),
         Signal::Samples(samples) => {
@@ -341,7 +341,7 @@ fn each_pair(
     left: &Signal,
     right: &Signal,
     run: impl Fn(f64, f64) -> f64,
-) -> Result<Signal, String> {
+) -> Result<Signal, Reason> {
     match (left, right) {
         (Signal::Constant(a), Signal::Constant(b)) => constant(run(*a, *b)),
         (Signal::Samples(left), Signal::Constant(b)) => {
@@ -352,9 +352,7 @@ fn each_pair(
         }
         (Signal::Samples(left), Signal::Samples(right)) => {
             if !Arc::ptr_eq(&left.along, &right.along) && left.along.axis != right.along.axis {
-                return Err(
-                    "signals of different sampling are combined; resample both alike".into()
-                );
+                return Err(Reason::DifferentSampling);
             }
             finite(
                 left,
@@ -364,22 +362,16 @@ fn each_pair(
     }
 }
 
-fn constant(value: f64) -> Result<Signal, String> {
-    if value.is_finite() {
-        Ok(Signal::Constant(value))
-    } else {
-        Err("a number is not finite".into())
-    }
+fn constant(value: f64) -> Result<Signal, Reason> {
+    if value.is_finite() { Ok(Signal::Constant(value)) } else { Err(Reason::NotFiniteNumber) }
 }
 
-fn finite(along: &Samples, values: Vec<f64>) -> Result<Signal, String> {
+fn finite(along: &Samples, values: Vec<f64>) -> Result<Signal, Reason> {
     // The loop checks all values without an early exit, which is faster.
     if values.iter().fold(true, |all, value| all & value.is_finite()) {
         return Ok(Signal::Samples(along.with(values)));
     }
-    let at = values.iter().position(|value| !value.is_finite()).unwrap_or(0);
-    Err(format!(
-        "no finite number {}: a division by zero, or a value a function is not defined for",
-        along.along.place(at)
-    ))
+    let sample = values.iter().position(|value| !value.is_finite()).unwrap_or(0);
+    let (row, at) = along.along.place(sample);
+    Err(Reason::NotFiniteResult { row, at })
 }

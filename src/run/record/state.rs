@@ -11,6 +11,7 @@ use crate::check::evaluate::number;
 use crate::check::plan::{Plan, StepSpec};
 use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::percentile::percentiles;
+use crate::result::{Reason, Subject};
 use crate::run::sections::{Extent, Known, chosen};
 
 /// Value of a requested node.
@@ -20,7 +21,7 @@ pub enum NodeValue {
     Number(f64, usize),
     Samples(Samples),
     /// The value cannot be computed from this record: the reason.
-    Failed(String),
+    Failed(Reason),
 }
 
 /// The nodes of a graph on one record, level by level.
@@ -32,7 +33,7 @@ pub(super) struct State<'a> {
     pub(super) known: &'a Known<'a>,
     pub(super) values: Vec<Option<Signal>>,
     /// Why a node has no value. Nodes that depend on it have none either; the others run on.
-    pub(super) failed: Vec<Option<String>>,
+    pub(super) failed: Vec<Option<Reason>>,
     /// Number of nodes that still need the value.
     pub(super) uses: Vec<usize>,
     pub(super) cutter: Cutter,
@@ -90,7 +91,7 @@ impl<'a> State<'a> {
         levels: &[Vec<NodeId>],
         wanted: &BTreeSet<NodeId>,
         chosen: impl Fn(NodeId) -> bool,
-    ) -> Result<(), String> {
+    ) -> Result<(), Reason> {
         for level in levels {
             let here: Vec<NodeId> = level.iter().copied().filter(|&id| chosen(id)).collect();
             let before = self.found.len();
@@ -130,7 +131,7 @@ impl State<'_> {
         mut open: Vec<NodeId>,
         wanted: &BTreeSet<NodeId>,
         inside: impl Fn(NodeId) -> bool,
-    ) -> Result<BTreeSet<NodeId>, String> {
+    ) -> Result<BTreeSet<NodeId>, Reason> {
         let (mut left, mut seen) = (BTreeSet::new(), BTreeSet::new());
         while let Some(id) = open.pop() {
             if !seen.insert(id) {
@@ -193,10 +194,10 @@ impl State<'_> {
         }
     }
 
-    fn signal(&self, id: NodeId) -> Result<&Signal, String> {
-        self.values[id].as_ref().ok_or_else(|| {
-            self.failed[id].clone().unwrap_or_else(|| "an input is missing".to_string())
-        })
+    fn signal(&self, id: NodeId) -> Result<&Signal, Reason> {
+        self.values[id]
+            .as_ref()
+            .ok_or_else(|| self.failed[id].clone().unwrap_or(Reason::InputMissing))
     }
 
     /// Whether an input has no value. Then this node has none for the same reason.
@@ -210,20 +211,20 @@ impl State<'_> {
         failed
     }
 
-    fn fail(&mut self, id: NodeId, reason: &str) {
-        self.failed[id] = Some(format!("{reason} ({})", self.graph.nodes[id].label.text));
+    fn of_step(&self, id: NodeId, reason: Reason) -> Reason {
+        reason.about(Subject::Step, &self.graph.nodes[id].label.text)
     }
 
     /// Computes a node. Where a step of a quantity is not possible, only this node has no value.
     /// Samples without a finite result are a fault of the record.
-    fn value(&mut self, id: NodeId) -> Result<(), String> {
+    fn value(&mut self, id: NodeId) -> Result<(), Reason> {
         if self.without_input(id) {
             return Ok(());
         }
         match self.one(id) {
             Ok(value) => self.values[id] = Some(value),
-            Err(reason) if self.asks(id) => self.fail(id, &reason),
-            Err(reason) => return Err(format!("{reason} ({})", self.graph.nodes[id].label.text)),
+            Err(reason) if self.asks(id) => self.failed[id] = Some(self.of_step(id, reason)),
+            Err(reason) => return Err(self.of_step(id, reason)),
         }
         Ok(())
     }
@@ -235,7 +236,7 @@ impl State<'_> {
         )
     }
 
-    pub(super) fn samples(&self, id: NodeId) -> Result<Samples, String> {
+    pub(super) fn samples(&self, id: NodeId) -> Result<Samples, Reason> {
         match self.signal(id)? {
             Signal::Samples(samples) => Ok(samples.clone()),
             // A constant becomes a signal of equal samples where a signal is needed.
@@ -247,7 +248,7 @@ impl State<'_> {
     }
 
     /// Filters of one level: all channels with the same design together.
-    fn filters(&mut self, here: &[NodeId]) -> Result<(), String> {
+    fn filters(&mut self, here: &[NodeId]) -> Result<(), Reason> {
         let mut groups: Vec<(StepSpec, Vec<(NodeId, Samples)>)> = Vec::new();
         for &id in here {
             let node = &self.graph.nodes[id];
@@ -276,12 +277,14 @@ impl State<'_> {
             let signals: Vec<&[f64]> =
                 members.iter().map(|(_, samples)| samples.values.as_slice()).collect();
             let designed = members[0].1.designed(&spec);
-            let filtered = designed
-                .and_then(|filter| filter.apply_many(&signals).map_err(|error| error.to_string()));
+            let filtered =
+                designed.and_then(|filter| filter.apply_many(&signals).map_err(Reason::method));
             let filtered = match filtered {
                 Ok(filtered) => filtered,
                 Err(reason) => {
-                    members.iter().for_each(|(id, _)| self.fail(*id, &reason));
+                    for (id, _) in &members {
+                        self.failed[*id] = Some(self.of_step(*id, reason.clone()));
+                    }
                     continue;
                 }
             };
@@ -293,7 +296,7 @@ impl State<'_> {
     }
 
     /// Reducers of one level: percentiles of one signal share one sorting.
-    fn reducers(&mut self, here: &[NodeId]) -> Result<(), String> {
+    fn reducers(&mut self, here: &[NodeId]) -> Result<(), Reason> {
         let mut sorted: Vec<(NodeId, Vec<(NodeId, f64)>)> = Vec::new();
         for &id in here {
             let node = &self.graph.nodes[id];
@@ -315,12 +318,10 @@ impl State<'_> {
                             self.found.push((id, NodeValue::Number(value, samples.values.len())))
                         }
                         None => {
-                            let says = format!(
-                                "the {} of {} samples is not defined",
-                                reducer.in_words(),
-                                samples.values.len()
-                            );
-                            self.failed[id] = Some(says);
+                            self.failed[id] = Some(Reason::ReducerUndefined {
+                                reducer: reducer.in_words(),
+                                samples: samples.values.len(),
+                            });
                         }
                     }
                     continue;
@@ -340,7 +341,7 @@ impl State<'_> {
                     Err(error) => {
                         members
                             .iter()
-                            .for_each(|(id, _)| self.failed[*id] = Some(error.to_string()));
+                            .for_each(|(id, _)| self.failed[*id] = Some(Reason::method(&error)));
                         continue;
                     }
                 };
@@ -354,13 +355,13 @@ impl State<'_> {
         Ok(())
     }
 
-    fn one(&mut self, id: NodeId) -> Result<Signal, String> {
+    fn one(&mut self, id: NodeId) -> Result<Signal, Reason> {
         let node = &self.graph.nodes[id];
         let input = |index: usize| self.signal(node.inputs[index]);
         match &node.operation {
             Operation::Read { column } => {
                 let values = self.opened.sampled.column(column);
-                let values = values.ok_or_else(|| format!("no column `{column}`"))?;
+                let values = values.ok_or_else(|| Reason::NoChannel { channel: column.clone() })?;
                 let along = Arc::clone(&self.opened.sampled.along);
                 Ok(Signal::Samples(Samples { along, values: Arc::clone(values) }))
             }
@@ -371,7 +372,7 @@ impl State<'_> {
                     _ => None,
                 };
                 Ok(Signal::Constant(
-                    self.found.iter().find_map(of).ok_or("a number of the section is missing")?,
+                    self.found.iter().find_map(of).ok_or(Reason::SectionNumberMissing)?,
                 ))
             }
             Operation::Arithmetic(operator) => arithmetic(*operator, input(0)?, input(1)?),
@@ -398,7 +399,7 @@ impl State<'_> {
             Operation::Window(spec) => {
                 Ok(Signal::Samples(self.samples(node.inputs[0])?.windowed(spec, self.extent)?))
             }
-            _ => Err("this node combines records".into()),
+            _ => Err(Reason::Internal),
         }
     }
 }

@@ -13,6 +13,7 @@ use crate::data::campaign::ReadFile;
 use crate::data::checks::check_axis;
 use crate::data::{Campaign, Record, RecordKind, WhichRecord};
 use crate::graph::{Graph, NodeId, Operation};
+use crate::result::Reason;
 use crate::run::sections::{Facts, Unit};
 
 /// A record of the stretch with this number.
@@ -227,7 +228,7 @@ impl State<'_> {
         needed: &BTreeSet<NodeId>,
         wanted: &BTreeSet<NodeId>,
         levels: &[Vec<NodeId>],
-    ) -> Result<Vec<bool>, String> {
+    ) -> Result<Vec<bool>, Reason> {
         if self.opened.own.is_none() {
             return Ok(vec![false; self.graph.nodes.len()]);
         }
@@ -250,7 +251,7 @@ impl State<'_> {
         (needed, wanted): (&BTreeSet<NodeId>, &BTreeSet<NodeId>),
         levels: &[Vec<NodeId>],
         early: &[bool],
-    ) -> Result<(), String> {
+    ) -> Result<(), Reason> {
         let mut keys = locked(&stretch.numbers).keys(self.plan, self.graph, self.known);
         keys.iter_mut().zip(early).filter(|(_, early)| !**early).for_each(|(key, _)| *key = None);
         let mut open: Vec<NodeId> = wanted.iter().copied().filter(|&id| early[id]).collect();

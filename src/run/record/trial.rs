@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::data::{Record, RecordKind};
 use crate::metrics::disturb;
+use crate::result::Reason;
 
 /// What is done to the records of a section before a protocol sees them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +69,7 @@ impl Trial {
         record: &mut Record,
         axes: &[String],
         rows: Range<usize>,
-    ) -> Result<(), String> {
+    ) -> Result<(), Reason> {
         let channels = record.columns.iter_mut().filter(|column| !axes.contains(&column.name));
         match self {
             Self::AsRecorded | Self::Exchanged => {}
@@ -89,9 +90,8 @@ impl Trial {
                 if scatter.is_empty() {
                     return Ok(());
                 }
-                let delay = disturb::delay_of_size(&scatter, rows, size).ok_or_else(|| {
-                    format!("no shift up to half of section {section} changes its channels by {size} standard deviations")
-                })?;
+                let delay = disturb::delay_of_size(&scatter, rows, size)
+                    .ok_or_else(|| Reason::NoShift { section: section.into(), size })?;
                 channels
                     .iter_mut()
                     .for_each(|column| column.values = disturb::delayed(&column.values, delay));

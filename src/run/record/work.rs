@@ -11,6 +11,7 @@ use crate::check::plan::{Plan, Side};
 use crate::data::record::Wanted;
 use crate::data::{Campaign, Campaigns, RecordKind, WhichRecord};
 use crate::graph::{Graph, NodeId, Operation};
+use crate::result::{Reason, Subject};
 use crate::run::sections::{Facts, Known, Unit, needed};
 
 /// Data used for every record.
@@ -63,12 +64,12 @@ pub fn with_record<T>(
     which: WhichRecord,
     wanted: &BTreeSet<NodeId>,
     known: &Known<'_>,
-    evaluate: impl FnOnce(&Opened, &BTreeSet<NodeId>) -> Result<T, String>,
+    evaluate: impl FnOnce(&Opened, &BTreeSet<NodeId>) -> Result<T, Reason>,
 ) -> Result<(Result<T, Fault>, Opened), Fault> {
     let needed = needed(work.graph, wanted, known).map_err(Fault::new)?;
     let opened = open(work, unit, which, &columns(work, which, &needed, true))?;
     let found = evaluate(&opened, &needed)
-        .map_err(|says| Fault::new(format!("{}: {says}", opened.file.path)));
+        .map_err(|reason| Fault::new(reason.about(Subject::File, &opened.file.path)));
     Ok((found, opened))
 }
 

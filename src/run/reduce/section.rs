@@ -7,6 +7,7 @@ use crate::check::evaluate::flag;
 use crate::check::plan::{Evaluation, Expr, Position, Quantity, Side};
 use crate::data::RecordKind;
 use crate::graph::{InputNode, NodeId, SignalNodes};
+use crate::result::{Reason, Subject};
 use crate::run::data_rules::{Questions, plausibility, record_checks, track_checks};
 use crate::run::record::{Fault, Opened, Work};
 use crate::run::sections::{Known, Unit};
@@ -21,7 +22,7 @@ pub fn of_section(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>) -> Vec<Sect
     match fill(work, unit, shifts, &mut common) {
         Ok(all) => all,
         Err(fault) => {
-            common.fault = Some(fault.says);
+            common.fault = Some(fault.reason);
             common.problems = fault.problems;
             vec![common; shifts.offsets.len()]
         }
@@ -45,7 +46,7 @@ fn active(work: &Work<'_>, unit: &Unit, known: &Known<'_>) -> Result<Active, Fau
             .iter()
             .zip(present)
             .map(of_position)
-            .collect::<Result<Vec<bool>, String>>()
+            .collect::<Result<Vec<bool>, Reason>>()
     };
     work.plan
         .quantities
@@ -94,7 +95,7 @@ fn fill(
     // A section whose original cannot be evaluated has no rows of repeats; the original itself
     // states the reason.
     let original = original(work, unit, &repeated).and_then(Result::ok);
-    let one = |measured: Result<Vec<RecordOfSide>, String>| {
+    let one = |measured: Result<Vec<RecordOfSide>, Reason>| {
         let mut values = common.clone();
         match measured {
             Ok(measured) => {
@@ -111,7 +112,7 @@ fn fill(
                 record_checks(&sides, &mut values);
                 plausibility::look((work, unit), &questions, &sides, &track, &mut values);
             }
-            Err(says) => values.fault = Some(says),
+            Err(reason) => values.fault = Some(reason),
         }
         values
     };
@@ -182,7 +183,7 @@ fn shifted(
     known: &Known<'_>,
     simulated: &[RecordOfSide],
     common: &mut SectionValues,
-) -> Result<Vec<Result<Vec<RecordOfSide>, String>>, Fault> {
+) -> Result<Vec<Result<Vec<RecordOfSide>, Reason>>, Fault> {
     let which = RecordKind::Measurement.into();
     let mut extent = None;
     let evaluate = |opened: &Opened, needed: &BTreeSet<NodeId>| {
@@ -196,7 +197,7 @@ fn shifted(
         let at = |offset: &f64| {
             held.at(own + offset)
                 .map(|found| vec![RecordOfSide::new(work, unit, which, opened, found)])
-                .map_err(|says| format!("{}: {says}", opened.file.path))
+                .map_err(|reason| reason.about(Subject::File, &opened.file.path))
         };
         Ok((shifts.offsets.iter().map(at).collect(), offset))
     };
@@ -219,9 +220,10 @@ fn quantities(work: &Work<'_>, sides: &Sides<'_>, active: &Active, values: &mut 
         {
             match sides.rows(number, nodes) {
                 Ok(found) => rows.extend(found),
-                Err(says) => values
-                    .impossible
-                    .push((index, format!("{}: {says}", quantity.positions[number].name))),
+                Err(reason) => {
+                    let signal = &quantity.positions[number].name;
+                    values.impossible.push((index, reason.about(Subject::Signal, signal)));
+                }
             }
         }
         values.rows.push(rows);

@@ -8,7 +8,7 @@ use crate::check::values::Values;
 use crate::data::Campaigns;
 use crate::data::campaign::VehicleState;
 use crate::problem::{Problem, Problems};
-use crate::result::DataItem;
+use crate::result::{DataItem, Reason, Subject};
 use crate::units::{self, Dimension, number::Refused};
 use crate::yaml::Value;
 
@@ -18,7 +18,7 @@ pub struct Vehicle {
     /// Which one it is, where there are several: the campaign, its state.
     pub of: Option<String>,
     /// An error states why a datum that may be absent has no value.
-    pub data: Vec<Result<Scalar, String>>,
+    pub data: Vec<Result<Scalar, Reason>>,
     /// For each datum, whether it is a number without a unit in the vehicle file.
     pub assumed: Vec<bool>,
 }
@@ -77,7 +77,7 @@ impl Unit {
 impl Vehicle {
     /// The values as a report prints them.
     fn items(&self, plan: &Plan) -> Vec<DataItem> {
-        let of = |(datum, (value, assumed)): (&Datum, (&Result<Scalar, String>, &bool))| {
+        let of = |(datum, (value, assumed)): (&Datum, (&Result<Scalar, Reason>, &bool))| {
             let unit_assumed = *assumed && is_dimensioned(&datum.kind);
             DataItem { unit_assumed, of: self.of.clone(), ..vehicle_item(datum, value) }
         };
@@ -85,8 +85,11 @@ impl Vehicle {
     }
 
     /// A reason with the vehicle that it is of, where there are several.
-    pub fn told(&self, reason: String) -> String {
-        self.of.as_ref().map_or(reason.clone(), |of| format!("{reason} ({of})"))
+    pub fn told(&self, reason: Reason) -> Reason {
+        match &self.of {
+            Some(of) => reason.about(Subject::Vehicle, of),
+            None => reason,
+        }
     }
 }
 
@@ -115,15 +118,15 @@ pub fn item(datum: &Datum, value: Option<&Scalar>) -> DataItem {
 }
 
 /// The reason why a datum that may be absent has no value.
-pub fn absent(datum: &Datum) -> String {
-    format!("the vehicle file does not state `{}`", datum.key)
+pub fn absent(datum: &Datum) -> Reason {
+    Reason::VehicleDataNotStated { key: datum.key.clone() }
 }
 
 /// Printed in place of a value that the vehicle file does not state.
 pub const NOT_STATED: &str = "not stated";
 
 /// As [`item`], for vehicle data; a value that is not stated is marked so.
-pub fn vehicle_item(datum: &Datum, value: &Result<Scalar, String>) -> DataItem {
+pub fn vehicle_item(datum: &Datum, value: &Result<Scalar, Reason>) -> DataItem {
     match value {
         Ok(value) => item(datum, Some(value)),
         Err(_) => DataItem {
@@ -147,7 +150,7 @@ fn vehicle_datum(
     datum: &Datum,
     vehicle: &VehicleState,
     problems: &mut Problems,
-) -> Option<(Result<Scalar, String>, bool)> {
+) -> Option<(Result<Scalar, Reason>, bool)> {
     let Some(node) = vehicle.data.lookup(&datum.key) else {
         if let Some(default) = &datum.default {
             return Some((Ok(default.clone()), false));
@@ -282,9 +285,9 @@ pub fn scalar(kind: &DatumKind, text: &str) -> Result<Scalar, String> {
 #[derive(Clone, Copy, Debug)]
 pub struct Known<'a> {
     pub vehicle: &'a Vehicle,
-    pub columns: Option<&'a [Result<Scalar, String>]>,
+    pub columns: Option<&'a [Result<Scalar, Reason>]>,
     pub extent: Option<(f64, f64)>,
-    pub inputs: &'a [Result<f64, String>],
+    pub inputs: &'a [Result<f64, Reason>],
     pub sides: Option<(f64, f64)>,
 }
 
@@ -295,26 +298,26 @@ impl<'a> Known<'a> {
 }
 
 impl Values for Known<'_> {
-    fn vehicle(&self, index: usize) -> Result<Scalar, String> {
+    fn vehicle(&self, index: usize) -> Result<Scalar, Reason> {
         self.vehicle.data[index].clone()
     }
 
-    fn column(&self, index: usize) -> Result<Scalar, String> {
+    fn column(&self, index: usize) -> Result<Scalar, Reason> {
         match self.columns {
             Some(columns) => columns[index].clone(),
-            None => Err("it differs between sections".into()),
+            None => Err(Reason::DiffersBetweenSections),
         }
     }
 
-    fn extent(&self) -> Result<(f64, f64), String> {
-        self.extent.ok_or_else(|| "there is no section here".into())
+    fn extent(&self) -> Result<(f64, f64), Reason> {
+        self.extent.ok_or(Reason::NoSectionHere)
     }
 
-    fn input(&self, index: usize) -> Result<f64, String> {
-        self.inputs.get(index).cloned().unwrap_or_else(|| Err("there is no signal here".into()))
+    fn input(&self, index: usize) -> Result<f64, Reason> {
+        self.inputs.get(index).cloned().unwrap_or(Err(Reason::NoSignalHere))
     }
 
-    fn sides(&self) -> Result<(f64, f64), String> {
-        self.sides.ok_or_else(|| "there is no pair of values here".into())
+    fn sides(&self) -> Result<(f64, f64), Reason> {
+        self.sides.ok_or(Reason::NoPairHere)
     }
 }

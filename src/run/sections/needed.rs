@@ -6,6 +6,7 @@ use super::facts::Known;
 use crate::check::evaluate::{flag, words};
 use crate::check::plan::Expr;
 use crate::graph::{Graph, NodeId, Operation};
+use crate::result::Reason;
 
 /// All nodes that the requested ones need in one section; of the cases of a signal, only the one
 /// that applies.
@@ -13,7 +14,7 @@ pub fn needed(
     graph: &Graph,
     wanted: &BTreeSet<NodeId>,
     known: &Known<'_>,
-) -> Result<BTreeSet<NodeId>, String> {
+) -> Result<BTreeSet<NodeId>, Reason> {
     let mut needed = BTreeSet::new();
     let mut open: Vec<NodeId> = wanted.iter().copied().collect();
     while let Some(id) = open.pop() {
@@ -32,7 +33,7 @@ pub fn needed(
 }
 
 /// The input of a `Select` that applies in this section.
-pub fn chosen(conditions: &[Expr], inputs: &[NodeId], known: &Known<'_>) -> Result<usize, String> {
+pub fn chosen(conditions: &[Expr], inputs: &[NodeId], known: &Known<'_>) -> Result<usize, Reason> {
     for (index, condition) in conditions.iter().enumerate() {
         if flag(condition, known)? {
             return Ok(index);
@@ -41,8 +42,5 @@ pub fn chosen(conditions: &[Expr], inputs: &[NodeId], known: &Known<'_>) -> Resu
     if inputs.len() > conditions.len() {
         return Ok(inputs.len() - 1);
     }
-    Err(format!(
-        "none of the cases of `{}` applies to this section",
-        conditions.first().map_or(String::new(), words)
-    ))
+    Err(Reason::NoCaseOfSignal { expression: conditions.first().map_or(String::new(), words) })
 }

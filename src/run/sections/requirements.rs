@@ -1,12 +1,14 @@
 //! Requirements on the data of sections, which need no record.
 
-use super::facts::{Facts, Vehicle, item, trimmed};
+use super::facts::{Facts, Vehicle, item};
 use super::unit::Unit;
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Expr, Kind, Plan, Zone};
 use crate::check::possible::{Possible, possible};
 use crate::check::values::Watched;
-use crate::result::{CheckResult, Finding};
+use crate::result::{
+    CheckResult, DataItem, Datum, Finding, FindingData, Reason, Sections, Subject,
+};
 
 /// Relative tolerance for a minimum length, for the rounding of section ends written with two
 /// decimals.
@@ -58,18 +60,17 @@ pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
                 minimum.is_some_and(|minimum| !not_stated(minimum, facts.of(unit)).is_empty())
             };
             if check.holds != Some(true) && !untold {
-                let subject = match (check.name.as_str(), check.holds) {
-                    ("zone", Some(_)) => format!(
-                        "does not meet the condition of zone {}",
-                        unit.zone.as_deref().unwrap_or_default()
-                    ),
-                    ("zone", None) => format!(
-                        "it cannot be determined whether it meets the condition of zone {}",
-                        unit.zone.as_deref().unwrap_or_default()
-                    ),
-                    _ => check.title.to_lowercase(),
+                let zone = unit.zone.clone().unwrap_or_default();
+                let reason = match (check.name.as_str(), check.holds) {
+                    ("zone", Some(_)) => {
+                        Reason::ZoneNotMet { zone, reason: Box::new(check.says.clone()) }
+                    }
+                    ("zone", None) => {
+                        Reason::ZoneUnknown { zone, reason: Box::new(check.says.clone()) }
+                    }
+                    _ => of_check(&check),
                 };
-                unit.refuse(format!("{subject}: {}", check.says), false);
+                unit.refuse(reason, false);
             }
             unit.checks.push(check);
         }
@@ -89,49 +90,63 @@ fn condition(
     let known = unit.known(facts);
     let watched = Watched::new(&known);
     let found = flag(expr, &watched);
-    let read: Vec<String> = watched
-        .columns()
-        .iter()
-        .map(|&index| item(&plan.columns[index], unit.columns[index].as_ref().ok()))
-        .map(|item| {
-            format!(
-                "{} {}{}",
-                item.name.to_lowercase(),
-                item.value,
-                item.unit.map_or(String::new(), |unit| format!(" {unit}"))
-            )
-        })
-        .collect();
-    let with =
-        if read.is_empty() { String::new() } else { format!("; found: {}", read.join(", ")) };
-    let (holds, says) = match found {
-        Ok(true) => (Some(true), format!("{words}{with}")),
-        Ok(false) => (Some(false), format!("not met: {words}{with}")),
-        Err(reason) => (None, reason),
+    let read = || {
+        watched
+            .columns()
+            .iter()
+            .map(|&index| item(&plan.columns[index], unit.columns[index].as_ref().ok()))
+            .map(|DataItem { name, value, unit, .. }| Datum {
+                name: name.to_lowercase(),
+                value,
+                unit,
+            })
+            .collect()
     };
+    let (holds, says) = met(found, words, read);
     CheckResult { name: name.into(), title: title.into(), holds, says }
+}
+
+/// Whether a condition holds, and why; `found` are the data that it reads.
+pub fn met(
+    holds: Result<bool, Reason>,
+    condition: &str,
+    found: impl FnOnce() -> Vec<Datum>,
+) -> (Option<bool>, Reason) {
+    match holds {
+        Ok(holds) => {
+            let condition = condition.to_owned();
+            (Some(holds), Reason::Condition { holds, condition, found: found() })
+        }
+        Err(reason) => (None, reason),
+    }
+}
+
+/// Why a section does not meet a check.
+pub fn of_check(check: &CheckResult) -> Reason {
+    check.says.clone().about(Subject::Check, check.title.to_lowercase())
 }
 
 fn length(plan: &Plan, facts: &Facts, unit: &Unit, zone: &Zone) -> Option<CheckResult> {
     let (minimum, (start, end)) = (zone.minimum_length.as_ref()?, unit.extent?);
     let axis = &plan.axis.unit;
-    let shown = |length: f64| format!("{} {axis}", trimmed(axis.from_si(length)));
     let known = unit.known(facts);
+    let (length, unit) = (axis.from_si(end - start), axis.text.clone());
     // A length written with two decimals may be below the minimum by rounding only.
     let reaches = |minimum: f64| end - start >= minimum * (1.0 - ROUNDING);
-    let found =
-        |minimum: f64| format!("{}; at least {} required", shown(end - start), shown(minimum));
     let (holds, says) = match number(minimum, &known) {
-        Ok(minimum) => (Some(reaches(minimum)), found(minimum)),
+        Ok(minimum) => {
+            let (holds, minimum) = (reaches(minimum), axis.from_si(minimum));
+            (Some(holds), Reason::Length { length, minimum, unit })
+        }
         // Long enough or too short for every value of the unknown names, or not decided.
         Err(reason) => match possible(minimum, &known) {
             Possible::Number(_, most) if reaches(most) => {
-                (Some(true), format!("{}; at most {} required", shown(end - start), shown(most)))
+                (Some(true), Reason::LongEnough { length, most: axis.from_si(most), unit })
             }
             Possible::Number(least, _) if least.is_finite() && !reaches(least) => {
-                (Some(false), found(least))
+                (Some(false), Reason::Length { length, minimum: axis.from_si(least), unit })
             }
-            _ => (None, format!("not checked: {reason}")),
+            _ => (None, Reason::NotChecked { reason: Box::new(reason) }),
         },
     };
     Some(CheckResult { name: "length".into(), title: "Minimum length".into(), holds, says })
@@ -170,12 +185,12 @@ pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
     }
     let finding = |(index, title, names): (usize, &str, Vec<&str>)| {
         let key = &plan.vehicle[index].key;
-        let of = sections_in_words(&names, units.len());
-        let says = format!(
-            "the vehicle file does not state `{key}`: {} not checked ({of})",
-            title.to_lowercase()
-        );
-        Finding { channel: Some(key.clone()), ..Finding::note("vehicle-data-not-stated", says) }
+        let data = FindingData::CheckWithoutVehicleData {
+            key: key.clone(),
+            check: title.to_lowercase(),
+            sections: Sections::of(&names, units.len()),
+        };
+        Finding { channel: Some(key.clone()), ..Finding::note("vehicle-data-not-stated", data) }
     };
     found.into_iter().map(finding).collect()
 }
@@ -187,12 +202,4 @@ pub fn asked<'a>(plan: &'a Plan, unit: &Unit, check: &CheckResult) -> Option<&'a
         return zone.minimum_length.as_ref();
     }
     plan.checks.iter().find(|rule| rule.name == check.name).map(|rule| &rule.require)
-}
-
-pub fn sections_in_words(names: &[&str], of: usize) -> String {
-    match names {
-        all if all.len() == of => "all sections".to_string(),
-        [one] => format!("section {one}"),
-        _ => format!("sections {}", names.join(", ")),
-    }
 }

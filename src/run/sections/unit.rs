@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::check::plan::{Plan, Scalar};
 use crate::data::campaign::Part;
 use crate::data::table::Cell;
-use crate::result::CheckResult;
+use crate::result::{CheckResult, Reason};
 use crate::source::Span;
 
 /// Start and end of a section on the axis, SI.
@@ -38,14 +38,12 @@ pub struct Unit {
     /// The range that a report states: that of the section, or of the measured record.
     pub covered: Option<Extent>,
     /// One for each [`crate::check::plan::Plan::columns`].
-    pub columns: Vec<Result<Scalar, String>>,
+    pub columns: Vec<Result<Scalar, Reason>>,
     pub checks: Vec<CheckResult>,
     /// Why it is not used.
-    pub fault: Option<String>,
+    pub fault: Option<Reason>,
     /// Whether the fault is in the data and not in a requirement.
     pub faulty: bool,
-    /// Whether a file of it could not be read.
-    pub unreadable: bool,
     /// Row of the table of sections.
     pub span: Option<Span>,
 }
@@ -66,7 +64,7 @@ impl Stretch {
 
 impl Unit {
     /// A whole record, of which nothing else is known.
-    pub fn new(name: &Cell, site: usize, columns: Vec<Result<Scalar, String>>) -> Self {
+    pub fn new(name: &Cell, site: usize, columns: Vec<Result<Scalar, Reason>>) -> Self {
         Self {
             name: name.value.clone(),
             campaign: 0,
@@ -84,7 +82,6 @@ impl Unit {
             checks: Vec::new(),
             fault: None,
             faulty: false,
-            unreadable: false,
             span: None,
         }
     }
@@ -95,7 +92,7 @@ impl Unit {
     }
 
     /// Records the first reason not to use it.
-    pub fn refuse(&mut self, reason: String, faulty: bool) {
+    pub fn refuse(&mut self, reason: Reason, faulty: bool) {
         if self.fault.is_none() {
             self.fault = Some(reason);
             self.faulty = faulty;

@@ -10,7 +10,7 @@ use crate::data::sites::{originals, site_text, sites};
 use crate::data::table::{Cell, Table};
 use crate::data::{Campaign, Campaigns, qualified};
 use crate::problem::{Problem, Problems};
-use crate::result::SectionResult;
+use crate::result::{Reason, SectionResult};
 use crate::units::Unit as OfMeasure;
 
 /// The sections of all campaigns, one campaign after the other.
@@ -179,10 +179,10 @@ fn of_campaign(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec
         let columns: Vec<Result<Scalar, CellFault>> =
             plan.columns.iter().map(|datum| row.cell(datum)).collect();
         let ill_formed = columns.iter().find_map(|cell| {
-            cell.as_ref().err().filter(|fault| fault.ill_formed).map(|fault| fault.says.clone())
+            cell.as_ref().err().filter(|fault| fault.ill_formed).map(|fault| fault.reason.clone())
         });
-        let columns: Vec<Result<Scalar, String>> =
-            columns.into_iter().map(|cell| cell.map_err(|fault| fault.says)).collect();
+        let columns: Vec<Result<Scalar, Reason>> =
+            columns.into_iter().map(|cell| cell.map_err(|fault| fault.reason)).collect();
         let name = &campaign.names[row.row];
         let site = sites[row.row];
         let mut unit = Unit {
@@ -199,8 +199,11 @@ fn of_campaign(plan: &Plan, campaign: &Campaign, problems: &mut Problems) -> Vec
             (Ok(Scalar::Number(start)), Ok(Scalar::Number(end))) if start < end => {
                 unit.extent = Some((start, end))
             }
-            (Ok(_), Ok(_)) => unit.refuse(row.placed("its start is not before its end"), true),
-            (Err(fault), _) | (_, Err(fault)) => unit.refuse(fault.says, true),
+            (Ok(_), Ok(_)) => {
+                let (file, row) = row.place();
+                unit.refuse(Reason::StartNotBeforeEnd { file, row }, true);
+            }
+            (Err(fault), _) | (_, Err(fault)) => unit.refuse(fault.reason, true),
         }
         if let Some(reason) = ill_formed {
             unit.refuse(reason, true);
@@ -220,7 +223,7 @@ fn whole_record(plan: &Plan, campaign: &Campaign, name: &Cell, site: usize) -> U
         .map(|datum| {
             called(datum)
                 .or_else(|| datum.default.clone())
-                .ok_or_else(|| format!("`{}` is not known of a whole record", datum.name))
+                .ok_or_else(|| Reason::UnknownOfWholeRecord { column: datum.name.clone() })
         })
         .collect();
     Unit::new(name, site, columns)
@@ -230,30 +233,28 @@ fn whole_record(plan: &Plan, campaign: &Campaign, name: &Cell, site: usize) -> U
 ///
 /// # Errors
 /// It says nothing, or something that is no such datum.
-pub fn of_run(datum: &Datum, run: &Run, campaign: &str) -> Result<Scalar, String> {
+pub fn of_run(datum: &Datum, run: &Run, campaign: &str) -> Result<Scalar, Reason> {
     if datum.kind == DatumKind::Campaign {
         return Ok(Scalar::Word(campaign.to_string()));
     }
+    let (column, run_name) = (datum.key.clone(), run.name.value.clone());
     let Some(fact) = run.fact(&datum.key) else {
-        return datum
-            .default
-            .clone()
-            .ok_or_else(|| format!("`{}` is not stated of run `{}`", datum.key, run.name.value));
+        return datum.default.clone().ok_or(Reason::NotStatedOfRun { column, run: run_name });
     };
     let kind = match (&datum.kind, &fact.unit) {
         (DatumKind::Number(expected), Some(unit)) => match OfMeasure::parse(unit) {
             Ok(unit) if unit.dimension == expected.dimension => DatumKind::Number(unit),
             _ => {
-                return Err(format!(
-                    "`{}` of run `{}` cannot be in {unit}",
-                    datum.key, run.name.value
-                ));
+                return Err(Reason::WrongUnitOfRun { column, run: run_name, unit: unit.clone() });
             }
         },
         (kind, _) => kind.clone(),
     };
-    scalar(&kind, &fact.value.value)
-        .map_err(|says| format!("`{}` of run `{}`: {says}", datum.key, run.name.value))
+    scalar(&kind, &fact.value.value).map_err(|says| Reason::WrongDataOfRun {
+        column,
+        run: run_name,
+        says,
+    })
 }
 
 /// Reports a declared column that is missing or has a unit of another dimension.
@@ -304,7 +305,7 @@ pub struct Row<'a> {
 /// Why a cell has no value. An empty cell is a fault only if a rule needs it; a cell that cannot be
 /// read is always a fault.
 pub struct CellFault {
-    pub says: String,
+    pub reason: Reason,
     pub ill_formed: bool,
 }
 
@@ -314,17 +315,19 @@ impl Row<'_> {
             return Ok(Scalar::Word(self.campaign.to_string()));
         }
         let nothing =
-            |says: String| datum.default.clone().ok_or(CellFault { says, ill_formed: false });
+            |reason: Reason| datum.default.clone().ok_or(CellFault { reason, ill_formed: false });
+        let column = datum.key.clone();
         let Some(index) = self.table.column(&datum.key) else {
             if let Some(run) = self.run.filter(|run| run.fact(&datum.key).is_some()) {
                 return of_run(datum, run, self.campaign)
-                    .map_err(|says| CellFault { says, ill_formed: true });
+                    .map_err(|reason| CellFault { reason, ill_formed: true });
             }
-            return nothing(format!("there is no column `{}`", datum.key));
+            return nothing(Reason::NoColumn { column });
         };
         let text = self.table.cell(self.row, index).map_or("", |cell| cell.value.trim());
+        let (file, row) = self.place();
         if text.is_empty() {
-            return nothing(self.placed(&format!("`{}` is empty", datum.key)));
+            return nothing(Reason::EmptyCell { column, file, row });
         }
         // Cells are in the unit of the column header, whose dimension was checked.
         let of_column = match (&datum.kind, self.table.columns[index].unit(None)) {
@@ -332,14 +335,15 @@ impl Row<'_> {
             (kind, _) => kind.clone(),
         };
         scalar(&of_column, text).map_err(|says| CellFault {
-            says: self.placed(&format!("`{}`: {says}", datum.key)),
+            reason: Reason::WrongCell { column, says, file, row },
             ill_formed: true,
         })
     }
 
-    fn placed(&self, says: &str) -> String {
+    /// File and row.
+    fn place(&self) -> (String, usize) {
         let line = self.table.cell(self.row, 0).map_or(self.row + 2, |cell| cell.span.line());
-        format!("{says} ({}, row {line})", self.file)
+        (self.file.to_owned(), line)
     }
 }
 
@@ -356,7 +360,6 @@ pub fn results(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<SectionResult>
             zone: unit.zone.clone(),
             used: unit.fault.is_none(),
             reason: unit.fault.clone(),
-            unreadable: unit.unreadable,
             length: axis.from_si(end - start),
             start: axis.from_si(start),
             end: axis.from_si(end),

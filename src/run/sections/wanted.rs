@@ -9,6 +9,7 @@ use crate::check::plan::{Domain, Expr, Kind, Plan, Scalar};
 use crate::data::table::{Cell, Table};
 use crate::data::{Campaign, Campaigns};
 use crate::problem::{Problem, Problems};
+use crate::result::{Reason, Subject};
 
 /// A point of wanted operation in one domain.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -91,19 +92,19 @@ fn of_domain(
         let mut refused = None;
         let mut value = |index: usize| {
             if !needed.contains(&index) {
-                return Err(String::new());
+                return Err(Reason::SectionDataUnknown);
             }
             cells.cell(&plan.columns[index]).map_err(|fault| {
                 if fault.ill_formed && refused.is_none() {
                     let cell = table
                         .column(&plan.columns[index].key)
                         .and_then(|column| table.cell(row, column));
-                    refused = Some(wrong(cell.unwrap_or(name), &fault.says));
+                    refused = Some(wrong(cell.unwrap_or(name), &fault.reason));
                 }
-                fault.says
+                fault.reason
             })
         };
-        let columns: Vec<Result<Scalar, String>> =
+        let columns: Vec<Result<Scalar, Reason>> =
             (0..plan.columns.len()).map(&mut value).collect();
         if let Some(problem) = refused {
             problems.push(problem.also(&domain.span, "the domain"));
@@ -111,32 +112,30 @@ fn of_domain(
         }
         match point(domain, name, &columns, facts) {
             Ok(point) => found.push(point),
-            Err(says) => problems.push(wrong(name, &says).also(&domain.span, "the domain")),
+            Err(reason) => problems.push(wrong(name, &reason).also(&domain.span, "the domain")),
         }
     }
     found
 }
 
-fn wrong(cell: &Cell, says: &str) -> Problem {
-    Problem::error("wanted-value", format!("wanted operation: {says}")).at(&cell.span)
+fn wrong(cell: &Cell, reason: &Reason) -> Problem {
+    let says = format!("wanted operation: {}", reason.text());
+    Problem::error("wanted-value", says).at(&cell.span)
 }
 
 /// A point, which must be the same for every vehicle.
 fn point(
     domain: &Domain,
     name: &Cell,
-    columns: &[Result<Scalar, String>],
+    columns: &[Result<Scalar, Reason>],
     facts: &Facts,
-) -> Result<Point, String> {
+) -> Result<Point, Reason> {
     let mut of_vehicles =
         facts.vehicles.iter().map(|vehicle| of_vehicle(domain, name, columns, vehicle));
-    let first = of_vehicles.next().ok_or("there is no vehicle")??;
+    let first = of_vehicles.next().ok_or(Reason::NoVehicle)??;
     for other in of_vehicles {
         if other? != first {
-            return Err(format!(
-                "it depends on the vehicle, and there are {}",
-                facts.vehicles.len()
-            ));
+            return Err(Reason::DependsOnVehicles { vehicles: facts.vehicles.len() });
         }
     }
     Ok(first)
@@ -145,9 +144,9 @@ fn point(
 fn of_vehicle(
     domain: &Domain,
     name: &Cell,
-    columns: &[Result<Scalar, String>],
+    columns: &[Result<Scalar, Reason>],
     vehicle: &Vehicle,
-) -> Result<Point, String> {
+) -> Result<Point, Reason> {
     let known = Known { columns: Some(columns), ..Known::vehicle(vehicle) };
     let values = domain
         .over
@@ -159,16 +158,16 @@ fn of_vehicle(
 }
 
 /// The value of a coordinate, SI.
-pub fn value(expr: &Expr, name: &str, known: &Known<'_>) -> Result<f64, String> {
+pub fn value(expr: &Expr, name: &str, known: &Known<'_>) -> Result<f64, Reason> {
     match number(expr, known) {
         Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => Err(format!("{name} is not a finite number")),
-        Err(says) => Err(format!("{name}: {says}")),
+        Ok(_) => Err(Reason::NotFiniteNumber.about(Subject::Coordinate, name)),
+        Err(reason) => Err(reason.about(Subject::Coordinate, name)),
     }
 }
 
 /// A word or flag of the table.
-pub fn word(value: &Result<Scalar, String>) -> Result<String, String> {
+pub fn word(value: &Result<Scalar, Reason>) -> Result<String, Reason> {
     match value.clone()? {
         Scalar::Word(word) => Ok(word),
         Scalar::Flag(flag) => Ok(flag.to_string()),

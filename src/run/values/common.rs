@@ -11,6 +11,7 @@ use crate::check::evaluate::number;
 use crate::check::plan::{AxisOperation, Expr, Kind, Side};
 use crate::metrics::percentile::Method;
 use crate::metrics::resample::{self, Located};
+use crate::result::Reason;
 use crate::run::record::{Along, Samples, Signal, apply, arithmetic, each};
 use crate::run::sections::{Extent, Known};
 
@@ -49,7 +50,7 @@ struct Sorted {
 #[derive(Debug)]
 struct Met {
     of: (Arc<Along>, Arc<Along>, u64),
-    found: Result<Rc<Meeting>, String>,
+    found: Result<Rc<Meeting>, Reason>,
 }
 
 impl Meetings {
@@ -62,7 +63,7 @@ impl Meetings {
         measured: &Samples,
         extent: Option<Extent>,
         shift: f64,
-    ) -> Result<Rc<Meeting>, String> {
+    ) -> Result<Rc<Meeting>, Reason> {
         let mut all = self.met.borrow_mut();
         let (s, m) = (&simulated.along, &measured.along);
         let same = |met: &&Met| {
@@ -110,7 +111,7 @@ impl Meeting {
         measured: &Arc<Along>,
         extent: Option<Extent>,
         shift: f64,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, Reason> {
         let inside = measured.part_inside(extent)?;
         let along = if inside.len() == measured.axis.len() {
             Arc::clone(measured)
@@ -154,7 +155,7 @@ struct Common {
 }
 
 impl Common {
-    fn of(both: &Both<'_>) -> Result<Self, String> {
+    fn of(both: &Both<'_>) -> Result<Self, Reason> {
         let meeting = both.meetings.of(both.simulated, both.measured, both.extent, both.shift)?;
         let measured = Samples {
             along: Arc::clone(&meeting.along),
@@ -174,25 +175,22 @@ impl Common {
 
 /// # Errors
 /// It is not defined for these samples.
-fn number_of(reducer: Reducer, samples: &Samples, method: Method) -> Result<f64, String> {
+fn number_of(reducer: Reducer, samples: &Samples, method: Method) -> Result<f64, Reason> {
     let value =
         reducer.run(&samples.along.axis, &samples.values, method).filter(|value| value.is_finite());
-    value.ok_or_else(|| {
-        format!("the {} of {} samples is not defined", reducer.in_words(), samples.values.len())
-    })
+    let samples = samples.values.len();
+    value.ok_or_else(|| Reason::ReducerUndefined { reducer: reducer.in_words(), samples })
 }
 
 /// Points on the simulated axis, moved along by `shift`.
-fn located(simulated: &Along, points: &[f64], shift: f64) -> Result<Located, String> {
+fn located(simulated: &Along, points: &[f64], shift: f64) -> Result<Located, Reason> {
     let own = &simulated.axis;
     let located = match shift {
         0.0 => Located::on(own, points),
         _ => Located::on(&own.iter().map(|at| at + shift).collect::<Vec<_>>(), points),
     };
-    located.map_err(|error| match shift {
-        0.0 => format!("the simulation cannot be interpolated at the measured points: {error}"),
-        _ => format!("the repeat cannot be interpolated at the points of its original: {error}"),
-    })
+    located
+        .map_err(|error| Reason::NotInterpolated { repeat: shift != 0.0, says: error.to_string() })
 }
 
 /// The filtered signals of both records, from which an expression takes its samples.
@@ -213,13 +211,13 @@ impl Both<'_> {
         reducer: Reducer,
         method: Method,
         of: &Expr,
-    ) -> Result<(f64, usize), String> {
+    ) -> Result<(f64, usize), Reason> {
         let common = Common::of(self)?;
         let samples = common.filled(self.signal(of, &common, method)?);
         Ok((number_of(reducer, &samples, method)?, samples.values.len()))
     }
 
-    fn signal(&self, of: &Expr, common: &Common, method: Method) -> Result<Signal, String> {
+    fn signal(&self, of: &Expr, common: &Common, method: Method) -> Result<Signal, Reason> {
         let inner = |signal: &Expr| self.signal(signal, common, method);
         match &of.kind {
             Kind::Side(Side::Simulated) => {
@@ -247,11 +245,7 @@ impl Both<'_> {
                     common.measured.along.axis.iter().map(|x| x - distance - moved).collect();
                 let moved =
                     resample::interpolate(&of_record.along.axis, &of_record.values, &points)
-                        .map_err(|error| {
-                            format!(
-                                "the record is too short beyond the section for this shift: {error}"
-                            )
-                        })?;
+                        .map_err(|error| Reason::TooShortForShift { says: error.to_string() })?;
                 Ok(Signal::Samples(common.measured.with(moved)))
             }
             Kind::OverAxis(operation, signal) => match inner(signal)? {
@@ -261,17 +255,13 @@ impl Both<'_> {
                         (axis.first().copied().unwrap_or(0.0), axis.last().copied().unwrap_or(0.0));
                     Ok(Signal::Samples(samples.over_axis(operation, self.known, extent)?))
                 }
-                Signal::Constant(_) => {
-                    Err("a constant number has no samples along the axis".into())
-                }
+                Signal::Constant(_) => Err(Reason::NoSamplesOfConstant),
             },
             Kind::Level(reducer, signal) => {
                 Ok(Signal::Constant(number_of(*reducer, &common.filled(inner(signal)?), method)?))
             }
             // The checker does not allow these here.
-            Kind::Channel { .. } | Kind::Filtered(..) | Kind::Cases(..) => {
-                Err("this signal has other samples".into())
-            }
+            Kind::Channel { .. } | Kind::Filtered(..) | Kind::Cases(..) => Err(Reason::Internal),
             _ => Ok(Signal::Constant(number(of, self.known)?)),
         }
     }

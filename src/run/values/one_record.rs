@@ -7,6 +7,7 @@ use super::section_values::SectionValues;
 use super::sides::RecordOfSide;
 use crate::data::WhichRecord;
 use crate::graph::NodeId;
+use crate::result::Reason;
 use crate::run::record::{Fault, Opened, Work, with_record};
 use crate::run::sections::{Known, Unit};
 
@@ -42,7 +43,7 @@ pub fn read_record<T>(
     wanted: &BTreeSet<NodeId>,
     known: &Known<'_>,
     values: &mut SectionValues,
-    evaluate: impl FnOnce(&Opened, &BTreeSet<NodeId>) -> Result<T, String>,
+    evaluate: impl FnOnce(&Opened, &BTreeSet<NodeId>) -> Result<T, Reason>,
 ) -> Result<T, Fault> {
     let with_slow = |opened: &Opened, needed: &BTreeSet<NodeId>| {
         evaluate(opened, needed).map(|found| (found, slow(work, needed)))

@@ -6,7 +6,7 @@ use super::print::Print;
 use super::row::Row;
 use super::shifts::Offset;
 use crate::problem::Problem;
-use crate::result::{CheckResult, FileHash, Finding};
+use crate::result::{CheckResult, FileHash, Finding, Reason};
 use crate::run::sections::Extent;
 
 /// Results of one section.
@@ -17,7 +17,7 @@ pub struct SectionValues {
     #[serde(skip)]
     pub rows: Vec<Vec<Row>>,
     /// Quantities that cannot be evaluated in this section, with the signal and the reason.
-    pub impossible: Vec<(usize, String)>,
+    pub impossible: Vec<(usize, Reason)>,
     pub checks: Vec<CheckResult>,
     /// Plausibility findings within this section.
     pub findings: Vec<Finding>,
@@ -30,6 +30,6 @@ pub struct SectionValues {
     pub short_margin: Option<f64>,
     /// Shift of the measurement against the simulation, where it was requested.
     pub offset: Option<Offset>,
-    pub fault: Option<String>,
+    pub fault: Option<Reason>,
     pub problems: Vec<Problem>,
 }

@@ -14,12 +14,12 @@ use crate::check::plan::{
 use crate::data::WhichRecord;
 use crate::graph::{InputNode, Joint, NodeId, Operation, SignalNodes, ValueNodes};
 use crate::metrics::{pair, statistics};
-use crate::result::{FileHash, RecordName};
+use crate::result::{FileHash, Reason, RecordName};
 use crate::run::record::{NodeValue, Opened, Rate, Samples, Work};
 use crate::run::sections::{Extent, Known, Unit};
 
 /// What is computed of two records, and of how many samples.
-type OfTwo<'a> = dyn Fn(&Two<'_>) -> Result<(f64, usize), String> + 'a;
+type OfTwo<'a> = dyn Fn(&Two<'_>) -> Result<(f64, usize), Reason> + 'a;
 
 /// Values of the requested nodes of one record, in the order in which they were computed.
 #[derive(Clone, Debug, Default)]
@@ -54,21 +54,21 @@ impl NodeValues {
     ///
     /// # Errors
     /// It could not be computed, and why.
-    pub fn number(&self, node: NodeId) -> Result<(f64, usize), String> {
+    pub fn number(&self, node: NodeId) -> Result<(f64, usize), Reason> {
         match self.get(node) {
             Some(NodeValue::Number(value, samples)) => Ok((*value, *samples)),
             Some(NodeValue::Failed(reason)) => Err(reason.clone()),
-            _ => Err("a value is missing".into()),
+            _ => Err(Reason::ValueMissing),
         }
     }
 
     /// # Errors
     /// As [`NodeValues::number`].
-    pub fn samples(&self, node: NodeId) -> Result<&Samples, String> {
+    pub fn samples(&self, node: NodeId) -> Result<&Samples, Reason> {
         match self.get(node) {
             Some(NodeValue::Samples(samples)) => Ok(samples),
             Some(NodeValue::Failed(reason)) => Err(reason.clone()),
-            _ => Err("a signal is missing".into()),
+            _ => Err(Reason::SignalMissing),
         }
     }
 }
@@ -209,7 +209,7 @@ impl<'a> Sides<'a> {
     }
 
     /// Two records that are compared, and the names of those of which there are several.
-    fn joined(&'a self, pairing: Pairing) -> Result<Vec<Joined<'a>>, String> {
+    fn joined(&'a self, pairing: Pairing) -> Result<Vec<Joined<'a>>, Reason> {
         let pair = |first: &'a RecordOfSide, second: &'a RecordOfSide| Joined {
             record: RecordName::joined(first.name.as_ref(), second.name.as_ref()),
             two: self.two(&first.found, &second.found),
@@ -245,11 +245,11 @@ impl<'a> Sides<'a> {
     ///
     /// # Errors
     /// Why it has none.
-    pub fn rows(&'a self, position: usize, nodes: &SignalNodes) -> Result<Vec<Row>, String> {
+    pub fn rows(&'a self, position: usize, nodes: &SignalNodes) -> Result<Vec<Row>, Reason> {
         let Operation::Compare(evaluation) = &self.work.graph.nodes[nodes.compare].operation else {
-            return Err("this node gives no rows".into());
+            return Err(Reason::Internal);
         };
-        let of_pairs = |pairing: Pairing, of_two: &OfTwo<'_>| -> Result<Vec<Row>, String> {
+        let of_pairs = |pairing: Pairing, of_two: &OfTwo<'_>| -> Result<Vec<Row>, Reason> {
             let one = |Joined { record, two, .. }: Joined<'_>| {
                 Ok(Row::single(position, 0, record, of_two(&two)?))
             };
@@ -275,11 +275,7 @@ impl<'a> Sides<'a> {
                     applied = true;
                     rows.extend(self.of_value(records, (position, which), nodes, of)?);
                 }
-                if applied {
-                    Ok(rows)
-                } else {
-                    Err("none of its values applies to this section".into())
-                }
+                if applied { Ok(rows) } else { Err(Reason::NoValueApplies) }
             }
         }
     }
@@ -290,13 +286,13 @@ impl<'a> Sides<'a> {
         (position, which): (usize, usize),
         nodes: &SignalNodes,
         value: &ValueNodes,
-    ) -> Result<Vec<Row>, String> {
+    ) -> Result<Vec<Row>, Reason> {
         let samples = |two: &Two<'_>, side| two.count(nodes, value, side);
         let alone = |of: Chosen| {
             self.chosen(of).into_iter().map(move |record| {
                 let (two, side) = (self.alone(record), own(of.side));
                 let found = (two.value(value, side)?, samples(&two, side));
-                Ok::<_, String>(Row::single(
+                Ok::<_, Reason>(Row::single(
                     position,
                     which,
                     record.name.clone().map(RecordName::Single),
@@ -304,7 +300,7 @@ impl<'a> Sides<'a> {
                 ))
             })
         };
-        let compared = |row: Row, difference: &Expr, (s, m): (f64, f64)| -> Result<Row, String> {
+        let compared = |row: Row, difference: &Expr, (s, m): (f64, f64)| -> Result<Row, Reason> {
             let value = number(difference, &Known { sides: Some((s, m)), ..*self.known })?;
             Ok(Row { simulated: Some(s), measured: Some(m), value, ..row })
         };
@@ -332,7 +328,7 @@ impl<'a> Sides<'a> {
             }
             Records::Spread { of, among, center, difference } => {
                 let all = alone(*among).map(|row| Ok(row?.value));
-                let values = all.collect::<Result<Vec<f64>, String>>()?;
+                let values = all.collect::<Result<Vec<f64>, Reason>>()?;
                 if values.len() < 2 {
                     return Err(one_record(of.side));
                 }
@@ -340,8 +336,8 @@ impl<'a> Sides<'a> {
                     Center::Mean => statistics::mean(&values),
                     Center::Median => statistics::median(&values),
                 };
-                let center = center.ok_or("the records have no mean")?;
-                let one = |row: Result<Row, String>| {
+                let center = center.ok_or(Reason::NoMeanOfRecords)?;
+                let one = |row: Result<Row, Reason>| {
                     let row = row?;
                     let value = row.value;
                     compared(row, difference, (value, center))
@@ -362,8 +358,8 @@ struct Joined<'a> {
     second: Two<'a>,
 }
 
-fn one_record(side: Side) -> String {
-    format!("there is one {} record, and several are compared", side.in_words())
+fn one_record(side: Side) -> Reason {
+    Reason::OneRecord { side: side.in_words().into() }
 }
 
 fn own(side: Side) -> InputSide {
@@ -384,7 +380,7 @@ fn keeps_samples(work: &Work<'_>, nodes: &SignalNodes) -> bool {
 }
 
 /// Whether some case of an expression holds; an expression without cases always applies.
-fn applies(expr: &Expr, known: &Known<'_>) -> Result<bool, String> {
+fn applies(expr: &Expr, known: &Known<'_>) -> Result<bool, Reason> {
     let Kind::Cases(arms, None) = &expr.kind else { return Ok(true) };
     for (_, condition) in arms {
         if flag(condition, known)? {
@@ -396,23 +392,23 @@ fn applies(expr: &Expr, known: &Known<'_>) -> Result<bool, String> {
 
 impl Two<'_> {
     /// The value of a node for one side.
-    fn value(&self, value: &ValueNodes, side: InputSide) -> Result<f64, String> {
+    fn value(&self, value: &ValueNodes, side: InputSide) -> Result<f64, Reason> {
         match &self.sides.work.graph.nodes[value.node].operation {
             Operation::Value(expr) => {
-                let inputs: Vec<Result<f64, String>> =
+                let inputs: Vec<Result<f64, Reason>> =
                     value.inputs.iter().map(|input| self.input(input, side)).collect();
                 number(expr, &Known { inputs: &inputs, ..*self.known })
             }
-            _ => self.input(value.inputs.first().ok_or("a value takes nothing")?, side),
+            _ => self.input(value.inputs.first().ok_or(Reason::Internal)?, side),
         }
     }
 
     /// An expression of metrics of both signals, and the number of samples.
-    fn combined(&self, of: &Expr, inputs: &[InputNode]) -> Result<(f64, usize), String> {
+    fn combined(&self, of: &Expr, inputs: &[InputNode]) -> Result<(f64, usize), Reason> {
         let found: Vec<_> =
             inputs.iter().map(|input| self.counted(input, InputSide::Measured)).collect();
         let samples = found.iter().flatten().map(|(_, samples)| *samples).max().unwrap_or(0);
-        let inputs: Vec<Result<f64, String>> =
+        let inputs: Vec<Result<f64, Reason>> =
             found.into_iter().map(|found| found.map(|(value, _)| value)).collect();
         Ok((number(of, &Known { inputs: &inputs, ..*self.sides.known })?, samples))
     }
@@ -424,7 +420,7 @@ impl Two<'_> {
         on_common_points: bool,
         node: NodeId,
         over: Option<NodeId>,
-    ) -> Result<(f64, usize), String> {
+    ) -> Result<(f64, usize), Reason> {
         let of @ (simulated, measured) =
             (self.simulated.samples(node)?, self.measured.samples(node)?);
         let meeting = if on_common_points {
@@ -449,25 +445,26 @@ impl Two<'_> {
             ),
         };
         let pair = Pair { axis, simulated: &simulated, measured, rate, band: None, over };
-        let Some(points) = metric.points() else { return Ok((metric.run(&pair)?, measured.len())) };
+        let run = |pair: &Pair<'_>| metric.run(pair).map_err(Reason::method);
+        let Some(points) = metric.points() else { return Ok((run(&pair)?, measured.len())) };
         let quantiles = |side: Side, samples: &Samples, values: &[f64]| {
             let sorted = self.sides.meetings.sorted((samples, meeting.as_ref(), side), values);
-            pair::quantiles_of_sorted(&sorted, points).map_err(|undefined| undefined.to_string())
+            pair::quantiles_of_sorted(&sorted, points).map_err(Reason::method)
         };
         let of_simulated = quantiles(Side::Simulated, of.0, &simulated)?;
         let of_measured = quantiles(Side::Measured, of.1, measured)?;
         Ok((
-            metric.run(&Pair { simulated: &of_simulated, measured: &of_measured, ..pair })?,
+            run(&Pair { simulated: &of_simulated, measured: &of_measured, ..pair })?,
             measured.len(),
         ))
     }
 
-    pub fn input(&self, input: &InputNode, side: InputSide) -> Result<f64, String> {
+    pub fn input(&self, input: &InputNode, side: InputSide) -> Result<f64, Reason> {
         self.counted(input, side).map(|(value, _)| value)
     }
 
     /// A value, and the number of samples.
-    fn counted(&self, input: &InputNode, side: InputSide) -> Result<(f64, usize), String> {
+    fn counted(&self, input: &InputNode, side: InputSide) -> Result<(f64, usize), Reason> {
         match &input.joint {
             None => self.record(input.side.resolve(side)).number(input.node),
             Some(Joint::Metric { metric, on_common_points, over }) => {

@@ -5,16 +5,13 @@ use crate::check::plan::Plan;
 use crate::graph::Graph;
 use crate::problem::Problems;
 use crate::result::study::Reduction;
-use crate::result::{Consequence, DataItem, DomainResult, FileHash, Finding};
+use crate::result::{Consequence, DataItem, DomainResult, FileHash, Finding, Reason};
 use crate::run::data_rules::{copies, nothing_usable, stop_on_fault, take_over};
 use crate::run::describe::domain;
 use crate::run::limit::keep;
 use crate::run::limit::pool::{self, Pool};
 use crate::run::sections::{Basis, Facts, Unit};
 use crate::run::values::{Offset, SectionValues};
-
-/// Sections that a message names before it counts them.
-const NAMED: usize = 8;
 
 /// The values of sections by their numbers, `None` where they are missing.
 pub fn all_values(
@@ -42,8 +39,8 @@ pub struct Evaluated {
     /// Remarks that do not change the verdict.
     pub notes: Vec<String>,
     pub reduction: Option<Reduction>,
-    /// Sections whose values are missing, in words.
-    pub missing: Option<String>,
+    /// Sections whose values are missing.
+    pub missing: Option<Reason>,
     /// Records in the order of the sections.
     pub files: Vec<FileHash>,
 }
@@ -65,10 +62,11 @@ impl Basis {
         let (mut units, mut notes) = (self.units.clone(), self.notes.clone());
         let mut missing = Vec::new();
         for (unit, _) in units.iter_mut().zip(&values).filter(|(_, values)| values.is_none()) {
-            unit.refuse("its values are missing".into(), false);
+            unit.refuse(Reason::ValuesMissing, false);
             missing.push(unit.name.clone());
         }
-        let missing = missing_in_words(&missing, units.len());
+        let missing = (!missing.is_empty())
+            .then(|| Reason::ValuesOfSectionsMissing { sections: missing, total: units.len() });
         let values: Vec<SectionValues> =
             values.into_iter().map(Option::unwrap_or_default).collect();
         let copies = copies::find(plan, &units, &values);
@@ -103,17 +101,6 @@ impl Basis {
             files,
         })
     }
-}
-
-/// `values of 3 of 412 sections are missing: S01, S02, S03`
-fn missing_in_words(names: &[String], of: usize) -> Option<String> {
-    if names.is_empty() {
-        return None;
-    }
-    let more = names.len().saturating_sub(NAMED);
-    let named = names[..names.len() - more].join(", ");
-    let more = if more == 0 { String::new() } else { format!(" and {more} more") };
-    Some(format!("values of {} of {of} sections are missing: {named}{more}", names.len()))
 }
 
 /// A repeat whose original is not used cannot be compared: quantities of repeats have no rows in

@@ -7,22 +7,21 @@ use super::verdicts;
 use crate::check::plan::{Chosen, Evaluation, Pairing, Plan, Quantity, Records, Zone};
 use crate::graph::Graph;
 use crate::result::{
-    Consequence, Figures, Finding, PairValue, QuantityResult, Reported, Verdict, VerdictResult,
-    ZoneResult, usable_sections,
+    Consequence, Figures, Finding, PairValue, QuantityResult, Reason, Reported, Verdict,
+    VerdictResult, ZoneResult,
 };
 use crate::run::describe::{reports, spreads};
 use crate::run::estimate::{Member, Rows, count_independent};
 use crate::run::limit::{Judging, compared, fails_alone, rule_place};
 use crate::run::sections::{Facts, Unit};
 use crate::run::values::SectionValues;
-use crate::run::words::count;
 
 #[derive(Debug)]
 pub struct Judged {
     pub verdict: Verdict,
     /// The overall verdict in the words of the protocol, if it states them.
     pub own_word: Option<String>,
-    pub reasons: Vec<String>,
+    pub reasons: Vec<Reason>,
     /// Verdicts with a name.
     pub verdicts: Vec<VerdictResult>,
     pub quantities: Vec<QuantityResult>,
@@ -36,7 +35,7 @@ pub struct Judged {
 pub struct Told<'a> {
     pub findings: &'a [Finding],
     /// Why nothing can be assessed, beside findings of plausibility.
-    pub barred: Vec<String>,
+    pub barred: Vec<Reason>,
 }
 
 pub fn judge(
@@ -49,16 +48,13 @@ pub fn judge(
 ) -> Judged {
     let used: Vec<(&Unit, &SectionValues)> =
         units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
-    let mut missing: Vec<String> = Vec::new();
+    let mut missing: Vec<Reason> = Vec::new();
     let zones: Vec<ZoneResult> = plan.zones.iter().map(|zone| zone_result(zone, units)).collect();
     missing.extend(zones.iter().filter_map(ZoneResult::lack));
     let sites = sites(used.iter().map(|(unit, _)| *unit));
     if sites < plan.sections.minimum {
-        missing.push(format!(
-            "{}; at least {} required",
-            usable_sections(used.len(), sites),
-            plan.sections.minimum
-        ));
+        let (used, minimum) = (used.len(), plan.sections.minimum);
+        missing.push(Reason::TooFewSections { used, sites, minimum });
     }
     missing.extend(without_sections(units));
     missing.extend(not_plausible(plan, told.findings, missing.is_empty()));
@@ -76,7 +72,7 @@ pub fn judge(
         };
         quantity_result(graph, index, &judging, rows[index].reason.clone())
     };
-    let (quantities, fails): (Vec<QuantityResult>, Vec<Vec<String>>) =
+    let (quantities, fails): (Vec<QuantityResult>, Vec<Vec<Reason>>) =
         plan.quantities.iter().enumerate().map(of_quantity).unzip();
     let decided = verdicts::decide(
         plan,
@@ -104,7 +100,7 @@ pub fn judge(
 
 /// One reason for each of several campaigns of which no section is used: the verdict names it, but
 /// nothing of it was assessed.
-fn without_sections(units: &[Unit]) -> Vec<String> {
+fn without_sections(units: &[Unit]) -> Vec<Reason> {
     let mut used: Vec<(&str, bool)> = Vec::new();
     for unit in units {
         let Some(name) = unit.campaign_name.as_deref() else { continue };
@@ -115,7 +111,7 @@ fn without_sections(units: &[Unit]) -> Vec<String> {
     }
     used.iter()
         .filter(|(_, any)| !any)
-        .map(|(name, _)| format!("no section of campaign {name} is used"))
+        .map(|(name, _)| Reason::NoSectionOfCampaign { campaign: (*name).into() })
         .collect()
 }
 
@@ -126,8 +122,8 @@ fn sites<'a>(units: impl Iterator<Item = &'a Unit>) -> usize {
 
 /// One reason for each plausibility rule that makes the campaign not assessable. If sections are
 /// missing, also one for each rule that excluded sections.
-fn not_plausible(plan: &Plan, findings: &[Finding], complete: bool) -> Vec<String> {
-    let mut reasons: Vec<String> = Vec::new();
+fn not_plausible(plan: &Plan, findings: &[Finding], complete: bool) -> Vec<Reason> {
+    let mut reasons: Vec<Reason> = Vec::new();
     for rule in &plan.plausibility {
         let sections = |consequence: Consequence| {
             let mut names: Vec<&str> = Vec::new();
@@ -144,16 +140,11 @@ fn not_plausible(plan: &Plan, findings: &[Finding], complete: bool) -> Vec<Strin
         };
         let (barred, taken) =
             (sections(Consequence::NotAssessable), sections(Consequence::NotUsed));
+        let rule = rule.title.clone();
         let reason = match (barred, taken) {
-            (0, taken) if taken > 0 && !complete => {
-                format!("{}: {} not used; see the findings", rule.title, count(taken, "section"))
-            }
+            (0, taken) if taken > 0 && !complete => Reason::NotUsedFor { rule, sections: taken },
             (0, _) => continue,
-            (barred, _) => format!(
-                "{}: implausible in {}; see the findings",
-                rule.title,
-                count(barred, "section")
-            ),
+            (barred, _) => Reason::Implausible { rule, sections: barred },
         };
         if !reasons.contains(&reason) {
             reasons.push(reason);
@@ -184,8 +175,8 @@ fn quantity_result(
     graph: &Graph,
     index: usize,
     judging: &Judging<'_>,
-    reason: Option<String>,
-) -> (QuantityResult, Vec<String>) {
+    reason: Option<Reason>,
+) -> (QuantityResult, Vec<Reason>) {
     let Judging { plan, quantity, members, .. } = *judging;
     let (statistics, fails): (Vec<_>, Vec<_>) = compared(graph, &graph.quantities[index], judging)
         .into_iter()
@@ -193,12 +184,11 @@ fn quantity_result(
         .unzip();
     let undefined =
         statistics.iter().find(|statistic| statistic.holds.is_none()).map(|statistic| {
-            format!(
-                "{}{}: {}",
-                statistic.title,
-                statistic.scope.suffix(),
-                statistic.reason.as_deref().unwrap_or_default()
-            )
+            Reason::OfEstimate {
+                title: statistic.title.clone(),
+                scope: statistic.scope.told(),
+                reason: Box::new(statistic.reason.clone().unwrap_or(Reason::NoValue)),
+            }
         });
     let met = statistics.iter().all(|statistic| statistic.holds == Some(true));
     let alone = || fails_alone(graph, &graph.quantities[index], judging);

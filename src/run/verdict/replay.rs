@@ -7,7 +7,9 @@ use super::judge::{Judged, Told, judge};
 use crate::check::evaluate::number;
 use crate::check::plan::{Evaluation, Plan, Records, Scalar};
 use crate::graph::{Graph, NodeId};
-use crate::result::{Certification, Consequence, DataItem, DomainResult, Finding, SectionResult};
+use crate::result::{
+    Certification, Consequence, DataItem, DomainResult, Finding, Reason, SectionResult,
+};
 use crate::run::describe::domain;
 use crate::run::sections::{
     Facts, Known, NOT_STATED, Unit, Vehicle, absent, needed, requirements, scalar,
@@ -141,7 +143,7 @@ fn vehicle(plan: &Plan, of: Option<String>, data: &[&str]) -> Result<Vehicle, St
             scalar(&datum.kind, text).map(Ok).map_err(|says| format!("`{}`: {says}", datum.key))
         }
     });
-    let data: Vec<Result<Scalar, String>> = vehicle.collect::<Result<_, _>>()?;
+    let data: Vec<Result<Scalar, Reason>> = vehicle.collect::<Result<_, _>>()?;
     Ok(Vehicle { of, assumed: vec![false; data.len()], data })
 }
 
@@ -159,11 +161,11 @@ fn units(plan: &Plan, results: &Certification) -> Result<Vec<Unit>, String> {
             ));
         }
         let column =
-            |(datum, item): (&crate::check::plan::Datum, &DataItem)| -> Result<Scalar, String> {
+            |(datum, item): (&crate::check::plan::Datum, &DataItem)| -> Result<Scalar, Reason> {
                 if item.value.is_empty() {
-                    Err(format!("`{}` is empty", datum.key))
+                    Err(Reason::EmptyDatum { column: datum.key.clone() })
                 } else {
-                    scalar(&datum.kind, &item.value)
+                    scalar(&datum.kind, &item.value).map_err(Reason::said)
                 }
             };
         let none = || format!("section {}: the result has no data of its vehicle", section.section);
@@ -177,8 +179,8 @@ fn units(plan: &Plan, results: &Certification) -> Result<Vec<Unit>, String> {
             site_name: section.site.clone(),
             extent: (!plan.sections.whole_records)
                 .then(|| (axis.to_si(section.start), axis.to_si(section.end))),
-            fault: (!section.used).then(|| section.reason.clone().unwrap_or_default()),
-            unreadable: section.unreadable,
+            fault: (!section.used)
+                .then(|| section.reason.clone().unwrap_or_else(|| Reason::said(""))),
             ..Unit::new(&cell, site, columns)
         })
     };
@@ -218,7 +220,8 @@ fn refused(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<String> {
     let mut again: Vec<Unit> = units.iter().filter(|unit| unit.fault.is_none()).cloned().collect();
     requirements::check_data(plan, facts, &mut again);
     let says = |unit: &Unit| {
-        unit.fault.as_ref().map(|fault| format!("section {} is used: {fault}", unit.name))
+        let fault = unit.fault.as_ref()?.text();
+        Some(format!("section {} is used: {fault}", unit.name))
     };
     again.iter().filter_map(says).collect()
 }
@@ -232,7 +235,7 @@ fn barred(units: &[Unit], findings: &[Finding]) -> Vec<String> {
     let says = |unit: &Unit| {
         let finding =
             findings.iter().find(|finding| of(finding, unit)).filter(|_| unit.fault.is_none())?;
-        Some(format!("section {} is used: {}", unit.name, finding.says))
+        Some(format!("section {} is used: {}", unit.name, finding.text()))
     };
     units.iter().filter_map(says).collect()
 }
@@ -255,5 +258,6 @@ pub fn operations(
         .find(|unit| unit.name == section)
         .ok_or_else(|| format!("there is no section `{section}`"))?;
     let wanted = [graph.quantities[quantity].signals[signal].compare].into();
-    Ok(needed(graph, &wanted, &unit.known(&facts))?.into_iter().collect())
+    let needed = needed(graph, &wanted, &unit.known(&facts));
+    Ok(needed.map_err(|reason| reason.text())?.into_iter().collect())
 }

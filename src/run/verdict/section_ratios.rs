@@ -2,6 +2,7 @@
 
 use super::evaluated::Evaluated;
 use crate::check::plan::{EstimateKind, Plan};
+use crate::result::{Reason, VehicleValue};
 use crate::run::estimate::{Grouped, Part, Rows, parts};
 use crate::run::limit::{Judging, applying};
 use crate::run::sections::{Known, Unit, Vehicle};
@@ -22,8 +23,8 @@ pub struct SectionRatio {
 
 impl Evaluated {
     /// Names of the sections, and why one is not used.
-    pub fn sections(&self) -> impl Iterator<Item = (&str, Option<&str>)> {
-        self.units.iter().map(|unit| (unit.name.as_str(), unit.fault.as_deref()))
+    pub fn sections(&self) -> impl Iterator<Item = (&str, Option<&Reason>)> {
+        self.units.iter().map(|unit| (unit.name.as_str(), unit.fault.as_ref()))
     }
 
     /// The same with some sections only; the others are not used.
@@ -31,7 +32,7 @@ impl Evaluated {
     pub fn with_sections(&self, keeps: &dyn Fn(&str) -> bool) -> Self {
         let mut some = self.clone();
         let units = some.units.iter_mut().filter(|unit| !keeps(&unit.name));
-        units.for_each(|unit| unit.refuse("left out".into(), false));
+        units.for_each(|unit| unit.refuse(Reason::LeftOut, false));
         some
     }
 
@@ -96,7 +97,8 @@ impl Evaluated {
                     let of_vehicle = |vehicle: &Vehicle| {
                         judging.bound(limit, &part, &inside, &Known::vehicle(vehicle))
                     };
-                    let pooled = self.facts.agreed(&inside, of_vehicle, f64::to_string);
+                    let pooled =
+                        self.facts.agreed(&inside, of_vehicle, |value| VehicleValue::Si { value });
                     for member in &inside {
                         let bound = match each {
                             true => {

@@ -2,36 +2,35 @@
 
 use crate::check::plan::{Decision, Over, Plan, Rule};
 use crate::graph::{Graph, Operation};
-use crate::result::{Outcome, QuantityResult, StatisticName, VerdictResult};
+use crate::result::{
+    GivenVerdict, Outcome, QuantityResult, Reason, StatisticName, Subject, VerdictResult,
+};
 use crate::run::limit::rule_place;
-use crate::run::words::count;
 
 /// What verdicts depend on.
 #[derive(Debug)]
 pub struct Given<'a> {
     /// Why no verdict on limits can be given: missing sections, implausible data.
-    pub barred: Vec<String>,
+    pub barred: Vec<Reason>,
     pub quantities: &'a [QuantityResult],
-    /// For each quantity, a sentence for each limit that is not met.
-    pub fails: Vec<Vec<String>>,
+    /// For each quantity, a reason for each limit that is not met.
+    pub fails: Vec<Vec<Reason>>,
 }
 
 #[derive(Clone, Debug)]
 pub struct Decided {
     pub outcome: Outcome,
-    pub reasons: Vec<String>,
+    pub reasons: Vec<Reason>,
 }
 
 impl Default for Decided {
     fn default() -> Self {
-        Self::not_assessable(vec![
-            "the graph ends without a verdict; this is an error of the program".into(),
-        ])
+        Self::not_assessable(vec![Reason::NoVerdict])
     }
 }
 
 impl Decided {
-    fn not_assessable(reasons: Vec<String>) -> Self {
+    fn not_assessable(reasons: Vec<Reason>) -> Self {
         Self { outcome: Outcome::NotAssessable, reasons }
     }
 
@@ -53,7 +52,7 @@ pub fn decide(plan: &Plan, graph: &Graph, given: &Given<'_>) -> Vec<Decided> {
                 Decision::Verdicts(over) => by_verdicts(plan, over, &decided),
                 Decision::Person(person) => Decided {
                     outcome: Outcome::Open,
-                    reasons: vec![format!("to be judged by {person}")],
+                    reasons: vec![Reason::ToBeJudged { person: person.clone() }],
                 },
             };
         }
@@ -92,13 +91,11 @@ fn by_limits(plan: &Plan, given: &Given<'_>, rule: Rule, about: &[usize]) -> Dec
     let mut missing = given.barred.clone();
     // A quantity without limits is reported and has no effect.
     let without = |quantity: &&QuantityResult| quantity.statistics.is_empty();
-    missing.extend(
-        quantities()
-            .filter(|quantity| !without(quantity))
-            .filter_map(|quantity| Some(format!("{}: {}", quantity.id, quantity.reason.as_ref()?))),
-    );
+    missing.extend(quantities().filter(|quantity| !without(quantity)).filter_map(|quantity| {
+        Some(quantity.reason.clone()?.about(Subject::Quantity, &quantity.id))
+    }));
     if quantities().all(|quantity| without(&quantity)) {
-        missing.push(without_criterion(plan, about).into());
+        missing.push(without_criterion(plan, about));
     }
     if !missing.is_empty() {
         return Decided::not_assessable(missing);
@@ -106,7 +103,7 @@ fn by_limits(plan: &Plan, given: &Given<'_>, rule: Rule, about: &[usize]) -> Dec
     let holding =
         quantities().filter(|quantity| quantity.holds == Some(true) && !without(quantity)).count();
     let limits_holding: usize = quantities().map(limits_holding).sum();
-    let mut reasons: Vec<String> =
+    let mut reasons: Vec<Reason> =
         about.iter().flat_map(|&at| given.fails[at].iter().cloned()).collect();
     let holds = match rule {
         Rule::EveryLimit => reasons.is_empty(),
@@ -118,34 +115,22 @@ fn by_limits(plan: &Plan, given: &Given<'_>, rule: Rule, about: &[usize]) -> Dec
     }
     match rule {
         Rule::EveryLimit => {}
-        Rule::AtLeastQuantities(needed) => reasons.insert(
-            0,
-            format!(
-                "{} of {} meet their criteria; at least {needed} required",
-                holding,
-                count(about.len(), "quantity")
-            ),
-        ),
-        Rule::AtLeastLimits(needed) => reasons.insert(
-            0,
-            format!("{} met; at least {needed} required", count(limits_holding, "limit")),
-        ),
+        Rule::AtLeastQuantities(minimum) => {
+            let quantities = about.len();
+            reasons.insert(0, Reason::TooFewQuantities { met: holding, quantities, minimum });
+        }
+        Rule::AtLeastLimits(minimum) => {
+            reasons.insert(0, Reason::TooFewLimits { met: limits_holding, minimum });
+        }
     }
     Decided { outcome: Outcome::DoesNotHold, reasons }
 }
 
 /// Why no verdict can be given: it needs at least one limit that applies.
-fn without_criterion(plan: &Plan, about: &[usize]) -> &'static str {
-    let all = about.len() == plan.quantities.len();
-    match (about.iter().all(|&at| plan.quantities[at].limits.is_empty()), all) {
-        (true, true) => "the protocol states no acceptance criterion",
-        (false, true) => {
-            "no acceptance criterion of the protocol applies to this vehicle and its sections"
-        }
-        (true, false) => "its quantities have no acceptance criterion",
-        (false, false) => {
-            "no acceptance criterion of its quantities applies to this vehicle and its sections"
-        }
+fn without_criterion(plan: &Plan, about: &[usize]) -> Reason {
+    Reason::NoCriterion {
+        stated: about.iter().any(|&at| !plan.quantities[at].limits.is_empty()),
+        protocol: about.len() == plan.quantities.len(),
     }
 }
 
@@ -153,9 +138,10 @@ fn without_criterion(plan: &Plan, about: &[usize]) -> &'static str {
 fn by_verdicts(plan: &Plan, over: &Over, decided: &[Decided]) -> Decided {
     let title = |at: usize| plan.verdicts[at].title.as_str();
     let undecided = over.verdicts().into_iter().filter(|&at| decided[at].outcome.holds().is_none());
-    let missing: Vec<String> = undecided
+    let missing: Vec<Reason> = undecided
         .flat_map(|at| {
-            decided[at].reasons.iter().map(move |reason| format!("{}: {reason}", title(at)))
+            let reasons = decided[at].reasons.iter().cloned();
+            reasons.map(move |reason| reason.about(Subject::Verdict, title(at)))
         })
         .collect();
     if !missing.is_empty() {
@@ -169,11 +155,14 @@ fn by_verdicts(plan: &Plan, over: &Over, decided: &[Decided]) -> Decided {
         other => vec![other],
     };
     let reason = |part: &Over| {
-        let found = |at: usize| {
-            format!("{}: {}", title(at), decided[at].outcome.word(&plan.verdicts[at].words))
+        let given = |at: usize| GivenVerdict {
+            verdict: title(at).to_owned(),
+            word: decided[at].outcome.word(&plan.verdicts[at].words).to_owned(),
         };
-        let found: Vec<String> = part.verdicts().into_iter().map(found).collect();
-        format!("{}; required: {}", found.join(", "), in_words(part, plan))
+        Reason::VerdictsRequired {
+            verdicts: part.verdicts().into_iter().map(given).collect(),
+            required: in_words(part, plan),
+        }
     };
     Decided {
         outcome: Outcome::DoesNotHold,

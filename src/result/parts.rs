@@ -1,0 +1,128 @@
+//! Parts of reasons and findings: what they are about, with names and numbers.
+
+use indexmap::IndexSet;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A value that holds of one of several vehicles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct OfVehicle {
+    pub value: VehicleValue,
+    pub vehicle: String,
+}
+
+/// What differs between vehicles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "code", rename_all = "kebab-case")]
+pub enum VehicleValue {
+    /// Whether a limit applies.
+    Applies {
+        applies: bool,
+    },
+    Si {
+        value: f64,
+    },
+    Amount {
+        value: f64,
+        unit: String,
+    },
+}
+
+/// A datum of a section or vehicle as it is printed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Datum {
+    pub name: String,
+    pub value: String,
+    pub unit: Option<String>,
+}
+
+/// A verdict with the word that was given.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct GivenVerdict {
+    pub verdict: String,
+    pub word: String,
+}
+
+/// A zone with too few sections.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ShortZone {
+    pub zone: String,
+    pub used: usize,
+}
+
+/// Names of sections.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "code", rename = "sections")]
+pub struct Sections {
+    pub names: Vec<String>,
+    /// These are all of the campaign.
+    pub all: bool,
+}
+
+/// Names of channels, each once.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "code", rename = "channels")]
+pub struct Channels {
+    pub names: Vec<String>,
+}
+
+/// How far a coordinate is above (or below, if negative) the nearest point.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Beyond {
+    pub name: String,
+    pub by: f64,
+    pub unit: String,
+}
+
+/// What a reason is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Subject {
+    Section,
+    Quantity,
+    Statistic,
+    Signal,
+    Coordinate,
+    Group,
+    Verdict,
+    Record,
+    File,
+    Check,
+    Vehicle,
+    Step,
+}
+
+/// A limit that is not met, of one of several groups if it has a scope. No number: the worst value
+/// has none.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LimitNotMet {
+    pub estimate: String,
+    pub scope: Option<String>,
+    pub value: Option<f64>,
+    pub limit: Option<f64>,
+    pub unit: String,
+    pub at_least: bool,
+}
+
+impl Sections {
+    /// Some of a number of sections.
+    pub fn of(names: &[&str], total: usize) -> Self {
+        let all = names.len() == total;
+        Self { names: names.iter().map(ToString::to_string).collect(), all }
+    }
+}
+
+impl Channels {
+    /// Of names of which some may stand several times.
+    pub fn of(all: &[&str]) -> Self {
+        Self {
+            names: all
+                .iter()
+                .copied()
+                .collect::<IndexSet<_>>()
+                .into_iter()
+                .map(Into::into)
+                .collect(),
+        }
+    }
+}

@@ -1,0 +1,624 @@
+//! Why a result is what it is, and what findings say: data, whose sentences are in the table of
+//! texts.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::parts::{
+    Beyond, Channels, Datum, GivenVerdict, LimitNotMet, OfVehicle, Sections, ShortZone, Subject,
+};
+use super::told;
+use crate::words::{self, Text};
+
+/// Why something has no value, is not used, does not hold or is not assessable.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "code", rename_all = "kebab-case")]
+pub enum Reason {
+    /// A reason with what it is about.
+    About {
+        subject: Subject,
+        name: String,
+        reason: Box<Self>,
+    },
+    /// A reason with the estimate or domain that it is about, and with the group if it is one of
+    /// several.
+    OfEstimate {
+        title: String,
+        scope: Option<String>,
+        reason: Box<Self>,
+    },
+    /// Two reasons, such as those of both records of a section.
+    Both {
+        first: Box<Self>,
+        second: Box<Self>,
+    },
+    /// What the reader of an input text says of it, or a file of results without data.
+    Said {
+        says: String,
+    },
+    /// A file cannot be read.
+    Unreadable {
+        says: String,
+    },
+    /// What a method of computation says of its numbers.
+    Method {
+        says: String,
+    },
+    /// A finding that excludes the section.
+    Finding {
+        finding: Box<FindingData>,
+    },
+    /// A step that the checker of protocols excludes.
+    Internal,
+
+    // Expressions, and the names in them.
+    NoCaseOf {
+        expression: String,
+    },
+    NotFinite {
+        expression: String,
+    },
+    NotNumber {
+        expression: String,
+        value: String,
+    },
+    NotCondition {
+        expression: String,
+        value: String,
+    },
+    VehicleDataUnknown,
+    SectionDataUnknown,
+    NoSectionHere,
+    NoSignalHere,
+    NoPairHere,
+    LimitUnknown {
+        estimate: String,
+    },
+    DiffersBetweenSections,
+    DependsOnVehicle {
+        values: Vec<OfVehicle>,
+    },
+    NoVehicle,
+    VehicleDataNotStated {
+        key: String,
+    },
+
+    // The table of sections and the data of runs.
+    NoColumn {
+        column: String,
+    },
+    /// As [`Self::EmptyCell`], of a file of results.
+    EmptyDatum {
+        column: String,
+    },
+    EmptyCell {
+        column: String,
+        file: String,
+        row: usize,
+    },
+    WrongCell {
+        column: String,
+        says: String,
+        file: String,
+        row: usize,
+    },
+    StartNotBeforeEnd {
+        file: String,
+        row: usize,
+    },
+    UnknownOfWholeRecord {
+        column: String,
+    },
+    NotStatedOfRun {
+        column: String,
+        run: String,
+    },
+    WrongUnitOfRun {
+        column: String,
+        run: String,
+        unit: String,
+    },
+    WrongDataOfRun {
+        column: String,
+        run: String,
+        says: String,
+    },
+
+    // Records.
+    NoChannel {
+        channel: String,
+    },
+    NoCaseOfSignal {
+        expression: String,
+    },
+    NoSampleBetween {
+        from: f64,
+        to: f64,
+    },
+    NoSampleInside,
+    TooFewSamples,
+    MeanOfNothing,
+    RecordTooShort {
+        first: f64,
+        last: f64,
+        from: f64,
+        to: f64,
+    },
+    /// The sample is in a row of the file, or at a place of the axis.
+    NotFiniteSample {
+        row: Option<usize>,
+        at: Option<f64>,
+    },
+    NotFiniteResult {
+        row: Option<usize>,
+        at: Option<f64>,
+    },
+    NotFiniteNumber,
+    DifferentSampling,
+    ReducerUndefined {
+        reducer: String,
+        samples: usize,
+    },
+    NotInterpolated {
+        repeat: bool,
+        says: String,
+    },
+    TooShortForShift {
+        says: String,
+    },
+    NoSamplesOfConstant,
+    ShiftedOut {
+        shift: f64,
+        missing: f64,
+    },
+    InputMissing,
+    ValueMissing,
+    SignalMissing,
+    SectionNumberMissing,
+    /// No shift changes the channels by so many standard deviations.
+    NoShift {
+        section: String,
+        size: f64,
+    },
+    OneRecord {
+        side: String,
+    },
+    NoValueApplies,
+    NoMeanOfRecords,
+    NoSamples,
+    NoRecordOfSide {
+        side: String,
+    },
+    SignalsNotKept,
+
+    // The search for sections in runs.
+    RecordEnds,
+    InNoZone,
+    /// Of some zones, for want of some vehicle data.
+    LengthWithoutValue {
+        zones: Vec<String>,
+        keys: Vec<String>,
+    },
+    ConditionOfSearch {
+        condition: String,
+    },
+    LengthWithoutBound {
+        reason: Box<Self>,
+    },
+
+    // Requirements on sections.
+    /// A condition on data of the section, with the data that it reads.
+    Condition {
+        holds: bool,
+        condition: String,
+        found: Vec<Datum>,
+    },
+    Length {
+        length: f64,
+        minimum: f64,
+        unit: String,
+    },
+    /// Long enough whatever data are missing.
+    LongEnough {
+        length: f64,
+        most: f64,
+        unit: String,
+    },
+    NotChecked {
+        reason: Box<Self>,
+    },
+    NoTrackRecord,
+    RecordsNotEvaluated,
+    DoesNotApply,
+    ZoneNotMet {
+        zone: String,
+        reason: Box<Self>,
+    },
+    ZoneUnknown {
+        zone: String,
+        reason: Box<Self>,
+    },
+    LeftOutByReduction {
+        kept: String,
+    },
+    ValuesMissing,
+    LeftOut,
+    ValuesOfSectionsMissing {
+        sections: Vec<String>,
+        total: usize,
+    },
+
+    // Estimates and limits.
+    NoValue,
+    NoValueInGroup,
+    NoRowsOf {
+        quantity: String,
+    },
+    NegativeWeight {
+        weight: String,
+    },
+    NoPositiveWeight,
+    NoInterval,
+    Undefined {
+        count: usize,
+        groups: bool,
+    },
+    UndefinedWeighted {
+        count: usize,
+    },
+    AllEqual {
+        count: usize,
+    },
+    EmptyShare,
+    GroupUnknown {
+        section: String,
+        reason: Box<Self>,
+    },
+    LimitApplicationUnknown {
+        reason: Box<Self>,
+    },
+    NoLimit {
+        reason: Box<Self>,
+    },
+    NoLimitOf {
+        estimate: String,
+    },
+    LimitDependsOnItself,
+    LimitNotPositive,
+    /// Vehicles of one group have different limits.
+    GiveEachItsOwn {
+        reason: Box<Self>,
+        campaigns: bool,
+    },
+    LimitNotMet(LimitNotMet),
+    TooFewPairs {
+        pairs: usize,
+        rows: usize,
+        minimum: usize,
+    },
+    TooFewInGroups {
+        group: String,
+        reason: Box<Self>,
+        others: usize,
+    },
+    TooFewSignals {
+        signals: usize,
+        minimum: usize,
+    },
+    NotEvaluated {
+        section: String,
+        reason: Box<Self>,
+        others: usize,
+    },
+    NoRepeats,
+    SameWhateverRecords {
+        value: f64,
+        unit: String,
+    },
+    FailsAlone {
+        simulations: usize,
+        simulation: String,
+        reason: Box<Self>,
+    },
+
+    // Verdicts.
+    NoVerdict,
+    ToBeJudged {
+        person: String,
+    },
+    TooFewQuantities {
+        met: usize,
+        quantities: usize,
+        minimum: usize,
+    },
+    TooFewLimits {
+        met: usize,
+        minimum: usize,
+    },
+    /// No limit is stated, or none applies; of the whole protocol or of the quantities of a
+    /// verdict.
+    NoCriterion {
+        stated: bool,
+        protocol: bool,
+    },
+    VerdictsRequired {
+        verdicts: Vec<GivenVerdict>,
+        required: String,
+    },
+    ZoneTooSmall {
+        zone: String,
+        used: usize,
+        sites: usize,
+        minimum: usize,
+    },
+    /// Several zones that need the same number.
+    ZonesTooSmall {
+        zones: Vec<ShortZone>,
+        minimum: usize,
+    },
+    /// What another table says in full.
+    SeeVerdict,
+    /// A zone has fewer sections than a selection takes; some of those that are not used.
+    TooFewToSelect {
+        zone: String,
+        sections: usize,
+        take: usize,
+        unused: Vec<UnusedSection>,
+    },
+    TooFewSitesToSelect {
+        zone: String,
+        sites: usize,
+        take: usize,
+    },
+    TooFewInBoth {
+        zone: String,
+        sections: usize,
+        take: usize,
+    },
+    NoSelectionDecides,
+    NothingDependsOnSections,
+    TooFewSections {
+        used: usize,
+        sites: usize,
+        minimum: usize,
+    },
+    NoSectionOfCampaign {
+        campaign: String,
+    },
+    Implausible {
+        rule: String,
+        sections: usize,
+    },
+    NotUsedFor {
+        rule: String,
+        sections: usize,
+    },
+
+    // Comparisons of protocols.
+    /// Further problems of the campaign.
+    AndMore {
+        more: usize,
+    },
+    NotTried,
+    SectionAlone,
+    MetricWithoutNumber,
+    NoCommonScore,
+    TooFewCommonScores,
+    EqualScores,
+
+    // Wanted operation.
+    NoSectionUsed {
+        group: Option<String>,
+    },
+    TooFewForHull {
+        sections: usize,
+        coordinates: usize,
+    },
+    FlatHull {
+        extends: usize,
+        coordinates: usize,
+        same: Vec<String>,
+    },
+    PointsOutside {
+        outside: usize,
+        points: usize,
+    },
+    DependsOnVehicles {
+        vehicles: usize,
+    },
+}
+
+/// What a finding says.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "code", rename_all = "kebab-case")]
+pub enum FindingData {
+    /// As a file of results without data has it.
+    Said { says: String },
+    /// A requirement of a rule is not met. Where it compares two numbers: what is compared, its
+    /// value and the one expected.
+    Required {
+        rule: String,
+        what: Option<String>,
+        value: Option<f64>,
+        expected: Option<f64>,
+        unit: String,
+        required: String,
+    },
+    /// Channels repeat the samples of others, or of the same channels: of another record or section
+    /// if these are named.
+    Copies {
+        rule: String,
+        channels: Channels,
+        copied: Option<Channels>,
+        record: Option<String>,
+        section: Option<String>,
+    },
+    /// A measured channel is more like another simulated one than its own.
+    Exchanged {
+        rule: String,
+        channel: String,
+        other: String,
+        correlation: f64,
+        own_correlation: f64,
+    },
+    /// A requirement was not checked for want of a vehicle datum.
+    CheckWithoutVehicleData { key: String, check: String, sections: Sections },
+    /// Rules were not checked for want of a column.
+    RulesWithoutColumn { column: String, sections: Sections, rules: Vec<String> },
+    /// Vehicle data are read in the units of the protocol.
+    UnitsAssumed { vehicle: Option<String>, data: Vec<Datum> },
+    /// Limits are multiplied for a reason in the vehicle data.
+    FactorOfLimits { quantities: Vec<String>, by: f64, because: String },
+    /// Regressions are read outside their data. Of one estimate, its title and groups.
+    ReadOutside {
+        quantities: Vec<String>,
+        estimates: usize,
+        estimate: Option<String>,
+        groups: Vec<String>,
+        regressor: String,
+        target: f64,
+        beyond: f64,
+        low: f64,
+        high: f64,
+        unit: String,
+    },
+    /// A point of wanted operation lies outside the sections; the distance is in their range.
+    OutsideDomain {
+        title: String,
+        scope: Option<String>,
+        point: String,
+        distance: Option<f64>,
+        by: Vec<Beyond>,
+        nearest: Option<String>,
+    },
+    /// Of points of wanted operation nothing can be said.
+    NoDomain { title: String, scope: Option<String>, reason: Reason, points: usize },
+}
+
+/// A section that is not used.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct UnusedSection {
+    pub section: String,
+    #[serde(flatten, with = "told::reason")]
+    #[schemars(with = "told::OneReason<Reason>")]
+    pub reason: Reason,
+}
+
+impl FindingData {
+    /// Title of the plausibility rule that it comes from.
+    pub fn rule(&self) -> Option<&str> {
+        match self {
+            Self::Required { rule, .. }
+            | Self::Copies { rule, .. }
+            | Self::Exchanged { rule, .. } => Some(rule),
+            _ => None,
+        }
+    }
+}
+
+impl Reason {
+    /// What an input text says of itself.
+    pub fn said(says: impl Into<String>) -> Self {
+        Self::Said { says: says.into() }
+    }
+
+    /// What a method of computation says.
+    pub fn method(error: impl std::fmt::Display) -> Self {
+        Self::Method { says: error.to_string() }
+    }
+
+    /// The reason with what it is about.
+    #[must_use]
+    pub fn about(self, subject: Subject, name: impl Into<String>) -> Self {
+        Self::About { subject, name: name.into(), reason: Box::new(self) }
+    }
+
+    /// The reason without the verdicts that it comes through.
+    #[must_use]
+    pub fn root(&self) -> &Self {
+        match self {
+            Self::About { subject: Subject::Verdict, reason, .. } => reason.root(),
+            _ => self,
+        }
+    }
+
+    /// Whether a file could not be read.
+    pub fn is_unreadable(&self) -> bool {
+        match self {
+            Self::Unreadable { .. } => true,
+            Self::About { reason, .. } => reason.is_unreadable(),
+            Self::Both { first, second } => first.is_unreadable() || second.is_unreadable(),
+            _ => false,
+        }
+    }
+
+    /// The same, with the quantity that it is about called as `name` says.
+    #[must_use]
+    pub fn naming(&self, called: impl Fn(&str) -> String) -> Self {
+        match self {
+            Self::About { subject: Subject::Quantity, name, reason } => {
+                reason.as_ref().clone().about(Subject::Quantity, called(name))
+            }
+            other => other.clone(),
+        }
+    }
+
+    /// Whether both are of the same limit or the same in all, whatever the value compared with a
+    /// limit is.
+    pub fn same_limit(&self, other: &Self) -> bool {
+        match (self, other) {
+            (
+                Self::About { subject, name, reason },
+                Self::About { subject: of, name: other_name, reason: other },
+            ) => (subject, name) == (of, other_name) && reason.same_limit(other),
+            (Self::LimitNotMet(one), Self::LimitNotMet(other)) => {
+                (&one.estimate, &one.scope) == (&other.estimate, &other.scope)
+            }
+            _ => self == other,
+        }
+    }
+
+    /// Whether both come from the same rule, whatever the numbers are.
+    pub fn same_rule(&self, other: &Self) -> bool {
+        match (self, other) {
+            (
+                Self::About { subject, name, .. },
+                Self::About { subject: of, name: other_name, .. },
+            ) => (subject, name) == (of, other_name),
+            (Self::Finding { finding }, Self::Finding { finding: other }) => {
+                finding.rule().is_some() && finding.rule() == other.rule()
+            }
+            (Self::ZoneNotMet { zone, .. }, Self::ZoneNotMet { zone: other, .. }) => zone == other,
+            _ => self == other,
+        }
+    }
+
+    /// Its sentence, without a full stop.
+    pub fn text(&self) -> Text {
+        words::text(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_limit_is_known_again_whatever_its_value() {
+        let reason = |estimate: &str, scope: &str, value: f64| {
+            let reason = Reason::LimitNotMet(LimitNotMet {
+                estimate: estimate.into(),
+                scope: Some(scope.into()),
+                value: Some(value),
+                limit: Some(3.33),
+                unit: "kN".into(),
+                at_least: false,
+            });
+            reason.about(Subject::Quantity, "Q")
+        };
+        let known = reason("95 % value", "zones 1, 2", 4.33);
+        assert!(known.same_limit(&reason("95 % value", "zones 1, 2", -5.1)));
+        assert!(!known.same_limit(&reason("95 % value", "zone 1", 4.33)));
+        assert!(!known.same_limit(&reason("90 % value", "zones 1, 2", 4.33)));
+    }
+}
