@@ -20,7 +20,7 @@ use std::sync::LazyLock;
 use std::time::Instant;
 
 use fishplate::model::equations::{Equations, Hints, Input};
-use fishplate::model::integrate::{SAMPLE, run, steps_per_sample};
+use fishplate::model::integrate::{Method, SAMPLE, least_steps, run};
 use fishplate::model::state::State;
 use fishplate::model::{Profile, Setup, Track, Vehicle, simulate_with, start};
 use ode_solvers::dop_shared::OutputType;
@@ -79,8 +79,11 @@ impl Campaign {
     }
 
     fn steps(&self, section: &Section) -> usize {
-        steps_per_sample(&Equations::new(&self.vehicle, &self.profile, section.speed))
-            .expect("few steps")
+        least_steps(
+            Method::RungeKutta,
+            &Equations::new(&self.vehicle, &self.profile, section.speed),
+        )
+        .expect("few steps")
     }
 
     /// Samples of a run, of 1 ms.

@@ -2,9 +2,8 @@
 //! site.
 //!
 //! A site is one test location: a section with its repeats and all its signals. Values are grouped
-//! by site. There are four methods: drawing sites ([`bootstrap`]), leaving out one site at a time
-//! ([`jackknife`]), and closed forms for the mean ([`Mean`]) and the standard deviation
-//! ([`StandardDeviation`]). Their coverage is given in `docs/definitions.md`.
+//! by site. There are three methods: drawing sites ([`bootstrap`]), and closed forms for the mean
+//! ([`Mean`]) and the standard deviation ([`StandardDeviation`]). Their coverage is given in `docs/definitions.md`.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -158,8 +157,8 @@ pub fn bootstrap<T: Copy>(
     for (number, draw) in draws.iter().enumerate() {
         values.clear();
         draw.iter().for_each(|site| values.extend_from_slice(&sites[*site]));
-        let of = || ClusterError::Undefined { of: Part::Draw(number + 1) };
-        replicates.push(statistic(&values).filter(|value| value.is_finite()).ok_or_else(of)?);
+        let value = statistic(&values).filter(|value| value.is_finite());
+        replicates.push(value.ok_or(ClusterError::Undefined { draw: number + 1 })?);
     }
     Ok(Replicates(replicates))
 }
@@ -179,32 +178,6 @@ impl Bounds for Estimate {
         let t = student_quantile(probability, self.degrees).ok_or(ClusterError::OutOfRange)?;
         in_range(self.value + t * self.standard_error)
     }
-}
-
-/// The statistic of all values. Its standard error follows from leaving out one site at a time: the
-/// square root of (G - 1)/G times the sum of squares about their mean, for G sites (Efron and
-/// Tibshirani 1993, chapter 11). The lower bound of a standard deviation can be negative.
-///
-/// # Errors
-/// Fewer than two sites; a statistic that is not defined for all values or without one of the
-/// sites.
-pub fn jackknife<T: Copy>(
-    sites: &[Vec<T>],
-    statistic: impl Fn(&[T]) -> Option<f64>,
-) -> Result<Estimate, ClusterError> {
-    enough(sites.len())?;
-    let of = |left_out: Option<usize>| {
-        let kept = sites.iter().enumerate().filter(|(site, _)| Some(*site) != left_out);
-        let values: Vec<T> = kept.flat_map(|(_, values)| values.iter().copied()).collect();
-        let of = left_out.map_or(Part::All, |site| Part::Without(site + 1));
-        statistic(&values).filter(|value| value.is_finite()).ok_or(ClusterError::Undefined { of })
-    };
-    let value = of(None)?;
-    let without = (0..sites.len()).map(|site| of(Some(site))).collect::<Result<Vec<f64>, _>>()?;
-    let variance =
-        statistics::variance(&without, Divisor::Population).ok_or(ClusterError::OutOfRange)?;
-    let degrees = sites.len() as f64 - 1.0;
-    Ok(Estimate { value, standard_error: in_range((degrees * variance).sqrt())?, degrees })
 }
 
 /// The mean of all values, with bounds in closed form: variance G/(G - 1) sum(S_j^2)/n^2 for G
@@ -353,23 +326,28 @@ fn in_range(value: f64) -> Result<f64, ClusterError> {
     if value.is_finite() { Ok(value) } else { Err(ClusterError::OutOfRange) }
 }
 
-/// The values that a statistic is computed from; numbers from 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    All,
-    Draw(usize),
-    Without(usize),
-}
-
 /// Reason why there is no bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ClusterError {
-    Length { values: usize, sites: usize },
-    TooFew { sites: usize },
+    Length {
+        values: usize,
+        sites: usize,
+    },
+    TooFew {
+        sites: usize,
+    },
     NoDraw,
-    OtherSites { sites: usize, draws: usize },
-    Undefined { of: Part },
-    Probability { probability: f64 },
+    OtherSites {
+        sites: usize,
+        draws: usize,
+    },
+    /// The statistic is not defined for this draw, from 1.
+    Undefined {
+        draw: usize,
+    },
+    Probability {
+        probability: f64,
+    },
     OutOfRange,
 }
 
@@ -385,14 +363,8 @@ impl fmt::Display for ClusterError {
             Self::OtherSites { sites, draws } => {
                 write!(f, "the values are of {sites} sites, the draws of {draws}")
             }
-            Self::Undefined { of: Part::All } => {
-                f.write_str("the statistic is not defined for these values")
-            }
-            Self::Undefined { of: Part::Draw(number) } => {
-                write!(f, "the statistic is not defined for draw {number} of the sites")
-            }
-            Self::Undefined { of: Part::Without(site) } => {
-                write!(f, "the statistic is not defined without site {site}")
+            Self::Undefined { draw } => {
+                write!(f, "the statistic is not defined for draw {draw} of the sites")
             }
             Self::Probability { probability } => {
                 write!(f, "a probability must be between 0 and 1, this is {probability}")

@@ -31,18 +31,6 @@ pub struct Matching {
     pub range: f64,
 }
 
-impl Matching {
-    /// [`Self::maximum`] divided by the range; `None` if the measured output is constant.
-    pub fn relative_maximum(&self) -> Option<f64> {
-        (self.range > 0.0).then(|| self.maximum / self.range)
-    }
-
-    /// [`Self::mean`] divided by the range; `None` if the measured output is constant.
-    pub fn relative_mean(&self) -> Option<f64> {
-        (self.range > 0.0).then(|| self.mean / self.range)
-    }
-}
-
 /// Compares two loops.
 ///
 /// `threshold` is the share of the input's range by which it must reverse for a turning point. It
@@ -80,37 +68,6 @@ pub fn matching(simulated: Loop, measured: Loop, threshold: f64) -> Result<Match
         length += part.length;
     }
     Ok(Matching { maximum, mean: integral / length, range: highest - lowest })
-}
-
-/// Area of a loop: the integral over the input of rising minus falling output, in the product of
-/// their units.
-///
-/// It is positive where the output is larger while the input rises: the energy dissipated by a
-/// force over a displacement. For several cycles it is the mean. Only inputs that both directions
-/// reach are used.
-///
-/// # Errors
-/// As [`matching`], for one record.
-pub fn area(of: Loop, threshold: f64) -> Result<f64, Undefined> {
-    let sides = Sides::of(of, threshold, "given")?;
-    let mut inputs = sides.rising.inputs();
-    inputs.extend(sides.falling.inputs());
-    inputs.sort_unstable_by(f64::total_cmp);
-    inputs.dedup();
-    let heights: Vec<(f64, Option<f64>)> = inputs
-        .into_iter()
-        .map(|x| {
-            (
-                x,
-                sides
-                    .rising
-                    .at(x)
-                    .zip(sides.falling.at(x))
-                    .map(|(rising, falling)| rising - falling),
-            )
-        })
-        .collect();
-    Ok(trapezia(&heights).integral)
 }
 
 /// Sums of trapezoids between points.

@@ -1,9 +1,6 @@
 //! Confidence intervals, and that of a share. Those of means and standard deviations are in
 //! `cluster`.
 
-/// Confidence level usual in test reports.
-pub const CONFIDENCE: f64 = 0.95;
-
 /// Lower and upper end of a confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {

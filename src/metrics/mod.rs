@@ -12,7 +12,7 @@
 //! | [`percentile`] | values | order statistics, interpolated |
 //! | [`statistics`], [`interval`] | values | mean, scatter, extremes, regression; confidence intervals |
 //! | [`weighted`] | values and weights | mean, scatter, order statistics |
-//! | [`cluster`] | values by site | bounds of any statistic: bootstrap and jackknife over sites, closed forms |
+//! | [`cluster`] | values by site | bounds of any statistic: bootstrap over sites, closed forms |
 //! | [`reduction`] | groups of members and their scatter | fewer members with nearly the same scatter |
 //! | [`regression`] | values and regressors | least squares, bounds at a point |
 //! | [`student`] | probability | quantiles of Student's t |

@@ -78,16 +78,6 @@ pub fn range(values: &[f64]) -> Option<f64> {
     finite(extremes(values).map(|(least, greatest)| greatest - least)?)
 }
 
-/// Quartiles: 25, 50 and 75 %, with linear interpolation.
-pub fn quartiles(values: &[f64]) -> Option<[f64; 3]> {
-    percentiles(values, &[25.0, 50.0, 75.0], Method::Linear).ok()?.try_into().ok()
-}
-
-/// Interquartile range.
-pub fn interquartile_range(values: &[f64]) -> Option<f64> {
-    quartiles(values).and_then(|[lower, _, upper]| finite(upper - lower))
-}
-
 /// A straight line fitted to points by least squares in y.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {

@@ -153,30 +153,6 @@ impl<'a> Equations<'a> {
         load * spin.max(yaw).max(lateral)
     }
 
-    /// Entries of [`State::to_vec`] that this vehicle uses; the others stay 0.
-    #[must_use]
-    pub fn states(&self) -> Vec<usize> {
-        let first_order = 2 * State::BODIES;
-        let groups = [
-            (4, true),
-            (2, self.has.yaw_damper),
-            (2, self.has.hysteresis),
-            (2, self.has.centre_friction),
-            (8, self.has.friction_z),
-            (4, self.has.friction_y),
-            (2, self.has.bending),
-        ];
-        let mut places: Vec<usize> = (0..first_order).collect();
-        let mut next = first_order;
-        for (count, has) in groups {
-            if has {
-                places.extend(next..next + count);
-            }
-            next += count;
-        }
-        places
-    }
-
     /// The track under the bodies when the car body's centre is at `s`.
     #[inline(always)]
     pub fn input(&self, track: &Track, s: f64, hints: &mut Hints) -> Input {

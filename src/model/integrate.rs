@@ -272,18 +272,10 @@ impl<F: FnMut(usize, &State, &Outputs), const N: usize> Run<'_, F, N> {
     }
 }
 
-/// Number of steps per sample for the vehicle at its speed, with the Runge-Kutta method.
-///
-/// # Errors
-/// The number is too large: [`FailureKind::TooStiff`].
-pub fn steps_per_sample(equations: &Equations<'_>) -> Result<usize, FailureKind> {
-    least_steps(Method::RungeKutta, equations)
-}
-
 /// Least number of steps per sample with which a method is stable for the vehicle at its speed.
 ///
 /// # Errors
-/// As [`steps_per_sample`].
+/// The number is too large: [`FailureKind::TooStiff`].
 pub fn least_steps(method: Method, equations: &Equations<'_>) -> Result<usize, FailureKind> {
     let steps = (equations.fastest_rate() * SAMPLE / method.stable()).ceil().max(1.0);
     if steps <= MOST_STEPS { Ok(steps as usize) } else { Err(FailureKind::TooStiff { steps }) }

@@ -16,7 +16,6 @@ mod contact;
 pub mod equations;
 pub mod integrate;
 mod masses;
-pub mod modes;
 mod parameters;
 mod profile;
 mod record;

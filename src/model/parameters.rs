@@ -220,12 +220,6 @@ impl Vehicle {
     pub fn static_wheel_load(&self) -> f64 {
         (self.car_mass + 2.0 * self.bogie_mass + 4.0 * self.wheelset_mass) * super::G / 8.0
     }
-
-    /// Mass of the vehicle with its payload in kg.
-    #[must_use]
-    pub fn total_mass(&self) -> f64 {
-        self.car_mass + self.payload_mass + 2.0 * self.bogie_mass + 4.0 * self.wheelset_mass
-    }
 }
 
 /// The parameter with this key.

@@ -48,8 +48,6 @@ impl State {
     pub const BODIES: usize = 31;
     /// All states.
     pub const ALL: usize = 2 * Self::BODIES + 24;
-    /// Indices of forces and torques in [`State::to_vec`].
-    pub const FORCES: std::ops::Range<usize> = 2 * Self::BODIES + 4..Self::ALL - 2;
 
     /// Sets `self` to `start` plus `step` times `rates`.
     #[inline(always)]

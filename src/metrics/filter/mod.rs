@@ -177,15 +177,6 @@ impl Filter {
         self.time_constant
     }
 
-    /// Time, in s, in which the slowest part of a transient falls to 1 %. A record should extend
-    /// this far beyond the part that is evaluated, at both ends for [`Phase::Zero`].
-    ///
-    /// This is an estimate: 4.6 time constants of the slowest pole. The transient of a particular
-    /// record may be shorter.
-    pub fn settling_time(&self) -> f64 {
-        self.time_constant * 100_f64.ln()
-    }
-
     /// Minimum number of samples of a signal.
     pub fn samples_needed(&self) -> usize {
         self.padding + 1

@@ -1,10 +1,7 @@
 //! Metrics of the difference of the signals, sample by sample.
 
 use super::{Energies, Undefined, check};
-use crate::metrics::{
-    statistics::{self, Divisor},
-    sum::sum_of_pairs,
-};
+use crate::metrics::{statistics, sum::sum_of_pairs};
 
 /// Root mean square of simulation minus measurement, in the unit of the signals.
 ///
@@ -74,14 +71,6 @@ pub fn kraft_misfit(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefine
     Ok(energies.difference / lower)
 }
 
-/// Square root of [`kraft_misfit`].
-///
-/// # Errors
-/// A signal is zero throughout.
-pub fn kraft_misfit_root(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
-    kraft_misfit(simulated, measured).map(f64::sqrt)
-}
-
 /// Weighted integrated factor: 1 for equal signals, 0 for signals of opposite sign throughout. It
 /// is symmetric.
 ///
@@ -105,39 +94,6 @@ pub fn weighted_integrated_factor(simulated: &[f64], measured: &[f64]) -> Result
         Ok(factor)
     } else {
         Err(Undefined::because("the sum of the squares of the samples overflows"))
-    }
-}
-
-/// Mean residual of the analysis of variance, divided by the largest magnitude of the measurement.
-///
-/// As in the crash-test software RSVVP, with limits of +-5 %.
-///
-/// # Errors
-/// The measurement is zero throughout.
-pub fn anova_mean(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
-    let residuals = residuals(simulated, measured)?;
-    statistics::mean(&residuals).ok_or_else(too_large)
-}
-
-/// Standard deviation (n - 1) of the residuals of [`anova_mean`]; the limit of RSVVP is 35 %.
-///
-/// # Errors
-/// The measurement is zero throughout, or there is one sample only.
-pub fn anova_standard_deviation(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
-    let residuals = residuals(simulated, measured)?;
-    if residuals.len() < 2 {
-        return Err(Undefined::because("the scatter of a single sample is not defined"));
-    }
-    statistics::standard_deviation(&residuals, Divisor::Sample).ok_or_else(too_large)
-}
-
-fn residuals(simulated: &[f64], measured: &[f64]) -> Result<Vec<f64>, Undefined> {
-    check(simulated, measured)?;
-    match statistics::peak_magnitude(measured) {
-        Some(peak) if peak > 0.0 => {
-            Ok(simulated.iter().zip(measured).map(|(s, m)| (s - m) / peak).collect())
-        }
-        _ => Err(Undefined::because("the measured signal is zero throughout")),
     }
 }
 

@@ -26,19 +26,12 @@ pub fn area_metric(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined
     in_range(area)
 }
 
-/// The distribution of a signal as `points` values: the quantiles at (i - 0.5)/n, i = 1 to n, with
-/// linear interpolation between order statistics (type 7). There may be more points than samples.
+/// The distribution of a signal, whose samples are sorted, as `points` values: the quantiles at
+/// (i - 0.5)/n, i = 1 to n, with linear interpolation between order statistics (type 7). There may
+/// be more points than samples.
 ///
 /// # Errors
 /// No points, no samples, a sample that is not finite.
-pub fn quantiles(signal: &[f64], points: usize) -> Result<Vec<f64>, Undefined> {
-    quantiles_of_sorted(&sorted(signal), points)
-}
-
-/// [`quantiles`] of a signal whose samples are sorted already, for several numbers of points.
-///
-/// # Errors
-/// As [`quantiles`].
 pub fn quantiles_of_sorted(sorted: &[f64], points: usize) -> Result<Vec<f64>, Undefined> {
     if points == 0 {
         return Err(Undefined::because("a distribution needs at least one point"));

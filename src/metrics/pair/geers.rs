@@ -1,4 +1,4 @@
-//! Magnitude, phase and comprehensive errors: Sprague and Geers, Geers (1984), Russell.
+//! Magnitude, phase and comprehensive errors: Sprague and Geers, Russell.
 //!
 //! Sources: Geers, "An objective error measure for the comparison of calculated and measured
 //! transient response histories", Shock and Vibration Bulletin 54 (1984); Sprague and Geers, "A
@@ -36,24 +36,6 @@ pub fn sprague_geers_phase(simulated: &[f64], measured: &[f64]) -> Result<f64, U
 pub fn sprague_geers_comprehensive(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     let energies = Energies::of(simulated, measured)?;
     Ok(magnitude(&energies)?.hypot(angle(simulated, measured, &energies)? / PI))
-}
-
-/// Phase error of Geers (1984): one minus the cosine of the angle between the signals, in [0, 2].
-///
-/// # Errors
-/// A signal is zero throughout.
-pub fn geers_phase(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
-    Ok(one_less_cosine(angle(simulated, measured, &Energies::of(simulated, measured)?)?))
-}
-
-/// Comprehensive error of Geers (1984), from the magnitude error of Sprague and Geers and the phase
-/// error of 1984.
-///
-/// # Errors
-/// A signal is zero throughout.
-pub fn geers_comprehensive(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
-    let energies = Energies::of(simulated, measured)?;
-    Ok(magnitude(&energies)?.hypot(one_less_cosine(angle(simulated, measured, &energies)?)))
 }
 
 /// Russell's magnitude error: `sign(r) log10(1 + |r|)`, `r = (S - M) / sqrt(S M)`, with S and M the
@@ -110,11 +92,6 @@ fn angle(simulated: &[f64], measured: &[f64], energies: &Energies) -> Result<f64
         sum_of_pairs(simulated, measured, |s, m| component(s, m) * component(s, m)).sqrt()
     };
     Ok(2.0 * side(-1.0).atan2(side(1.0)))
-}
-
-fn one_less_cosine(angle: f64) -> f64 {
-    let sine = (angle / 2.0).sin();
-    2.0 * sine * sine
 }
 
 fn both_move(energies: &Energies) -> Result<(), Undefined> {

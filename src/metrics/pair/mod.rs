@@ -16,16 +16,16 @@ mod theil;
 pub use alignment::{drift, mirrored_correlation, shift};
 pub use cora::{cora_corridor, cora_phase, cora_progression, cora_size, cora_total};
 pub use deviation::{
-    anova_mean, anova_standard_deviation, correlation, kraft_misfit, kraft_misfit_root,
-    relative_to_range, rms_ratio, root_mean_square_error, weighted_integrated_factor,
+    correlation, kraft_misfit, relative_to_range, rms_ratio, root_mean_square_error,
+    weighted_integrated_factor,
 };
 pub use distribution::{
     area_between, area_metric, bogojevic, bogojevic_mean_term, bogojevic_variance_probability,
-    bogojevic_variance_ratio, f_two_sided, quantiles, quantiles_of_sorted,
+    bogojevic_variance_ratio, f_two_sided, quantiles_of_sorted,
 };
 pub use geers::{
-    geers_comprehensive, geers_phase, russell_comprehensive, russell_magnitude, russell_phase,
-    sprague_geers_comprehensive, sprague_geers_magnitude, sprague_geers_phase,
+    russell_comprehensive, russell_magnitude, russell_phase, sprague_geers_comprehensive,
+    sprague_geers_magnitude, sprague_geers_phase,
 };
 pub use iso18571::{
     iso18571_corridor, iso18571_magnitude, iso18571_overall, iso18571_phase, iso18571_slope,

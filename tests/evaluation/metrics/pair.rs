@@ -8,20 +8,23 @@ use crate::metrics::{
     vectors::{PAIRS, Pair},
 };
 
+/// The distribution of a signal at some points.
+fn quantiles(signal: &[f64], points: usize) -> Result<Vec<f64>, Undefined> {
+    let mut sorted = signal.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    quantiles_of_sorted(&sorted, points)
+}
+
 type Metric = fn(&[f64], &[f64]) -> Result<f64, Undefined>;
 
 /// Metric and where `expected.json` has it.
-const METRICS: [(Metric, &str); 21] = [
+const METRICS: [(Metric, &str); 16] = [
     (sprague_geers_magnitude, "/sprague_geers/magnitude"),
     (sprague_geers_phase, "/sprague_geers/phase"),
     (sprague_geers_comprehensive, "/sprague_geers/comprehensive"),
-    (geers_phase, "/geers_1984_variant/phase"),
-    (geers_comprehensive, "/geers_1984_variant/comprehensive"),
     (russell_magnitude, "/russell/magnitude"),
     (russell_phase, "/russell/phase"),
     (russell_comprehensive, "/russell/comprehensive"),
-    (anova_mean, "/anova_rsvvp/mean"),
-    (anova_standard_deviation, "/anova_rsvvp/std"),
     (theil_u1, "/theil/U1"),
     (theil_u2, "/theil/U2"),
     (theil_bias, "/theil/bias"),
@@ -30,7 +33,6 @@ const METRICS: [(Metric, &str); 21] = [
     (root_mean_square_error, "/theil/rmse"),
     (weighted_integrated_factor, "/wifac"),
     (kraft_misfit, "/misfit_over_lower/squared"),
-    (kraft_misfit_root, "/misfit_over_lower/root"),
     (area_metric, "/area_metric_wasserstein"),
     (bogojevic_mean_term, "/bogojevic/mean_term"),
 ];
@@ -177,8 +179,6 @@ fn undefined_says_why() {
     says(theil_bias(&one, &one), "equal");
     says(weighted_integrated_factor(&zero, &zero), "both signals");
     says(correlation(&one, &ramp), "constant");
-    says(anova_mean(&one, &zero), "measured signal is zero");
-    says(anova_standard_deviation(&one[..1], &one[..1]), "single sample");
     says(bogojevic(&ramp, &one), "measured signal is constant");
     says(root_mean_square_error(&[1e200], &[-1e200]), "overflows");
 }

@@ -1,10 +1,13 @@
 use fishplate::metrics::{
     cluster::{mean_interval, standard_deviation_interval},
-    interval::{CONFIDENCE, wilson},
+    interval::wilson,
     statistics::*,
 };
 
 use crate::metrics::{close, json, number, numbers, record};
+
+/// Confidence level usual in test reports.
+const CONFIDENCE: f64 = 0.95;
 
 /// Squares beyond the largest double: there is no deviation, rather than none.
 #[test]
@@ -99,8 +102,6 @@ fn of_a_few_values() {
     assert_eq!(maximum(&values), Some(4.0));
     assert_eq!(peak_magnitude(&values), Some(7.0));
     assert_eq!(range(&values), Some(11.0));
-    assert_eq!(quartiles(&values), Some([-1.0, 1.0, 3.0]));
-    assert_eq!(interquartile_range(&values), Some(4.0));
     close(rms(&values).expect("defined"), 15.2_f64.sqrt(), 1e-15);
     close(variance(&values, Divisor::Sample).expect("defined"), 19.0, 1e-15);
     close(variance(&values, Divisor::Population).expect("defined"), 15.2, 1e-15);
@@ -136,9 +137,7 @@ fn none_where_not_defined() {
     assert_eq!(standard_deviation_interval(&[1.0, 2.0], &[3, 3], CONFIDENCE), None, "one site");
     assert_eq!(standard_deviation_interval(&[1.0, 2.0], &[0, 1], f64::NAN), None);
     for broken in [[1.0, f64::NAN], [f64::NAN, 1.0], [f64::INFINITY, 1.0]] {
-        for statistic in
-            [mean, rms, median, minimum, maximum, peak_magnitude, range, interquartile_range]
-        {
+        for statistic in [mean, rms, median, minimum, maximum, peak_magnitude, range] {
             assert_eq!(statistic(&broken), None);
         }
         assert_eq!(standard_deviation(&broken, Divisor::Sample), None);

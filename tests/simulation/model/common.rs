@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use fishplate::model::equations::Equations;
-use fishplate::model::integrate::{SAMPLE, run, steps_per_sample};
+use fishplate::model::integrate::{Method, SAMPLE, least_steps, run};
 use fishplate::model::state::State;
 use fishplate::model::{
     CHANNELS, Failure, Profile, ProfileTable, Record, Setup, Track, TrackTable, Vehicle, Window,
@@ -207,8 +207,11 @@ pub fn free_run(
     let table = even(&[(0.0, 0.0, 0.0), (1.0, 0.0, 0.0)]);
     let track = Track::new(&table, equations.vehicle);
     let samples = (seconds / SAMPLE).round() as usize + 1;
-    let divided =
-        if divided == 0 { steps_per_sample(equations).expect("few steps") } else { divided };
+    let divided = if divided == 0 {
+        least_steps(Method::RungeKutta, equations).expect("few steps")
+    } else {
+        divided
+    };
     let mut states = Vec::with_capacity(samples);
     run(equations, &track, from, 10.0, samples, divided, |_, state, _| states.push(*state))
         .unwrap();

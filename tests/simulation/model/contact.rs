@@ -1,8 +1,8 @@
 //! Forces between wheel and rail against theory: Kalker's linear limit, Coulomb's limit, Klingel's
 //! wave, the flange.
 
+use crate::model::modes::Linear;
 use fishplate::model::equations::{Equations, Input};
-use fishplate::model::modes::Linear;
 use fishplate::model::state::{State, WHEELSET};
 use fishplate::model::{Contact, Vehicle};
 

@@ -1,8 +1,8 @@
 //! Motions with a closed form: natural frequencies, free decay, conservation of energy.
 
+use crate::model::modes::Linear;
 use fishplate::model::Vehicle;
 use fishplate::model::equations::Equations;
-use fishplate::model::modes::Linear;
 use fishplate::model::state::{BOGIE, CAR, State, WHEELSET, Z};
 use nalgebra::{Complex, Matrix3, SymmetricEigen, Vector3};
 
@@ -32,7 +32,7 @@ fn frequency(vehicle: &Vehicle, largest: &[usize], with: usize, together: bool) 
             let share: Complex<f64> = shape[with] / shape[at];
             largest.contains(&peak) && share.norm() > 1e-2 && (share.re > 0.0) == together
         })
-        .map(fishplate::model::modes::Mode::frequency)
+        .map(crate::model::modes::Mode::frequency)
         .collect();
     assert_eq!(found.len(), 1, "{found:?}");
     found[0]

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use fishplate::metrics::filter::{Band, Cutoff, Filter, Phase};
 use fishplate::model::equations::{Equations, Hints};
-use fishplate::model::integrate::{Method, Steps, run, steps_per_sample};
+use fishplate::model::integrate::{Method, Steps, least_steps, run};
 use fishplate::model::state::{CAR, State, WHEELSET, Z};
 use fishplate::model::{CHANNELS, SAMPLING_RATE, Setup, Track, simulate_with, start};
 use ode_solvers::dop_shared::OutputType;
@@ -88,8 +88,9 @@ fn halving_the_step_changes_nothing_that_matters() {
             track: &section.track,
             speed: section.speed,
         };
-        let steps = steps_per_sample(&Equations::new(&vehicle, &profile, section.speed))
-            .expect("few steps");
+        let steps =
+            least_steps(Method::RungeKutta, &Equations::new(&vehicle, &profile, section.speed))
+                .expect("few steps");
         let records = [steps, 2 * steps]
             .map(|steps| simulate_with(&setup, section.window(), Some(steps)).unwrap());
         for (i, (channel, _)) in CHANNELS.iter().enumerate() {

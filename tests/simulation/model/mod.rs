@@ -17,5 +17,6 @@ mod exact_motions;
 mod failures;
 mod friction;
 mod integrator;
+mod modes;
 mod stability;
 mod symmetry;

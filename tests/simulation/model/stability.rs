@@ -1,7 +1,7 @@
 //! Critical speed: eigenvalues against time integration.
 
+use crate::model::modes::{Linear, critical_speed};
 use fishplate::model::equations::Equations;
-use fishplate::model::modes::{Linear, critical_speed};
 use fishplate::model::state::{State, WHEELSET};
 use fishplate::model::{Profile, Vehicle};
 

@@ -8,8 +8,8 @@
 use nalgebra::linalg::{Schur, balancing};
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::equations::{Equations, Input};
-use super::state::State;
+use fishplate::model::equations::{Equations, Input};
+use fishplate::model::state::State;
 
 /// Iterations of the inverse iteration for a mode shape; each reduces all other modes by many
 /// orders of magnitude.
@@ -21,6 +21,34 @@ const ITERATIONS: usize = 5_000;
 const PRECISIONS: [f64; 4] = [f64::EPSILON, 1e-15, 1e-14, 1e-13];
 /// Relative shift from the eigenvalue in the inverse iteration.
 const BESIDE: f64 = 1e-7;
+
+/// Indices of forces and torques in [`State::to_vec`].
+const FORCES: std::ops::Range<usize> = 2 * State::BODIES + 4..State::ALL - 2;
+
+/// Entries of [`State::to_vec`] that a vehicle uses; the others stay 0.
+fn states(equations: &Equations<'_>) -> Vec<usize> {
+    let v = equations.vehicle;
+    let first_order = 2 * State::BODIES;
+    let yaw_damper = v.yaw_damper_stiffness * v.yaw_damper_damping * v.yaw_damper_remaining;
+    let groups = [
+        (4, true),
+        (2, yaw_damper > 0.0),
+        (2, v.secondary_hysteresis > 0.0),
+        (2, v.centre_friction_torque > 0.0),
+        (8, v.primary_friction_z > 0.0),
+        (4, v.primary_friction_y > 0.0),
+        (2, v.bending_frequency > 0.0),
+    ];
+    let mut places: Vec<usize> = (0..first_order).collect();
+    let mut next = first_order;
+    for (count, has) in groups {
+        if has {
+            places.extend(next..next + count);
+        }
+        next += count;
+    }
+    places
+}
 
 /// The equations of motion linearised about a state.
 #[derive(Clone, Debug)]
@@ -40,21 +68,8 @@ pub struct Mode {
 
 impl Mode {
     /// Frequency of the damped motion in Hz; 0 if it does not oscillate.
-    #[must_use]
     pub fn frequency(&self) -> f64 {
         self.eigenvalue.im / std::f64::consts::TAU
-    }
-
-    /// Natural frequency without damping, in Hz.
-    #[must_use]
-    pub fn natural_frequency(&self) -> f64 {
-        self.eigenvalue.norm() / std::f64::consts::TAU
-    }
-
-    /// Share of the critical damping: -Re / |eigenvalue|; negative if the motion grows.
-    #[must_use]
-    pub fn damping_ratio(&self) -> f64 {
-        -self.eigenvalue.re / self.eigenvalue.norm()
     }
 }
 
@@ -62,10 +77,9 @@ impl Linear {
     /// The matrix about `state` by central differences of `step` (m, rad, m/s, rad/s); first-order
     /// forces and torques are changed by `step` times 1e6. A step well below the point distance of
     /// the contact table (e.g. a micrometre) gives the slopes of the table at the state.
-    #[must_use]
     pub fn about(equations: &Equations<'_>, state: &State, step: f64) -> Self {
         let at = state.to_vec();
-        let places = equations.states();
+        let places = states(equations);
         let rates = |place: usize, by: f64| {
             let mut moved = at.clone();
             moved[place] += by;
@@ -75,7 +89,7 @@ impl Linear {
         };
         let mut matrix = DMatrix::zeros(places.len(), places.len());
         for (column, place) in places.iter().enumerate() {
-            let step = if State::FORCES.contains(place) { step * 1e6 } else { step };
+            let step = if FORCES.contains(place) { step * 1e6 } else { step };
             let (above, below) = (rates(*place, step), rates(*place, -step));
             for (row, of) in places.iter().enumerate() {
                 matrix[(row, column)] = (above[*of] - below[*of]) / (2.0 * step);
@@ -86,7 +100,6 @@ impl Linear {
 
     /// All modes in decreasing order of growth; a conjugate pair is one mode. QR method on the
     /// balanced matrix; `None` if it does not converge.
-    #[must_use]
     pub fn modes(&self) -> Option<Vec<Mode>> {
         let mut balanced = self.matrix.clone();
         // Forces and displacements differ by ten orders of magnitude: rows and columns are scaled.
@@ -110,7 +123,6 @@ impl Linear {
     }
 
     /// The fastest growing mode; `None` as in [`Self::modes`].
-    #[must_use]
     pub fn least_damped(&self) -> Option<Mode> {
         self.modes()?.into_iter().next()
     }
@@ -118,7 +130,6 @@ impl Linear {
     /// The shape of a mode over [`State::to_vec`], normalised to a largest displacement of 1;
     /// entries not in use are 0. Inverse iteration (Wilkinson); `None` if the system near the
     /// eigenvalue has no solution.
-    #[must_use]
     pub fn shape(&self, mode: &Mode) -> Option<Vec<Complex<f64>>> {
         let n = self.places.len();
         let beside = mode.eigenvalue * (1.0 + BESIDE) + Complex::from(1e-9);
