@@ -37,7 +37,7 @@ const REPORT_HTML: &str = "report.html";
 pub fn certification(found: &Certification, reports: Reports) -> Result<Files, Problems> {
     let (results, tables) = rayon::join(
         || result::text(found),
-        || tables::tables(found).map_err(|error| error.to_string()),
+        || tables::certification(found).map_err(|error| error.to_string()),
     );
     let mut files = in_folder(tables)?;
     if reports.pdf || reports.html {
@@ -57,8 +57,7 @@ pub fn certification(found: &Certification, reports: Reports) -> Result<Files, P
 /// # Errors
 /// As [`certification`].
 pub fn study(found: &Study, reports: Reports) -> Result<Files, Problems> {
-    let mut files =
-        in_folder(report::study::tables::tables(found).map_err(|error| error.to_string()))?;
+    let mut files = in_folder(tables::study(found).map_err(|error| error.to_string()))?;
     let (data, figures) = (report::study::document(found), report::study::figures(found));
     let numbers = result::text(found);
     files.extend(document(
@@ -74,8 +73,7 @@ pub fn study(found: &Study, reports: Reports) -> Result<Files, Problems> {
 /// # Errors
 /// As [`certification`].
 pub fn comparison(found: &Comparison, reports: Reports) -> Result<Files, Problems> {
-    let mut files =
-        in_folder(report::comparison::tables::tables(found).map_err(|error| error.to_string()))?;
+    let mut files = in_folder(tables::comparison(found).map_err(|error| error.to_string()))?;
     let numbers = result::text(found);
     if !reports.pdf && !reports.html {
         files.push((COMPARISON.0.into(), numbers.into_bytes()));

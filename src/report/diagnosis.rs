@@ -182,7 +182,7 @@ fn invariants(all: &[Invariant], named: bool) -> Table {
             let times = (allowed > 0.0).then(|| value.abs() / allowed);
             Cell::number(times, Format::Fixed(1))
         };
-        let mut row = cells![one.name, one.parity, number(one.before)];
+        let mut row = cells![one.name, &*one.parity, number(one.before)];
         row.extend(named.then(|| number(one.after)));
         row.extend([number(one.allowed), off(one.before, one.allowed)]);
         row.extend(named.then(|| off(one.after, one.allowed_after)));
@@ -297,7 +297,7 @@ fn shapes(all: &[Shape]) -> Table {
             ratio(shape.crest).into(),
             Cell::or_missing(shape.alike_by_frequency.map(share)),
             Cell::or_missing(shape.alike_by_wavelength.map(share)),
-            Cell::or_missing(shape.keeps_to.as_ref().or(shape.reason.as_ref())),
+            Cell::or_missing(shape.keeps_to.as_deref().or(shape.reason.as_deref())),
         ]
     };
     let caption = "Dynamic content as recorded, measured over simulated, with 90 % intervals by resampling the sections; and the share of the \
@@ -339,7 +339,7 @@ fn cause_rows(cause: &Cause) -> Vec<Vec<Cell>> {
             rows.push(cells![
                 only(cause.rank.to_string().into()),
                 if at == 0 { title.into() } else { Cell::BLANK },
-                told.parameter,
+                &*told.parameter,
                 assumed.unwrap_or_else(|| "-".into()),
                 value(told.value),
                 interval(told.value),

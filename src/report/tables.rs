@@ -1,438 +1,398 @@
-//! All tables of the report as CSV, in full precision.
+//! The lists of results as tables in CSV, in full precision: a row for each entry, and a column for
+//! each of some keys of its JSON.
 
-use crate::report::document::{Cell, cells};
-use crate::result::{
-    Certification, ClassSpread, CoordinateRange, DomainResult, OfRecord, QuantityResult, Reported,
-    SectionResult, WantedPoint,
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use crate::result::comparison::{Comparison, Sensitivity};
+use crate::result::study::{
+    AtOffset, Found, ParameterStudy, QuantitySpread, SelectionStudy, Study, SyncStudy,
 };
+use crate::result::{Certification, ClassSpread, DomainResult, QuantityResult, Reported};
 
-/// Columns of estimates without a limit; the quantity is empty where they are of sections.
-const REPORTED: [&str; 12] = [
-    "quantity",
-    "estimate",
-    "title",
-    "scope",
-    "where",
-    "count",
-    "n",
-    "unit",
-    "value",
-    "low 95 %",
-    "high 95 %",
-    "reason",
-];
+/// File name and content.
+type File = (String, Vec<u8>);
 
-fn reported_row(quantity: Option<&QuantityResult>, one: &Reported) -> Vec<Cell> {
-    cells![
-        quantity.map(|quantity| quantity.id.clone()),
-        one.name,
-        one.title,
-        one.scope,
-        one.condition,
-        one.count.number(),
-        one.n,
-        one.unit,
-        one.value,
-        one.low,
-        one.high,
-        one.reason
-    ]
+/// An entry of results with further keys, or with other values of its own.
+#[derive(Serialize)]
+struct Entry<T: Serialize> {
+    #[serde(flatten)]
+    of: T,
+    #[serde(flatten)]
+    more: Value,
 }
 
-/// Rows that are made while they are written.
-type Rows<'a> = dyn Iterator<Item = Vec<Cell>> + 'a;
+/// The entries of a list, each with further keys.
+fn entries<T: Serialize>(list: &[T], more: Value) -> impl Iterator<Item = Entry<&T>> {
+    list.iter().map(move |of| Entry { of, more: more.clone() })
+}
 
-/// File names and contents for the folder `tables/`.
-///
-/// # Errors
-/// An error of the CSV writer, which writes to memory.
-pub fn tables(found: &Certification) -> Result<Vec<(String, Vec<u8>)>, csv::Error> {
-    let mut all = Vec::new();
-    let mut add = |name: &str, header: &[&str], rows: &mut Rows<'_>| -> Result<(), csv::Error> {
-        all.push(csv_file(name, header, rows)?);
-        Ok(())
+/// The title of each column, and where its values stand in an entry: `low 95 % = interval/0`. A
+/// title alone is the key, with blanks for underscores.
+fn columns(titles: &str) -> Vec<(&str, String)> {
+    let column = |column| {
+        let (title, key) = str::split_once(column, " = ").unwrap_or((column, column));
+        (title, format!("/{}", key.replace(' ', "_")))
     };
-    let mut statistics = found.quantities.iter().flat_map(|quantity| {
-        quantity.statistics.iter().map(|s| {
-            cells![
-                quantity.id,
-                quantity.title,
-                quantity.filter,
-                quantity.processing,
-                s.name,
-                s.scope,
-                s.count,
-                s.n,
-                s.unit,
-                s.value,
-                s.interval.map(|(low, _)| low),
-                s.interval.map(|(_, high)| high),
-                s.limit,
-                s.normalised,
-                s.holds,
-                s.marginal,
-                s.reason
-            ]
-        })
-    });
-    add(
-        "summary",
-        &[
-            "quantity",
-            "title",
-            "filter",
-            "processing",
-            "statistic",
-            "scope",
-            "pairs",
-            "n",
-            "unit",
-            "value",
-            "low 95 %",
-            "high 95 %",
-            "limit",
-            "normalised",
-            "holds",
-            "marginal",
-            "reason",
-        ],
-        &mut statistics,
-    )?;
-    let all_reported = found.reported.iter().map(|one| (None, one));
-    let all_reported = all_reported.chain(
-        found.quantities.iter().flat_map(|of| of.reported.iter().map(move |one| (Some(of), one))),
-    );
-    let mut rows = all_reported.map(|(quantity, one)| reported_row(quantity, one)).peekable();
-    if rows.peek().is_some() {
-        add("reported", &REPORTED, &mut rows)?;
-    }
-    // A column of its own says which of several campaigns a row is of.
-    let pooled = !found.campaign.members.is_empty();
-    let header = |all: &[&'static str], after: usize| {
-        let mut all = all.to_vec();
-        if pooled {
-            all.insert(after, "campaign");
-        }
-        all
-    };
-    let of = |campaign: &Option<String>| pooled.then(|| campaign.into());
-    let mut pairs = found.quantities.iter().flat_map(|quantity| {
-        quantity.values.iter().map(move |pair| {
-            let campaign = of(&pair.campaign);
-            let row = cells![
-                quantity.id,
-                quantity.unit,
-                pair.section,
-                pair.zone,
-                pair.signal,
-                pair.record,
-                pair.simulated,
-                pair.measured,
-                quantity.has_sides.then_some(pair.difference),
-                (!quantity.has_sides).then_some(pair.difference),
-                pair.samples
-            ];
-            with(row, campaign, 2)
-        })
-    });
-    let columns = [
-        "quantity",
-        "unit",
-        "section",
-        "zone",
-        "signal",
-        "record",
-        "simulated",
-        "measured",
-        "difference",
-        "value",
-        "samples",
-    ];
-    add("values", &header(&columns, 2), &mut pairs)?;
-    if found.quantities.iter().any(|quantity| quantity.spread.is_some()) {
-        add("spreads", &SPREADS, &mut spreads(found, of_records))?;
-        add("spreads_between", &SPREADS_BETWEEN, &mut spreads(found, between))?;
-    }
-    add("sections", &section_header(found), &mut found.sections.iter().map(section_row))?;
-    let mut checks = found.sections.iter().flat_map(|section| {
-        section
-            .checks
-            .iter()
-            .map(|check| cells![section.section, check.title, check.holds, check.says])
-    });
-    add("checks", &["section", "requirement", "holds", "found"], &mut checks)?;
-    let mut findings = found.findings.iter().map(|finding| {
-        let row = cells![
-            finding.code,
-            finding.section,
-            finding.record,
-            finding.channel,
-            finding.value,
-            finding.expected,
-            finding.unit,
-            String::from(finding.text()),
-            finding.cause,
-            finding.consequence.in_words()
-        ];
-        with(row, of(&finding.campaign), 1)
-    });
-    add(
-        "findings",
-        &header(
-            &[
-                "rule",
-                "section",
-                "record",
-                "channel",
-                "value",
-                "expected",
-                "unit",
-                "finding",
-                "likely cause",
-                "consequence",
-            ],
-            1,
-        ),
-        &mut findings,
-    )?;
-    let mut zones = found
-        .zones
-        .iter()
-        .map(|z| cells![z.zone, z.title, z.condition, z.given, z.used, z.minimum, z.holds]);
-    add("zones", &["zone", "title", "condition", "given", "used", "minimum", "holds"], &mut zones)?;
-    if !found.found.is_empty() {
-        let mut rows = found
-            .found
-            .iter()
-            .flat_map(|found| found.runs.iter().map(move |run| (found, run)))
-            .flat_map(|(found, run)| {
-                run.stretches.iter().map(move |stretch| {
-                    cells![
-                        found.campaign,
-                        run.run,
-                        stretch.from,
-                        stretch.to,
-                        found.axis_unit,
-                        stretch.places,
-                        stretch.reason
-                    ]
-                })
-            });
-        add("rejected", &["campaign", "run", "from", "to", "unit", "places", "reason"], &mut rows)?;
-    }
-    if let Some(reduction) = &found.reduction {
-        let kept = reduction
-            .kept
-            .iter()
-            .flat_map(|(group, kept)| kept.iter().map(move |one| cells![group, one, true]));
-        let left = reduction.left_out.iter().map(|one| cells![Cell::BLANK, one, false]);
-        add("reduction", &["group", "section", "kept"], &mut kept.chain(left))?;
-    }
-    let mut domain =
-        found.domain.iter().map(|d| cells![d.name, d.unit, d.scope, d.low, d.high, d.count]);
-    add("domain", &["quantity", "unit", "scope", "low", "high", "sections"], &mut domain)?;
-    if !found.application.is_empty() {
-        let head = [
-            "domain",
-            "scope",
-            "point",
-            "inside",
-            "distance",
-            "coordinate",
-            "unit",
-            "value",
-            "nearest",
-            "outside by",
-            "beyond range",
-            "nearest section",
-        ];
-        add("application", &head, &mut found.application.iter().flat_map(application_rows))?;
-    }
-    let several = found.campaign.vehicle.iter().any(|item| item.of.is_some());
-    let mut vehicle = found.campaign.vehicle.iter().chain(&found.campaign.facts).map(|item| {
-        let row = cells![item.name, item.value, item.unit, item.unit_assumed, item.used];
-        with(row, several.then(|| (&item.of).into()), 5)
-    });
-    let mut columns = vec!["name", "value", "unit", "unit assumed", "used by the protocol"];
-    columns.extend(several.then_some("of"));
-    add("vehicle", &columns, &mut vehicle)?;
-    let mut parameters = found
-        .protocol
-        .parameters
-        .iter()
-        .map(|p| cells![p.name, p.title, p.value, p.default, p.set_by]);
-    add("parameters", &["parameter", "title", "value", "default", "set by"], &mut parameters)?;
-    let mut deviations =
-        found.protocol.deviations.iter().map(|d| cells![d.rule, d.before, d.after]);
-    add("deviations", &["rule", "parent", "this protocol"], &mut deviations)?;
-    let mut files =
-        found.campaign.files.iter().map(|file| cells![file.path, file.bytes, file.sha256]);
-    add("files", &["file", "bytes", "sha256"], &mut files)?;
-    Ok(all)
+    titles.split(", ").map(column).collect()
 }
 
-const SPREADS: [&str; 13] = [
-    "quantity",
-    "unit",
-    "center",
-    "zone",
-    "record",
-    "values",
-    "mean deviation",
-    "standard deviation",
-    "largest deviation",
-    "section",
-    "signal",
-    "root mean square",
-    "rank",
-];
-
-const SPREADS_BETWEEN: [&str; 13] = [
-    "quantity",
-    "unit",
-    "center",
-    "zone",
-    "records",
-    "places",
-    "range of means",
-    "std of means",
-    "mean range",
-    "mean std",
-    "largest range",
-    "section",
-    "signal",
-];
-
-/// Rows for each quantity with several records and each class of sections, after what these are.
-fn spreads(
-    found: &Certification,
-    rows: impl Fn(&ClassSpread) -> Vec<Vec<Cell>>,
-) -> impl Iterator<Item = Vec<Cell>> {
-    let of_quantity = move |quantity: &QuantityResult| -> Vec<Vec<Cell>> {
-        let Some(spread) = &quantity.spread else { return Vec::new() };
-        let of_class = |class: &ClassSpread| {
-            let of = cells![quantity.id, quantity.unit, spread.center, class.zone];
-            rows(class).into_iter().map(move |row| [of.clone(), row].concat())
-        };
-        spread.classes.iter().flat_map(of_class).collect()
-    };
-    found.quantities.iter().flat_map(of_quantity)
-}
-
-fn of_records(class: &ClassSpread) -> Vec<Vec<Cell>> {
-    let row = |one: &OfRecord| {
-        cells![
-            one.record,
-            one.values,
-            one.mean,
-            one.std,
-            one.largest.value,
-            one.largest.section,
-            one.largest.signal,
-            one.rms,
-            one.rank
-        ]
-    };
-    class.records.iter().map(row).collect()
-}
-
-fn between(class: &ClassSpread) -> Vec<Vec<Cell>> {
-    let numbers = [
-        class.range_of_means,
-        class.std_of_means,
-        class.mean_range,
-        class.mean_std,
-        class.widest.value,
-    ];
-    let mut row = cells![class.records.len(), class.places];
-    row.extend(numbers.map(Cell::from));
-    row.extend(cells![class.widest.section, class.widest.signal]);
-    vec![row]
-}
-
-/// A row with one more cell, if there is one.
-fn with(mut row: Vec<Cell>, cell: Option<Cell>, at: usize) -> Vec<Cell> {
-    if let Some(cell) = cell {
-        row.insert(at, cell);
-    }
-    row
-}
-
-/// A cell that a spreadsheet does not interpret as a formula: such text gets an apostrophe in
-/// front, the spreadsheets' own mark of text (OWASP, CSV Injection).
-fn inert(cell: &str) -> std::borrow::Cow<'_, str> {
-    let formula =
-        cell.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']) && cell.parse::<f64>().is_err();
-    if formula { format!("'{cell}").into() } else { cell.into() }
-}
-
-/// A table as a file.
-///
-/// # Errors
-/// An error of the CSV writer, which writes to memory.
-pub fn csv_file(
+/// A table with these [`columns`].
+fn table<T: Serialize>(
     name: &str,
-    header: &[&str],
-    rows: impl IntoIterator<Item = Vec<Cell>>,
-) -> Result<(String, Vec<u8>), csv::Error> {
+    titles: &str,
+    entries: impl IntoIterator<Item = T>,
+) -> Result<File, csv::Error> {
+    written(name, &columns(titles), entries)
+}
+
+fn written<T: Serialize>(
+    name: &str,
+    columns: &[(&str, String)],
+    entries: impl IntoIterator<Item = T>,
+) -> Result<File, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(header)?;
-    for row in rows {
-        writer.write_record(row.iter().map(|cell| inert(&cell.in_file()).into_owned()))?;
+    writer.write_record(columns.iter().map(|(title, _)| title))?;
+    for entry in entries {
+        // Serialisation of plain values cannot fail.
+        let entry = serde_json::to_value(entry).unwrap_or_default();
+        let cell = |(_, key): &(&str, String)| entry.pointer(key).map_or_else(String::new, cell);
+        writer.write_record(columns.iter().map(cell))?;
     }
     let bytes = writer.into_inner().map_err(|error| error.into_error())?;
     Ok((format!("{name}.csv"), bytes))
 }
 
-fn section_header(found: &Certification) -> Vec<&str> {
-    let mut header = vec!["section", "zone", "start", "end", "length", "unit"];
-    if let Some(first) = found.sections.first() {
-        header.extend(first.columns.iter().map(|column| column.name.as_str()));
-    }
-    header.extend(["used", "reason"]);
-    if !found.campaign.members.is_empty() {
-        header.insert(0, "campaign");
-    }
-    header
-}
-
-fn section_row(section: &SectionResult) -> Vec<Cell> {
-    let mut row = cells![
-        section.section,
-        section.zone,
-        section.start,
-        section.end,
-        section.length,
-        section.axis_unit
-    ];
-    row.extend(section.columns.iter().map(|column| Cell::from(&column.value)));
-    row.extend(cells![section.used, section.reason]);
-    with(row, section.campaign.as_ref().map(Cell::from), 0)
-}
-
-/// One row for each point of wanted operation and coordinate.
-fn application_rows(result: &DomainResult) -> Vec<Vec<Cell>> {
-    let of_point = |point: &WantedPoint| {
-        let at = |list: &Option<Vec<f64>>, at: usize| list.as_ref().map(|list| list[at]);
-        let row = |(index, of): (usize, &CoordinateRange)| {
-            cells![
-                result.domain,
-                result.scope,
-                point.point,
-                point.inside,
-                point.distance,
-                of.name,
-                of.unit,
-                point.values[index],
-                at(&point.nearest, index),
-                at(&point.outside_by, index),
-                at(&point.beyond_range, index),
-                point.nearest_section
-            ]
-        };
-        result.coordinates.iter().enumerate().map(row).collect::<Vec<_>>()
+/// A value as a cell that a spreadsheet does not interpret as a formula: such text gets an
+/// apostrophe in front, the spreadsheets' own mark of text (OWASP, CSV Injection).
+fn cell(value: &Value) -> String {
+    let text = match value {
+        Value::Null => String::new(),
+        Value::String(text) => text.clone(),
+        Value::Array(all) => all.iter().map(cell).collect::<Vec<_>>().join("; "),
+        Value::Number(number) if number.is_f64() => number.as_f64().unwrap_or_default().to_string(),
+        other => other.to_string(),
     };
-    result.points.iter().flat_map(of_point).collect()
+    let formula =
+        text.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']) && text.parse::<f64>().is_err();
+    if formula { format!("'{text}") } else { text }
+}
+
+/// The tables of a certification.
+///
+/// # Errors
+/// An error of the CSV writer, which writes to memory.
+pub fn certification(found: &Certification) -> Result<Vec<File>, csv::Error> {
+    // A column of its own says which of several campaigns a row is of.
+    let campaign = if found.campaign.members.is_empty() { "" } else { "campaign, " };
+    let mut files = of_quantities(&found.quantities, campaign)?;
+    // Of sections, without a quantity.
+    let of_sections = entries(&found.reported, json!({})).map(with_count);
+    let of_quantities = found
+        .quantities
+        .iter()
+        .flat_map(|of| entries(&of.reported, json!({"quantity": of.id})).map(with_count));
+    let mut reported = of_sections.chain(of_quantities).peekable();
+    if reported.peek().is_some() {
+        let titles = "quantity, estimate, title, scope, where, count, n, unit, value, low 95 % = low, high 95 % = high, reason";
+        files.insert(1, table("reported", titles, reported)?);
+    }
+    files.push(sections(found, campaign)?);
+    let checks = found
+        .sections
+        .iter()
+        .flat_map(|section| entries(&section.checks, json!({"section": section.section})));
+    files.push(table("checks", "section, requirement = title, holds, found = says", checks)?);
+    let titles = format!(
+        "rule = code, {campaign}section, record, channel, value, expected, unit, finding = says, likely cause = cause, consequence"
+    );
+    let findings = found.findings.iter().map(|of| {
+        let more = json!({"consequence": of.consequence.in_words()});
+        Entry { of, more }
+    });
+    files.push(table("findings", &titles, findings)?);
+    let titles = "zone, title, condition, given, used, minimum, holds";
+    files.push(table("zones", titles, &found.zones)?);
+    if !found.found.is_empty() {
+        let stretches = found.found.iter().flat_map(|of| {
+            of.runs.iter().flat_map(move |run| {
+                let of = json!({"campaign": of.campaign, "run": run.run, "unit": of.axis_unit});
+                entries(&run.stretches, of)
+            })
+        });
+        let titles = "campaign, run, from, to, unit, places, reason";
+        files.push(table("rejected", titles, stretches)?);
+    }
+    if let Some(reduction) = &found.reduction {
+        let row = |group: Option<&str>, section: &str| json!({"group": group, "section": section, "kept": group.is_some()});
+        let kept = reduction
+            .kept
+            .iter()
+            .flat_map(|(group, kept)| kept.iter().map(move |section| row(Some(group), section)));
+        let left_out = reduction.left_out.iter().map(|section| row(None, section));
+        files.push(table("reduction", "group, section, kept", kept.chain(left_out))?);
+    }
+    let titles = "quantity = name, unit, scope, low, high, sections = count";
+    files.push(table("domain", titles, &found.domain)?);
+    if !found.application.is_empty() {
+        let titles = "domain, scope, point, inside, distance, coordinate, unit, value, nearest, outside by, beyond range, nearest section";
+        files.push(table("application", titles, found.application.iter().flat_map(wanted))?);
+    }
+    let (vehicle, protocol) = (&found.campaign.vehicle, &found.protocol);
+    let several = vehicle.iter().any(|item| item.of.is_some());
+    let titles = "name, value, unit, unit assumed, used by the protocol = used".to_owned()
+        + if several { ", of" } else { "" };
+    files.push(table("vehicle", &titles, vehicle.iter().chain(&found.campaign.facts))?);
+    let titles = "parameter = name, title, value, default, set by";
+    files.push(table("parameters", titles, &protocol.parameters)?);
+    let titles = "rule, parent = before, this protocol = after";
+    files.push(table("deviations", titles, &protocol.deviations)?);
+    files.push(table("files", "file = path, bytes, sha256", &found.campaign.files)?);
+    Ok(files)
+}
+
+/// Of how many values or sections an estimate is.
+fn with_count(of: Entry<&Reported>) -> Entry<Entry<&Reported>> {
+    let more = json!({"count": of.of.count.number()});
+    Entry { of, more }
+}
+
+/// Statistics, values and their spread.
+fn of_quantities(all: &[QuantityResult], campaign: &str) -> Result<Vec<File>, csv::Error> {
+    let statistics = all.iter().flat_map(|of| {
+        let QuantityResult { id, title, filter, processing, .. } = of;
+        let of_quantity =
+            json!({"quantity": id, "title": title, "filter": filter, "processing": processing});
+        entries(&of.statistics, of_quantity)
+    });
+    let values = all.iter().flat_map(|quantity| {
+        let QuantityResult { id, unit, has_sides, .. } = quantity;
+        quantity.values.iter().map(move |of| {
+            // Those that are no differences stand in a column of their own.
+            let [difference, value] =
+                [*has_sides, !has_sides].map(|is| is.then_some(of.difference));
+            let more =
+                json!({"quantity": id, "unit": unit, "difference": difference, "value": value});
+            Entry { of, more }
+        })
+    });
+    let mut files = vec![
+        table(
+            "summary",
+            "quantity, title, filter, processing, statistic = name, scope, pairs = count, n, unit, value, low 95 % = interval/0, high 95 % = interval/1, limit, normalised, holds, marginal, reason",
+            statistics,
+        )?,
+        table(
+            "values",
+            &format!(
+                "quantity, unit, {campaign}section, zone, signal, record, simulated, measured, difference, value, samples"
+            ),
+            values,
+        )?,
+    ];
+    let mut classes: Vec<Entry<&ClassSpread>> = Vec::new();
+    for quantity in all {
+        let QuantityResult { id, unit, spread, .. } = quantity;
+        classes.extend(spread.iter().flat_map(|spread| {
+            let of = json!({"quantity": id, "unit": unit, "center": spread.center});
+            entries(&spread.classes, of)
+        }));
+    }
+    if all.iter().any(|quantity| quantity.spread.is_some()) {
+        let records = classes.iter().flat_map(|Entry { of, more }| {
+            let more = json!({"class": more, "zone": of.zone});
+            entries(&of.records, more)
+        });
+        let titles = "quantity = class/quantity, unit = class/unit, center = class/center, zone, record, values, mean deviation = mean, standard deviation = std, largest deviation = largest/value, section = largest/section, signal = largest/signal, root mean square = rms, rank";
+        files.push(table("spreads", titles, records)?);
+        let between = classes.iter().map(|of| {
+            let more = json!({"records": of.of.records.len()});
+            Entry { of, more }
+        });
+        let titles = "quantity, unit, center, zone, records, places, range of means, std of means, mean range, mean std, largest range = widest/value, section = widest/section, signal = widest/signal";
+        files.push(table("spreads_between", titles, between)?);
+    }
+    Ok(files)
+}
+
+/// With the columns that the protocol declares.
+fn sections(found: &Certification, campaign: &str) -> Result<File, csv::Error> {
+    let titles = format!("{campaign}section, zone, start, end, length, unit = axis_unit");
+    let own = found.sections.first().into_iter().flat_map(|section| &section.columns);
+    let own = own.enumerate().map(|(at, item)| (&*item.name, format!("/columns/{at}/value")));
+    let all: Vec<_> =
+        columns(&titles).into_iter().chain(own).chain(columns("used, reason")).collect();
+    written("sections", &all, &found.sections)
+}
+
+/// A row for each point of wanted operation and coordinate.
+fn wanted(result: &DomainResult) -> impl Iterator<Item = impl Serialize> {
+    result.points.iter().flat_map(move |of| {
+        result.coordinates.iter().enumerate().map(move |(at, coordinate)| {
+            let number = |list: &Option<Vec<f64>>| list.as_ref().map(|list| list[at]);
+            let more = json!({
+                "domain": result.domain, "scope": result.scope,
+                "coordinate": coordinate.name, "unit": coordinate.unit, "value": of.values[at],
+                "nearest": number(&of.nearest), "outside_by": number(&of.outside_by),
+                "beyond_range": number(&of.beyond_range),
+            });
+            Entry { of, more }
+        })
+    })
+}
+
+/// The tables of a study.
+///
+/// # Errors
+/// As [`certification`].
+pub fn study(study: &Study) -> Result<Vec<File>, csv::Error> {
+    match &study.found {
+        Found::Sections(found) => of_selections(found),
+        Found::Sync(found) => of_offsets(found),
+        Found::Parameters(found) => of_parameters(found),
+    }
+}
+
+const SPREAD: &str = "quantity, statistic = name, scope, limit, all sections, min = normalised/min, q1 = normalised/q1, median = normalised/median, q3 = normalised/q3, max = normalised/max, outliers, exact = normalised/exact, quartiles within = normalised/quartiles_within, q1 low 95 % = normalised/q1_interval_95/0, q1 high 95 % = normalised/q1_interval_95/1, median low 95 % = normalised/median_interval_95/0, median high 95 % = normalised/median_interval_95/1, q3 low 95 % = normalised/q3_interval_95/0, q3 high 95 % = normalised/q3_interval_95/1, share failing";
+
+fn spread(quantity: &QuantitySpread) -> impl Iterator<Item = impl Serialize> {
+    quantity.statistics.iter().map(|of| {
+        // A number of selections may exceed the integers that are exact.
+        let outliers = of.spread.map(|spread| spread.outliers as f64);
+        Entry { of, more: json!({"quantity": quantity.id, "outliers": outliers}) }
+    })
+}
+
+fn of_selections(found: &SelectionStudy) -> Result<Vec<File>, csv::Error> {
+    let worst = found.worst.iter().map(|of| {
+        let more = json!({"sections": of.sections.join(" ")});
+        Entry { of, more }
+    });
+    let removal = found.removal.iter().flat_map(|removal| &removal.sets);
+    let removal =
+        removal.map(|set| json!({"sections_removed": set.len(), "sections": set.join(" ")}));
+    let mut files = vec![
+        table("spread", SPREAD, found.quantities.iter().flat_map(spread))?,
+        table(
+            "importance",
+            "section, zone, share validated with it = with, share validated without it = without",
+            &found.sections,
+        )?,
+        table("failing", "quantity = id, share failing, share failing alone", &found.quantities)?,
+        table("worst", "quantity, statistic = title, scope, normalised, sections", worst)?,
+        table("removal", "sections removed, sections", removal)?,
+    ];
+    if let Some(reduction) = &found.reduction {
+        let kept = reduction.kept.iter().flat_map(|(zone, kept)| {
+            kept.iter().map(move |section| json!({"zone": zone, "section": section}))
+        });
+        files.push(table("kept", "zone, section", kept)?);
+    }
+    Ok(files)
+}
+
+fn of_offsets(found: &SyncStudy) -> Result<Vec<File>, csv::Error> {
+    let offset = |at: &AtOffset| json!({"offset": at.offset.value()});
+    let all = || found.offsets.iter();
+    let offsets = all().map(|of| {
+        let reason = of.selections.counted().err().map(|reason| String::from(reason.text()));
+        Entry { of, more: json!({"offset": of.offset.value(), "reason": reason}) }
+    });
+    let spreads = all().filter(|at| at.selections.counted().is_ok()).flat_map(|at| {
+        let rows = at.quantities.iter().flat_map(spread);
+        rows.map(move |of| Entry { of, more: offset(at) })
+    });
+    let selected = all().flat_map(|at| entries(&at.selected, offset(at)));
+    Ok(vec![
+        table(
+            "offsets",
+            "offset, share validated, share no longer validated = selections_changed/share_no_longer_validated, share newly validated = selections_changed/share_newly_validated, verdict on all sections = verdict_all_sections, changes = verdict_changes, reason",
+            offsets,
+        )?,
+        table("spread", &format!("offset, {SPREAD}"), spreads)?,
+        table(
+            "one_selection",
+            "offset, quantity = id, statistic, scope, normalised, holds",
+            selected,
+        )?,
+        table(
+            "estimates",
+            "section, zone, offset = shift, low 95 % = low, high 95 % = high, correlation",
+            &found.estimates,
+        )?,
+    ])
+}
+
+fn of_parameters(found: &ParameterStudy) -> Result<Vec<File>, csv::Error> {
+    let all = || found.parameters.iter();
+    let values = all()
+        .flat_map(|parameter| entries(&parameter.values, json!({"parameter": parameter.name})));
+    let statistics = all().flat_map(|parameter| {
+        parameter.values.iter().flat_map(|at| {
+            let of = json!({"parameter": parameter.name, "value": at.value});
+            entries(&at.statistics, of)
+        })
+    });
+    Ok(vec![
+        table(
+            "parameters",
+            "parameter, value, as it is, verdict, largest statistic = largest/statistic, normalised = largest/normalised, share validated, reason",
+            values,
+        )?,
+        table(
+            "statistics",
+            "parameter, value, quantity = id, statistic, scope, normalised, holds",
+            statistics,
+        )?,
+    ])
+}
+
+/// The tables of a comparison.
+///
+/// # Errors
+/// As [`certification`].
+pub fn comparison(found: &Comparison) -> Result<Vec<File>, csv::Error> {
+    Ok(vec![
+        table(
+            "verdicts",
+            "campaign, protocol, verdict, holds, decided by, ratio, sections used, reasons",
+            &found.verdicts,
+        )?,
+        table(
+            "ratios",
+            "campaign, protocol, metric, quantity, estimate, scope, unit, value, limit, ratio, holds, reason",
+            &found.ratios,
+        )?,
+        table("scores", "campaign, section, protocol, metric, score, limited", &found.scores)?,
+        table(
+            "agreement",
+            "of, protocol, a, b, sections, both met = contingency/0/0, a only = contingency/0/1, b only = contingency/1/0, neither = contingency/1/1, spearman, reason",
+            &found.agreement,
+        )?,
+        table(
+            "sensitivity",
+            "protocol, metric, disturbance, size, rms change, largest, verdicts changed, verdicts, reason",
+            found.sensitivity.iter().flat_map(by_size),
+        )?,
+        table(
+            "differences",
+            "rule, difference = words, campaign, verdict before, verdict after, ratio before, ratio after, reason",
+            &found.differences,
+        )?,
+    ])
+}
+
+/// A row for each size of a disturbance.
+fn by_size(of: &Sensitivity) -> impl Iterator<Item = impl Serialize> {
+    of.sizes.iter().enumerate().map(move |(at, size)| {
+        let reason = of.reasons.get(at).and_then(Option::as_ref);
+        let more = json!({
+            "size": size, "rms_change": of.values.get(at), "largest": of.largest.get(at),
+            "verdicts_changed": of.verdicts_changed.get(at),
+            "reason": reason.map(|reason| String::from(reason.text())),
+        });
+        Entry { of, more }
+    })
 }
 
 #[cfg(test)]
@@ -442,12 +402,22 @@ mod tests {
     #[test]
     fn no_cell_is_a_formula() {
         for formula in ["=1+1", "+A1", "-A1", "@SUM(A1)", "\t=1", "\r=1", "-"] {
-            assert_eq!(inert(formula), format!("'{formula}"));
+            assert_eq!(cell(&json!(formula)), format!("'{formula}"));
         }
         for plain in ["", "-1.5", "+2", "-1e-3", "1+1", "Y_1R", "a=b"] {
-            assert_eq!(inert(plain), plain);
+            assert_eq!(cell(&json!(plain)), plain);
         }
-        let (_, bytes) = csv_file("t", &["a"], [cells!["=1+1"]]).expect("written");
+        let (_, bytes) = table("t", "a", [json!({"a": "=1+1"})]).expect("written");
         assert_eq!(bytes, b"a\n'=1+1\n");
+    }
+
+    #[test]
+    fn a_column_has_a_key_and_numbers_are_exact() {
+        let row = json!({"all_sections": 1e21, "interval": [-0.1, null], "n": 3, "in": true});
+        let (_, bytes) =
+            table("t", "all sections, low = interval/0, high = interval/1, n, in, of", [row])
+                .expect("written");
+        let text = "all sections,low,high,n,in,of\n1000000000000000000000,-0.1,,3,true,\n";
+        assert_eq!(String::from_utf8_lossy(&bytes), text);
     }
 }

@@ -194,7 +194,7 @@ fn reports_decide_nothing_and_stand_in_all_outputs() {
         assert_eq!(one["holds"], true);
     }
     assert_eq!(more["quantities"][0]["values"], less["quantities"][0]["values"]);
-    let files = tables::tables(&with).expect("tables");
+    let files = tables::certification(&with).expect("tables");
     let (_, bytes) = files.iter().find(|(name, _)| name.contains("reported")).expect("a table");
     let lines = String::from_utf8_lossy(bytes).lines().count();
     let all =

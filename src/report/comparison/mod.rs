@@ -3,7 +3,6 @@
 
 mod agreement;
 mod sensitivity;
-pub mod tables;
 mod verdicts;
 
 use crate::report::document::{Cell, Document, Fact, Finding, Format};

@@ -75,7 +75,7 @@ pub fn applicability(found: &Comparison) -> Chapter {
             tried(one.verdict_of_one_quantity),
             tried(one.verdict_of_one_section),
             Cell::or_missing(one.scale.as_ref()),
-            Cell::or_missing(one.symmetric)
+            Cell::or_missing(one.symmetric.map(|is| if is { "yes" } else { "no" }))
         ]
     };
     let mut columns = vec![

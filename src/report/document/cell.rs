@@ -1,12 +1,10 @@
-//! Cells of tables: what they contain, how it is printed and how it stands in a file.
-
-use std::borrow::Cow;
+//! Cells of tables: what they contain, and how it is printed.
 
 use super::finding::{Finding, Tone};
 use super::symbol::Symbol;
 use super::text::{Run, Text};
 use crate::report::number;
-use crate::result::{Reason, RecordName, Scope, StatisticName};
+use crate::result::{Reason, Scope, StatisticName};
 
 /// A cell of a table.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,18 +26,10 @@ pub enum Content {
     /// Nothing, printed as nothing.
     Blank,
     Text(Text),
-    /// A formula or condition as written; printed with true signs.
-    Formula(String),
-    /// A sentence as written; its numbers and units are printed as in tables.
-    Sentence(String),
-    /// The symbol of a quantity, and its title.
-    Symbol(String, String),
     /// A number in full precision.
     Number(f64, Format),
     /// A number or a word as the campaign states it.
     Given(String),
-    /// Yes or no, in words of a file.
-    Flag(bool),
 }
 
 /// How a number is printed.
@@ -96,17 +86,19 @@ impl Cell {
         if text.is_empty() { Self::BLANK } else { Self::new(Content::Text(text)) }
     }
 
-    pub fn formula(formula: impl Into<String>) -> Self {
-        Self::new(Content::Formula(formula.into()))
+    /// A formula or condition as written; printed with true signs.
+    pub fn formula(formula: impl AsRef<str>) -> Self {
+        Self::text(number::formula(formula.as_ref()))
     }
 
+    /// A sentence as written; its numbers and units are printed as in tables.
     pub fn sentence(sentence: impl Into<String>) -> Self {
-        Self::new(Content::Sentence(sentence.into()))
+        Self::text(number::raised(&sentence.into()))
     }
 
     /// The symbol of a quantity, and its title if that is not beside it.
     pub fn symbol(symbol: &str, title: &str) -> Self {
-        Self::new(Content::Symbol(symbol.to_owned(), title.to_owned()))
+        Self::text(Run::Symbol(Symbol::new(symbol).titled(title)))
     }
 
     /// As the campaign states it.
@@ -117,10 +109,6 @@ impl Cell {
     /// A dash for none.
     pub fn number(value: impl Into<Option<f64>>, format: Format) -> Self {
         value.into().map_or(Self::MISSING, |value| Self::new(Content::Number(value, format)))
-    }
-
-    pub fn finding(finding: Finding) -> Self {
-        Self::text(Run::Finding(finding))
     }
 
     /// A dash for none.
@@ -155,26 +143,8 @@ impl Cell {
             Content::Missing => number::NONE.into(),
             Content::Blank => Text::default(),
             Content::Text(text) => text.clone(),
-            Content::Formula(formula) => number::formula(formula).into(),
-            Content::Sentence(sentence) => number::raised(sentence).into(),
-            Content::Symbol(symbol, title) => Run::Symbol(Symbol::new(symbol).titled(title)).into(),
             Content::Number(value, format) => format.print(*value).into(),
             Content::Given(text) => number::given(text).into(),
-            Content::Flag(flag) => if *flag { "yes" } else { "no" }.into(),
-        }
-    }
-
-    /// As in a file: numbers in full precision.
-    pub fn in_file(&self) -> String {
-        match &self.content {
-            Content::Missing | Content::Blank => String::new(),
-            Content::Text(text) => text.letters(),
-            Content::Formula(text)
-            | Content::Sentence(text)
-            | Content::Symbol(text, _)
-            | Content::Given(text) => text.clone(),
-            Content::Number(value, _) => value.to_string(),
-            Content::Flag(flag) => flag.to_string(),
         }
     }
 }
@@ -203,39 +173,27 @@ impl From<String> for Cell {
     }
 }
 
-impl From<Option<String>> for Cell {
-    fn from(text: Option<String>) -> Self {
-        text.map_or(Self::BLANK, Self::text)
-    }
-}
-
 impl From<Reason> for Cell {
     fn from(reason: Reason) -> Self {
         Self::text(String::from(reason.text()))
     }
 }
 
-impl From<Option<Reason>> for Cell {
-    fn from(reason: Option<Reason>) -> Self {
-        reason.map_or(Self::BLANK, Self::from)
-    }
-}
-
 impl From<Finding> for Cell {
     fn from(finding: Finding) -> Self {
-        Self::finding(finding)
+        Self::text(Run::Finding(finding))
     }
 }
 
-impl From<bool> for Cell {
-    fn from(flag: bool) -> Self {
-        Self::new(Content::Flag(flag))
+impl From<Scope> for Cell {
+    fn from(scope: Scope) -> Self {
+        Self::text(scope.to_string())
     }
 }
 
-impl From<Option<bool>> for Cell {
-    fn from(flag: Option<bool>) -> Self {
-        flag.map_or(Self::BLANK, Self::from)
+impl From<StatisticName> for Cell {
+    fn from(name: StatisticName) -> Self {
+        Self::text(name.to_string())
     }
 }
 
@@ -245,86 +203,24 @@ impl From<usize> for Cell {
     }
 }
 
-impl From<f64> for Cell {
-    fn from(value: f64) -> Self {
-        Self::number(value, Format::Significant(DIGITS))
-    }
-}
-
-impl From<Option<f64>> for Cell {
-    fn from(value: Option<f64>) -> Self {
-        Self::number(value, Format::Significant(DIGITS))
-    }
-}
-
 impl From<u64> for Cell {
     fn from(count: u64) -> Self {
         Self::number(count as f64, Format::Count)
     }
 }
 
-impl From<Cow<'_, str>> for Cell {
-    fn from(text: Cow<'_, str>) -> Self {
-        text.into_owned().into()
+/// Nothing for none.
+impl<T: Into<Self>> From<Option<T>> for Cell {
+    fn from(some: Option<T>) -> Self {
+        some.map_or(Self::BLANK, Into::into)
     }
 }
 
-/// From what is printed in one way.
-macro_rules! from_printed {
-    ($($kind:ty),*) => {
-        $(impl From<$kind> for Cell {
-            fn from(from: $kind) -> Self {
-                from.to_string().into()
-            }
-        })*
-    };
-}
-
-from_printed!(Scope, StatisticName, RecordName);
-
-impl From<Option<RecordName>> for Cell {
-    fn from(name: Option<RecordName>) -> Self {
-        name.map(|name| name.to_string()).into()
+impl<T: Clone + Into<Self>> From<&T> for Cell {
+    fn from(of: &T) -> Self {
+        of.clone().into()
     }
 }
-
-/// Digits of a number of which nothing else is known.
-const DIGITS: usize = 6;
-
-/// From what is borrowed.
-macro_rules! from_borrowed {
-    ($($kind:ty),*) => {
-        $(impl From<&$kind> for Cell {
-            fn from(from: &$kind) -> Self {
-                from.clone().into()
-            }
-        })*
-    };
-}
-
-from_borrowed!(
-    Reason,
-    Option<Reason>,
-    Cell,
-    Text,
-    Run,
-    Finding,
-    &str,
-    &String,
-    String,
-    Option<String>,
-    f64,
-    Option<f64>,
-    bool,
-    Option<bool>,
-    usize,
-    u64,
-    Cow<'_, str>,
-    Scope,
-    StatisticName,
-    RecordName,
-    Option<RecordName>
-);
 
 /// The cells of a row, each from anything that a cell can be made of.
 macro_rules! cells {

@@ -1,8 +1,7 @@
 //! A report as a document: a cover, and chapters of paragraphs, lists, tables and figures.
 //!
 //! Certification, study, comparison and diagnosis are each made into a [`Document`]; PDF and HTML
-//! are filled from it, and files from its tables. Texts of users are data: escaping is the task of
-//! the template.
+//! are filled from it. Texts of users are data: escaping is the task of the template.
 
 mod cell;
 pub mod finding;
@@ -102,8 +101,6 @@ pub enum Medium {
     Paper,
     /// The HTML page.
     Screen,
-    /// A table as a file.
-    File,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -4,7 +4,6 @@
 mod parameters;
 mod sections;
 mod sync;
-pub mod tables;
 
 use std::fmt::Display;
 
