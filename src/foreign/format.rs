@@ -36,31 +36,23 @@ impl Words for Format {
 }
 
 impl Format {
-    /// With its article, for messages.
-    pub(super) fn title(self) -> &'static str {
+    /// With its article, for messages, and the endings under which it is written.
+    fn described(self) -> (&'static str, &'static [&'static str]) {
         match self {
-            Self::Csv => "a CSV text",
-            Self::Ascii => "an ASCII text with columns",
-            Self::Mdf4 => "an ASAM MDF 4 file",
-            Self::Mat => "a MATLAB file",
-            Self::Xlsx => "an Excel workbook (xlsx)",
-            Self::Parquet => "a Parquet file",
-            Self::Arrow => "an Arrow file",
-            Self::Tdms => "a TDMS file",
+            Self::Csv => ("a CSV text", &[]),
+            Self::Ascii => ("an ASCII text with columns", &[]),
+            Self::Mdf4 => ("an ASAM MDF 4 file", &["mf4"]),
+            Self::Mat => ("a MATLAB file", &["mat"]),
+            Self::Xlsx => ("an Excel workbook (xlsx)", &["xlsx", "xlsm"]),
+            Self::Parquet => ("a Parquet file", &["parquet", "pq"]),
+            Self::Arrow => ("an Arrow file", &["arrow", "feather", "ipc"]),
+            Self::Tdms => ("a TDMS file", &["tdms"]),
         }
     }
 
-    /// The endings under which the format is written.
-    fn endings(self) -> &'static [&'static str] {
-        match self {
-            Self::Csv | Self::Ascii => &[],
-            Self::Mdf4 => &["mf4"],
-            Self::Mat => &["mat"],
-            Self::Xlsx => &["xlsx", "xlsm"],
-            Self::Parquet => &["parquet", "pq"],
-            Self::Arrow => &["arrow", "feather", "ipc"],
-            Self::Tdms => &["tdms"],
-        }
+    /// With its article, for messages.
+    pub(super) fn title(self) -> &'static str {
+        self.described().0
     }
 
     fn is_text(self) -> bool {
@@ -79,6 +71,9 @@ const MAT: &str = "save it in MATLAB with `save(file, '-v7')` or `'-v7.3'`";
 const NETCDF: &str =
     "export it as CSV or Parquet, for example with xarray: `to_dataframe().to_parquet(file)`";
 const UNPACK: &str = "unpack it, and import the files in it";
+
+const SIMPACK: NotRead =
+    ("a binary result of Simpack", "export the channels in the post-processor as ASCII or MATLAB");
 
 /// First bytes of formats that are not read.
 const SIGNATURES: &[(&[u8], NotRead)] = &[
@@ -117,20 +112,8 @@ const ENDINGS: &[(&str, NotRead)] = &[
     ("tdm", ("a DIAdem file", DIADEM)),
     ("tdx", ("a DIAdem file", DIADEM)),
     ("r64", ("a DIAdem file", DIADEM)),
-    (
-        "sbr",
-        (
-            "a binary result of Simpack",
-            "export the channels in the post-processor as ASCII or MATLAB",
-        ),
-    ),
-    (
-        "spr",
-        (
-            "a binary result of Simpack",
-            "export the channels in the post-processor as ASCII or MATLAB",
-        ),
-    ),
+    ("sbr", SIMPACK),
+    ("spr", SIMPACK),
     ("pxp", ("an Igor file", "export it as CSV")),
     ("erg", ("a result of CarMaker", "export it as CSV or MDF 4")),
     ("sav", ("an SPSS file", "export it as CSV")),
@@ -145,21 +128,16 @@ pub(super) fn of(
     options: &Options,
 ) -> Result<Format, Problem> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("").to_lowercase();
-    let (content, unread) = match content(bytes, &ending) {
-        Ok(content) => (content, None),
-        Err(unread) => (None, Some(unread)),
+    let not_read = |(what, help): NotRead| {
+        Problem::error("format-not-read", format!("`{shown}` is {what}, which is not read"))
+            .help(help)
     };
+    let content = content(bytes, &ending).map_err(not_read)?;
     let mislabelled = |said: String, is: &str, help: &str| {
         Err(Problem::error("format-mislabelled", format!("{said}, but its content is {is}"))
             .help(help))
     };
-    if let Some((what, help)) = unread {
-        return Err(Problem::error(
-            "format-not-read",
-            format!("`{shown}` is {what}, which is not read"),
-        )
-        .help(help));
-    }
+    let said_to_be = |form: Format| format!("`{shown}` is said to be {}", form.title());
     let looks_text = !binary(bytes);
     match (options.form, content) {
         (Some(form), Some(content)) if form == content || form.is_text() && content.is_text() => {
@@ -170,21 +148,19 @@ pub(super) fn of(
                 "write `{}` for its form, or check whether this is the right file",
                 content.word()
             );
-            mislabelled(format!("`{shown}` is said to be {}", form.title()), content.title(), &help)
+            mislabelled(said_to_be(form), content.title(), &help)
         }
         (Some(form), None) if form.is_text() && looks_text => Ok(form),
         (Some(form), None) => {
             let is = if looks_text { "text" } else { "not of a known format" };
-            mislabelled(
-                format!("`{shown}` is said to be {}", form.title()),
-                is,
-                "check whether the file is complete, and its form",
-            )
+            mislabelled(said_to_be(form), is, "check whether the file is complete, and its form")
         }
         (None, Some(content)) => Ok(content),
         (None, None) => {
             let all = || Format::WORDS.iter().map(|(_, format)| *format);
-            if let Some(format) = all().find(|format| format.endings().contains(&ending.as_str())) {
+            if let Some(format) =
+                all().find(|format| format.described().1.contains(&ending.as_str()))
+            {
                 let is = if looks_text { "text" } else { "not of this format" };
                 return mislabelled(
                     format!("`{shown}` ends like {}", format.title()),
@@ -192,17 +168,11 @@ pub(super) fn of(
                     "check whether the file is complete; if it is a text, say `form: csv`",
                 );
             }
-            if let Some((_, (what, help))) =
-                ENDINGS.iter().find(|(known, _)| *known == ending && !looks_text)
-            {
-                return Err(Problem::error(
-                    "format-not-read",
-                    format!("`{shown}` is {what}, which is not read"),
-                )
-                .help(*help));
-            }
             if looks_text {
                 return Ok(Format::Csv);
+            }
+            if let Some((_, unread)) = ENDINGS.iter().find(|(known, _)| *known == ending) {
+                return Err(not_read(*unread));
             }
             let words: Vec<&str> = Format::WORDS.iter().map(|(word, _)| *word).collect();
             Err(Problem::error(
@@ -301,7 +271,7 @@ const LOOKED_AT: usize = 4096;
 /// byte or more is zero.
 pub(super) fn binary(bytes: &[u8]) -> bool {
     let start = &bytes[..bytes.len().min(LOOKED_AT)];
-    if super::text::wide(start).is_some() {
+    if super::decode::wide(start).is_some() {
         return false;
     }
     start.iter().any(|byte| matches!(byte, 0..=8 | 14..=25 | 27..=31))

@@ -36,16 +36,6 @@ pub(super) fn most_unpacked(size: usize) -> usize {
     size.saturating_mul(MOST_EXPANSION).saturating_add(ALWAYS_UNPACKED).min(8 * MOST_VALUES)
 }
 
-/// A file that unpacks to more than [`most_unpacked`].
-pub(super) fn unpacks_to_more(shown: &str, place: &str, size: usize) -> Problem {
-    let says = format!(
-        "{place} of `{shown}` unpacks to more than {} MB, the maximum for a file of its size",
-        most_unpacked(size) >> 20
-    );
-    Problem::error("too-many-values", says)
-        .help("export it again with fewer channels, or without compression")
-}
-
 /// Counts the values of a file, which can be many more than its bytes suggest.
 #[derive(Debug)]
 pub(super) struct Budget<'a> {
@@ -80,20 +70,19 @@ impl<'a> Budget<'a> {
     pub fn add(&mut self, values: usize, place: &str) -> Result<(), Problem> {
         self.values = self.values.saturating_add(values);
         if self.values > self.most {
+            let most = self.most >> 20;
             return Err(self.exceeded(
                 place,
-                &format!("{} million values, the maximum for a file of its size", self.most >> 20),
+                &format!("{most} million values, the maximum for a file of its size"),
             ));
         }
         Ok(())
     }
 
     fn exceeded(&self, place: &str, most: &str) -> Problem {
-        Problem::error(
-            "too-many-values",
-            format!("{place} of `{}` declares more than {most}", self.shown),
-        )
-        .help("check whether the file is damaged; else export it in parts, with fewer channels")
+        let says = format!("{place} of `{}` declares more than {most}", self.shown);
+        Problem::error("too-many-values", says)
+            .help("check whether the file is damaged; else export it in parts, with fewer channels")
     }
 }
 

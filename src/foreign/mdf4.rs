@@ -3,9 +3,9 @@
 use falcon_mdf::model::{Channel as Source, ChannelGroup, ValueKind};
 use falcon_mdf::{Mf4File, OpenOptions};
 
-use super::guard::damaged;
-use super::load::{Budget, most_unpacked, unpacks_to_more};
-use super::{Channel, Format, Input, Place, Read, Table, Want};
+use super::guard::Failure;
+use super::load::most_unpacked;
+use super::{Channel, Input, Read, Table, Want, filled};
 use crate::problem::Problem;
 
 /// Bytes of a block before its links, and of its data before the number of samples of a group (ASAM
@@ -14,96 +14,72 @@ const LINKS_AT: usize = 24;
 const SAMPLES_AT: usize = 8;
 
 pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
-    let (bytes, shown) = (input.bytes, input.shown);
-    let most = most_unpacked(bytes.len());
-    let bad = |place: &str, why: &dyn std::fmt::Display| damaged(Format::Mdf4, shown, place, why);
+    let most = most_unpacked(input.bytes.len()) as u64;
     // One more than is accepted: what reaches the limit would be cut without a word.
     let options = OpenOptions {
-        max_decompressed: most as u64 + 1,
+        max_decompressed: most + 1,
         parallel_parsing: false,
         ..OpenOptions::default()
     };
-    let file = Mf4File::from_bytes_with_options(bytes.to_vec(), options)
-        .map_err(|error| bad("the headers", &error))?;
+    let file = Mf4File::from_bytes_with_options(input.bytes.to_vec(), options)
+        .map_err(|error| input.damaged("the headers", error))?;
     if let Some(flags) = file.unfinalized() {
         let why = format!(
             "it was not finalised ({flags:?}); open and save it in the program that recorded it"
         );
-        return Err(bad("the header", &why).into());
+        return Err(input.damaged("the header", why).into());
     }
-    let mut budget = Budget::new(bytes.len(), shown);
+    let mut budget = input.budget();
+    let comment = |text: &str| filled(text).map(|text| ("comment".to_string(), plain(&text)));
     let mut read = Read::default();
     read.facts.push(("version".into(), file.version().to_string()));
-    if !file.comment().trim().is_empty() {
-        read.facts.push(("comment".into(), plain(file.comment())));
-    }
+    read.facts.extend(comment(file.comment()));
     let groups: usize = file.data_groups().iter().map(|data| data.channel_groups.len()).sum();
     let mut number = 0;
     for data in file.data_groups() {
-        if data.block_index().total_size() > most as u64 {
-            return Err(
-                unpacks_to_more(shown, &format!("group {}", number + 1), bytes.len()).into()
-            );
+        if data.block_index().total_size() > most {
+            return Err(input.failed(&format!("group {}", number + 1), Failure::Unpacked).into());
         }
         for group in &data.channel_groups {
             number += 1;
             if group.is_vlsd() || group.channels.is_empty() {
                 continue;
             }
-            let place = place(group, number);
+            let numbered = format!("group {number}");
+            let (name, place) = match group.acquisition_name.trim() {
+                // The only group needs no name.
+                "" if groups == 1 => (String::new(), numbered),
+                "" => (numbered.clone(), numbered),
+                name => (name.to_string(), format!("{numbered} (`{name}`)")),
+            };
             let rows = usize::try_from(group.sample_count).unwrap_or(usize::MAX);
             budget.take(group.channels.len(), rows, &place)?;
-            complete(bytes, group).map_err(|why| bad(&place, &why))?;
-            let mut table =
-                Table { name: name(group, number, groups), rows, first_row: 1, ..Table::default() };
-            if !group.comment.trim().is_empty() {
-                table.facts.push(("comment".into(), plain(&group.comment)));
-            }
-            for (index, source) in group.channels.iter().enumerate() {
+            complete(input.bytes, group).map_err(|why| input.damaged(&place, why))?;
+            let mut table = Table { name, rows, first_row: 1, ..Table::default() };
+            table.facts.extend(comment(&group.comment));
+            for source in &group.channels {
                 if let Some(why) = unreadable(source) {
                     table.left_out.push((source.name.clone(), why));
                     continue;
                 }
                 let values = match input.want {
                     Want::Outline if !source.is_master() => Vec::new(),
-                    _ => values(&file, source, rows)
-                        .map_err(|why| bad(&format!("{place}, channel `{}`", source.name), &why))?,
+                    _ => values(&file, source, rows).map_err(|why| {
+                        input.damaged(&format!("{place}, channel `{}`", source.name), why)
+                    })?,
                 };
-                table.channels.push(Channel {
-                    name: source.name.clone(),
-                    unit: unit(source),
-                    comment: Some(plain(&source.comment)).filter(|comment| !comment.is_empty()),
-                    values,
-                    place: Place { column: index + 1, span: None },
-                });
+                // A master without a unit is in the SI unit of its kind.
+                let unit = filled(&source.unit)
+                    .or_else(|| source.is_time_channel().then(|| "s".to_string()));
+                let comment = Some(plain(&source.comment)).filter(|comment| !comment.is_empty());
+                table.channels.push(Channel { name: source.name.clone(), unit, comment, values });
             }
             if !table.channels.is_empty() {
                 read.tables.push(table);
             }
         }
     }
-    if read.tables.is_empty() {
-        return Err(
-            Problem::error("no-numbers", format!("`{shown}` has no channels of numbers")).into()
-        );
-    }
-    Ok(read)
-}
-
-/// The name of a group in the file, or its number; empty if there is only one and it has no name.
-fn name(group: &ChannelGroup, number: usize, groups: usize) -> String {
-    match group.acquisition_name.trim() {
-        "" if groups == 1 => String::new(),
-        "" => format!("group {number}"),
-        name => name.to_string(),
-    }
-}
-
-fn place(group: &ChannelGroup, number: usize) -> String {
-    match group.acquisition_name.trim() {
-        "" => format!("group {number}"),
-        name => format!("group {number} (`{name}`)"),
-    }
+    input.with_channels(read, "channels of numbers")
 }
 
 /// The reader corrects the number of samples to what is there; a difference is a file that was cut
@@ -158,15 +134,6 @@ fn values(file: &Mf4File, source: &Source, rows: usize) -> Result<Vec<f64>, Stri
         }
     }
     Ok(values)
-}
-
-/// A master without a unit is in the SI unit of its kind.
-fn unit(source: &Source) -> Option<String> {
-    let written = source.unit.trim();
-    if written.is_empty() && source.is_time_channel() {
-        return Some("s".into());
-    }
-    (!written.is_empty()).then(|| written.to_string())
 }
 
 /// Longest comment that is kept.

@@ -8,7 +8,8 @@
 //! | `mod` | the types, and the choice of the reader |
 //! | `format` | the formats; recognition by content; formats that are not read |
 //! | `load` | the bytes of a file; limits of memory |
-//! | `guard` | calls of readers of other projects |
+//! | `guard` | files that are damaged, calls of readers of other projects |
+//! | `decode` | encodings of texts |
 //! | `binary` | bytes within their bounds, and numbers in them |
 //! | `text/` | CSV of any dialect, columns of an ASCII export |
 //! | `mat/` | MATLAB files |
@@ -17,6 +18,7 @@
 #[cfg(feature = "foreign")]
 mod binary;
 mod columnar;
+mod decode;
 mod format;
 mod guard;
 mod load;
@@ -39,7 +41,6 @@ use bytes::Bytes;
 
 use crate::data::hash::sha256;
 use crate::problem::Problem;
-use crate::source::Span;
 use crate::units::{Dimension, Unit};
 use crate::yaml::fields;
 
@@ -52,8 +53,6 @@ pub struct File {
     pub facts: Vec<(String, String)>,
     /// SHA-256 of the bytes of the file.
     pub sha256: String,
-    /// Size of the file.
-    pub bytes: u64,
 }
 
 /// Channels with a common time base: the whole text table, an MDF channel group, a sheet, a struct,
@@ -83,16 +82,6 @@ pub struct Channel {
     /// In the unit of the file; NaN where the cell is empty or the sample is marked invalid. A
     /// binary file can hold infinite values.
     pub values: Vec<f64>,
-    pub place: Place,
-}
-
-/// Where a channel is in its file, for messages.
-#[derive(Clone, Debug, Default)]
-pub struct Place {
-    /// Column of the table, from 1.
-    pub column: usize,
-    /// The name in a text file.
-    pub span: Option<Span>,
 }
 
 fields! {
@@ -148,21 +137,21 @@ pub fn outline(path: &Path, shown: &str, options: &Options) -> Result<File, Vec<
 fn read_as(path: &Path, shown: &str, options: &Options, want: Want) -> Result<File, Vec<Problem>> {
     let bytes = Bytes::from(load::bytes(path, shown)?);
     let format = format::of(&bytes, path, shown, options)?;
-    let input = Input { bytes: &bytes, shown, options, want };
+    let input = Input { bytes: &bytes, shown, options, format, want };
     let mut read = match format {
-        Format::Csv | Format::Ascii => text::read(&input, format)?,
-        Format::Parquet => guard::call(format, shown, || columnar::parquet(&input))?,
-        Format::Arrow => guard::call(format, shown, || columnar::arrow(&input))?,
+        Format::Csv | Format::Ascii => text::read(&input)?,
+        Format::Parquet => guard::call(&input, columnar::parquet)?,
+        Format::Arrow => guard::call(&input, columnar::arrow)?,
         #[cfg(feature = "foreign")]
-        Format::Mat => guard::call(format, shown, || mat::read(&input))?,
+        Format::Mat => guard::call(&input, mat::read)?,
         #[cfg(feature = "foreign")]
-        Format::Mdf4 => guard::call(format, shown, || mdf4::read(&input))?,
+        Format::Mdf4 => guard::call(&input, mdf4::read)?,
         #[cfg(feature = "foreign")]
         Format::Tdms => tdms::read(&input)?,
         #[cfg(feature = "foreign")]
-        Format::Xlsx => guard::call(format, shown, || xlsx::read(&input))?,
+        Format::Xlsx => guard::call(&input, xlsx::read)?,
         #[cfg(not(feature = "foreign"))]
-        _ => return Err(vec![format::not_built(format, shown)]),
+        _ => return Err(format::not_built(format, shown).into()),
     };
     for table in &mut read.tables {
         table.rows = table
@@ -170,13 +159,7 @@ fn read_as(path: &Path, shown: &str, options: &Options, want: Want) -> Result<Fi
             .max(table.channels.iter().map(|channel| channel.values.len()).max().unwrap_or(0));
         table.rate = table.rate.or_else(|| even_rate(&table.channels));
     }
-    Ok(File {
-        format,
-        tables: read.tables,
-        facts: read.facts,
-        sha256: sha256(&bytes),
-        bytes: bytes.len() as u64,
-    })
+    Ok(File { format, tables: read.tables, facts: read.facts, sha256: sha256(&bytes) })
 }
 
 /// What a reader is given.
@@ -185,7 +168,26 @@ struct Input<'a> {
     /// The name of the file in messages.
     shown: &'a str,
     options: &'a Options,
+    format: Format,
     want: Want,
+}
+
+impl Input<'_> {
+    /// What was read, if there are channels.
+    ///
+    /// # Errors
+    /// `no-numbers`: there is no `what`.
+    fn with_channels(&self, read: Read, what: &str) -> Result<Read, Vec<Problem>> {
+        if read.tables.iter().any(|table| !table.channels.is_empty()) {
+            return Ok(read);
+        }
+        Err(Problem::error("no-numbers", format!("`{}` has no {what}", self.shown)).into())
+    }
+}
+
+/// A text without blanks around it, if there is one.
+fn filled(text: &str) -> Option<String> {
+    Some(text.trim()).filter(|text| !text.is_empty()).map(str::to_string)
 }
 
 /// What a reader returns.
@@ -199,20 +201,24 @@ struct Read {
 /// milliseconds at 200 Hz deviate by a tenth.
 const EVEN: f64 = 0.2;
 
+/// The step of values that increase evenly; `None` if they do not.
+pub fn even_step(values: &[f64]) -> Option<f64> {
+    let (first, last) = (*values.first()?, *values.last()?);
+    let steps = values.len() - 1;
+    let step = (last - first) / steps as f64;
+    let even = |(index, value): (usize, &f64)| {
+        (value - (first + step * index as f64)).abs() <= EVEN * step
+    };
+    (steps > 0 && step > 0.0 && values.iter().enumerate().all(even)).then_some(step)
+}
+
 /// The rate of the first channel that is in a unit of time and increases in even steps, in Hz.
 fn even_rate(channels: &[Channel]) -> Option<f64> {
     channels.iter().find_map(|channel| {
         let unit = Unit::parse(channel.unit.as_deref()?)
             .ok()
             .filter(|unit| unit.dimension == Dimension::TIME)?;
-        let (first, last) = (*channel.values.first()?, *channel.values.last()?);
-        let steps = channel.values.len() - 1;
-        let step = (last - first) / steps as f64;
-        let even = |(index, time): (usize, &f64)| {
-            (time - (first + step * index as f64)).abs() <= EVEN * step
-        };
-        let is_time = steps > 0 && step > 0.0 && channel.values.iter().enumerate().all(even);
-        is_time.then(|| 1.0 / unit.to_si(step))
+        even_step(&channel.values).map(|step| 1.0 / unit.to_si(step))
     })
 }
 

@@ -7,9 +7,9 @@
 use indexmap::IndexMap;
 
 use super::binary::Cursor;
-use super::guard::damaged;
+use super::guard::Failure;
 use super::load::{Budget, MOST_CHANNELS};
-use super::{Channel, Format, Input, Place, Read, Table};
+use super::{Channel, Input, Read, Table, filled};
 use crate::problem::Problem;
 
 mod scale;
@@ -51,63 +51,36 @@ struct Object {
     left_out: Option<String>,
 }
 
-#[derive(Default)]
-struct Reader {
+struct Reader<'a> {
     objects: IndexMap<String, Object>,
     /// Objects with data in the present segment, in order.
     active: Vec<usize>,
+    budget: Budget<'a>,
+    /// The present segment, for messages.
+    place: String,
 }
 
 pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
-    let (bytes, shown) = (input.bytes, input.shown);
-    let mut reader = Reader::default();
-    let mut budget = Budget::new(bytes.len(), shown);
-    let mut at = 0;
-    let mut segment = 0;
-    while at < bytes.len() {
+    let mut reader = Reader {
+        objects: IndexMap::new(),
+        active: Vec::new(),
+        budget: input.budget(),
+        place: String::new(),
+    };
+    let (mut at, mut segment) = (0, 0);
+    while at < input.bytes.len() {
         segment += 1;
-        let place = format!("segment {segment} (byte {})", at + 1);
-        at = reader.segment(bytes, at, &mut budget, &place).map_err(|failure| match failure {
-            Failure::Problem(problem) => problem,
-            Failure::Reason(why) => damaged(Format::Tdms, shown, &place, why),
-        })?;
+        reader.place = format!("segment {segment} (byte {})", at + 1);
+        at += reader
+            .segment(&input.bytes[at..])
+            .map_err(|failure| input.failed(&reader.place, failure))?;
     }
-    let read = tables(reader.objects);
-    if read.tables.iter().all(|table| table.channels.is_empty()) {
-        return Err(
-            Problem::error("no-numbers", format!("`{shown}` has no channels of numbers")).into()
-        );
-    }
-    Ok(read)
+    input.with_channels(tables(reader.objects), "channels of numbers")
 }
 
-enum Failure {
-    Problem(Problem),
-    Reason(String),
-}
-
-impl From<String> for Failure {
-    fn from(why: String) -> Self {
-        Self::Reason(why)
-    }
-}
-
-impl From<&str> for Failure {
-    fn from(why: &str) -> Self {
-        Self::Reason(why.into())
-    }
-}
-
-impl Reader {
-    /// Reads the segment at a byte; returns the byte after it.
-    fn segment(
-        &mut self,
-        bytes: &[u8],
-        at: usize,
-        budget: &mut Budget<'_>,
-        place: &str,
-    ) -> Result<usize, Failure> {
-        let rest = &bytes[at..];
+impl Reader<'_> {
+    /// Reads the segment at the start of the bytes that are left; returns its length.
+    fn segment(&mut self, rest: &[u8]) -> Result<usize, Failure> {
         let mut lead =
             Cursor::new(rest.get(..LEAD_IN).ok_or("the file ends within its lead-in")?, false);
         if lead.take(4)? != b"TDSm" {
@@ -121,12 +94,8 @@ impl Reader {
         let end = if next == u64::MAX { rest.len() } else { position(next)? };
         let raw = position(raw)?;
         if end > rest.len() {
-            return Err(format!(
-                "{} bytes are declared, {} are left",
-                end - LEAD_IN,
-                rest.len() - LEAD_IN
-            )
-            .into());
+            let (declared, left) = (end - LEAD_IN, rest.len() - LEAD_IN);
+            return Err(format!("{declared} bytes are declared, {left} are left").into());
         }
         if raw > end {
             return Err("its raw data begin after its end".into());
@@ -145,10 +114,10 @@ impl Reader {
                         Some("raw data of DAQmx; save the file again in LabVIEW or DIAdem".into());
                 }
             } else {
-                self.raw_data(&rest[raw..end], contents, budget, place)?;
+                self.raw_data(Cursor::new(&rest[raw..end], lead.big), contents)?;
             }
         }
-        Ok(at + end)
+        Ok(end)
     }
 
     fn meta_data(&mut self, mut bytes: Cursor<'_>) -> Result<(), Failure> {
@@ -172,22 +141,7 @@ impl Reader {
                     );
                 }
                 _ => {
-                    let kind = bytes.u32()?;
-                    let _dimension = bytes.u32()?;
-                    let count = size(bytes.u64()?)?;
-                    let bytes_of = match value::size_of(kind) {
-                        Some(width) => count
-                            .checked_mul(width)
-                            .ok_or_else(|| format!("`{path}` declares {count} values"))?,
-                        None if kind == value::TEXT => size(bytes.u64()?)?,
-                        None => {
-                            return Err(format!(
-                                "`{path}` has values of the unknown type {kind:#x}"
-                            )
-                            .into());
-                        }
-                    };
-                    object.index = Some(Index { kind, count, size: bytes_of });
+                    object.index = Some(index(&path, &mut bytes)?);
                     true
                 }
             };
@@ -205,14 +159,7 @@ impl Reader {
         Ok(())
     }
 
-    fn raw_data(
-        &mut self,
-        data: &[u8],
-        contents: u32,
-        budget: &mut Budget<'_>,
-        place: &str,
-    ) -> Result<(), Failure> {
-        let big = contents & BIG_ENDIAN != 0;
+    fn raw_data(&mut self, data: Cursor<'_>, contents: u32) -> Result<(), Failure> {
         let parts: Vec<(usize, Index)> = self
             .active
             .iter()
@@ -224,26 +171,24 @@ impl Reader {
             .try_fold(0usize, |sum, (_, index)| sum.checked_add(index.size))
             .ok_or("its chunks are beyond any memory")?;
         if chunk == 0 {
-            return Err(
-                format!("it has {} bytes of raw data and no channel for them", data.len()).into()
-            );
+            let bytes = data.rest.len();
+            return Err(format!("it has {bytes} bytes of raw data and no channel for them").into());
         }
-        for part in data.chunks(chunk) {
+        for part in data.rest.chunks(chunk) {
             if contents & INTERLEAVED != 0 {
-                self.interleaved(part, &parts, big, budget, place)?;
+                self.interleaved(part, &parts, data.big)?;
                 continue;
             }
-            if part.len() < chunk {
+            let last = part.len();
+            if last < chunk {
                 return Err(format!(
-                    "a chunk of raw data has {chunk} bytes; the last one has {}",
-                    part.len()
+                    "a chunk of raw data has {chunk} bytes; the last one has {last}"
                 )
                 .into());
             }
-            let mut from = 0;
+            let mut part = Cursor::new(part, data.big);
             for (at, index) in &parts {
-                self.add(*at, *index, &part[from..from + index.size], big, budget, place)?;
-                from += index.size;
+                self.add(*at, *index, part.take(index.size)?, data.big)?;
             }
         }
         Ok(())
@@ -255,8 +200,6 @@ impl Reader {
         part: &[u8],
         parts: &[(usize, Index)],
         big: bool,
-        budget: &mut Budget<'_>,
-        place: &str,
     ) -> Result<(), Failure> {
         let widths: Option<Vec<usize>> =
             parts.iter().map(|(_, index)| value::size_of(index.kind)).collect();
@@ -272,29 +215,36 @@ impl Reader {
             let column: Vec<u8> =
                 part.chunks_exact(row).flat_map(|row| &row[from..from + width]).copied().collect();
             from += width;
-            self.add(*at, *index, &column, big, budget, place)?;
+            self.add(*at, *index, &column, big)?;
         }
         Ok(())
     }
 
-    fn add(
-        &mut self,
-        at: usize,
-        index: Index,
-        data: &[u8],
-        big: bool,
-        budget: &mut Budget<'_>,
-        place: &str,
-    ) -> Result<(), Failure> {
+    fn add(&mut self, at: usize, index: Index, data: &[u8], big: bool) -> Result<(), Failure> {
         let object = &mut self.objects[at];
         let Some(numbers) = value::numbers(index.kind, data, big) else {
             object.left_out = Some(value::what(index.kind).into());
             return Ok(());
         };
-        budget.add(numbers.len(), place).map_err(Failure::Problem)?;
+        self.budget.add(numbers.len(), &self.place)?;
         object.values.extend(numbers);
         Ok(())
     }
+}
+
+/// What the object with a path has in the raw data.
+fn index(path: &str, bytes: &mut Cursor<'_>) -> Result<Index, String> {
+    let kind = bytes.u32()?;
+    let _dimension = bytes.u32()?;
+    let count = size(bytes.u64()?)?;
+    let size = match value::size_of(kind) {
+        Some(width) => {
+            count.checked_mul(width).ok_or_else(|| format!("`{path}` declares {count} values"))?
+        }
+        None if kind == value::TEXT => size(bytes.u64()?)?,
+        None => return Err(format!("`{path}` has values of the unknown type {kind:#x}")),
+    };
+    Ok(Index { kind, count, size })
 }
 
 fn size(number: u64) -> Result<usize, String> {
@@ -336,75 +286,65 @@ fn names(path: &str) -> Vec<String> {
 /// Channels of a group with the same time base: number of values, step, offset.
 type Base = (usize, u64, u64);
 
-/// Tables of a group, its facts, and the channels that are left out with the reasons.
-type Group = (IndexMap<Base, Table>, Vec<(String, String)>, Vec<(String, String)>);
+/// The tables of a group, and what belongs to none of them.
+#[derive(Default)]
+struct Group {
+    tables: IndexMap<Base, Table>,
+    facts: Vec<(String, String)>,
+    left_out: Vec<(String, String)>,
+}
 
 fn tables(objects: IndexMap<String, Object>) -> Read {
     let mut read = Read::default();
     let mut groups: IndexMap<String, Group> = IndexMap::new();
     for (path, mut object) in objects {
+        let facts = |wanted: &str| -> Vec<(String, String)> {
+            let all = object.properties.iter().filter(|(name, _)| name.starts_with(wanted));
+            all.map(|(name, value)| (name.clone(), value.text())).collect()
+        };
         let mut names = names(&path).into_iter();
         let (Some(group), channel) = (names.next(), names.next()) else {
-            read.facts
-                .extend(object.properties.iter().map(|(name, value)| (name.clone(), value.text())));
+            read.facts.extend(facts(""));
             continue;
         };
-        let (tables, facts, left_out) = groups.entry(group).or_default();
+        let group = groups.entry(group).or_default();
         let Some(name) = channel else {
-            facts
-                .extend(object.properties.iter().map(|(name, value)| (name.clone(), value.text())));
+            group.facts.extend(facts(""));
             continue;
         };
-        if let Err(why) = scale::apply(&object.properties, &mut object.values) {
-            object.left_out = Some(why);
-        }
-        if let Some(why) =
-            object.left_out.or_else(|| object.values.is_empty().then(|| "it has no values".into()))
-        {
-            left_out.push((name, why));
-            continue;
-        }
         let number = |name: &str| object.properties.get(name).and_then(Property::number);
         let (step, offset) =
             (number("wf_increment").unwrap_or(0.0), number("wf_start_offset").unwrap_or(0.0));
+        let text = |name: &str| object.properties.get(name).and_then(|value| filled(&value.text()));
+        let time = object.index.is_some_and(|index| index.kind == value::TIME);
+        let (waveform, comment) = (facts("wf_"), text("description"));
+        let unit = text("unit_string")
+            .or_else(|| text("NI_UnitDescription"))
+            .or_else(|| time.then(|| "s".into()));
+        if let Err(why) = scale::apply(&object.properties, &mut object.values) {
+            object.left_out = Some(why);
+        }
         let rows = object.values.len();
-        let table = tables.entry((rows, step.to_bits(), offset.to_bits())).or_default();
+        let why = object.left_out.or_else(|| (rows == 0).then(|| "it has no values".into()));
+        if let Some(why) = why {
+            group.left_out.push((name, why));
+            continue;
+        }
+        let table = group.tables.entry((rows, step.to_bits(), offset.to_bits())).or_default();
         if table.channels.is_empty() {
             table.rate = (step > 0.0 && step.is_finite()).then(|| 1.0 / step);
-            let waveform = object.properties.iter().filter(|(name, _)| name.starts_with("wf_"));
-            table.facts.extend(waveform.map(|(name, value)| (name.clone(), value.text())));
+            table.facts = waveform;
         }
-        let text = |name: &str| {
-            object
-                .properties
-                .get(name)
-                .map(Property::text)
-                .map(|text| text.trim().to_string())
-                .filter(|text| !text.is_empty())
-        };
-        let time = object.index.is_some_and(|index| index.kind == value::TIME);
-        table.channels.push(Channel {
-            name,
-            unit: text("unit_string")
-                .or_else(|| text("NI_UnitDescription"))
-                .or_else(|| time.then(|| "s".into())),
-            comment: text("description"),
-            place: Place { column: table.channels.len() + 1, span: None },
-            values: if time { from_first(object.values) } else { object.values },
-        });
+        let values = if time { from_first(object.values) } else { object.values };
+        table.channels.push(Channel { name, unit, comment, values });
     }
-    for (group, (tables, facts, mut left_out)) in groups {
+    for (group, Group { tables, facts, mut left_out }) in groups {
         let several = tables.len() > 1;
         for (index, (_, table)) in tables.into_iter().enumerate() {
             let name = if several { format!("{group} ({})", index + 1) } else { group.clone() };
             let facts = facts.iter().cloned().chain(table.facts).collect();
-            read.tables.push(Table {
-                name,
-                facts,
-                first_row: 1,
-                left_out: std::mem::take(&mut left_out),
-                ..table
-            });
+            let left_out = std::mem::take(&mut left_out);
+            read.tables.push(Table { name, facts, first_row: 1, left_out, ..table });
         }
     }
     read

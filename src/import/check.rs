@@ -8,7 +8,7 @@ use crate::data::campaign::{Memory, RUN_COLUMN};
 use crate::data::record::Format;
 use crate::data::table::Cell;
 use crate::disk;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, error};
 use crate::source::{Source, Span};
 
 /// The campaign that a mapping makes, without its records.
@@ -47,7 +47,7 @@ impl NotWritten {
                 "the table of sections has no column `{RUN_COLUMN}`: from which run a section is cut"
             );
             let at = runs.table.as_ref().map_or(&mapping.sections.span, |written| &written.span);
-            let problem = Problem::error("column-missing", says).at(at);
+            let problem = error("column-missing", says, at);
             let known: Vec<&str> =
                 table.columns.iter().map(|column| column.name.as_str()).collect();
             let near = problem.suggest(RUN_COLUMN, known);

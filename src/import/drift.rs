@@ -8,7 +8,7 @@ use super::process::{Column, Made, Values, short};
 use crate::data::RecordKind;
 use crate::metrics::drift::{Curve, Point, Signals, Tracker, Windows, within};
 use crate::metrics::statistics::{Divisor, regression, standard_deviation};
-use crate::problem::Problem;
+use crate::problem::{Problem, error};
 use crate::units::Dimension;
 
 /// Most points of the curve that are listed one by one.
@@ -33,7 +33,7 @@ const MOST_CLOCK: f64 = 500e-6;
 pub fn drift(asked: &Drift, measured: &mut Made, simulated: &Made) -> Result<(), Problem> {
     let name = measured.section.clone();
     let fault = |code: &'static str, says: String| {
-        Problem::error(code, format!("run `{name}`: {says}")).at(&asked.span)
+        error(code, format!("run `{name}`: {says}"), &asked.span)
     };
     let axis = |made: &Made| made.columns.iter().position(|column| column.name == "distance");
     let (Some(own), Some(other)) = (axis(measured), axis(simulated)) else {
@@ -261,7 +261,7 @@ fn told_clock(
             measured.section
         );
         let help = "the simulation must be run with the recorded speed; a drift that is known is stated: `time: {drift: 50 ppm}`";
-        return Err(Problem::error("no-drift", says).at(&asked.span).help(help));
+        return Err(error("no-drift", says, &asked.span).help(help));
     }
     let Some(clock) = found else { return Ok(()) };
     let done = if asked.correct_clock {

@@ -8,7 +8,7 @@ use crate::data::record::Wanted;
 use crate::data::{Campaign, RecordKind};
 use crate::metrics::resample::{interpolate, uniform_grid};
 use crate::metrics::statistics::correlation;
-use crate::problem::Problem;
+use crate::problem::{Problem, warning};
 use crate::source::{Span, Spanned};
 use crate::units::{Dimension, Unit};
 
@@ -94,8 +94,7 @@ fn problem(
         name.value, other.value
     );
     let at: &Span = &name.span;
-    Problem::warning("exchanged", says)
-        .at(at)
+    warning("exchanged", says, at)
         .also(&other.span, "the other channel")
         .help("check whether the two channels are exchanged in one of the records")
 }

@@ -21,8 +21,6 @@ pub mod process;
 mod runs;
 pub mod write;
 
-use std::collections::BTreeMap;
-
 use rayon::prelude::*;
 
 use crate::data::RecordKind;
@@ -33,17 +31,41 @@ use crate::foreign::{self, File};
 use crate::problem::{Problem, Problems};
 use crate::run::needs::Needs;
 use mapping::{Mapping, Side};
-use process::{Made, Of, record};
+use process::{Made, Recording, record};
 use write::{SourceFile, account, add_campaign, record_bytes};
 
 /// Files that are read together: each worker holds one file and its records.
 const AT_A_TIME: usize = 16;
 
-/// Sections that are read from one file.
-struct Job<'a> {
-    side: &'a Side,
-    path: String,
-    sections: Vec<&'a str>,
+/// What all records are made with.
+#[derive(Clone, Copy)]
+struct Import<'a> {
+    mapping: &'a Mapping,
+    needs: Option<&'a Needs>,
+    format: Format,
+    /// Called after each record.
+    progress: &'a (dyn Fn(&str) + Sync),
+}
+
+/// What the records were made of. After a fault, nothing more is written; the rest is read for its
+/// faults.
+#[derive(Default)]
+struct Imported {
+    sources: Vec<SourceFile>,
+    accounts: Vec<ImportedRecord>,
+    faults: Problems,
+    warnings: Problems,
+}
+
+impl Imported {
+    /// Adds a record that was written, and its file.
+    fn add(&mut self, made: Made, source: &SourceFile) {
+        self.accounts.push(account(&made, source));
+        self.warnings.add(made.warnings);
+        if !self.sources.contains(source) {
+            self.sources.push(source.clone());
+        }
+    }
 }
 
 /// Reads all records and adds the campaign to the outputs; nothing is in place before these are
@@ -60,15 +82,34 @@ pub fn import(
     outputs: &mut Outputs,
     progress: &(dyn Fn(&str) + Sync),
 ) -> Result<Problems, Problems> {
-    if mapping.runs.is_some() {
-        let runs::Imported { sources, accounts, faults, warnings } =
-            runs::import(mapping, needs, format, outputs, progress)?;
-        if faults.any_error() {
-            return Err(few(faults));
-        }
-        add_campaign(outputs, mapping, format, &sources, accounts)?;
-        return Ok(few(warnings));
+    let import = Import { mapping, needs, format, progress };
+    let Imported { sources, mut accounts, faults, warnings } = match mapping.runs {
+        Some(_) => runs::import(import, outputs)?,
+        None => sections(import, outputs)?,
+    };
+    if faults.any_error() {
+        return Err(few(faults));
     }
+    // Both sides one after the other, in the order of the sections or runs.
+    let names = &mapping.sections.names;
+    accounts.sort_by_key(|account| {
+        let number = names.iter().position(|name| name.value == account.section);
+        (account.side != RecordKind::Measurement.key(), number)
+    });
+    add_campaign(outputs, mapping, format, &sources, accounts)?;
+    Ok(few(warnings))
+}
+
+/// Sections that are read from one file.
+struct Job<'a> {
+    side: &'a Side,
+    path: String,
+    sections: Vec<&'a str>,
+}
+
+/// Makes the records of all sections.
+fn sections(import: Import<'_>, outputs: &mut Outputs) -> Result<Imported, Problem> {
+    let Import { mapping, format, .. } = import;
     let mut jobs: Vec<Job<'_>> = Vec::new();
     for side in &mapping.sides {
         for name in &mapping.sections.names {
@@ -79,89 +120,78 @@ pub fn import(
             }
         }
     }
-    let (mut faults, mut warnings) = (Problems::default(), Problems::default());
-    let mut sources: Vec<SourceFile> = Vec::new();
-    let mut accounts: BTreeMap<(RecordKind, usize), ImportedRecord> = BTreeMap::new();
+    let mut all = Imported::default();
     for some in jobs.chunks(AT_A_TIME) {
-        let done: Vec<Done> =
-            some.par_iter().map(|job| work(job, mapping, needs, format, progress)).collect();
+        let done: Vec<_> = some.par_iter().map(|job| import.work(job)).collect();
         for job in done {
-            let Done { source, texts, problems } = job;
-            faults.add(problems);
-            let Some(source) = source else { continue };
-            for (made, text) in texts {
-                // After a fault nothing is written; the rest is read for its faults.
-                if !faults.any_error() {
-                    let inside = mapping::record_path(made.kind, &made.section, format.ending());
-                    outputs.add(&inside, &text)?;
+            let (source, records) = match job {
+                Ok(done) => done,
+                Err(problems) => {
+                    all.faults.add(problems);
+                    continue;
                 }
-                let number = mapping
-                    .sections
-                    .names
-                    .iter()
-                    .position(|name| name.value == made.section)
-                    .unwrap_or(0);
-                accounts.insert((made.kind, number), account(&made, &source));
-                warnings.add(made.warnings);
-            }
-            if !sources.contains(&source) {
-                sources.push(source);
+            };
+            for record in records {
+                match record {
+                    Ok((made, bytes)) if !all.faults.any_error() => {
+                        let ending = format.ending();
+                        let inside = mapping::record_path(made.kind, &made.section, ending);
+                        outputs.add(&inside, &bytes)?;
+                        all.add(made, &source);
+                    }
+                    Ok(_) => {}
+                    Err(problems) => all.faults.add(problems),
+                }
             }
         }
     }
-    if faults.any_error() {
-        return Err(few(faults));
+    Ok(all)
+}
+
+/// A record without its columns, and its bytes.
+type Written = (Made, Vec<u8>);
+
+impl Import<'_> {
+    /// The records of the sections in a file.
+    fn work(
+        self,
+        job: &Job<'_>,
+    ) -> Result<(SourceFile, Vec<Result<Written, Vec<Problem>>>), Vec<Problem>> {
+        let file = self.file(job.side, &job.path)?;
+        let written = |section: &&str| -> Result<Written, Vec<Problem>> {
+            let made = self.record(job.side, section, &file, None)?;
+            let bytes = record_bytes(&made.columns, self.format)?;
+            Ok((Made { columns: Vec::new(), ..made }, bytes))
+        };
+        let records = job.sections.iter().map(|section| {
+            let record = written(section);
+            (self.progress)(section);
+            record
+        });
+        let records = records.collect();
+        Ok((SourceFile::new(&job.path, &file.0), records))
     }
-    add_campaign(outputs, mapping, format, &sources, accounts.into_values().collect())?;
-    Ok(few(warnings))
-}
 
-struct Done {
-    source: Option<SourceFile>,
-    texts: Vec<(Made, Vec<u8>)>,
-    problems: Vec<Problem>,
-}
-
-fn work(
-    job: &Job<'_>,
-    mapping: &Mapping,
-    needs: Option<&Needs>,
-    format: Format,
-    progress: &(dyn Fn(&str) + Sync),
-) -> Done {
-    let mut done = Done { source: None, texts: Vec::new(), problems: Vec::new() };
-    let (file, shown) = match file_of_side(mapping, job.side, &job.path) {
-        Ok(read) => read,
-        Err(problems) => return Done { problems, ..done },
-    };
-    for section in &job.sections {
-        let of =
-            Of { mapping, side: job.side, needs, section, file: &file, store: None, shown: &shown };
-        match record(&of) {
-            Ok(made) => match record_bytes(&made.columns, format) {
-                Ok(text) => done.texts.push((Made { columns: Vec::new(), ..made }, text)),
-                Err(problem) => done.problems.push(problem),
-            },
-            Err(problems) => done.problems.extend(problems),
-        }
-        progress(section);
+    /// A file that the mapping names, and its name in messages. Problems of the file as a whole are
+    /// shown where it is named.
+    fn file(self, side: &Side, written: &str) -> Result<(File, String), Vec<Problem>> {
+        let (path, shown) = self.mapping.place(written);
+        let file = foreign::read(&path, &shown, &side.format).map_err(|problems| {
+            problems.into_iter().map(|problem| problem.or_at(&side.files.span)).collect::<Vec<_>>()
+        })?;
+        Ok((file, shown))
     }
-    done.source = Some(SourceFile::new(&job.path, &file));
-    done
-}
 
-/// A file that the mapping names, and its name in messages. Problems of the file as a whole are
-/// shown where it is named.
-fn file_of_side(
-    mapping: &Mapping,
-    side: &Side,
-    written: &str,
-) -> Result<(File, String), Vec<Problem>> {
-    let (path, shown) = mapping.place(written);
-    let placed = |problems: Vec<Problem>| {
-        problems.into_iter().map(|problem| problem.or_at(&side.files.span)).collect::<Vec<_>>()
-    };
-    Ok((foreign::read(&path, &shown, &side.format).map_err(placed)?, shown))
+    /// The record of a section or run.
+    fn record(
+        self,
+        side: &Side,
+        section: &str,
+        file: &(File, String),
+        store: Option<&std::sync::Arc<process::Store>>,
+    ) -> Result<Made, Vec<Problem>> {
+        record(&Recording::new((self.mapping, side), self.needs, section, file, store)?)
+    }
 }
 
 /// Most problems reported; the same fault is usually in every section.
@@ -172,10 +202,10 @@ fn few(problems: Problems) -> Problems {
     let mut told = Problems::default();
     let mut more = 0;
     for problem in problems.0 {
+        let place = |problem: &Problem| {
+            problem.at.as_ref().map(|at| (at.source.name.clone(), at.start, at.end))
+        };
         let same = |known: &Problem| {
-            let place = |problem: &Problem| {
-                problem.at.as_ref().map(|at| (at.source.name.clone(), at.start, at.end))
-            };
             known.code == problem.code && known.at.is_some() && place(known) == place(&problem)
         };
         if told.0.len() >= MOST_TOLD || told.0.iter().any(same) {
@@ -186,12 +216,8 @@ fn few(problems: Problems) -> Problems {
     }
     if more > 0 {
         let says = format!("{more} more of other sections, most of the same kind");
-        let error = told.any_error();
-        told.push(if error {
-            Problem::error("more-problems", says)
-        } else {
-            Problem::warning("more-problems", says)
-        });
+        let kind = if told.any_error() { Problem::error } else { Problem::warning };
+        told.push(kind("more-problems", says));
     }
     told
 }

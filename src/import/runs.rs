@@ -1,55 +1,39 @@
 //! Import of whole runs: both records of a run are made together, since a drift between them
 //! concerns both.
 
-use std::sync::Arc;
-
-use super::mapping::{self, Mapping};
-use super::process::{Made, Of, Store, record};
-use super::write::{SourceFile, account, write_record};
-use super::{drift, file_of_side};
+use super::mapping::{self, Side};
+use super::process::{Made, Store};
+use super::write::{SourceFile, write_record};
+use super::{Import, Imported, drift};
 use crate::data::RecordKind;
-use crate::data::origin::ImportedRecord;
-use crate::data::record::Format;
 use crate::data::write::Outputs;
-use crate::problem::{Problem, Problems};
-use crate::run::needs::Needs;
-
-/// What the import of all records gives.
-#[derive(Default)]
-pub struct Imported {
-    pub sources: Vec<SourceFile>,
-    /// Both sides one after the other, in the order of the runs.
-    pub accounts: Vec<ImportedRecord>,
-    pub faults: Problems,
-    pub warnings: Problems,
-}
+use crate::problem::{Problem, error};
 
 /// Makes the records of all runs. One file is in memory at a time; what is made of it waits in a
 /// file without a name.
 ///
 /// # Errors
-/// `write-failed`. Faults of the records are in [`Imported::faults`]; after one, nothing more is
-/// written.
-pub fn import(
-    mapping: &Mapping,
-    needs: Option<&Needs>,
-    format: Format,
-    outputs: &mut Outputs,
-    progress: &(dyn Fn(&str) + Sync),
-) -> Result<Imported, Problem> {
+/// `write-failed`. Faults of the records are in [`Imported::faults`].
+pub fn import(import: Import<'_>, outputs: &mut Outputs) -> Result<Imported, Problem> {
+    let Import { mapping, format, .. } = import;
     let mut all = Imported::default();
     for name in &mapping.sections.names {
+        let run = &name.value;
         let store = Store::new(outputs.scratch_file()?);
+        let of_side = |side: &Side| -> Result<(Made, SourceFile), Vec<Problem>> {
+            let written = mapping.sections.fill(&side.files.value, run);
+            let file = import.file(side, &written)?;
+            let made = import.record(side, run, &file, Some(&store))?;
+            Ok((made, SourceFile::new(&written, &file.0)))
+        };
         let mut made: Vec<(Made, SourceFile)> = Vec::new();
-        for side in [RecordKind::Measurement, RecordKind::Simulation]
-            .into_iter()
-            .filter_map(|kind| mapping.side(kind))
-        {
-            match of_side(mapping, side, needs, &name.value, &store) {
+        let kinds = [RecordKind::Measurement, RecordKind::Simulation];
+        for side in kinds.into_iter().filter_map(|kind| mapping.side(kind)) {
+            match of_side(side) {
                 Ok(one) => made.push(one),
                 Err(problems) => all.faults.add(problems),
             }
-            progress(&name.value);
+            (import.progress)(run);
         }
         if all.faults.any_error() {
             continue;
@@ -59,11 +43,9 @@ pub fn import(
             let done = match rest {
                 [(simulated, _)] => drift::drift(asked, measured, simulated),
                 _ => {
-                    let problem = Problem::error(
-                        "no-drift",
-                        "a drift is one against the simulation, which is not imported",
-                    );
-                    Err(problem.at(&asked.span).help("import both sides, or remove `drift`"))
+                    let says = "a drift is one against the simulation, which is not imported";
+                    Err(error("no-drift", says, &asked.span)
+                        .help("import both sides, or remove `drift`"))
                 }
             };
             if let Err(problem) = done {
@@ -76,34 +58,8 @@ pub fn import(
             outputs.add_in_parts(&inside, |sink| {
                 write_record(&made.columns, format, Some(&store), sink)
             })?;
-            all.accounts.push(account(&made, &source));
-            all.warnings.add(made.warnings);
-            if !all.sources.contains(&source) {
-                all.sources.push(source);
-            }
+            all.add(made, &source);
         }
     }
-    all.accounts.sort_by_key(|account| account.side != RecordKind::Measurement.key());
     Ok(all)
-}
-
-fn of_side(
-    mapping: &Mapping,
-    side: &mapping::Side,
-    needs: Option<&Needs>,
-    run: &str,
-    store: &Arc<Store>,
-) -> Result<(Made, SourceFile), Vec<Problem>> {
-    let written = mapping.sections.fill(&side.files.value, run);
-    let (file, shown) = file_of_side(mapping, side, &written)?;
-    let made = record(&Of {
-        mapping,
-        side,
-        needs,
-        section: run,
-        file: &file,
-        store: Some(store),
-        shown: &shown,
-    })?;
-    Ok((made, SourceFile::new(&written, &file)))
 }

@@ -2,7 +2,7 @@
 
 use super::{Section, Simulator, Task};
 use crate::effects::{Action, Applied, Catalogue, Formula, Operator, Parameter, Signals};
-use crate::problem::Problem;
+use crate::problem::{Problem, error};
 
 /// Effects on one section.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -114,17 +114,20 @@ impl Plan {
         });
         for (formulas, values) in &self.formulas {
             signals.compute(formulas, values).map_err(|says| {
-                Problem::error("operator", format!("section `{}`: {says}", section.name()))
-                    .at(&section.cell.span)
+                error(
+                    "operator",
+                    format!("section `{}`: {says}", section.name()),
+                    &section.cell.span,
+                )
             })?;
         }
         for (operator, value, channels) in &self.operators {
             signals.apply(*operator, *value, channels, seed).map_err(|says| {
-                Problem::error(
+                error(
                     "operator",
                     format!("section `{}`: {}: {says}", section.name(), operator.name()),
+                    &section.cell.span,
                 )
-                .at(&section.cell.span)
             })?;
         }
         Ok(())

@@ -14,7 +14,7 @@ use crate::model::{
     self, CHANNELS, PARAMETERS, Parameter, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable,
     Vehicle, VehicleFault, Window,
 };
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, error};
 use crate::source::{Source, Spanned};
 use crate::units::number::{self, Refused};
 use crate::units::{Dimension, Unit};
@@ -63,7 +63,7 @@ impl<'a> Builtin<'a> {
         if !campaign.has(RecordKind::Track) {
             let says =
                 "the campaign has no `track`, the folder of track files that the model needs";
-            let problem = Problem::error("key-missing", says).at(&campaign.tree.span.part(0..0));
+            let problem = error("key-missing", says, &campaign.tree.span.part(0..0));
             problems.push(misspelt(problem, &campaign.tree, "track"));
             return None;
         }
@@ -148,11 +148,11 @@ impl Simulator for Builtin<'_> {
     fn run(&self, task: &Task<'_>) -> Result<Signals, Problem> {
         let section = task.section;
         let Some(speed) = section.speed else {
-            return Err(Problem::error(
+            return Err(error(
                 "speed-missing",
                 format!("section `{}` has no speed", section.name()),
-            )
-            .at(&section.cell.span));
+                &section.cell.span,
+            ));
         };
         let (vehicle, profile) = self.machine.with(task.settings)?;
         let track = track_of(self.campaign, &section.cell)?;
@@ -202,7 +202,7 @@ pub fn vehicle(tree: &Node, problems: &mut Problems) -> Option<Vehicle> {
                 Err(refused) => {
                     let says =
                         format!("`{}` ({}): {}", parameter.key, parameter.meaning, refused.says);
-                    let problem = Problem::error("wrong-kind", says).at(&node.span);
+                    let problem = error("wrong-kind", says, &node.span);
                     problems.push(problem.help_if(refused.help));
                 }
             }
@@ -421,8 +421,7 @@ fn increasing(record: &Record, name: &str, values: &[f64]) -> Result<(), Problem
     }
     match values.windows(2).position(|pair| pair[1] <= pair[0]) {
         Some(row) => {
-            Err(Problem::error("not-increasing", format!("`{name}` does not increase here"))
-                .at(&at(row + 1)))
+            Err(error("not-increasing", format!("`{name}` does not increase here"), &at(row + 1)))
         }
         None => Ok(()),
     }

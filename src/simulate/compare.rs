@@ -3,7 +3,7 @@
 use super::add::interpolated;
 use super::{Section, Simulator};
 use crate::effects::Signals;
-use crate::problem::Problem;
+use crate::problem::{Problem, error};
 
 /// Deviation of one channel in one section.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,7 +46,7 @@ pub fn deviations(
             "section `{}`: the records of the simulator and of the campaign do not overlap",
             section.name()
         );
-        return Err(Problem::error("too-short", says).at(&section.cell.span));
+        return Err(error("too-short", says, &section.cell.span));
     }
     let mut found = Vec::new();
     for channel in &recorded.channels {

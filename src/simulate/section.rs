@@ -3,7 +3,7 @@
 use crate::data::sites::sites;
 use crate::data::table::{Cell, Table};
 use crate::data::{Campaign, Heading};
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problems, error};
 use crate::source::Source;
 use crate::units::{Dimension, Unit};
 
@@ -119,13 +119,11 @@ pub fn sections(campaign: &Campaign, problems: &mut Problems) -> Option<Vec<Sect
             (Some(start), Some(end)) => {
                 found.push(Section { cell: cell.clone(), start, end, speed: number(&speed), facts })
             }
-            _ => faults.push(
-                Problem::error(
-                    "section",
-                    format!("section `{}` has no start or no end", cell.value),
-                )
-                .at(&cell.span),
-            ),
+            _ => faults.push(error(
+                "section",
+                format!("section `{}` has no start or no end", cell.value),
+                &cell.span,
+            )),
         }
     }
     let whole = !faults.any_error();

@@ -11,7 +11,6 @@ mod tables;
 mod v5;
 mod v73;
 
-use super::load::Budget;
 use super::{Input, Read};
 use crate::problem::Problem;
 
@@ -27,10 +26,13 @@ enum Value {
     Text(String),
     Cells(Vec<Value>),
     /// The elements of a struct array, each with its fields; a plain struct has one.
-    Structs(Vec<Vec<(String, Value)>>),
+    Structs(Vec<Fields>),
     /// What is not read, in words.
     Other(&'static str),
 }
+
+/// The fields of a struct, or the variables of a file.
+type Fields = Vec<(String, Value)>;
 
 /// Depth to which structs and cells are read; records have three or four levels.
 const DEEPEST: usize = 16;
@@ -38,7 +40,7 @@ const DEEPEST: usize = 16;
 const OBJECT: &str = "an object of MATLAB (table, timeseries, string); save it as a struct, for example with `table2struct(T, 'ToScalar', true)`";
 
 pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
-    let mut budget = Budget::new(input.bytes.len(), input.shown);
+    let mut budget = input.budget();
     let old = input.bytes.get(..8) != Some(b"\x89HDF\r\n\x1a\n")
         && matches!(input.bytes.get(124..128), Some([_, 1, b'I', b'M'] | [1, _, b'M', b'I']));
     let (variables, version) = if old {

@@ -4,8 +4,8 @@
 //! structs with a name and a vector each; and structs of these. Other variables are facts, if they
 //! are short, or left out.
 
-use super::super::{Channel, Place, Read, Table};
-use super::Value;
+use super::super::{Channel, Read, Table, filled};
+use super::{Fields, Value};
 use crate::problem::Problem;
 
 /// Fields with the sampling rate in Hz, and with the step in seconds, as toolboxes name them. The
@@ -29,8 +29,6 @@ const UNITS: &[&str] = &["unit", "einheit", "dim"];
 /// Longest text and largest number of values of a fact.
 const LONGEST_FACT: usize = 200;
 const MOST_NUMBERS: usize = 4;
-
-type Fields = Vec<(String, Value)>;
 
 /// The tables of a file.
 pub(super) fn of(variables: Fields, shown: &str) -> Result<Read, Vec<Problem>> {
@@ -133,6 +131,12 @@ fn is_units(name: &str) -> bool {
     UNITS.iter().any(|unit| name.starts_with(unit))
 }
 
+impl Value {
+    fn text(&self) -> Option<&str> {
+        if let Self::Text(text) = self { Some(text) } else { None }
+    }
+}
+
 /// The texts of a cell array, or the lines of a char matrix.
 fn texts(value: &Value) -> Option<Vec<String>> {
     match value {
@@ -172,16 +176,13 @@ fn matrix(fields: &Fields) -> Option<(Vec<Channel>, Vec<String>)> {
     let by_column = count == columns;
     let channel = |index: usize| Channel {
         name: names[index].trim().to_string(),
-        unit: units
-            .map(|(_, units)| units[index].trim().to_string())
-            .filter(|unit| !unit.is_empty()),
+        unit: units.and_then(|(_, units)| filled(&units[index])),
         comment: None,
         values: if by_column {
             values[index * rows..(index + 1) * rows].to_vec()
         } else {
             values.iter().skip(index).step_by(rows).copied().collect()
         },
-        place: Place { column: index + 1, span: None },
     };
     let mut used = vec![data.clone(), (*names_field).clone()];
     used.extend(units.map(|(name, _)| (*name).clone()));
@@ -190,34 +191,29 @@ fn matrix(fields: &Fields) -> Option<(Vec<Channel>, Vec<String>)> {
 
 /// Elements with a vector of numbers and a name each: `Y(3).Name`, `Y(3).Data`, `Y(3).Unit`.
 fn listed(elements: &[Fields]) -> Option<Vec<Channel>> {
-    let channel = |(index, fields): (usize, &Fields)| {
-        let text = |wanted: bool| {
-            fields.iter().find_map(|(name, value)| match value {
-                Value::Text(text) if is_units(name) == wanted => Some(text.trim().to_string()),
-                _ => None,
-            })
+    let channel = |fields: &Fields| {
+        // The first text that is a unit or none.
+        let text = |unit: bool| {
+            fields
+                .iter()
+                .filter(|(name, _)| is_units(name) == unit)
+                .find_map(|(_, value)| value.text())
         };
-        let values = fields.iter().filter_map(|(_, value)| match value {
+        let vectors = fields.iter().filter_map(|(_, value)| match value {
             Value::Numbers { rows, columns, values } if *rows == 1 || *columns == 1 => Some(values),
             _ => None,
         });
-        let values =
-            values.max_by_key(|values| values.len()).filter(|values| values.len() > 1)?.clone();
-        let place = Place { column: index + 1, span: None };
+        let longest =
+            vectors.max_by_key(|values| values.len()).filter(|values| values.len() > 1)?;
         Some(Channel {
-            name: text(false).filter(|name| !name.is_empty())?,
-            unit: text(true).filter(|unit| !unit.is_empty()),
+            name: filled(text(false)?)?,
+            unit: text(true).and_then(filled),
             comment: None,
-            values,
-            place,
+            values: longest.clone(),
         })
     };
-    elements
-        .iter()
-        .enumerate()
-        .map(channel)
-        .collect::<Option<Vec<_>>>()
-        .filter(|channels| !channels.is_empty())
+    let channels: Option<Vec<Channel>> = elements.iter().map(channel).collect();
+    channels.filter(|channels| !channels.is_empty())
 }
 
 /// Vectors, each a channel; those that are not of the most frequent length are left out.
@@ -229,29 +225,22 @@ fn vectors(fields: Fields, units: Option<&Value>, table: &mut Table) {
         .collect();
     let count = |length: usize| lengths.iter().filter(|other| **other == length).count();
     let rows = lengths.iter().copied().max_by_key(|length| (count(*length), *length));
-    let texts: Vec<(String, String)> = fields
-        .iter()
-        .filter_map(|(name, value)| match value {
-            Value::Text(text) => Some((name.clone(), text.trim().to_string())),
-            _ => None,
-        })
-        .collect();
+    let of_struct: Fields = match units {
+        Some(Value::Structs(elements)) => elements.first().cloned().unwrap_or_default(),
+        _ => Fields::new(),
+    };
+    let beside: Fields =
+        fields.iter().filter(|(_, value)| value.text().is_some()).cloned().collect();
+    // In the struct of units, or beside the vector: `y_unit`.
     let unit_of = |name: &str| {
-        let of_struct = match units {
-            Some(Value::Structs(elements)) => elements.first().and_then(|fields| {
-                fields.iter().find_map(|(field, value)| match value {
-                    Value::Text(text) if field == name => Some(text.trim().to_string()),
-                    _ => None,
-                })
-            }),
-            _ => None,
+        let texts = |list: &Fields, known: &dyn Fn(&str) -> bool| {
+            let mut texts = list.iter().filter(|(field, _)| known(field));
+            texts.find_map(|(_, value)| value.text()).map(|text| text.trim().to_string())
         };
-        let beside = || {
-            texts.iter().find(|(field, _)| {
-                ["_unit", "_units", "_einheit"].iter().any(|end| *field == format!("{name}{end}"))
-            })
-        };
-        of_struct.or_else(|| beside().map(|(_, unit)| unit.clone())).filter(|unit| !unit.is_empty())
+        let ends = ["_unit", "_units", "_einheit"].map(|end| format!("{name}{end}"));
+        let stated = texts(&of_struct, &|field| field == name)
+            .or_else(|| texts(&beside, &|field| ends.iter().any(|end| end == field)));
+        stated.filter(|unit| !unit.is_empty())
     };
     let mut rest = Vec::new();
     for (name, value) in fields {
@@ -259,18 +248,13 @@ fn vectors(fields: Fields, units: Option<&Value>, table: &mut Table) {
             Value::Numbers { rows: high, columns: wide, values }
                 if length_of(high, wide).is_some() && length_of(high, wide) == rows =>
             {
-                let parts = values.len() / rows.unwrap_or(1).max(1);
-                for (index, part) in values.chunks(rows.unwrap_or(1).max(1)).enumerate() {
+                let rows = rows.unwrap_or(1).max(1);
+                let several = values.len() / rows > 1;
+                for (index, part) in values.chunks(rows).enumerate() {
                     let name =
-                        if parts > 1 { format!("{name}({})", index + 1) } else { name.clone() };
-                    let place = Place { column: table.channels.len() + 1, span: None };
-                    table.channels.push(Channel {
-                        unit: unit_of(&name),
-                        name,
-                        comment: None,
-                        values: part.to_vec(),
-                        place,
-                    });
+                        if several { format!("{name}({})", index + 1) } else { name.clone() };
+                    let (unit, values) = (unit_of(&name), part.to_vec());
+                    table.channels.push(Channel { name, unit, comment: None, values });
                 }
             }
             other => rest.push((name, other)),

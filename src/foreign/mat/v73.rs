@@ -7,11 +7,10 @@ use hdf5_reader::error::Error;
 use hdf5_reader::group::Group;
 use hdf5_reader::{Dataset, Datatype, Hdf5File, OpenOptions};
 
+use super::super::Input;
 use super::super::binary::Number;
-use super::super::guard::damaged;
 use super::super::load::{Budget, most_unpacked};
-use super::super::{Format, Input};
-use super::{DEEPEST, OBJECT, Value};
+use super::{DEEPEST, Fields, OBJECT, Value};
 use crate::problem::Problem;
 
 /// The group in which MATLAB keeps what cells refer to.
@@ -24,31 +23,28 @@ const LARGEST_CHUNK: usize = 64 << 20;
 const MOST_OBJECTS: usize = 1 << 20;
 
 struct Reader<'a, 'b> {
-    shown: &'a str,
+    input: &'a Input<'a>,
     budget: &'a mut Budget<'b>,
     /// Data sets that cells refer to, by their address.
     targets: HashMap<u64, Dataset>,
     objects: usize,
 }
 
-type Fields = Vec<(String, Value)>;
-
 /// The variables of a file.
 pub(super) fn variables(input: &Input<'_>, budget: &mut Budget<'_>) -> Result<Fields, Problem> {
-    let shown = input.shown;
     let most = most_unpacked(input.bytes.len());
     let options = OpenOptions::default()
         .with_max_chunk_bytes(LARGEST_CHUNK.min(most))
         .with_max_read_bytes(most)
         .with_max_object_header_bytes(1 << 20);
-    let bad = |place: &str, error: Error| damaged(Format::Mat, shown, place, error);
+    let bad = |place: &str, error: Error| input.damaged(place, error);
     let file = Hdf5File::from_bytes_with_options(input.bytes, options)
         .map_err(|error| bad("the header", error))?;
     // The library of the HDF Group refuses such a file; this reader would read what is there.
     let end = file.superblock().eof_address;
     if end > input.bytes.len() as u64 {
         let why = format!("{end} bytes are declared, {} are there", input.bytes.len());
-        return Err(damaged(Format::Mat, shown, "the header", why));
+        return Err(input.damaged("the header", why));
     }
     let root = file.root_group().map_err(|error| bad("the root group", error))?;
     let (groups, sets) = root.members().map_err(|error| bad("the root group", error))?;
@@ -58,22 +54,14 @@ pub(super) fn variables(input: &Input<'_>, budget: &mut Budget<'_>) -> Result<Fi
             targets.insert(set.address(), set);
         }
     }
-    let mut reader = Reader { shown, budget, targets, objects: 0 };
-    let mut found = Vec::new();
-    for set in &sets {
-        let value = reader.value(set, set.name(), 0)?;
-        found.push((set.name().to_string(), value));
-    }
-    for group in groups.iter().filter(|group| !group.name().starts_with('#')) {
-        let value = reader.fields(group, group.name(), 0)?;
-        found.push((group.name().to_string(), value));
-    }
-    Ok(found)
+    let mut reader = Reader { input, budget, targets, objects: 0 };
+    let groups = groups.iter().filter(|group| !group.name().starts_with('#'));
+    reader.members(&sets, groups, "", 0)
 }
 
 impl Reader<'_, '_> {
     fn bad(&self, path: &str, why: impl std::fmt::Display) -> Problem {
-        damaged(Format::Mat, self.shown, &format!("`{path}`"), why)
+        self.input.damaged(&format!("`{path}`"), why)
     }
 
     fn count(&mut self, path: &str) -> Result<(), Problem> {
@@ -85,6 +73,26 @@ impl Reader<'_, '_> {
         }
     }
 
+    /// The data sets and groups of a group; their paths begin with `above`.
+    fn members<'g>(
+        &mut self,
+        sets: &[Dataset],
+        groups: impl Iterator<Item = &'g Group>,
+        above: &str,
+        depth: usize,
+    ) -> Result<Fields, Problem> {
+        let mut found = Fields::new();
+        for set in sets {
+            let value = self.value(set, &format!("{above}{}", set.name()), depth)?;
+            found.push((set.name().to_string(), value));
+        }
+        for group in groups {
+            let value = self.fields(group, &format!("{above}{}", group.name()), depth)?;
+            found.push((group.name().to_string(), value));
+        }
+        Ok(found)
+    }
+
     /// A group is a struct.
     fn fields(&mut self, group: &Group, path: &str, depth: usize) -> Result<Value, Problem> {
         self.count(path)?;
@@ -92,15 +100,7 @@ impl Reader<'_, '_> {
             return Err(self.bad(path, format!("structs nested more than {DEEPEST} deep")));
         }
         let (groups, sets) = group.members().map_err(|error| self.bad(path, error))?;
-        let mut found = Vec::new();
-        for set in &sets {
-            let value = self.value(set, &format!("{path}.{}", set.name()), depth + 1)?;
-            found.push((set.name().to_string(), value));
-        }
-        for inner in &groups {
-            let value = self.fields(inner, &format!("{path}.{}", inner.name()), depth + 1)?;
-            found.push((inner.name().to_string(), value));
-        }
+        let found = self.members(&sets, groups.iter(), &format!("{path}."), depth + 1)?;
         // Fields that are all cells of references are a struct array.
         Ok(match transposed(&found) {
             Some(elements) => Value::Structs(elements),
@@ -120,12 +120,10 @@ impl Reader<'_, '_> {
             .unwrap_or_default();
         let empty = attribute("MATLAB_empty").is_some();
         let shape = set.shape().to_vec();
-        let count = shape
-            .iter()
-            .try_fold(1u64, |product, size| product.checked_mul(*size))
-            .and_then(|count| usize::try_from(count).ok());
-        let count =
-            count.ok_or_else(|| self.bad(path, "the declared size is beyond any memory"))?;
+        let count = shape.iter().try_fold(1u64, |product, size| product.checked_mul(*size));
+        let count = count
+            .and_then(|count| usize::try_from(count).ok())
+            .ok_or_else(|| self.bad(path, "the declared size is beyond any memory"))?;
         if empty || count == 0 {
             return Ok(if class == "char" {
                 Value::Text(String::new())
@@ -141,40 +139,35 @@ impl Reader<'_, '_> {
                     bytes.as_chunks::<8>().0.iter().map(|bytes| u64::from_le_bytes(*bytes));
                 let mut cells = Vec::new();
                 for (index, address) in addresses.enumerate() {
-                    let Some(target) = self.targets.get(&address).cloned() else {
-                        cells.push(Value::Other(OBJECT));
-                        continue;
-                    };
-                    cells.push(self.value(
-                        &target,
-                        &format!("{path}{{{}}}", index + 1),
-                        depth + 1,
-                    )?);
+                    cells.push(match self.targets.get(&address).cloned() {
+                        None => Value::Other(OBJECT),
+                        Some(target) => {
+                            let path = format!("{path}{{{}}}", index + 1);
+                            self.value(&target, &path, depth + 1)?
+                        }
+                    });
                 }
                 Ok(Value::Cells(cells))
             }
             Datatype::FixedPoint { .. } | Datatype::FloatingPoint { .. } => {
                 let values = self.numbers(set, path)?;
                 if class == "char" {
-                    let units: Vec<u16> = values.iter().map(|unit| *unit as u16).collect();
-                    return Ok(Value::Text(
-                        char::decode_utf16(units)
-                            .map(|letter| letter.unwrap_or('\u{fffd}'))
-                            .collect(),
-                    ));
+                    let letters = char::decode_utf16(values.iter().map(|unit| *unit as u16));
+                    let letters = letters.map(|letter| letter.unwrap_or('\u{fffd}'));
+                    return Ok(Value::Text(letters.collect()));
                 }
                 // HDF5 stores the last dimension without gaps, MATLAB the first: the sizes are in
                 // reverse order.
                 let rows = usize::try_from(shape.last().copied().unwrap_or(1)).unwrap_or(count);
                 Ok(Value::Numbers { rows, columns: count / rows.max(1), values })
             }
-            Datatype::String { .. } | Datatype::VarLen { .. } => match set.read_strings() {
-                Ok(texts) if texts.len() == 1 => {
-                    Ok(Value::Text(texts.into_iter().next().unwrap_or_default()))
-                }
-                Ok(texts) => Ok(Value::Cells(texts.into_iter().map(Value::Text).collect())),
-                Err(error) => Err(self.bad(path, error)),
-            },
+            Datatype::String { .. } | Datatype::VarLen { .. } => {
+                let mut texts = set.read_strings().map_err(|error| self.bad(path, error))?;
+                Ok(match texts.len() {
+                    1 => Value::Text(texts.remove(0)),
+                    _ => Value::Cells(texts.into_iter().map(Value::Text).collect()),
+                })
+            }
             Datatype::Compound { .. } => Ok(Value::Other(
                 "complex numbers or a compound; save its parts as arrays of their own",
             )),
@@ -185,16 +178,15 @@ impl Reader<'_, '_> {
     fn numbers(&self, set: &Dataset, path: &str) -> Result<Vec<f64>, Problem> {
         let bytes = set.read_native_bytes().map_err(|error| self.bad(path, error))?;
         let number = match set.dtype() {
-            Datatype::FloatingPoint { size, .. } => Some(Number::Float(usize::from(*size))),
-            Datatype::FixedPoint { size, signed: true, .. } => {
-                Some(Number::Signed(usize::from(*size)))
-            }
-            Datatype::FixedPoint { size, .. } => Some(Number::Unsigned(usize::from(*size))),
-            _ => None,
+            Datatype::FloatingPoint { size, .. } => Number::Float(usize::from(*size)),
+            Datatype::FixedPoint { size, signed: true, .. } => Number::Signed(usize::from(*size)),
+            Datatype::FixedPoint { size, .. } => Number::Unsigned(usize::from(*size)),
+            // Only these are asked for.
+            _ => return Ok(Vec::new()),
         };
-        number.and_then(|number| number.read(&bytes, cfg!(target_endian = "big"))).ok_or_else(
-            || self.bad(path, format!("numbers of the type {:?} are not read", set.dtype())),
-        )
+        number.read(&bytes, cfg!(target_endian = "big")).ok_or_else(|| {
+            self.bad(path, format!("numbers of the type {:?} are not read", set.dtype()))
+        })
     }
 }
 

@@ -166,6 +166,11 @@ pub(super) fn comment<'a>(line: &'a str, options: &Options) -> Option<&'a str> {
     }
 }
 
+/// Whether a line can be a row: neither blank nor a comment.
+pub(super) fn is_row(line: Line<'_>, options: &Options) -> bool {
+    !line.text.trim().is_empty() && comment(line.text, options).is_none()
+}
+
 /// Lines looked at to detect the dialect.
 const SAMPLE: usize = 300;
 /// Bytes of these lines looked at.
@@ -180,8 +185,8 @@ pub(super) fn detect(lines: &[Line<'_>], options: &Options) -> Option<Dialect> {
     let mut bytes = 0;
     let sample: Vec<&str> = lines[from..]
         .iter()
+        .filter(|line| is_row(**line, options))
         .map(|line| line.text)
-        .filter(|line| !line.trim().is_empty() && comment(line, options).is_none())
         .take(SAMPLE)
         .take_while(|line| {
             bytes += line.len();
@@ -190,13 +195,10 @@ pub(super) fn detect(lines: &[Line<'_>], options: &Options) -> Option<Dialect> {
         .collect();
     let separators = match options.separator {
         Some(said) => vec![said],
-        None => vec![
-            Separator::Mark(';'),
-            Separator::Mark('\t'),
-            Separator::Mark(','),
-            Separator::Mark('|'),
-            Separator::Blanks,
-        ],
+        None => {
+            let marks = [';', '\t', ',', '|'].map(Separator::Mark);
+            marks.into_iter().chain([Separator::Blanks]).collect()
+        }
     };
     let decimals = match options.decimal {
         Some(said) => vec![said.letter()],

@@ -1,7 +1,8 @@
 //! Names and units of the columns, and what the lines before the numbers say besides.
 
-use super::dialect::{self, Dialect, Line};
+use super::dialect::{Line, comment};
 use super::{Text, at};
+use crate::foreign::filled;
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::units::Unit;
@@ -25,51 +26,47 @@ pub(super) struct Header {
 ///
 /// # Errors
 /// `header-line`.
-pub(super) fn read(
-    text: &Text<'_>,
-    before: &[Line<'_>],
-    dialect: Dialect,
-) -> Result<Header, Problem> {
+pub(super) fn read(text: &Text<'_>, before: &[Line<'_>]) -> Result<Header, Problem> {
+    let Text { options, dialect, .. } = text;
     let mut header = Header::default();
-    let options = text.options;
-    let comments: Vec<(Line<'_>, &str)> = before
-        .iter()
-        .filter_map(|line| Some((*line, dialect::comment(line.text, options)?)))
+    let (comments, others): (Vec<Line<'_>>, Vec<Line<'_>>) =
+        before.iter().copied().partition(|line| comment(line.text, options).is_some());
+    let comments: Vec<(Line<'_>, &str)> = comments
+        .into_iter()
+        .filter_map(|line| Some((line, comment(line.text, options)?)))
         .collect();
     header.facts.extend(comments.iter().filter_map(|(_, said)| fact(said)).take(MOST_FACTS));
-    let rows: Vec<Line<'_>> = before
-        .iter()
-        .filter(|line| {
-            dialect::comment(line.text, options).is_none()
-                && cells(line.text, dialect).len() == dialect.columns
-        })
-        .filter(|line| cells(line.text, dialect).iter().any(|cell| !cell.is_empty()))
-        .copied()
-        .collect();
-    for line in before.iter().filter(|line| dialect::comment(line.text, options).is_none()) {
-        if header.facts.len() < MOST_FACTS && !rows.iter().any(|row| row.number == line.number) {
-            header.facts.extend(fact(line.text));
-        }
-    }
-    let units = line_of_units(text, &rows, dialect)?;
+    let (rows, others): (Vec<Line<'_>>, Vec<Line<'_>>) = others.into_iter().partition(|line| {
+        let cells = text.cells(line.text);
+        cells.len() == dialect.columns && cells.iter().any(|cell| !cell.is_empty())
+    });
+    let left = MOST_FACTS - header.facts.len();
+    header.facts.extend(others.iter().filter_map(|line| fact(line.text)).take(left));
+    let units = line_of_units(text, &rows)?;
     let names = match options.names_line {
-        Some(number) => Some(said(text, before, number, "names", dialect)?),
+        Some(number) => Some(said(text, before, number, "names")?),
         None => {
             let mut above =
                 rows.iter().rev().filter(|row| units.is_none_or(|units| row.number < units.number));
             // A row of numbers has no names, unless there is no other.
             let last = above.clone().next();
-            above.find(|row| has_words(row.text, dialect)).or(last).copied()
+            let has_words = |row: &&Line<'_>| {
+                text.cells(row.text).into_iter().any(|cell| has_letters(&row.text[cell]))
+            };
+            above.find(has_words).or(last).copied()
         }
     };
+    // The names after a comment mark: `# time Y Q`.
+    let are_names = |(_, said): &&(Line<'_>, &str)| {
+        let cells = text.cells(said);
+        cells.len() == dialect.columns && cells.into_iter().all(|cell| has_letters(&said[cell]))
+    };
     if let Some(names) = names {
-        header.columns = headings(text, names, dialect);
-    } else if let Some(columns) = listed(text, &comments, dialect.columns) {
+        header.columns = headings(text, names, names.text);
+    } else if let Some(columns) = listed(text, &comments) {
         header.columns = columns;
-    } else if let Some(columns) =
-        comments.iter().rev().find_map(|(line, said)| commented(text, *line, said, dialect))
-    {
-        header.columns = columns;
+    } else if let Some((line, said)) = comments.iter().rev().find(are_names) {
+        header.columns = headings(text, *line, said);
     } else {
         let numbered =
             |column: usize| Heading { name: format!("column {column}"), ..Heading::default() };
@@ -77,25 +74,25 @@ pub(super) fn read(
         header.facts.push(("names".into(), "none in the file; columns are numbered".into()));
     }
     if let Some(units) = units {
-        for (column, cell) in header.columns.iter_mut().zip(cells(units.text, dialect)) {
+        for (column, cell) in header.columns.iter_mut().zip(text.cells(units.text)) {
             column.unit = unbracketed(&units.text[cell]).or(column.unit.take());
         }
     }
     let used = [names, units].map(|line| line.map(|line| line.number));
     for row in rows.iter().filter(|row| !used.contains(&Some(row.number))) {
-        for (column, cell) in header.columns.iter_mut().zip(cells(row.text, dialect)) {
-            let more = row.text[cell].trim();
-            if !more.is_empty() {
-                column.comment = Some(
-                    column
-                        .comment
-                        .take()
-                        .map_or_else(|| more.into(), |before| format!("{before}, {more}")),
-                );
-            }
+        for (column, cell) in header.columns.iter_mut().zip(text.cells(row.text)) {
+            let Some(more) = filled(&row.text[cell]) else { continue };
+            column.comment = Some(match column.comment.take() {
+                Some(before) => format!("{before}, {more}"),
+                None => more,
+            });
         }
     }
     Ok(header)
+}
+
+fn has_letters(text: &str) -> bool {
+    text.contains(char::is_alphabetic)
 }
 
 /// Maximum number of facts kept of a header, which can be as long as the file.
@@ -117,22 +114,12 @@ fn fact(line: &str) -> Option<(String, String)> {
         .then(|| (name.into(), value.into()))
 }
 
-/// Cells of a header line; a separator at its end makes no cell if there is one too many.
-fn cells(line: &str, dialect: Dialect) -> Vec<std::ops::Range<usize>> {
-    let mut cells = dialect::split(line, dialect.separator);
-    if cells.len() == dialect.columns + 1 && cells.last().is_some_and(std::ops::Range::is_empty) {
-        cells.pop();
-    }
-    cells
-}
-
 /// A line that was named by its number.
 fn said<'a>(
     text: &Text<'_>,
     before: &[Line<'a>],
     number: usize,
     what: &str,
-    dialect: Dialect,
 ) -> Result<Line<'a>, Problem> {
     let Some(line) = before.iter().find(|line| line.number == number) else {
         let says = format!(
@@ -143,37 +130,26 @@ fn said<'a>(
         return Err(Problem::error("header-line", says)
             .help(format!("the numbers begin in line {}", last + 1)));
     };
-    let found = cells(line.text, dialect).len();
-    if found == dialect.columns {
+    let (found, wanted) = (text.cells(line.text).len(), text.dialect.columns);
+    if found == wanted {
         return Ok(*line);
     }
     let says = format!(
-        "line {number}, said to have the {what}, has {found} cells; the rows of numbers have {}",
-        dialect.columns
+        "line {number}, said to have the {what}, has {found} cells; the rows of numbers have {wanted}"
     );
-    Err(Problem::error("header-line", says).at(&at(text.shown, *line, 0..line.text.len())))
+    Err(text.fault("header-line", says, *line, 0..line.text.len()))
 }
 
 /// The line of units: said, or the last line of the header if most of its cells are units.
-fn line_of_units<'a>(
-    text: &Text<'_>,
-    rows: &[Line<'a>],
-    dialect: Dialect,
-) -> Result<Option<Line<'a>>, Problem> {
+fn line_of_units<'a>(text: &Text<'_>, rows: &[Line<'a>]) -> Result<Option<Line<'a>>, Problem> {
+    let are_units = |row: &&Line<'_>| {
+        most_are_units(text.cells(row.text).into_iter().map(|cell| &row.text[cell]))
+    };
     match text.options.units_line {
-        Some(0) => return Ok(None),
-        Some(number) => return said(text, rows, number, "units", dialect).map(Some),
-        None => {}
+        Some(0) => Ok(None),
+        Some(number) => said(text, rows, number, "units").map(Some),
+        None => Ok(rows.iter().skip(1).rev().find(are_units).copied()),
     }
-    Ok(rows.iter().skip(1).rev().find(|row| are_units(row.text, dialect)).copied())
-}
-
-fn has_words(line: &str, dialect: Dialect) -> bool {
-    cells(line, dialect).into_iter().any(|cell| line[cell].contains(char::is_alphabetic))
-}
-
-fn are_units(line: &str, dialect: Dialect) -> bool {
-    most_are_units(cells(line, dialect).into_iter().map(|cell| &line[cell]))
 }
 
 /// Whether at least half of the cells that are filled are units.
@@ -191,12 +167,8 @@ pub(in crate::foreign) fn most_are_units<'a>(cells: impl Iterator<Item = &'a str
 /// `kN`, `[kN]`, `(kN)`, as the unit inside; none if it is empty.
 pub(in crate::foreign) fn unbracketed(text: &str) -> Option<String> {
     let text = text.trim();
-    let inside = text.strip_prefix('[').and_then(|text| text.strip_suffix(']'));
-    let inside = inside
-        .or_else(|| text.strip_prefix('(').and_then(|text| text.strip_suffix(')')))
-        .unwrap_or(text)
-        .trim();
-    (!inside.is_empty()).then(|| inside.to_string())
+    let within = |open: char, close: char| text.strip_prefix(open)?.strip_suffix(close);
+    filled(within('[', ']').or_else(|| within('(', ')')).unwrap_or(text))
 }
 
 /// `Y_1R [kN]`, or `Y_1R (kN)` and `Y_1R / kN` if the part is a unit.
@@ -220,42 +192,21 @@ pub(in crate::foreign) fn name_and_unit(text: &str) -> (String, Option<String>) 
     (text.to_string(), None)
 }
 
-fn headings(text: &Text<'_>, line: Line<'_>, dialect: Dialect) -> Vec<Heading> {
+/// The headings in the cells of a line, or of its end.
+fn headings(text: &Text<'_>, line: Line<'_>, end: &str) -> Vec<Heading> {
+    let start = line.text.len() - end.len();
     let heading = |(index, cell): (usize, std::ops::Range<usize>)| {
-        let (name, unit) = name_and_unit(&line.text[cell.clone()]);
+        let (name, unit) = name_and_unit(&end[cell.clone()]);
         let name = if name.is_empty() { format!("column {}", index + 1) } else { name };
-        Heading { name, unit, comment: None, span: Some(at(text.shown, line, cell)) }
+        let span = at(text.shown, line, start + cell.start..start + cell.end);
+        Heading { name, unit, comment: None, span: Some(span) }
     };
-    cells(line.text, dialect).into_iter().enumerate().map(heading).collect()
-}
-
-/// The names after a comment mark: `# time Y Q`.
-fn commented(
-    text: &Text<'_>,
-    line: Line<'_>,
-    said: &str,
-    dialect: Dialect,
-) -> Option<Vec<Heading>> {
-    let start = line.text.len() - said.len();
-    let found = cells(said, dialect);
-    let words = found.len() == dialect.columns
-        && found.iter().all(|cell| said[cell.clone()].contains(|c: char| c.is_alphabetic()));
-    words.then(|| {
-        let heading = |cell: std::ops::Range<usize>| {
-            let (name, unit) = name_and_unit(&said[cell.clone()]);
-            Heading {
-                name,
-                unit,
-                comment: None,
-                span: Some(at(text.shown, line, start + cell.start..start + cell.end)),
-            }
-        };
-        found.into_iter().map(heading).collect()
-    })
+    text.cells(end).into_iter().enumerate().map(heading).collect()
 }
 
 /// A list of channels in comments, one a line: `Channel 3: Y_11 [N]`, `3 Y_11 N`.
-fn listed(text: &Text<'_>, comments: &[(Line<'_>, &str)], columns: usize) -> Option<Vec<Heading>> {
+fn listed(text: &Text<'_>, comments: &[(Line<'_>, &str)]) -> Option<Vec<Heading>> {
+    let columns = text.dialect.columns;
     let mut found: Vec<Heading> = Vec::new();
     for (line, said) in comments {
         let Some((number, rest)) = numbered(said) else { continue };
@@ -275,12 +226,8 @@ fn listed(text: &Text<'_>, comments: &[(Line<'_>, &str)], columns: usize) -> Opt
             name = first.trim().to_string();
         }
         let start = line.text.rfind(rest).unwrap_or(0);
-        found.push(Heading {
-            name,
-            unit,
-            comment: None,
-            span: Some(at(text.shown, *line, start..start + rest.len())),
-        });
+        let span = Some(at(text.shown, *line, start..start + rest.len()));
+        found.push(Heading { name, unit, comment: None, span });
     }
     (found.len() == columns).then_some(found)
 }

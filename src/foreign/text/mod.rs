@@ -3,12 +3,11 @@
 //! | file | content |
 //! |---|---|
 //! | `mod` | a text as a table: header, rows, columns |
-//! | `decode` | encodings |
 //! | `dialect` | lines, cells, separator and decimal mark |
 //! | `header` | names, units, list of channels, facts |
+//! | `values` | the rows as columns of numbers |
 //! | `numbers`, `stamps` | a cell as a number or a time |
 
-mod decode;
 mod dialect;
 mod header;
 mod numbers;
@@ -17,9 +16,8 @@ mod values;
 
 use std::ops::Range;
 
-pub(in crate::foreign) use decode::wide;
 pub use dialect::{DecimalMark, Separator};
-use dialect::{Dialect, Line};
+use dialect::{Dialect, Line, is_row};
 pub(in crate::foreign) use header::name_and_unit;
 #[cfg(feature = "foreign")]
 pub(in crate::foreign) use header::{most_are_units, unbracketed};
@@ -27,121 +25,126 @@ pub use stamps::DateOrder;
 #[cfg(feature = "foreign")]
 pub(in crate::foreign) use values::stamps_from_first;
 
-use super::load::Budget;
-use super::{Format, Input, Options, Read, Table};
-use crate::problem::Problem;
+use super::{Input, Options, Read, Table, decode};
+use crate::problem::{Problem, error};
 use crate::source::{Source, Span};
 use crate::yaml::Words;
 
 /// Maximum length of a line in bytes, as for a record of a campaign.
 const LONGEST_LINE: usize = 1 << 20;
 
-/// What the parts of the reader share.
+/// A text table, and how it is written.
+#[derive(Clone, Copy)]
 struct Text<'a> {
     shown: &'a str,
     options: &'a Options,
+    dialect: Dialect,
 }
 
 /// Reads a text table.
-pub(super) fn read(input: &Input<'_>, format: Format) -> Result<Read, Vec<Problem>> {
+pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let (shown, options) = (input.shown, input.options);
-    if options.separator.is_some_and(|separator| {
-        options.decimal.is_some_and(|mark| separator == Separator::Mark(mark.letter()))
-    }) {
-        return Err(vec![Problem::error(
-            "dialect",
-            "the separator and the decimal mark are the same",
-        )]);
+    if let (Some(separator), Some(mark)) = (options.separator, options.decimal)
+        && separator == Separator::Mark(mark.letter())
+    {
+        let says = "the separator and the decimal mark are the same";
+        return Err(Problem::error("dialect", says).into());
     }
     let (content, encoding) = decode::text(input.bytes, options.encoding.as_deref(), shown)?;
     let lines = dialect::lines(&content);
     if let Some(line) = lines.iter().find(|line| line.text.len() > LONGEST_LINE) {
         let says =
             format!("line {} of `{shown}` has more than {} MB", line.number, LONGEST_LINE >> 20);
-        return Err(vec![
-            Problem::error("line-too-long", says)
-                .at(&at(shown, *line, 0..0))
-                .help("export one line per sample"),
-        ]);
+        let problem = error("line-too-long", says, &at(shown, *line, 0..0));
+        return Err(problem.help("export one line per sample").into());
     }
-    let text = Text { shown, options };
-    let mut dialect =
-        dialect::detect(&lines, options).ok_or_else(|| vec![no_numbers(&text, &lines)])?;
-    let start = first_row(&text, &lines, dialect).ok_or_else(|| vec![no_numbers(&text, &lines)])?;
+    let no_numbers = || no_numbers(input, &lines);
+    let dialect = dialect::detect(&lines, options).ok_or_else(no_numbers)?;
+    let mut text = Text { shown, options, dialect };
+    let start = text.first_row(&lines).ok_or_else(no_numbers)?;
     let (before, rows) = lines.split_at(start);
-    dialect.columns += usize::from(last_is_empty(&text, before, rows, dialect));
-    let header = header::read(&text, before, dialect)?;
-    Budget::new(input.bytes.len(), shown).take(dialect.columns, rows.len(), "the table")?;
+    text.dialect.columns += usize::from(text.last_is_empty(before, rows));
+    let header = header::read(&text, before)?;
+    input.budget().take(text.dialect.columns, rows.len(), "the table")?;
     let mut table = Table {
         facts: header.facts,
         first_row: rows.first().map_or(1, |line| line.number),
         ..Table::default()
     };
-    values::read(&text, rows, dialect, header.columns, &mut table)?;
+    values::read(&text, rows, header.columns, &mut table)?;
     let facts = vec![
         ("encoding".into(), encoding.into()),
         ("separator".into(), dialect.separator.words()),
         ("decimal mark".into(), format!("`{}`", dialect.decimal)),
         ("first line of numbers".into(), table.first_row.to_string()),
-        ("form".into(), format.word().into()),
+        ("form".into(), input.format.word().into()),
     ];
     Ok(Read { tables: vec![table], facts })
 }
 
-/// The first line that has numbers in as many cells as the rows have.
-fn first_row(text: &Text<'_>, lines: &[Line<'_>], dialect: Dialect) -> Option<usize> {
-    let options = text.options;
-    if let Some(count) = options.header_lines {
-        return lines
-            .get(count..)?
-            .iter()
-            .position(|line| is_row(text, *line))
-            .map(|at| count + at);
+impl Text<'_> {
+    fn split(&self, line: &str) -> Vec<Range<usize>> {
+        dialect::split(line, self.dialect.separator)
     }
-    let after = options.names_line.max(options.units_line).unwrap_or(0);
-    lines.iter().position(|line| {
-        let cells = dialect::split(line.text, dialect.separator);
-        let count = if cells.last().is_some_and(Range::is_empty) {
-            cells.len() - 1..=cells.len()
-        } else {
-            cells.len()..=cells.len()
+
+    /// The cells of a line; a separator at its end makes no cell if there is one too many.
+    fn cells(&self, line: &str) -> Vec<Range<usize>> {
+        let mut cells = self.split(line);
+        if cells.len() == self.dialect.columns + 1 && cells.last().is_some_and(Range::is_empty) {
+            cells.pop();
+        }
+        cells
+    }
+
+    /// The first line that has numbers in as many cells as the rows have.
+    fn first_row(&self, lines: &[Line<'_>]) -> Option<usize> {
+        let Self { options, dialect, .. } = self;
+        if let Some(count) = options.header_lines {
+            let at = lines.get(count..)?.iter().position(|line| is_row(*line, options))?;
+            return Some(count + at);
+        }
+        let after = options.names_line.max(options.units_line).unwrap_or(0);
+        lines.iter().position(|line| {
+            let cells = self.split(line.text);
+            let least = cells.len() - usize::from(cells.last().is_some_and(Range::is_empty));
+            line.number > after
+                && is_row(*line, options)
+                && (least..=cells.len()).contains(&dialect.columns)
+                && dialect::numbers_among(line.text, &cells, dialect.decimal).is_some()
+        })
+    }
+
+    /// Whether the last column has a name and no values: a separator at the end of the rows is then
+    /// not one too many.
+    fn last_is_empty(&self, before: &[Line<'_>], rows: &[Line<'_>]) -> bool {
+        let wider = |line: &Line<'_>| {
+            let cells = self.split(line.text);
+            (cells.len() == self.dialect.columns + 1)
+                .then(|| cells.last().is_some_and(Range::is_empty))
         };
-        line.number > after
-            && is_row(text, *line)
-            && count.contains(&dialect.columns)
-            && dialect::numbers_among(line.text, &cells, dialect.decimal).is_some()
-    })
+        let mut named = before.iter().filter(|line| is_row(**line, self.options));
+        named.any(|line| wider(line) == Some(false)) && rows.first().and_then(wider) == Some(true)
+    }
+
+    /// An error at a place in a line.
+    fn fault(
+        &self,
+        code: &'static str,
+        says: String,
+        line: Line<'_>,
+        place: Range<usize>,
+    ) -> Problem {
+        error(code, says, &at(self.shown, line, place))
+    }
 }
 
-/// Whether the last column has a name and no values: a separator at the end of the rows is then not
-/// one too many.
-fn last_is_empty(
-    text: &Text<'_>,
-    before: &[Line<'_>],
-    rows: &[Line<'_>],
-    dialect: Dialect,
-) -> bool {
-    let wider = |line: &Line<'_>| {
-        let cells = dialect::split(line.text, dialect.separator);
-        (cells.len() == dialect.columns + 1).then(|| cells.last().is_some_and(Range::is_empty))
-    };
-    let named =
-        before.iter().filter(|line| is_row(text, **line)).any(|line| wider(line) == Some(false));
-    named && rows.first().and_then(wider) == Some(true)
-}
-
-/// Whether a line can be a row: neither blank nor a comment.
-fn is_row(text: &Text<'_>, line: Line<'_>) -> bool {
-    !line.text.trim().is_empty() && dialect::comment(line.text, text.options).is_none()
-}
-
-fn no_numbers(text: &Text<'_>, lines: &[Line<'_>]) -> Problem {
-    let says = format!("`{}` has no rows of numbers", text.shown);
+fn no_numbers(input: &Input<'_>, lines: &[Line<'_>]) -> Problem {
+    let says = format!("`{}` has no rows of numbers", input.shown);
     let problem = Problem::error("no-numbers", says)
         .help("check whether this is the right file; say separator, decimal mark and number of header lines if they are unusual");
-    match lines.iter().find(|line| is_row(text, **line)) {
+    match lines.iter().find(|line| is_row(**line, input.options)) {
         Some(line) => {
-            problem.at(&at(text.shown, *line, 0..line.text.len())).label("the first line")
+            problem.at(&at(input.shown, *line, 0..line.text.len())).label("the first line")
         }
         None => problem,
     }

@@ -2,15 +2,14 @@
 
 use std::ops::Range;
 
-use super::super::{Channel, Place, Table};
-use super::dialect::{self, Dialect, Line};
+use super::dialect::{Line, Separator, is_row};
 use super::header::Heading;
 use super::stamps::{self, DAY, NANOSECONDS, Stamp};
-use super::{Text, at, numbers};
+use super::{Text, numbers};
 use crate::data::cells::shortened;
 use crate::data::faults::Faults;
+use crate::foreign::{Channel, Options, Table};
 use crate::problem::Problem;
-use crate::source::Span;
 
 /// A column while it is read.
 enum Column {
@@ -23,21 +22,87 @@ enum Column {
     Text(String),
 }
 
+/// A cell that does not belong into its column: a code, what is wrong with it, and a help.
+type Unfit = (&'static str, &'static str, Option<&'static str>);
+
+impl Column {
+    /// Adds a cell.
+    fn add(&mut self, word: &str, decimal: char) -> Result<(), Unfit> {
+        if let Self::Unknown(empty) = self {
+            match numbers::read(word, decimal) {
+                numbers::Cell::Empty => {
+                    *empty += 1;
+                    return Ok(());
+                }
+                numbers::Cell::Other => match stamps::read(word) {
+                    Some(_) => *self = Self::Stamps(vec![None; *empty]),
+                    None => *self = Self::Text(shortened(word)),
+                },
+                _ => *self = Self::Numbers(vec![f64::NAN; *empty]),
+            }
+        }
+        match self {
+            Self::Unknown(_) | Self::Text(_) => {}
+            Self::Stamps(found) if word.is_empty() => found.push(None),
+            Self::Stamps(found) => {
+                let says = "is not a time stamp as in the rows before";
+                found.push(Some(stamps::read(word).ok_or(("not-a-number", says, None))?));
+            }
+            Self::Numbers(found) => found.push(match numbers::read(word, decimal) {
+                numbers::Cell::Number(number) => number,
+                numbers::Cell::Empty => f64::NAN,
+                other => return Err(unfit(other, word)),
+            }),
+        }
+        Ok(())
+    }
+}
+
+/// A cell that is no number among numbers.
+fn unfit(cell: numbers::Cell, word: &str) -> Unfit {
+    let (code, says, help) = match cell {
+        numbers::Cell::Thousands => (
+            "thousands",
+            "has marks between its thousands",
+            "export the numbers without them: they cannot be told from decimal marks",
+        ),
+        numbers::Cell::NotFinite => {
+            ("not-finite", "is not a finite number", "leave the cell empty where there is no value")
+        }
+        _ if word.matches([',', '.']).count() == 1 => (
+            "decimal-comma",
+            "has another decimal mark than the rows before",
+            "name the decimal mark, or export the file again",
+        ),
+        _ => (
+            "not-a-number",
+            "is not a number",
+            "name the mark of comments or the number of header lines",
+        ),
+    };
+    (code, says, Some(help))
+}
+
 /// Reads the rows into the table.
 pub(super) fn read(
     text: &Text<'_>,
     rows: &[Line<'_>],
-    dialect: Dialect,
     headings: Vec<Heading>,
     table: &mut Table,
 ) -> Result<(), Vec<Problem>> {
-    let mut columns: Vec<Column> = (0..dialect.columns).map(|_| Column::Unknown(0)).collect();
+    let rows: Vec<Line<'_>> =
+        rows.iter().filter(|line| is_row(**line, text.options)).copied().collect();
+    let mut columns: Vec<Column> = (0..text.dialect.columns).map(|_| Column::Unknown(0)).collect();
     let mut faults = Faults::new(text.shown);
-    for line in rows.iter().filter(|line| super::is_row(text, **line)) {
-        let found: Result<(), Problem> = row(text, *line, dialect).and_then(|cells| {
+    for line in &rows {
+        let found = row(text, *line).and_then(|cells| {
             let mut each = columns.iter_mut().zip(&headings).zip(cells);
             each.try_for_each(|((column, heading), cell)| {
-                add(text, column, heading, *line, cell, dialect.decimal)
+                let word = &line.text[cell.clone()];
+                column.add(word, text.dialect.decimal).map_err(|(code, fact, help)| {
+                    let says = format!("`{}`: `{}` {fact}", heading.name, shortened(word));
+                    text.fault(code, says, *line, cell).help_if(help)
+                })
             })
         });
         if let Err(problem) = found {
@@ -45,220 +110,133 @@ pub(super) fn read(
         }
     }
     faults.finish(())?;
-    let place = |column: usize, row: usize| {
-        let line = *rows.iter().filter(|line| super::is_row(text, **line)).nth(row)?;
-        let cell = self::row(text, line, dialect).ok()?.get(column)?.clone();
-        Some((shortened(&line.text[cell.clone()]), at(text.shown, line, cell)))
-    };
-    finish(text, columns, headings, &place, table).map_err(|problem| vec![problem])
+    Ok(finish(text, &rows, columns, headings, table)?)
 }
 
 /// The cells of a row, as many as there are columns.
-fn row(text: &Text<'_>, line: Line<'_>, dialect: Dialect) -> Result<Vec<Range<usize>>, Problem> {
-    let mut cells = dialect::split(line.text, dialect.separator);
-    if cells.len() == dialect.columns + 1 && cells.last().is_some_and(Range::is_empty) {
-        cells.pop();
-    }
-    if cells.len() == dialect.columns {
+fn row(text: &Text<'_>, line: Line<'_>) -> Result<Vec<Range<usize>>, Problem> {
+    let (cells, wanted) = (text.cells(line.text), text.dialect.columns);
+    if cells.len() == wanted {
         return Ok(cells);
     }
-    if let Some(fixed) = fixed(line.text, dialect) {
+    if let Some(fixed) = fixed(text, line.text) {
         return Ok(fixed);
     }
-    let place = match cells.get(dialect.columns) {
+    let place = match cells.get(wanted) {
         Some(extra) => extra.start..line.text.len(),
         None => cells.last().cloned().unwrap_or(0..0),
     };
-    let label =
-        if cells.len() > dialect.columns { "beyond the last column" } else { "the last value" };
-    let says = format!(
-        "the row has {} values; the rows of this file have {}",
-        cells.len(),
-        dialect.columns
-    );
-    Err(Problem::error("ragged-row", says).at(&at(text.shown, line, place)).label(label))
+    let label = if cells.len() > wanted { "beyond the last column" } else { "the last value" };
+    let says = format!("the row has {} values; the rows of this file have {wanted}", cells.len());
+    Err(text.fault("ragged-row", says, line, place).label(label))
 }
 
 /// Cells of fixed width, which may touch: `-1.500000E+03-1.380000E+03`.
-fn fixed(line: &str, dialect: Dialect) -> Option<Vec<Range<usize>>> {
-    let length = line.trim_end().len();
-    if dialect.separator != dialect::Separator::Blanks
+fn fixed(text: &Text<'_>, line: &str) -> Option<Vec<Range<usize>>> {
+    let (length, columns) = (line.trim_end().len(), text.dialect.columns);
+    if text.dialect.separator != Separator::Blanks
         || length == 0
-        || !length.is_multiple_of(dialect.columns)
+        || !length.is_multiple_of(columns)
         || !line.is_ascii()
     {
         return None;
     }
-    let width = length / dialect.columns;
-    let cells = (0..dialect.columns).map(|column| {
+    let width = length / columns;
+    let cells = (0..columns).map(|column| {
         let cell = &line[column * width..(column + 1) * width];
         let start = column * width + cell.len() - cell.trim_start().len();
-        (matches!(numbers::read(cell.trim(), dialect.decimal), numbers::Cell::Number(_)))
-            .then(|| start..start + cell.trim().len())
+        let number = numbers::read(cell.trim(), text.dialect.decimal);
+        matches!(number, numbers::Cell::Number(_)).then(|| start..start + cell.trim().len())
     });
     cells.collect()
 }
 
-/// Adds a cell to a column.
-fn add(
-    text: &Text<'_>,
-    column: &mut Column,
-    heading: &Heading,
-    line: Line<'_>,
-    cell: Range<usize>,
-    decimal: char,
-) -> Result<(), Problem> {
-    let word = &line.text[cell.clone()];
-    if let Column::Unknown(empty) = column {
-        match numbers::read(word, decimal) {
-            numbers::Cell::Empty => {
-                *empty += 1;
-                return Ok(());
-            }
-            numbers::Cell::Other => match stamps::read(word) {
-                Some(_) => *column = Column::Stamps(vec![None; *empty]),
-                None => *column = Column::Text(shortened(word)),
-            },
-            _ => *column = Column::Numbers(vec![f64::NAN; *empty]),
-        }
-    }
-    let (code, fact, help) = match column {
-        Column::Unknown(_) | Column::Text(_) => return Ok(()),
-        Column::Stamps(found) => {
-            let stamp = if word.is_empty() { Some(None) } else { stamps::read(word).map(Some) };
-            let Some(stamp) = stamp else {
-                let says = format!(
-                    "`{}`: `{}` is not a time stamp as in the rows before",
-                    heading.name,
-                    shortened(word)
-                );
-                return Err(Problem::error("not-a-number", says).at(&at(text.shown, line, cell)));
-            };
-            found.push(stamp);
-            return Ok(());
-        }
-        Column::Numbers(found) => match numbers::read(word, decimal) {
-            numbers::Cell::Number(number) => {
-                found.push(number);
-                return Ok(());
-            }
-            numbers::Cell::Empty => {
-                found.push(f64::NAN);
-                return Ok(());
-            }
-            numbers::Cell::Thousands => (
-                "thousands",
-                "has marks between its thousands",
-                "export the numbers without them: they cannot be told from decimal marks",
-            ),
-            numbers::Cell::NotFinite => (
-                "not-finite",
-                "is not a finite number",
-                "leave the cell empty where there is no value",
-            ),
-            numbers::Cell::Other if word.matches([',', '.']).count() == 1 => (
-                "decimal-comma",
-                "has another decimal mark than the rows before",
-                "name the decimal mark, or export the file again",
-            ),
-            numbers::Cell::Other => (
-                "not-a-number",
-                "is not a number",
-                "name the mark of comments or the number of header lines",
-            ),
-        },
-    };
-    Err(Problem::error(code, format!("`{}`: `{}` {fact}", heading.name, shortened(word)))
-        .at(&at(text.shown, line, cell))
-        .help(help))
-}
-
-/// Columns of numbers and times as channels. `cell`: the text and the place of a cell, by its
-/// column and row.
+/// Columns of numbers and times as channels.
 fn finish(
     text: &Text<'_>,
+    rows: &[Line<'_>],
     columns: Vec<Column>,
     headings: Vec<Heading>,
-    cell: &dyn Fn(usize, usize) -> Option<(String, Span)>,
     table: &mut Table,
 ) -> Result<(), Problem> {
     // A date in one column and the time of the day in another belong together.
     let has_clock =
         columns.iter().any(|column| matches!(column, Column::Stamps(found) if only_clock(found)));
-    let day = columns.iter().position(
-        |column| matches!(column, Column::Stamps(found) if has_clock && only_dates(found)),
-    );
-    let days: Option<Vec<Option<Stamp>>> = day.and_then(|at| match &columns[at] {
-        Column::Stamps(found) => Some(found.clone()),
+    let days = columns.iter().enumerate().find_map(|(at, column)| match column {
+        Column::Stamps(found) if has_clock && only_dates(found) => Some((at, found.clone())),
         _ => None,
     });
     for (index, (column, heading)) in columns.into_iter().zip(headings).enumerate() {
-        let place = Place { column: index + 1, span: heading.span.clone() };
-        let (values, unit, comment) = match column {
-            Column::Numbers(values) => (values, heading.unit, heading.comment),
-            Column::Stamps(_) if day == Some(index) => {
-                table.left_out.push((heading.name, "its dates are part of the times".into()));
-                continue;
+        let channel = match column {
+            Column::Numbers(values) => Ok((values, heading.unit, heading.comment)),
+            Column::Stamps(_) if days.as_ref().is_some_and(|(day, _)| *day == index) => {
+                Err("its dates are part of the times".into())
             }
             Column::Stamps(mut stamps) => {
-                let dated = days.as_ref().filter(|_| only_clock(&stamps));
-                let of_dates = day.filter(|_| dated.is_some()).unwrap_or(index);
-                if let Some(days) = dated {
+                let mut of_dates = index;
+                if let Some((day, days)) = days.as_ref().filter(|_| only_clock(&stamps)) {
+                    of_dates = *day;
                     for (stamp, day) in stamps.iter_mut().zip(days) {
                         *stamp = stamp
                             .zip(*day)
                             .map(|(stamp, day)| Stamp { date: day.date, clock: stamp.clock });
                     }
                 }
-                let ambiguous = || {
-                    let says = format!(
-                        "the dates of `{}` can be read with the day or with the month first",
-                        heading.name
-                    );
-                    let problem = Problem::error("date-order", says)
-                        .help("state the order in the mapping: `format: {dates: dmy}` or `format: {dates: mdy}`");
-                    match &heading.span {
-                        Some(span) => problem.at(span),
-                        None => problem,
-                    }
-                };
-                let values = seconds(text, &stamps).ok_or_else(ambiguous)?;
-                // Without a date of the calendar, a stamp has no value.
-                let wrong = stamps
-                    .iter()
-                    .zip(&values)
-                    .position(|(stamp, value)| stamp.is_some() && value.is_nan());
-                if let Some((written, span)) = wrong.and_then(|row| cell(of_dates, row)) {
-                    let says =
-                        format!("`{}`: `{written}` has no date of the calendar", heading.name);
-                    return Err(Problem::error("not-a-date", says).at(&span));
-                }
-                (
-                    values,
-                    Some("s".to_string()),
-                    Some("seconds from the first time stamp".to_string()),
-                )
+                let values = times(text, rows, &stamps, of_dates, &heading)?;
+                let comment = "seconds from the first time stamp".to_string();
+                Ok((values, Some("s".to_string()), Some(comment)))
             }
-            Column::Text(first) => {
-                table
-                    .left_out
-                    .push((heading.name, format!("its cells are text, such as `{first}`")));
-                continue;
-            }
-            Column::Unknown(_) => {
-                table.left_out.push((heading.name, "its cells are empty".into()));
-                continue;
-            }
+            Column::Text(first) => Err(format!("its cells are text, such as `{first}`")),
+            Column::Unknown(_) => Err("its cells are empty".into()),
         };
-        table.channels.push(Channel { name: heading.name, unit, comment, values, place });
+        let name = heading.name;
+        match channel {
+            Ok((values, unit, comment)) => {
+                table.channels.push(Channel { name, unit, comment, values })
+            }
+            Err(why) => table.left_out.push((name, why)),
+        }
     }
     if table.channels.is_empty() {
-        return Err(Problem::error(
-            "no-numbers",
-            format!("`{}` has no column of numbers", text.shown),
-        ));
+        let says = format!("`{}` has no column of numbers", text.shown);
+        return Err(Problem::error("no-numbers", says));
     }
     Ok(())
+}
+
+/// The stamps of a column in seconds; `of_dates`: the column that their dates are from.
+fn times(
+    text: &Text<'_>,
+    rows: &[Line<'_>],
+    stamps: &[Option<Stamp>],
+    of_dates: usize,
+    Heading { name, span, .. }: &Heading,
+) -> Result<Vec<f64>, Problem> {
+    let values = seconds(text.options, stamps).ok_or_else(|| {
+        let says =
+            format!("the dates of `{name}` can be read with the day or with the month first");
+        let problem = Problem::error("date-order", says).help(
+            "state the order in the mapping: `format: {dates: dmy}` or `format: {dates: mdy}`",
+        );
+        match span {
+            Some(span) => problem.at(span),
+            None => problem,
+        }
+    })?;
+    // Without a date of the calendar, a stamp has no value.
+    let wrong = stamps
+        .iter()
+        .zip(&values)
+        .position(|(stamp, value)| stamp.is_some() && value.is_nan())
+        .and_then(|at| Some((rows[at], row(text, rows[at]).ok()?.get(of_dates)?.clone())));
+    match wrong {
+        Some((line, cell)) => {
+            let written = shortened(&line.text[cell.clone()]);
+            let says = format!("`{name}`: `{written}` has no date of the calendar");
+            Err(text.fault("not-a-date", says, line, cell))
+        }
+        None => Ok(values),
+    }
 }
 
 fn only_clock(stamps: &[Option<Stamp>]) -> bool {
@@ -270,9 +248,9 @@ fn only_dates(stamps: &[Option<Stamp>]) -> bool {
 }
 
 /// Seconds from the first stamp; `None` if the order of day and month is not known.
-fn seconds(text: &Text<'_>, stamps: &[Option<Stamp>]) -> Option<Vec<f64>> {
+fn seconds(options: &Options, stamps: &[Option<Stamp>]) -> Option<Vec<f64>> {
     let dates: Vec<stamps::Date> = stamps.iter().flatten().filter_map(|stamp| stamp.date).collect();
-    let order = stamps::order(&dates, text.options).ok()?;
+    let order = stamps::order(&dates, options).ok()?;
     let (mut first, mut before, mut nights) = (None, None, 0);
     let values = stamps.iter().map(|stamp| {
         let Some(stamp) = stamp else { return f64::NAN };
@@ -293,14 +271,10 @@ fn seconds(text: &Text<'_>, stamps: &[Option<Stamp>]) -> Option<Vec<f64>> {
 
 /// Texts as seconds from the first of them, if all that are filled are time stamps.
 #[cfg(feature = "foreign")]
-pub(in crate::foreign) fn stamps_from_first(
-    cells: &[&str],
-    options: &super::Options,
-    shown: &str,
-) -> Option<Vec<f64>> {
+pub(in crate::foreign) fn stamps_from_first(cells: &[&str], options: &Options) -> Option<Vec<f64>> {
     let read = |cell: &&str| {
         if cell.trim().is_empty() { Some(None) } else { stamps::read(cell.trim()).map(Some) }
     };
     let found: Option<Vec<Option<Stamp>>> = cells.iter().map(read).collect();
-    seconds(&Text { shown, options }, &found.filter(|found| found.iter().any(Option::is_some))?)
+    seconds(options, &found.filter(|found| found.iter().any(Option::is_some))?)
 }

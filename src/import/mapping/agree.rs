@@ -3,7 +3,7 @@
 use super::{ChannelMap, Channels, Distance, Mapping, Runs, Side};
 use crate::data::RecordKind;
 use crate::data::cells::name_and_unit;
-use crate::problem::{Problem, Problems, nearest};
+use crate::problem::{Problem, Problems, error, nearest, warning};
 use crate::run::needs::{ChannelNeed, DatumNeed, Needs, SEARCH};
 use crate::source::Spanned;
 use crate::units::Unit;
@@ -38,7 +38,7 @@ pub fn agree(mapping: &Mapping, needs: &Needs, problems: &mut Problems) {
                     "the protocol also reads the {}, which this mapping does not import",
                     kind.key()
                 );
-                problems.push(Problem::warning("side-missing", says).at(&mapping.top()));
+                problems.push(warning("side-missing", says, &mapping.top()));
             }
             None => {}
         }
@@ -64,9 +64,11 @@ fn agree_runs(mapping: &Mapping, runs: &Runs, needs: &Needs, problems: &mut Prob
         return;
     }
     let Some(found) = &needs.found else {
-        let problem =
-            Problem::error("no-search", "the protocol does not look for sections in runs")
-                .at(&mapping.sections.span);
+        let problem = error(
+            "no-search",
+            "the protocol does not look for sections in runs",
+            &mapping.sections.span,
+        );
         problems
             .push(problem.help("name a protocol with `use found sections`, or a table of sections with a column `run`: `sections: ...`"));
         return;
@@ -83,9 +85,8 @@ fn agree_runs(mapping: &Mapping, runs: &Runs, needs: &Needs, problems: &mut Prob
                     "`{}` of run `{}` is neither found nor stated, and the protocol needs it: {}",
                     need.key, name.value, need.title
                 );
-                let problem = Problem::error("missing-run-data", says)
-                    .at(&name.span)
-                    .suggest(&need.key, known());
+                let problem =
+                    error("missing-run-data", says, &name.span).suggest(&need.key, known());
                 let example = need.words.first().map_or("...", String::as_str);
                 problems.push(match problem.help {
                     Some(_) => problem,
@@ -109,18 +110,17 @@ fn agree_sections(mapping: &Mapping, needs: &Needs, problems: &mut Problems) {
                 need.key, need.title
             );
             problems.push(
-                Problem::error("column-missing", says)
-                    .at(&mapping.sections.span)
+                error("column-missing", says, &mapping.sections.span)
                     .suggest(&need.key, mapping.sections.columns()),
             );
         }
     }
     if needs.sections.iter().any(|need| need.required) && mapping.sections.table.is_none() {
-        let problem = Problem::error(
+        let problem = error(
             "column-missing",
             "the protocol evaluates sections, and the mapping lists only names",
-        )
-        .at(&mapping.sections.span);
+            &mapping.sections.span,
+        );
         problems.push(problem.help("name the table of sections: `sections: sections.csv`"));
     }
 }
@@ -145,11 +145,8 @@ fn agree_vehicle(mapping: &Mapping, needs: &Needs, problems: &mut Problems) {
                     need.key, need.title
                 );
                 let known = node.entries().iter().map(|(key, _)| key.text.as_str());
-                problems.push(
-                    Problem::error("datum-missing", says)
-                        .at(&written.span)
-                        .suggest(&need.key, known),
-                );
+                problems
+                    .push(error("datum-missing", says, &written.span).suggest(&need.key, known));
             }
             Some(_) => {}
         }
@@ -250,7 +247,7 @@ fn not_there(side: &Side, missing: &[&ChannelNeed], is: &str) -> Option<Problem>
             list.join(", ")
         ),
     };
-    let problem = Problem::error("channel-missing", says).at(&side.span);
+    let problem = error("channel-missing", says, &side.span);
     let user = first.users.quantities.iter().chain(&first.users.rules).next();
     Some(match user {
         Some(_) if first.of_search_alone() => {
@@ -279,7 +276,7 @@ fn left_out_of(side: &Side, missing: &[&ChannelNeed], is: &str) -> Option<Proble
         side.kind.key(),
         users.join(", ")
     );
-    (!missing.is_empty()).then(|| Problem::warning("position-left-out", says).at(&side.span))
+    (!missing.is_empty()).then(|| warning("position-left-out", says, &side.span))
 }
 
 /// Units that the mapping states must be of the dimension of the channel.
@@ -296,8 +293,7 @@ fn units(map: &ChannelMap, need: &ChannelNeed, problems: &mut Problems) {
                 wanted.dimension.in_words(),
                 unit.dimension.in_words()
             );
-            let problem = Problem::error("unit-mismatch", says)
-                .at(span)
+            let problem = error("unit-mismatch", says, span)
                 .also(&map.name.span, wanted.dimension.in_words());
             problems.push(if is_gravity(&unit.text, &wanted) {
                 problem.help("`g` is the gram; the unit of gravity is `gn`")

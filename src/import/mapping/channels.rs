@@ -1,6 +1,6 @@
 //! One channel of the campaign, and what it is made of.
 
-use crate::problem::Problem;
+use crate::problem::{Problem, error};
 use crate::source::Spanned;
 use crate::units::{Unit, number};
 use crate::yaml::{FromNode, Key, Node, OneOrMore, Ratio, Reader, Value, fields};
@@ -89,8 +89,7 @@ impl<C> FromNode<C> for Channels {
                     map.terms[0].name.value, first.name.value, map.name.value
                 );
                 reader.tell(
-                    Problem::error("mapped-twice", says)
-                        .at(&map.terms[0].name.span)
+                    error("mapped-twice", says, &map.terms[0].name.span)
                         .also(&first.terms[0].name.span, "the first"),
                 );
             }
@@ -137,9 +136,7 @@ impl<C> FromNode<C> for ChannelMap {
                 written.value.dimension.in_words()
             );
             reader.tell(
-                Problem::error("unit-mismatch", says)
-                    .at(&written.span)
-                    .also(&stated.span, "in the file"),
+                error("unit-mismatch", says, &written.span).also(&stated.span, "in the file"),
             );
         }
         let factor = factor.map_or(1.0, |factor| factor.value.0);
@@ -161,11 +158,11 @@ impl<C> FromNode<C> for Offset {
         let text = String::from_node(reader, key, node)?;
         let split = number::split(&text, &Unit::one()).map_err(|refused| Problem {
             help: refused.help,
-            ..Problem::error("wrong-number", format!("`offset`: {}", refused.says)).at(&node.span)
+            ..error("wrong-number", format!("`offset`: {}", refused.says), &node.span)
         });
         let (number, unit) = reader.keep(split)?;
         if unit.is_empty() {
-            let problem = Problem::error("unit-missing", "the offset has no unit").at(&node.span);
+            let problem = error("unit-missing", "the offset has no unit", &node.span);
             reader.tell(problem.help(format!("write it, for instance `{text} kN`")));
             return None;
         }

@@ -3,7 +3,7 @@
 use super::channels::ChannelMap;
 use super::sections::Sections;
 use super::stated::Stated;
-use crate::problem::Problem;
+use crate::problem::{Problem, error};
 use crate::source::{Span, Spanned};
 use crate::units::{Dimension, Unit};
 use crate::yaml::{
@@ -49,6 +49,17 @@ pub enum Distance {
     },
 }
 
+impl Distance {
+    /// The channel that it is made of.
+    pub fn channel(&self) -> &ChannelMap {
+        match self {
+            Self::Channel(channel)
+            | Self::Speed { speed: channel, .. }
+            | Self::Trigger { channel, .. } => channel,
+        }
+    }
+}
+
 /// The distance is moved along the track file until channels of both agree best.
 #[derive(Clone, Debug)]
 pub struct Match {
@@ -81,7 +92,7 @@ impl FromNode<&Sections> for SideTime {
         let Ratio(drift) = time.drift;
         if drift.abs() > MOST_DRIFT {
             let says = format!("a drift of {drift} is more than {MOST_DRIFT}");
-            let problem = Problem::error("out-of-range", says).at(node.span_of("drift"));
+            let problem = error("out-of-range", says, node.span_of("drift"));
             reader.tell(
                 problem.help("write it in parts per million: `50 ppm`; another rate is `rate`"),
             );
@@ -152,7 +163,7 @@ fn way(
             true => ("key-missing", "`distance` does not say where it is from"),
             false => ("contradiction", "`distance` is stated in several ways"),
         };
-        let problem = Problem::error(code, says).at(&node.span);
+        let problem = error(code, says, &node.span);
         reader.tell(problem.help("write one of `from`, `from speed` and `from trigger`"));
         return None;
     };
@@ -164,7 +175,7 @@ fn way(
         if let Some(other) = node.get(what).filter(|_| !belongs) {
             let says = format!("`{what}` has no meaning for a distance with `{way}`");
             let help = "write `offset` to add a length to the channel".to_string();
-            let problem = Problem::error("contradiction", says).at(&other.span);
+            let problem = error("contradiction", says, &other.span);
             reader.tell(Problem { help: (what == "start").then_some(help), ..problem });
         }
     }
@@ -183,7 +194,7 @@ fn way(
     }
     if node.get("every").is_none() {
         let says = "`every` is missing: the length from pulse to pulse";
-        let problem = Problem::error("key-missing", says).at(&node.span);
+        let problem = error("key-missing", says, &node.span);
         reader.tell(problem.help("write `every: 0.5 m`"));
     }
     let Spanned { value: Metres(every), span } = every.as_ref()?;
@@ -207,7 +218,7 @@ impl<C> FromNode<C> for Match {
         let within: Option<Metres> = reader.optional(node, "within");
         if channels.is_empty() || node.get("within").is_none() {
             let says = "`match` needs a column of the track file with its channel, and `within`";
-            reader.tell(Problem::error("key-missing", says).at(&key.span).help(HELP));
+            reader.tell(error("key-missing", says, &key.span).help(HELP));
         }
         let Metres(within) = within.filter(|_| !channels.is_empty())?;
         Some(Self { channels, within, span: key.span.clone() })

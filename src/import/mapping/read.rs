@@ -7,7 +7,7 @@ use super::sections::NAME;
 use super::{Mapping, Sections, Side, convention, runs, sections, side, slips};
 use crate::data::RecordKind;
 use crate::data::text::read_text;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, error};
 use crate::source::{Source, Span, Spanned};
 use crate::yaml::{self, Entries, Key, Metres, Node, OneOrMore, Reader, fields};
 
@@ -85,8 +85,7 @@ pub fn read(source: &Arc<Source>, folder: &Path, problems: &mut Problems) -> Opt
     if written.measurement.is_none() && written.simulation.is_none() {
         let says = "the mapping has neither `measurement` nor `simulation`";
         reader.tell(
-            Problem::error("key-missing", says)
-                .at(&source.span(0..0))
+            error("key-missing", says, &source.span(0..0))
                 .help("state where the records of a side are: `files`"),
         );
     }
@@ -130,7 +129,7 @@ fn turned(mapping: &Mapping, problems: &mut Problems) {
                 side.kind.key()
             );
             let help = "state which channels are exchanged: `turning: bogie-vehicle`, or `turning: {exchange: {...}, reverse sign: [...]}`";
-            problems.push(Problem::error("key-missing", says).at(at).help(help));
+            problems.push(error("key-missing", says, at).help(help));
             continue;
         };
         let Some(maps) = side.channels.maps() else { continue };
@@ -143,9 +142,7 @@ fn turned(mapping: &Mapping, problems: &mut Problems) {
                     map.name.value
                 );
                 problems.push(
-                    Problem::error("turning-incomplete", says)
-                        .at(&map.name.span)
-                        .also(at, "turned here"),
+                    error("turning-incomplete", says, &map.name.span).also(at, "turned here"),
                 );
             }
         }
@@ -183,6 +180,6 @@ fn check_campaign(entries: &[(Key, Node)], reader: &mut Reader<'_>) {
         } else {
             "remove it".into()
         };
-        reader.tell(Problem::error("unknown-key", says).at(&key.span).help(help));
+        reader.tell(error("unknown-key", says, &key.span).help(help));
     }
 }

@@ -4,7 +4,7 @@
 use super::sections::{self, Sections};
 use crate::data::RecordKind;
 use crate::data::campaign::{OnDrift, RUNS};
-use crate::problem::Problem;
+use crate::problem::error;
 use crate::source::{Span, Spanned};
 use crate::yaml::{FromNode, Key, Metres, Node, Reader, Value, fields};
 
@@ -94,7 +94,7 @@ fn facts_of_run(reader: &mut Reader<'_>, name: &str, node: &Node) -> Vec<(Key, N
     for (key, value) in node.entries() {
         if RecordKind::ALL.iter().any(|kind| kind.key() == key.text) {
             let says = format!("`{}` of a run is written by the import", key.text);
-            let problem = Problem::error("unknown-key", says).at(&key.span);
+            let problem = error("unknown-key", says, &key.span);
             reader.tell(
                 problem.help("the path of its file stands in `files` of the side, with `{run}`"),
             );
@@ -127,12 +127,12 @@ impl FromNode<&Sections> for Drift {
         } else if window < SHORTEST * within {
             let says =
                 format!("a window of {window} m is too short for a shift of up to {within} m");
-            let problem = Problem::error("out-of-range", says).at(node.span_of("window"));
+            let problem = error("out-of-range", says, node.span_of("window"));
             reader.tell(problem.help(format!("at least {} m are needed", SHORTEST * within)));
         }
         if reader.with.word != "run" && !reader.with.names.is_empty() {
             let says = "a drift is looked for along runs, and this mapping imports sections";
-            let problem = Problem::error("contradiction", says).at(&key.span);
+            let problem = error("contradiction", says, &key.span);
             reader.tell(
                 problem.help("name the runs in `runs`; the shift of single sections is `offsets`"),
             );

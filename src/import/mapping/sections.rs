@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::data::table::Cell;
 use crate::data::text::read_text;
 use crate::data::{RecordKind, Table, check_file_name};
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, error};
 use crate::source::{Source, Span, Spanned};
 use crate::units::Dimension;
 use crate::yaml::{FromNode, Node, Reader, Value};
@@ -50,17 +50,17 @@ impl Sections {
     /// # Errors
     /// Of the column; the cell is empty.
     pub fn number(&self, section: &str, column: &str) -> Result<f64, Problem> {
-        let (_, table) = self.table.as_ref().ok_or_else(|| {
-            Problem::error("no-sections", "there is no table of sections").at(&self.span)
-        })?;
+        let (_, table) = self
+            .table
+            .as_ref()
+            .ok_or_else(|| error("no-sections", "there is no table of sections", &self.span))?;
         let numbers = table
             .numbers_named(column, Some(Dimension::LENGTH))
             .map_err(|mut problems| problems.swap_remove(0))?;
         let row = table.row_named(section);
         row.and_then(|row| numbers.get(row).copied().flatten()).ok_or_else(|| {
             let place = self.cell(section, column).map_or(&self.span, |cell| &cell.span);
-            Problem::error("not-a-number", format!("{} `{section}` has no `{column}`", self.word))
-                .at(place)
+            error("not-a-number", format!("{} `{section}` has no `{column}`", self.word), place)
         })
     }
 
@@ -95,7 +95,7 @@ impl Sections {
 pub(super) fn read(reader: &mut Reader<'_>, tree: &Node, folder: &Path) -> Option<Sections> {
     let Some((key, node)) = tree.entry("sections") else {
         let says = "`sections` is missing: the table of sections, or their names";
-        let problem = Problem::error("key-missing", says).at(&tree.span.part(0..0));
+        let problem = error("key-missing", says, &tree.span.part(0..0));
         reader.tell(problem.help("write `sections: sections.csv`, or `sections: [S01, S02]` where whole records are evaluated"));
         return None;
     };
@@ -123,7 +123,7 @@ pub(super) fn check_names(problems: &mut Problems, names: &[Cell], word: &str) {
     for (number, name) in names.iter().enumerate() {
         if let Some(first) = names[..number].iter().find(|first| first.value == name.value) {
             let says = format!("two {word}s are called `{}`", name.value);
-            let problem = Problem::error("duplicate-name", says).at(&name.span);
+            let problem = error("duplicate-name", says, &name.span);
             problems.push(problem.also(&first.span, "the first of them"));
         }
         if let Err(problem) = check_file_name(&name.value, &name.span) {
@@ -145,7 +145,7 @@ pub(super) fn check_placeholders(reader: &mut Reader<'_, &Sections>, written: &S
                 "`{{{name}}}` is neither `{{{word}}}` nor a column of the table of sections"
             ),
         };
-        let problem = Problem::error("unknown-placeholder", says).at(&written.span);
+        let problem = error("unknown-placeholder", says, &written.span);
         let known = std::iter::once(word).chain(sections.columns());
         reader.tell(problem.suggest(name, known));
     }
@@ -155,7 +155,7 @@ pub(super) fn check_placeholders(reader: &mut Reader<'_, &Sections>, written: &S
 pub(super) fn check_column(reader: &mut Reader<'_, &Sections>, name: &str, span: &Span) {
     if !reader.with.has_column(name) {
         let says = format!("the table of sections has no column `{name}`");
-        let problem = Problem::error("unknown-column", says).at(span);
+        let problem = error("unknown-column", says, span);
         reader.tell(problem.suggest(name, reader.with.columns()));
     }
 }
@@ -164,8 +164,7 @@ pub(super) fn check_column(reader: &mut Reader<'_, &Sections>, name: &str, span:
 pub(super) fn known(reader: &mut Reader<'_, &Sections>, name: &str, span: &Span) {
     let Sections { names, word, .. } = reader.with;
     if !names.is_empty() && !names.iter().any(|known| known.value == name) {
-        let problem =
-            Problem::error("unknown-section", format!("there is no {word} `{name}`")).at(span);
+        let problem = error("unknown-section", format!("there is no {word} `{name}`"), span);
         let names = names.iter().map(|known| known.value.as_str());
         reader.tell(problem.suggest(name, names));
     }

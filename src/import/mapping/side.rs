@@ -7,7 +7,7 @@ use super::sections::{self, Sections};
 use super::stated::Stated;
 use crate::data::RecordKind;
 use crate::foreign::Options;
-use crate::problem::Problem;
+use crate::problem::{Problem, error, warning};
 use crate::source::{Span, Spanned};
 use crate::units::Unit;
 use crate::yaml::{Entries, FromNode, Hertz, Key, Metres, Node, Reader, Value, fields};
@@ -110,7 +110,7 @@ pub(super) fn read(
         let word = sections.word;
         let says =
             format!("every {word} is read from `{}`, each as its own stretch of it", files.value);
-        reader.tell(Problem::warning("one-file", says).at(&files.span).help(format!(
+        reader.tell(warning("one-file", says, &files.span).help(format!(
             "write `{{{word}}}` where the name of the {word} stands in the path or in `table`"
         )));
     }
@@ -124,13 +124,13 @@ pub(super) fn read(
         && sections.has_column("offset")
     {
         let says = "the table of sections has a column `offset` as well, and both would be added";
-        let problem = Problem::error("offset-twice", says).at(&offsets.span);
+        let problem = error("offset-twice", says, &offsets.span);
         reader.tell(problem.help("remove one of them"));
     }
     if let Some(drift) = &written.drift {
         if kind == RecordKind::Simulation {
             let says = "`drift` stands with the measurement, whose distance is corrected";
-            let problem = Problem::error("contradiction", says).at(&drift.span);
+            let problem = error("contradiction", says, &drift.span);
             reader.tell(problem.help("move it to `measurement`"));
         }
         if node.get("distance").is_none() {
@@ -141,7 +141,7 @@ pub(super) fn read(
     if node.get("channels").is_none() {
         let says = "`channels` is missing: what each channel of the campaign is in the file";
         let help = format!("write `channels: {AS_NAMED}` if every channel keeps its name");
-        reader.tell(Problem::error("key-missing", says).at(&key.span).help(help));
+        reader.tell(error("key-missing", says, &key.span).help(help));
     }
     let channels = written.channels?;
     for Spanned { value: name, span } in channels.maps().iter().flat_map(|maps| {
@@ -199,7 +199,7 @@ impl FromNode<&Sections> for Turned {
             _ if node.scalar_text() == Some("all") => Some(Self::All(span)),
             _ => {
                 let says = "`turned` must be `all`, a list of sections, or a column with words";
-                let problem = Problem::error("wrong-kind", says).at(&span);
+                let problem = error("wrong-kind", says, &span);
                 reader.tell(
                     problem.help("write `turned: [S01, S02]`, or `turned: {leading end: B}`"),
                 );

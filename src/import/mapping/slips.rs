@@ -1,6 +1,6 @@
 //! Slips that YAML reads as something else: decimal commas in a map, and braces without quotes.
 
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problems, error};
 use crate::source::{Source, Span};
 use crate::yaml::{Key, Node, Value, quoted};
 
@@ -23,8 +23,7 @@ pub(super) fn decimal_commas(node: Node, problems: &mut Problems) -> Node {
                             number.text, whole.raw, key.text
                         );
                         problems.push(
-                            Problem::error("decimal-comma", says)
-                                .at(&span)
+                            error("decimal-comma", says, &span)
                                 .help(format!("write `{}: {text}`", number.text)),
                         );
                         *whole = Node {

@@ -1,7 +1,7 @@
 //! A number that a mapping states once, for each section, or where it is to be found.
 
 use super::sections::{self, Sections};
-use crate::problem::Problem;
+use crate::problem::{Problem, error};
 use crate::source::Spanned;
 use crate::units::{Unit, number};
 use crate::yaml::{Entries, FromNode, Key, Node, Quantity, Reader, Value, fields};
@@ -73,7 +73,7 @@ impl<Q: Quantity> Stated<Q> {
     ///
     /// # Errors
     /// The fact or the cell is missing, or is no number.
-    pub fn of(
+    pub fn value(
         &self,
         section: &str,
         sections: &Sections,
@@ -105,14 +105,14 @@ impl<Q: Quantity> Stated<Q> {
                         .suggest(&name.value, facts.iter().map(|(known, _)| known.as_str())));
                 };
                 number::read(text, unit).map(|read| Some(read.si)).map_err(|refused| {
-                    Problem::error(
+                    error(
                         "wrong-number",
                         format!(
                             "{} `{section}`, `{}`: {}",
                             sections.word, name.value, refused.says
                         ),
+                        &name.span,
                     )
-                    .at(&name.span)
                 })
             }
         }

@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
-use super::find::{Of, nearest_or_first};
+use super::recording::{Recording, nearest_or_first};
 use super::short;
 use crate::data::checks::{self, Steps};
-use crate::foreign::Table;
+use crate::foreign::{Channel, Table};
 use crate::metrics::{resample, sinc};
-use crate::problem::Problem;
+use crate::problem::{Problem, error};
+use crate::source::Spanned;
 use crate::units::{Dimension, Unit};
 use crate::yaml::Quantity;
 
@@ -44,91 +45,51 @@ pub struct Gaps {
 impl Clock {
     /// Times of events, which have no steps: two at least.
     pub fn of_events(times: Vec<f64>) -> Self {
-        let rate = (times.len() - 1) as f64 / (times[times.len() - 1] - times[0]);
+        let rate = mean_rate(&times);
         Self { times, rate, even: false, uneven: true, gaps: None }
     }
 }
 
-/// The times of a table, with the shift and the drift of the mapping.
-pub fn clock(
-    of: &Of<'_>,
-    table: &Table,
-    alone: bool,
-    facts: &[(String, String)],
-) -> Result<Clock, Problem> {
-    let time = &of.side.time;
-    let named = |name: &str| table.channels.iter().find(|channel| channel.name == name);
+/// The times of a table, with the shift and the drift of the mapping. `alone`: no other table is
+/// used.
+pub fn clock(recording: &Recording<'_>, table: &Table, alone: bool) -> Result<Clock, Problem> {
+    let time = &recording.side.time;
     let which =
         if table.name.is_empty() { String::new() } else { format!(", table `{}`", table.name) };
-    let found =
-        time.from.0.iter().find_map(|name| named(&name.value).map(|channel| (name, channel)));
+    let file = format!("`{}`{which}", recording.shown);
+    let named = |name: &str| table.channels.iter().find(|channel| channel.name == name);
+    let found = time.from.0.iter().find_map(|name| Some((name, named(&name.value)?)));
     let mut factor = 1.0;
-    let mut times = match (found, time.from.0.first()) {
+    let mut times: Vec<f64> = match (found, time.from.0.first()) {
         (Some((name, channel)), _) => {
-            let text = channel.unit.as_deref().map(str::trim).filter(|text| !text.is_empty());
-            let stated = text.and_then(|text| {
-                of.side
-                    .units
-                    .iter()
-                    .find(|(known, _)| known.text == text)
-                    .map(|(_, unit)| unit.clone())
-            });
-            let unit = time
-                .unit
-                .as_ref()
-                .map(|unit| unit.value.clone())
-                .or(stated)
-                .or_else(|| Unit::parse(text?).ok());
-            let Some(unit) = unit.filter(|unit| unit.dimension == Dimension::TIME) else {
-                let unit =
-                    text.map_or_else(|| "no unit".to_string(), |text| format!("the unit `{text}`"));
-                let problem = Problem::error(
-                    "unit-missing",
-                    format!("`{}`{which}: the time `{}` has {unit}", of.shown, name.value),
-                )
-                .at(&name.span);
-                return Err(problem
-                    .help(format!("write its unit: `time: {{from: {}, unit: s}}`", name.value)));
-            };
+            let unit = time_unit(recording, channel).map_err(|has| {
+                let says = format!("{file}: the time `{}` has {has}", name.value);
+                error("unit-missing", says, &name.span)
+                    .help(format!("write its unit: `time: {{from: {}, unit: s}}`", name.value))
+            })?;
             factor = unit.factor;
-            channel.values.iter().map(|value| unit.to_si(*value)).collect::<Vec<f64>>()
+            channel.values.iter().map(|value| unit.to_si(*value)).collect()
         }
-        (None, Some(first)) => {
-            let known = table.channels.iter().map(|channel| channel.name.as_str());
-            let problem = Problem::error(
-                "unknown-channel",
-                format!("`{}`{which} has no channel `{}`", of.shown, first.value),
-            );
-            let problem = problem.at(&first.span);
-            let near = problem.clone().suggest(&first.value, known.clone());
-            return Err(match near.near {
-                Some(_) => near,
-                None if table.name.is_empty() => nearest_or_first(problem, &first.value, known),
-                None => problem.help("where the groups of a file call their time differently, list the names: `time: [Time, t_slow]`"),
-            });
-        }
+        (None, Some(first)) => return Err(no_time(table, first, &file)),
         (None, None) => {
-            let Some(rate) =
-                time.rate.map(Quantity::si).or(table.rate).filter(|rate| *rate > 0.0 && alone)
-            else {
-                let says = match alone {
-                    true => {
-                        format!("`{}`{which} states neither a time nor a sampling rate", of.shown)
-                    }
-                    false => format!(
+            let rate = time.rate.map(Quantity::si).or(table.rate);
+            let Some(rate) = rate.filter(|rate| *rate > 0.0 && alone) else {
+                let says = if alone {
+                    format!("{file} states neither a time nor a sampling rate")
+                } else {
+                    format!(
                         "`{}`: the channels are in several tables, and the mapping does not say what their time is",
-                        of.shown
-                    ),
+                        recording.shown
+                    )
                 };
-                let problem = Problem::error("time-missing", says).at(&time.span);
-                return Err(problem.help(
+                return Err(error("time-missing", says, &time.span).help(
                     "write `time: NAME`, the channel of the time, or `time: {rate: 200 Hz}`",
                 ));
             };
             (0..table.rows).map(|row| row as f64 / rate).collect()
         }
     };
-    increasing(of, table, &times, &which)?;
+    increasing(recording, table, &times, &file)?;
     // Before a shift, which would hide that the stamps are rounded.
     let Steps { usual, gaps, uneven, .. } = checks::steps(&times, factor);
     let gaps = gaps.first().map(|&at| Gaps {
@@ -137,20 +98,16 @@ pub fn clock(
         to: times[at + 1],
         count: gaps.len(),
     });
-    let shift = time
-        .shift
-        .as_ref()
-        .map(|shift| shift.of(of.section, &of.mapping.sections, facts))
-        .transpose()?
-        .flatten()
-        .unwrap_or(0.0);
-    times.iter_mut().for_each(|at| *at = *at / (1.0 + time.drift.0) + shift);
-    let (first, last) = (times[0], times[times.len() - 1]);
-    let rate = if gaps.is_some() {
-        (1.0 + time.drift.0) / usual
-    } else {
-        (times.len() - 1) as f64 / (last - first)
+    let shift = match &time.shift {
+        Some(shift) => {
+            shift.value(recording.section, &recording.mapping.sections, &recording.facts)?
+        }
+        None => None,
     };
+    let shift = shift.unwrap_or(0.0);
+    times.iter_mut().for_each(|at| *at = *at / (1.0 + time.drift.0) + shift);
+    let first = times[0];
+    let rate = if gaps.is_some() { (1.0 + time.drift.0) / usual } else { mean_rate(&times) };
     let even = times
         .iter()
         .enumerate()
@@ -158,13 +115,48 @@ pub fn clock(
     Ok(Clock { times, rate, even, uneven: uneven.is_some() || gaps.is_some(), gaps })
 }
 
-fn increasing(of: &Of<'_>, table: &Table, times: &[f64], which: &str) -> Result<(), Problem> {
+/// Samples per second of times, two at least.
+pub fn mean_rate(times: &[f64]) -> f64 {
+    (times.len() - 1) as f64 / (times[times.len() - 1] - times[0])
+}
+
+/// The unit of a channel of time: as stated, else as the file has it.
+///
+/// # Errors
+/// What it has in place of a unit of time.
+fn time_unit(recording: &Recording<'_>, channel: &Channel) -> Result<Unit, String> {
+    let text = channel.unit.as_deref().map(str::trim).filter(|text| !text.is_empty());
+    let stated = recording.side.time.unit.as_ref().map(|unit| unit.value.clone());
+    let unit = stated
+        .or_else(|| recording.stated_unit(text?))
+        .or_else(|| Unit::parse(text?).ok())
+        .filter(|unit| unit.dimension == Dimension::TIME);
+    let has = || text.map_or_else(|| "no unit".into(), |text| format!("the unit `{text}`"));
+    unit.ok_or_else(has)
+}
+
+/// None of the names of the time is in a table.
+fn no_time(table: &Table, first: &Spanned<String>, file: &str) -> Problem {
+    let known = table.channels.iter().map(|channel| channel.name.as_str());
+    let says = format!("{file} has no channel `{}`", first.value);
+    let problem = error("unknown-channel", says, &first.span);
+    let near = problem.clone().suggest(&first.value, known.clone());
+    match near.near {
+        Some(_) => near,
+        None if table.name.is_empty() => nearest_or_first(problem, &first.value, known),
+        None => problem.help("where the groups of a file call their time differently, list the names: `time: [Time, t_slow]`"),
+    }
+}
+
+fn increasing(
+    recording: &Recording<'_>,
+    table: &Table,
+    times: &[f64],
+    file: &str,
+) -> Result<(), Problem> {
     if times.len() < 2 {
-        return Err(Problem::error(
-            "too-short",
-            format!("`{}`{which} has {} samples", of.shown, times.len()),
-        )
-        .at(&of.side.files.span));
+        let says = format!("{file} has {} samples", times.len());
+        return Err(error("too-short", says, &recording.side.files.span));
     }
     let Some(at) = (0..times.len())
         .find(|&at| !times[at].is_finite() || (at > 0 && times[at] <= times[at - 1]))
@@ -173,11 +165,8 @@ fn increasing(of: &Of<'_>, table: &Table, times: &[f64], which: &str) -> Result<
     };
     let row = table.first_row + at;
     let is = if times[at].is_finite() { "does not increase" } else { "has no value" };
-    let problem = Problem::error(
-        "time-not-increasing",
-        format!("`{}`{which}: the time {is} in row {row}", of.shown),
-    )
-    .at(&of.side.time.span);
+    let says = format!("{file}: the time {is} in row {row}");
+    let problem = error("time-not-increasing", says, &recording.side.time.span);
     Err(match rounded(times) {
         Some(rate) => problem.help(format!(
             "the stamps are rounded, so that several samples have the same; state the rate of the recorder: `time: {{rate: {rate} Hz}}`"

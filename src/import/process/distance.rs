@@ -2,13 +2,12 @@
 //! file.
 
 use super::clock::Clock;
-use super::find::{Found, Of, find};
-use crate::data::record::{Column, Wanted, read_record};
-use crate::foreign::{Channel, Table};
+use super::recording::{Recording, Source};
+use crate::data::record::{Wanted, read_record};
 use crate::import::mapping::{ChannelMap, Distance, Match, Stated};
 use crate::metrics::synchronise::{self, Estimate, Pair, Search};
 use crate::metrics::{along, resample, statistics};
-use crate::problem::Problem;
+use crate::problem::{Problem, error};
 use crate::units::{Dimension, Unit};
 use crate::yaml::Metres;
 
@@ -24,152 +23,78 @@ pub struct Curve {
 
 /// The distance as the mapping states it.
 pub fn curve(
-    of: &Of<'_>,
+    recording: &Recording<'_>,
     distance: &Distance,
-    tables: &[&Table],
     clocks: &[Option<Clock>],
-    facts: &[(String, String)],
 ) -> Result<Curve, Problem> {
+    let clock_of =
+        |table: usize| clocks.get(table).cloned().flatten().ok_or_else(|| recording.time_missing());
     let start_of = |start: &Option<Stated<Metres>>| -> Result<(f64, String), Problem> {
         let Some(start) = start else { return Ok((0.0, String::new())) };
-        let value = start.of(of.section, &of.mapping.sections, facts)?;
-        let Some(value) = value else {
-            return Err(Problem::error(
-                "start-missing",
-                format!("no `start` is stated for {}", of.called()),
-            )
-            .at(&of.side.span));
-        };
+        let sections = &recording.mapping.sections;
+        let value = start.value(recording.section, sections, &recording.facts)?;
+        let value = value.ok_or_else(|| {
+            let says =
+                format!("no `start` is stated for {} `{}`", sections.word, recording.section);
+            error("start-missing", says, &recording.side.span)
+        })?;
         Ok((value, format!(" from {value} m ({})", start.from_where())))
     };
-    let metre = Unit { text: "m".into(), factor: 1.0, dimension: Dimension::LENGTH };
     match distance {
         Distance::Channel(map) => {
-            let (found, values) = values(of, map, tables, Some(&metre))?;
-            let clock = need(of, clocks, found)?;
-            let says = format!("distance = {}", map.in_words());
-            Ok(Curve { clock, values, table: Some(found.table), says })
+            let source = Source::find(recording, map, Some(&Unit::si(Dimension::LENGTH)))?;
+            Ok(Curve {
+                clock: clock_of(source.table)?,
+                values: source.values(map),
+                table: Some(source.table),
+                says: format!("distance = {}", map.in_words()),
+            })
         }
         Distance::Speed { speed, start } => {
-            let per_second = Unit {
-                text: "m/s".into(),
-                factor: 1.0,
-                dimension: Dimension::LENGTH / Dimension::TIME,
-            };
-            let (found, values) = values(of, speed, tables, Some(&per_second))?;
-            let clock = need(of, clocks, found)?;
+            let per_second = Unit { text: "m/s".into(), ..Unit::si(Dimension::SPEED) };
+            let source = Source::find(recording, speed, Some(&per_second))?;
+            let clock = clock_of(source.table)?;
             let (start, from) = start_of(start)?;
-            let mut values = along::integral(&clock.times, &values).unwrap_or_default();
+            let mut values =
+                along::integral(&clock.times, &source.values(speed)).unwrap_or_default();
             values.iter_mut().for_each(|value| *value += start);
             let says = format!(
                 "distance = integral of {} over time (trapezoidal rule){from}",
                 speed.in_words()
             );
-            Ok(Curve { clock, values, table: Some(found.table), says })
+            Ok(Curve { clock, values, table: Some(source.table), says })
         }
         Distance::Trigger { channel, every, threshold, start } => {
-            let found = find(of, tables, &channel.terms[0].name, channel.table.as_ref())?;
-            let clock = need(of, clocks, found)?;
-            let sign = if channel.terms[0].reversed { -1.0 } else { 1.0 } * channel.factor;
-            let signal: Vec<f64> = found.channel.values.iter().map(|value| sign * value).collect();
-            let (low, high) = signal
-                .iter()
-                .filter(|value| value.is_finite())
-                .fold((f64::MAX, f64::MIN), |(low, high), value| {
-                    (low.min(*value), high.max(*value))
-                });
+            let term = &channel.terms[0];
+            let (table, recorded) = recording.find(&term.name, channel.table.as_ref())?;
+            let clock = clock_of(table)?;
+            let sign = if term.reversed { -1.0 } else { 1.0 } * channel.factor;
+            let signal: Vec<f64> = recorded.values.iter().map(|value| sign * value).collect();
+            let finite = signal.iter().filter(|value| value.is_finite());
+            let (low, high) = finite.fold((f64::MAX, f64::MIN), |(low, high), value| {
+                (low.min(*value), high.max(*value))
+            });
             let level = threshold.unwrap_or((low + high) / 2.0);
             let times = crossings(&clock.times, &signal, level);
-            if times.len() < 2 {
+            let pulses = times.len();
+            if pulses < 2 {
                 let says = format!(
-                    "{}: `{}` rises through {level} {} times; two pulses are needed at least",
-                    of.called(),
-                    channel.terms[0].name.value,
-                    times.len()
+                    "`{}` rises through {level} {pulses} times; two pulses are needed at least",
+                    term.name.value
                 );
-                return Err(Problem::error("no-pulses", says)
-                    .at(&channel.terms[0].name.span)
+                return Err(recording
+                    .fault("no-pulses", &says, &term.name.span)
                     .help("state the level: `threshold`"));
             }
             let (start, from) = start_of(start)?;
-            let values = (0..times.len()).map(|pulse| start + pulse as f64 * every).collect();
+            let values = (0..pulses).map(|pulse| start + pulse as f64 * every).collect();
             let says = format!(
-                "distance = {every} m for each of {} pulses of {} (level {level}){from}; linear between pulses",
-                times.len(),
+                "distance = {every} m for each of {pulses} pulses of {} (level {level}){from}; linear between pulses",
                 channel.in_words()
             );
             Ok(Curve { clock: Clock::of_events(times), values, table: None, says })
         }
     }
-}
-
-fn need(of: &Of<'_>, clocks: &[Option<Clock>], found: Found<'_>) -> Result<Clock, Problem> {
-    clocks.get(found.table).cloned().flatten().ok_or_else(|| {
-        Problem::error("time-missing", format!("`{}` has no time", of.shown)).at(&of.side.time.span)
-    })
-}
-
-/// The channels of a file that a channel of the campaign is made of, all in one table.
-#[derive(Debug)]
-pub struct Source<'a> {
-    pub first: Found<'a>,
-    /// Each with its unit and its sign.
-    terms: Vec<(&'a Channel, Unit, f64)>,
-}
-
-impl<'a> Source<'a> {
-    /// Finds the channels and their units.
-    pub fn find(
-        of: &Of<'_>,
-        map: &ChannelMap,
-        tables: &[&'a Table],
-        wanted: Option<&Unit>,
-    ) -> Result<Self, Problem> {
-        let mut source: Option<Self> = None;
-        for term in &map.terms {
-            let found = find(of, tables, &term.name, map.table.as_ref())?;
-            let unit = of.unit(map, &term.name, found.channel, wanted)?;
-            let source = source.get_or_insert(Self { first: found, terms: Vec::new() });
-            if source.first.table != found.table {
-                let says = format!(
-                    "`{}` is a sum of channels of different tables: `{}` and `{}`",
-                    map.name.value, tables[source.first.table].name, tables[found.table].name
-                );
-                return Err(Problem::error("sum-of-tables", says).at(&term.name.span));
-            }
-            source.terms.push((found.channel, unit, if term.reversed { -1.0 } else { 1.0 }));
-        }
-        source
-            .ok_or_else(|| Problem::error("key-missing", "no channel is stated").at(&map.name.span))
-    }
-
-    /// The values in SI.
-    pub fn values(&self, map: &ChannelMap) -> Vec<f64> {
-        let mut sum: Vec<f64> = Vec::new();
-        for (number, (channel, unit, sign)) in self.terms.iter().enumerate() {
-            let values = channel.values.iter().map(|value| sign * unit.to_si(*value));
-            match number {
-                0 => sum = values.collect(),
-                _ => sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value),
-            }
-        }
-        let offset = map.offset.as_ref().map_or(0.0, |offset| offset.value.si);
-        if map.factor != 1.0 || offset != 0.0 {
-            sum.iter_mut().for_each(|value| *value = map.factor * *value + offset);
-        }
-        sum
-    }
-}
-
-/// The values of a channel in SI in its own table, and where the first of its terms is.
-pub fn values<'a>(
-    of: &Of<'_>,
-    map: &ChannelMap,
-    tables: &[&'a Table],
-    wanted: Option<&Unit>,
-) -> Result<(Found<'a>, Vec<f64>), Problem> {
-    let source = Source::find(of, map, tables, wanted)?;
-    Ok((source.first, source.values(map)))
 }
 
 /// Times at which a signal rises through a level, linear between samples.
@@ -191,41 +116,39 @@ const LEAST_CORRELATION: f64 = 0.8;
 const STEPS: f64 = 100.0;
 
 /// The move that is to be added to the distance of a record for its channels to agree with the
-/// track file, and what was found.
+/// track file, and what was found. `channels`: each with its unit, in the order of the match.
 pub fn matched(
-    of: &Of<'_>,
+    recording: &Recording<'_>,
     wanted: &Match,
     distance: &[f64],
-    channels: &[Vec<f64>],
-    units: &[Unit],
+    channels: &[(Vec<f64>, Unit)],
 ) -> Result<(f64, String), Vec<Problem>> {
-    let mapping = of.mapping;
+    let mapping = recording.mapping;
     let Some(pattern) = &mapping.track else {
-        let problem = Problem::error(
-            "key-missing",
-            "a distance is matched with the track file, and the mapping names none",
-        )
-        .at(&wanted.span);
-        return Err(vec![problem.help("write `track: track/{section}.csv`")]);
+        let says = "a distance is matched with the track file, and the mapping names none";
+        let problem = error("key-missing", says, &wanted.span);
+        return Err(problem.help("write `track: track/{section}.csv`").into());
     };
-    let (path, shown) = mapping.place(&mapping.sections.fill(&pattern.value, of.section));
+    let (path, shown) = mapping.place(&mapping.sections.fill(&pattern.value, recording.section));
     let mut columns = vec![Wanted::new("distance", Dimension::LENGTH)];
     columns.extend(
         wanted
             .channels
             .iter()
-            .zip(units)
-            .map(|(map, unit)| Wanted::new(map.name.value.as_str(), unit.dimension)),
+            .zip(channels)
+            .map(|(map, (_, unit))| Wanted::new(map.name.value.as_str(), unit.dimension)),
     );
     let track = read_record(&path, &shown, &columns)?;
     let at = &track.columns[0].values;
     let estimate = |channels: &[Vec<f64>], search: &Search| {
         let both = track.columns[1..].iter().zip(channels).enumerate();
-        let pair = |(group, (column, channel))| {
-            let (column, channel): (&Column, &Vec<f64>) = (column, channel);
-            Pair { simulated: (at, &column.values), measured: (distance, channel), group }
-        };
-        let pairs: Vec<Pair<'_>> = both.map(pair).collect();
+        let pairs: Vec<Pair<'_>> = both
+            .map(|(group, (column, channel))| Pair {
+                simulated: (at, &column.values),
+                measured: (distance, channel),
+                group,
+            })
+            .collect();
         synchronise::estimate(&pairs, search)
     };
     let ends =
@@ -240,31 +163,23 @@ pub fn matched(
     };
     let names =
         wanted.channels.iter().map(|map| map.name.value.as_str()).collect::<Vec<_>>().join(", ");
-    let none = |says: String| {
-        Err(vec![Problem::error("no-match", format!("{}: {says}", of.called())).at(&wanted.span)])
-    };
+    let none = |says: String| Err(recording.fault("no-match", &says, &wanted.span).into());
     let opposite = |map: &ChannelMap| {
-        let says = format!(
-            "{}: `{}` of the record has the sign opposite to the track file",
-            of.called(),
-            map.name.value
-        );
         let (name, term) = (&map.name.value, &map.terms[0].name);
-        vec![
-            Problem::error("no-match", says)
-                .at(&term.span)
-                .help(format!("reverse it: `{name}: -{}`", term.value)),
-        ]
+        let says = format!("`{name}` of the record has the sign opposite to the track file");
+        let problem = recording.fault("no-match", &says, &term.span);
+        Err(problem.help(format!("reverse it: `{name}: -{}`", term.value)).into())
     };
-    let found = estimate(channels, &search);
-    if found.is_none_or(|found| found.correlation < LEAST_CORRELATION) {
-        let reversed: Vec<Vec<f64>> =
-            channels.iter().map(|channel| channel.iter().map(|value| -value).collect()).collect();
+    let agrees = |found: &Estimate| found.correlation >= LEAST_CORRELATION;
+    let recorded: Vec<Vec<f64>> = channels.iter().map(|(values, _)| values.clone()).collect();
+    let found = estimate(&recorded, &search);
+    if !found.as_ref().is_some_and(agrees) {
+        let mut reversed = recorded.clone();
+        reversed.iter_mut().flatten().for_each(|value| *value = -*value);
         if let Some(map) = wanted.channels.first()
-            && estimate(&reversed, &search)
-                .is_some_and(|found| found.correlation >= LEAST_CORRELATION)
+            && estimate(&reversed, &search).as_ref().is_some_and(agrees)
         {
-            return Err(opposite(map));
+            return opposite(map);
         }
     }
     let Some(Estimate { shift, low, high, correlation }) = found else {
@@ -280,20 +195,17 @@ pub fn matched(
     }
     // Of several channels, one may be reversed.
     let moved: Vec<f64> = distance.iter().map(|at| at + shift).collect();
+    let reach = moved[0]..=moved[moved.len() - 1];
+    let inside: Vec<f64> = at.iter().copied().filter(|at| reach.contains(at)).collect();
     for (map, (column, channel)) in
-        wanted.channels.iter().zip(track.columns[1..].iter().zip(channels))
+        wanted.channels.iter().zip(track.columns[1..].iter().zip(&recorded))
     {
-        let inside: Vec<f64> = at
-            .iter()
-            .copied()
-            .filter(|at| (moved[0]..=moved[moved.len() - 1]).contains(at))
-            .collect();
         let of_track = resample::interpolate(at, &column.values, &inside).unwrap_or_default();
         let of_record = resample::interpolate(&moved, channel, &inside).unwrap_or_default();
         if statistics::correlation(&of_track, &of_record)
             .is_some_and(|correlation| correlation < 0.0)
         {
-            return Err(opposite(map));
+            return opposite(map);
         }
     }
     let says = format!(

@@ -1,13 +1,12 @@
 //! Gaps and uneven steps of the times of a file, and the account of what was done about rates.
 
-use super::clock::{Clock, Gaps, Grid, How, way};
-use super::find::Of;
-use super::short;
+use super::clock::{Clock, Gaps, How, SAME_RATE, mean_rate, way};
+use super::recording::Recording;
+use super::{Sampling, short};
 use crate::data::checks::{self, Steps};
-use crate::foreign::Table;
 use crate::import::mapping::{ChannelMap, Distance};
-use crate::problem::Problem;
-use crate::source::{Span, Spanned};
+use crate::problem::{Problem, Severity};
+use crate::source::Spanned;
 use crate::units::number::significant;
 use crate::yaml::Hertz;
 
@@ -20,33 +19,32 @@ const MOST_FINER: f64 = 20.0;
 ///
 /// Problems: `out-of-range`.
 pub fn impossible(
-    of: &Of<'_>,
+    recording: &Recording<'_>,
     rate: &Spanned<Hertz>,
     base: &Clock,
     (start, end): (f64, f64),
 ) -> Option<Problem> {
-    let Hertz(asked_rate) = rate.value;
-    let asked = short(asked_rate);
-    let (says, help) = if asked_rate > MOST_FINER * base.rate {
+    let Hertz(asked) = rate.value;
+    let (says, help) = if asked > MOST_FINER * base.rate {
         let says = format!(
-            "{}: a rate of {asked} Hz is more than {MOST_FINER} times that of `{}`, {} Hz",
-            of.called(),
-            of.shown,
+            "a rate of {} Hz is more than {MOST_FINER} times that of `{}`, {} Hz",
+            short(asked),
+            recording.shown,
             short(base.rate)
         );
         (says, "a rate above that of the file adds nothing to the records")
-    } else if end > start && (end - start) * asked_rate < 1.0 {
+    } else if end > start && (end - start) * asked < 1.0 {
         let says = format!(
-            "{}: a rate of {asked} Hz leaves no two samples of the {} s of `{}`",
-            of.called(),
+            "a rate of {} Hz leaves no two samples of the {} s of `{}`",
+            short(asked),
             short(end - start),
-            of.shown
+            recording.shown
         );
         (says, "write the rate of the records, such as `200 Hz`")
     } else {
         return None;
     };
-    Some(Problem::error("out-of-range", says).at(&rate.span).help(help))
+    Some(recording.fault("out-of-range", &says, &rate.span).help(help))
 }
 
 /// Times that do not allow what is asked for: a value in a gap would be invented, and a filter
@@ -57,57 +55,70 @@ pub fn impossible(
 /// `has_channels`: whether channels of the campaign are made of a table, and not only an axis,
 /// which is never filtered.
 pub fn faults(
-    of: &Of<'_>,
-    tables: &[&Table],
-    clocks: &[Option<Clock>],
-    (base, grid): (usize, &Grid),
+    recording: &Recording<'_>,
+    sampling: &Sampling,
     has_channels: &dyn Fn(usize) -> bool,
 ) -> Vec<Problem> {
-    let at = of.side.rate.as_ref().map_or(&of.side.time.span, |rate| &rate.span);
-    let from_speed = matches!(of.side.distance, Some(Distance::Speed { .. }));
+    let side = recording.side;
+    let at = side.rate.as_ref().map_or(&side.time.span, |rate| &rate.span);
+    let from_speed = matches!(side.distance, Some(Distance::Speed { .. }));
+    let grid = &sampling.grid;
     let mut faults = Vec::new();
-    for (number, (table, clock)) in tables.iter().zip(clocks).enumerate() {
+    for (number, (table, clock)) in recording.tables.iter().zip(&sampling.clocks).enumerate() {
         let Some(clock) = clock else { continue };
-        let is_base = number == base;
-        let way = way(clock, is_base, grid);
-        let file = if table.name.is_empty() {
-            of.shown.to_string()
-        } else {
-            format!("{}`, table `{}", of.shown, table.name)
+        let way = way(clock, number == sampling.base, grid);
+        let file = match table.name.as_str() {
+            "" => recording.shown.to_string(),
+            name => format!("{}`, table `{name}", recording.shown),
         };
-        match &clock.gaps {
-            Some(gaps) if way != How::AsRecorded => {
-                faults.push(gap(of, gaps, clock, &file, "resampled", at))
+        let done = match way {
+            _ if clock.gaps.is_none() => None,
+            How::AsRecorded => from_speed.then_some("integrated to a distance"),
+            _ => Some("resampled"),
+        };
+        let (code, says, help) = match (&clock.gaps, done) {
+            (Some(gaps), Some(done)) => {
+                let (says, help) = gap(recording, gaps, clock, &file, done);
+                ("gap", says, help)
             }
-            Some(gaps) if from_speed => {
-                faults.push(gap(of, gaps, clock, &file, "integrated to a distance", at))
+            (None, _) if way == How::Filtered && !clock.even && has_channels(number) => {
+                let says = format!(
+                    "the time of `{file}` has steps of {}, and a filter to {} Hz needs even steps",
+                    extent(&clock.times),
+                    short(grid.rate)
+                );
+                let help = stated(clock.rate, "export the record with a constant rate");
+                ("uneven-time", says, help)
             }
-            None if way == How::Filtered && !clock.even && has_channels(number) => {
-                faults.push(uneven(of, clock, &file, grid.rate, at))
-            }
-            _ => {}
-        }
+            _ => continue,
+        };
+        faults.push(recording.fault(code, &says, at).help(help));
     }
     faults
 }
 
-fn gap(of: &Of<'_>, gaps: &Gaps, clock: &Clock, file: &str, done: &str, at: &Span) -> Problem {
-    let word = of.mapping.sections.word;
+/// What is wrong about a gap, and the help.
+fn gap(
+    recording: &Recording<'_>,
+    gaps: &Gaps,
+    clock: &Clock,
+    file: &str,
+    done: &str,
+) -> (String, String) {
     let more = match gaps.count - 1 {
         0 => String::new(),
         1 => "; there is one more gap".to_string(),
         more => format!("; there are {more} more gaps"),
     };
     let says = format!(
-        "{}: the time of `{file}` has a gap of {} s from {} s to {} s, after row {}, at {} Hz otherwise; nothing is {done} across a gap{more}",
-        of.called(),
+        "the time of `{file}` has a gap of {} s from {} s to {} s, after row {}, at {} Hz otherwise; nothing is {done} across a gap{more}",
         short(gaps.to - gaps.from),
         short(gaps.from),
         short(gaps.to),
         gaps.row,
         short(checks::whole(clock.rate)),
     );
-    let help = match word {
+    let help = match recording.mapping.sections.word {
         "run" => {
             "split the file there, and import the parts before and after it as runs of their own"
         }
@@ -115,43 +126,25 @@ fn gap(of: &Of<'_>, gaps: &Gaps, clock: &Clock, file: &str, done: &str, at: &Spa
             "split the file there, and import the part that the section is in; or export the record without interruption"
         }
     };
-    let problem = Problem::error("gap", says).at(at);
     // No whole sample is missing in a step that is shorter than two.
     if (gaps.to - gaps.from) * clock.rate < 2.0 {
-        problem.help(stated(mean_rate(&clock.times), help))
+        (says, stated(mean_rate(&clock.times), help))
     } else {
-        problem.help(help)
+        (says, help.to_string())
     }
-}
-
-fn mean_rate(times: &[f64]) -> f64 {
-    (times.len() - 1) as f64 / (times[times.len() - 1] - times[0])
-}
-
-fn uneven(of: &Of<'_>, clock: &Clock, file: &str, rate: f64, at: &Span) -> Problem {
-    let says = format!(
-        "{}: the time of `{file}` has steps of {}, and a filter to {} Hz needs even steps",
-        of.called(),
-        extent(&clock.times),
-        short(rate)
-    );
-    Problem::error("uneven-time", says)
-        .at(at)
-        .help(stated(clock.rate, "export the record with a constant rate"))
 }
 
 /// The record of a campaign has even steps; otherwise `certify` refuses it. A gap is told by the
 /// check of the campaign.
-pub fn warning(of: &Of<'_>, times: &[f64]) -> Option<Problem> {
+pub fn warning(recording: &Recording<'_>, times: &[f64]) -> Option<Problem> {
     if times.len() < 3 {
         return None;
     }
     let Steps { rate, gaps, uneven, .. } = checks::steps(times, 1.0);
     uneven.filter(|_| gaps.is_empty())?;
     let says = format!(
-        "{}: the time of `{}` has steps of {}; an evaluation needs even steps",
-        of.called(),
-        of.shown,
+        "the time of `{}` has steps of {}; an evaluation needs even steps",
+        recording.shown,
         extent(times)
     );
     let rate = short(checks::whole(rate));
@@ -159,7 +152,8 @@ pub fn warning(of: &Of<'_>, times: &[f64]) -> Option<Problem> {
         checks::whole(rate.parse().unwrap_or(0.0)),
         &format!("interpolate to even steps: `rate: {rate} Hz` beside `time`"),
     );
-    Some(Problem::warning("uneven-time", says).at(&of.side.time.span).help(help))
+    let problem = recording.fault("uneven-time", &says, &recording.side.time.span).help(help);
+    Some(Problem { severity: Severity::Warning, ..problem })
 }
 
 /// What to do about uneven stamps.
@@ -175,20 +169,18 @@ fn extent(times: &[f64]) -> String {
     let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
     let (least, most) =
         steps.fold((f64::MAX, f64::MIN), |(least, most), step| (least.min(step), most.max(step)));
-    format!("{} s to {} s", step_in_words(least), step_in_words(most))
-}
-
-/// Three digits: more of a step would be rounding.
-fn step_in_words(step: f64) -> String {
-    significant(step, 3).to_string()
+    // Three digits: more of a step would be rounding.
+    format!("{} s to {} s", significant(least, 3), significant(most, 3))
 }
 
 /// The rows of a record and its rate.
-pub fn told(of: &Of<'_>, base: &Clock, grid: &Grid, steps: &mut Vec<String>) {
-    if of.side.time.drift.0 != 0.0 {
-        steps.push(format!("time divided by 1 + {:.6} (drift of the clock)", of.side.time.drift.0));
+pub fn told(recording: &Recording<'_>, sampling: &Sampling, steps: &mut Vec<String>) {
+    let Some(base) = &sampling.clocks[sampling.base] else { return };
+    let (time, grid) = (&recording.side.time, &sampling.grid);
+    if time.drift.0 != 0.0 {
+        steps.push(format!("time divided by 1 + {:.6} (drift of the clock)", time.drift.0));
     }
-    if let Some(shift) = &of.side.time.shift {
+    if let Some(shift) = &time.shift {
         steps.push(format!("time shifted ({})", shift.from_where()));
     }
     let (count, rate, to) = (grid.times.len(), short(base.rate), short(grid.rate));
@@ -202,7 +194,7 @@ pub fn told(of: &Of<'_>, base: &Clock, grid: &Grid, steps: &mut Vec<String>) {
             };
             format!("{count} rows at {} Hz{dropped}", short(grid.rate))
         }
-        (None, How::Linear) if base.rate < grid.rate * (1.0 - super::clock::SAME_RATE) => {
+        (None, How::Linear) if base.rate < grid.rate * (1.0 - SAME_RATE) => {
             format!("resampled from {rate} Hz to {to} Hz, {count} rows (interpolated linearly)")
         }
         (None, How::Linear) => {
@@ -218,34 +210,27 @@ pub fn told(of: &Of<'_>, base: &Clock, grid: &Grid, steps: &mut Vec<String>) {
 
 /// Channels of other tables than the base, of which [`told`] says what was done.
 pub fn told_tables(
+    recording: &Recording<'_>,
     maps: &[ChannelMap],
     sampled: &[(How, usize)],
-    clocks: &[Option<Clock>],
-    (base, grid): (usize, &Grid),
-    tables: &[&Table],
+    sampling: &Sampling,
     steps: &mut Vec<String>,
 ) {
-    if grid.rows.is_none() && sampled.iter().all(|(how, _)| *how == How::Filtered) {
+    if sampling.grid.rows.is_none() && sampled.iter().all(|(how, _)| *how == How::Filtered) {
         return;
     }
-    for (number, table) in tables.iter().enumerate().filter(|(number, _)| *number != base) {
-        for how in [How::Linear, How::Filtered] {
-            let names: Vec<&str> = maps
-                .iter()
-                .zip(sampled)
-                .filter(|(_, (its, of))| *its == how && *of == number)
-                .map(|(map, _)| map.name.value.as_str())
-                .collect();
-            let (false, Some(clock)) = (names.is_empty(), &clocks[number]) else { continue };
-            let way = if how == How::Linear {
-                "interpolated linearly"
-            } else {
-                "filtered and interpolated (windowed sinc)"
-            };
-            let table = if table.name.is_empty() {
-                String::new()
-            } else {
-                format!(" (table `{}`)", table.name)
+    let tables = recording.tables.iter().zip(&sampling.clocks).enumerate();
+    for (number, (table, clock)) in tables.filter(|(number, _)| *number != sampling.base) {
+        for (how, way) in [
+            (How::Linear, "interpolated linearly"),
+            (How::Filtered, "filtered and interpolated (windowed sinc)"),
+        ] {
+            let mapped = maps.iter().zip(sampled).filter(|(_, sampled)| **sampled == (how, number));
+            let names: Vec<&str> = mapped.map(|(map, _)| map.name.value.as_str()).collect();
+            let (false, Some(clock)) = (names.is_empty(), clock) else { continue };
+            let table = match table.name.as_str() {
+                "" => String::new(),
+                name => format!(" (table `{name}`)"),
             };
             steps.push(format!("{} {way} from {} Hz{table}", names.join(", "), short(clock.rate)));
         }

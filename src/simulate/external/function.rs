@@ -11,7 +11,7 @@ use super::{External, covers};
 use crate::data::RecordKind;
 use crate::data::record::{Wanted, listed_headings, read_headings, read_record};
 use crate::effects::{Action, Catalogue, Channel, Signals};
-use crate::problem::Problem;
+use crate::problem::{Problem, error};
 use crate::simulate::{Section, Task};
 use crate::source::Source;
 use crate::units::{Dimension, Unit};
@@ -105,13 +105,11 @@ impl External<'_> {
                     "`{}` has the parameter `{name}`, for which the vehicle file has no value",
                     self.program.name
                 );
-                let problem = Problem::error("key-missing", says).at(&self.program.span);
+                let problem = error("key-missing", says, &self.program.span);
                 problem.suggest(name, known.filter(|known| !names.iter().any(|name| name == known)))
             })?;
             let number = node.number().or_else(|| with_unit(node.scalar_text()?));
-            let wrong = || {
-                Problem::error("wrong-kind", format!("`{name}` must be a number")).at(&node.span)
-            };
+            let wrong = || error("wrong-kind", format!("`{name}` must be a number"), &node.span);
             Ok((name.clone(), number.ok_or_else(wrong)?))
         };
         names.iter().map(value).collect()
@@ -144,7 +142,7 @@ impl External<'_> {
     fn no_parameter(&self, workers: &Workers, name: &str) -> Problem {
         let names = workers.parameters().unwrap_or_default();
         let says = format!("`{}` has no parameter `{name}`", self.program.name);
-        let problem = Problem::error("unknown-parameter", says).at(&self.program.span);
+        let problem = error("unknown-parameter", says, &self.program.span);
         let problem = problem.suggest(name, names.iter().map(String::as_str));
         if problem.help.is_some() {
             problem

@@ -26,7 +26,7 @@ use crate::data::text::LARGEST_RECORD;
 use crate::data::{Campaign, Heading, Place, RecordKind};
 use crate::disk;
 use crate::effects::Signals;
-use crate::problem::Problem;
+use crate::problem::{Problem, error};
 use crate::source::Source;
 use crate::units::Unit;
 use cache::Key;
@@ -64,9 +64,7 @@ impl<'a> External<'a> {
                 "the campaign has no `{key}`, which the command of `{}` needs",
                 program.name
             );
-            Problem::error("key-missing", says)
-                .at(&campaign.tree.span.part(0..0))
-                .also(&program.span, "here")
+            error("key-missing", says, &campaign.tree.span.part(0..0)).also(&program.span, "here")
         };
         let asks = |hole: Hole| program.command.iter().any(|word| word.has(hole));
         if asks(Hole::Track) && !campaign.has(RecordKind::Track) {
@@ -137,14 +135,14 @@ impl<'a> External<'a> {
                 section.name(),
                 self.program.name
             );
-            Problem::error("section", says).at(&section.cell.span)
+            error("section", says, &section.cell.span)
         };
         if self.workers.is_none() && !task.settings.is_empty() && !asks(Hole::Set) {
             let says = format!(
                 "`{}` accepts no parameters: its command has no `{{set}}`",
                 self.program.name
             );
-            return Err(Problem::error("not-simulated", says).at(&self.program.span));
+            return Err(error("not-simulated", says, &self.program.span));
         }
         if asks(Hole::Speed) && section.speed.is_none() {
             return Err(lacks("speed"));
@@ -274,7 +272,7 @@ impl<'a> External<'a> {
                 section.name(),
                 self.program.name
             );
-            let problem = Problem::error("simulator-output", says).at(&section.cell.span);
+            let problem = error("simulator-output", says, &section.cell.span);
             return Err(problem.help(format!("the command was: {}", words.join(" "))));
         }
         let signals = self.read(&out, section).map_err(|problem| {

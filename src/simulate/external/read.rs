@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use super::words::{Hole, Word};
 use crate::disk;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, error};
 use crate::source::{Source, Span, Spanned};
 use crate::units::{Dimension, Unit, number};
 use crate::yaml::{self, Entries, Key, Node, Reader, Value, fields};
@@ -182,8 +182,7 @@ impl Reader<'_, &Path> {
         let others = match (tree.get("command"), tree.get("python")) {
             (None, None) if !matches!(tree.value, Value::Map(_)) => return,
             (None, None) => {
-                let problem =
-                    Problem::error("key-missing", "`command` is missing").at(&tree.span.part(0..0));
+                let problem = error("key-missing", "`command` is missing", &tree.span.part(0..0));
                 return self.tell(
                     problem.help("a simulator is a `command`, or a function in a `python` file"),
                 );
@@ -224,7 +223,7 @@ impl Reader<'_, &Path> {
             };
             let help =
                 "the command is not split by a shell: write `[program, --option, \"{out}\"]`";
-            self.tell(Problem::error("wrong-kind", says).at(&node.span).help(help));
+            self.tell(error("wrong-kind", says, &node.span).help(help));
         }
         node.items().iter().filter_map(|item| Word::read(item, allowed, self.problems)).collect()
     }
@@ -321,8 +320,7 @@ impl Reader<'_, &Path> {
             }
         } else if !on_path(name) {
             let problem =
-                Problem::error("no-such-program", format!("the system finds no program `{name}`"))
-                    .at(at);
+                error("no-such-program", format!("the system finds no program `{name}`"), at);
             self.tell(
                 problem.help(format!("write `./{name}` for a program in the folder of this file")),
             );

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, error};
 use crate::yaml::Node;
 
 /// A placeholder.
@@ -79,13 +79,11 @@ impl Word {
     /// Problems: `unknown-placeholder` with the nearest, `unclosed-brace`, `wrong-kind`.
     pub fn read(node: &Node, allowed: &[Hole], problems: &mut Problems) -> Option<Self> {
         let Some(text) = node.scalar_text() else {
-            problems.push(
-                Problem::error(
-                    "wrong-kind",
-                    format!("a word must be text, not {}", node.kind_in_words()),
-                )
-                .at(&node.span),
-            );
+            problems.push(error(
+                "wrong-kind",
+                format!("a word must be text, not {}", node.kind_in_words()),
+                &node.span,
+            ));
             return None;
         };
         let mut parts = Vec::new();
@@ -105,11 +103,8 @@ impl Word {
             else {
                 let says = "this brace has no matching brace";
                 let help = "write `{{` or `}}` for a literal brace";
-                problems.push(
-                    Problem::error("unclosed-brace", says)
-                        .at(&node.place(found..found + 1))
-                        .help(help),
-                );
+                problems
+                    .push(error("unclosed-brace", says, &node.place(found..found + 1)).help(help));
                 return None;
             };
             let name = &text[found + 1..end];

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
-use crate::problem::Problem;
+use crate::problem::{Problem, error};
 use crate::source::Source;
 
 /// The text of a file, and the name of its encoding.
@@ -44,18 +44,17 @@ pub(super) fn text<'a>(
         let end = text[at..].find('\n').map_or(text.len(), |after| at + after);
         let (from, to) = around(&text[start..end], at - start);
         let excerpt = Source::excerpt(shown, &text[start + from..start + to], line);
-        return Err(Problem::error(
-            "encoding",
-            format!("`{shown}` has bytes that are not {}", used.name()),
-        )
-        .at(&excerpt.span(at - start - from..at - start - from + '\u{fffd}'.len_utf8()))
-        .help("name the encoding of the file, for example `windows-1252`, or save it as UTF-8"));
+        let at = at - start - from;
+        let says = format!("`{shown}` has bytes that are not {}", used.name());
+        return Err(error("encoding", says, &excerpt.span(at..at + '\u{fffd}'.len_utf8())).help(
+            "name the encoding of the file, for example `windows-1252`, or save it as UTF-8",
+        ));
     }
     Ok((text, used.name()))
 }
 
 /// UTF-16 by its byte order mark, or by zeros in every other byte of Latin text.
-pub(in crate::foreign) fn wide(bytes: &[u8]) -> Option<&'static Encoding> {
+pub(super) fn wide(bytes: &[u8]) -> Option<&'static Encoding> {
     match bytes {
         [0xff, 0xfe, ..] => Some(UTF_16LE),
         [0xfe, 0xff, ..] => Some(UTF_16BE),
