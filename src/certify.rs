@@ -14,8 +14,8 @@ use crate::data::hash::{Hasher, sha256};
 use crate::graph::{self, Graph};
 use crate::problem::Problems;
 use crate::result::{
-    CampaignInfo, Certification, ChannelInfo, DataItem, FORMAT, FileHash, FilterInfo, Kind,
-    OriginInfo, ParameterInfo, ProtocolFile, ProtocolInfo, THIS,
+    CampaignInfo, Certification, ChannelInfo, DataItem, Datum, FORMAT, FileHash, FilterInfo, Kind,
+    OriginInfo, ParameterInfo, ProtocolFile, ProtocolInfo, Remark, THIS,
 };
 use crate::run::{self, Outcome, Progress, Settings};
 use crate::syntax::document::Block;
@@ -91,7 +91,9 @@ pub fn certification(compiled: &Compiled, about: &About, outcome: Outcome) -> Ce
     let campaign = about.info(outcome.files);
     let judged = outcome.judged;
     let mut notes = outcome.notes;
-    notes.extend(campaign.origin.as_ref().map(|origin| format!("{}.", origin.says)));
+    notes.extend(
+        campaign.origin.as_ref().map(|origin| Remark::Origin { says: origin.says.clone() }),
+    );
     Certification {
         fishplate: THIS.into(),
         format: FORMAT,
@@ -212,37 +214,28 @@ fn channel_info(block: &Block) -> ChannelInfo {
 }
 
 /// A note on parameters with values other than the default, since the verdict depends on them.
-fn parameters_set(plan: &Plan) -> Option<String> {
+fn parameters_set(plan: &Plan) -> Option<Remark> {
     let set = |parameter: &&Parameter| {
         parameter.set_by != SetBy::Default && parameter.value != parameter.default
     };
-    let one = |parameter: &Parameter| {
-        let info = parameter_info(parameter);
-        format!(
-            "`{}` {} (default {}, set by the {})",
-            info.name, info.value, info.default, info.set_by
-        )
-    };
-    let all: Vec<String> = plan.parameters.iter().filter(set).map(one).collect();
-    (!all.is_empty()).then(|| format!("Parameters not at their default: {}.", all.join("; ")))
+    let parameters: Vec<_> = plan.parameters.iter().filter(set).map(parameter_info).collect();
+    (!parameters.is_empty()).then_some(Remark::ParametersSet { parameters })
 }
 
 /// A note for each reason why numbers are to be confirmed, with these numbers.
-fn unconfirmed(plan: &Plan) -> Vec<String> {
+fn unconfirmed(plan: &Plan) -> Vec<Remark> {
     let of_parameter = |parameter: &Parameter| {
-        let why = parameter.unconfirmed.clone()?;
-        Some((format!("`{}` {}", parameter.name, parameter.value), why))
+        Some((parameter.name.clone(), parameter.value.clone(), parameter.unconfirmed.clone()?))
     };
-    let others = plan.unconfirmed.iter().map(|(name, why)| (format!("`{name}`"), why.clone()));
-    let mut by_reason: IndexMap<String, Vec<String>> = IndexMap::new();
-    for (what, why) in plan.parameters.iter().filter_map(of_parameter).chain(others) {
-        by_reason.entry(why).or_default().push(what);
+    let of_other = |(name, why): &(String, String)| (name.clone(), String::new(), why.clone());
+    let others = plan.unconfirmed.iter().map(of_other);
+    let mut by_reason: IndexMap<String, Vec<Datum>> = IndexMap::new();
+    for (name, value, why) in plan.parameters.iter().filter_map(of_parameter).chain(others) {
+        by_reason.entry(why).or_default().push(Datum { name, value, unit: None });
     }
-    let against = if plan.source.is_some() { " against the standard" } else { "" };
-    let one = |(why, what): (&String, &Vec<String>)| {
-        format!("To be confirmed{against}: {}. {why}", what.join(", "))
-    };
-    by_reason.iter().map(one).collect()
+    let standard = plan.source.is_some();
+    let one = |(why, values)| Remark::ToBeConfirmed { standard, values, why };
+    by_reason.into_iter().map(one).collect()
 }
 
 fn parameter_info(parameter: &Parameter) -> ParameterInfo {

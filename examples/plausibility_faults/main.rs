@@ -32,7 +32,7 @@ fn main() {
             Outcome::Done(found) => found
                 .findings
                 .iter()
-                .map(|finding| format!("[{}] {}", finding.code, finding.text()))
+                .map(|finding| format!("[{}] {}", finding.code, finding.first.text()))
                 .collect(),
             Outcome::Refused(problems) => {
                 problems.0.iter().map(|problem| format!("refused: {}", problem.says)).collect()

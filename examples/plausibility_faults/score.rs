@@ -70,8 +70,9 @@ pub fn score(sound: &Folder, fault: &Fault) -> Score {
                 .next()
                 .filter(|_| told.channels.is_empty());
             let finding = found.findings.iter().find(|finding| names(finding, &told));
-            let says =
-                finding.map(|finding| format!("[{}] {}", finding.code, finding.text())).or(checked);
+            let says = finding
+                .map(|finding| format!("[{}] {}", finding.code, finding.first.text()))
+                .or(checked);
             let validated = found.verdict == Verdict::Validated;
             Score {
                 fault: fault.name,
@@ -84,14 +85,14 @@ pub fn score(sound: &Folder, fault: &Fault) -> Score {
 }
 
 fn names(finding: &Finding, told: &Told) -> bool {
-    let section = finding.section.as_ref();
-    let right_section =
-        told.sections.is_empty() || section.is_some_and(|section| told.sections.contains(section));
-    let channel = finding.channel.as_deref().unwrap_or_default();
-    let right_channel = told.channels.is_empty()
-        || told
-            .channels
-            .iter()
-            .any(|name| channel.contains(name) || finding.text().to_string().contains(name));
-    right_section && right_channel
+    finding.places().iter().any(|place| {
+        let section = place.section.as_ref();
+        let right_section = told.sections.is_empty()
+            || section.is_some_and(|section| told.sections.contains(section));
+        let channel = place.channel.as_deref().unwrap_or_default();
+        let says = place.text().to_string();
+        let right_channel = told.channels.is_empty()
+            || told.channels.iter().any(|name| channel.contains(name) || says.contains(name));
+        right_section && right_channel
+    })
 }

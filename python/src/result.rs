@@ -70,12 +70,12 @@ impl Result {
 
     #[getter]
     fn reasons(&self) -> Vec<String> {
-        self.found.reasons.iter().map(|reason| reason.text().into()).collect()
+        self.found.reasons.iter().map(|reason| reason.text().to_string()).collect()
     }
 
     #[getter]
     fn notes(&self) -> Vec<String> {
-        self.found.notes.clone()
+        self.found.notes.iter().map(|note| note.text().to_string()).collect()
     }
 
     /// The bytes of results.json.
@@ -115,7 +115,7 @@ impl Result {
             ("limit", number(&|s| s.limit)),
             ("ratio", number(&|s| s.normalised)),
             ("holds", Arc::new(all.iter().map(|(_, s)| s.holds).collect::<BooleanArray>())),
-            ("reason", text(&|_, s| s.reason.as_ref().map(|reason| reason.text().into()))),
+            ("reason", text(&|_, s| s.reason.as_ref().map(|reason| reason.text().to_string()))),
         ])
     }
 
@@ -163,7 +163,7 @@ impl Result {
                 "reason",
                 Arc::new(
                     all.iter()
-                        .map(|s| s.reason.as_ref().map(|reason| String::from(reason.text())))
+                        .map(|s| s.reason.as_ref().map(|reason| reason.text().to_string()))
                         .collect::<StringArray>(),
                 ),
             ),

@@ -102,7 +102,7 @@ impl Compare {
                     let why = cell
                         .decided_by
                         .clone()
-                        .or_else(|| Some(cell.reasons.first()?.text().into()))
+                        .or_else(|| Some(cell.reasons.first()?.text().to_string()))
                         .unwrap_or_default();
                     format!("  {}, {}: {} ({why})\n", cell.campaign, cell.protocol, cell.verdict)
                 })

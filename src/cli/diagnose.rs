@@ -384,7 +384,7 @@ fn summary(diagnosis: &Diagnosis) -> String {
         let _ = writeln!(out, "  {line}");
     }
     if let Some(remark) = remark(&diagnosis.fit) {
-        let _ = writeln!(out, "  Remark: {remark}");
+        let _ = writeln!(out, "  Remark: {}", remark.text());
     }
     out += "\nLocation of the gap:\n";
     for place in diagnosis.r#where.iter().take(6) {

@@ -201,9 +201,11 @@ fn look(mapping: &Mapping, compiled: Option<&Compiled>, out: &Path, console: &Co
                     words::or_nothing(section.reason.as_ref())
                 ));
             }
-            let rows = findings::rows(&as_stated(&compiled.plan, found.findings));
-            rows.iter().for_each(|row| console.say(&format!("finding: {}", findings::line(row))));
-            if rows.is_empty() {
+            let found = as_stated(&compiled.plan, found.findings);
+            for finding in &found {
+                console.say(&format!("finding: {}", findings::line(finding)));
+            }
+            if found.is_empty() {
                 console.say("no findings about the plausibility of the records");
             }
         }

@@ -119,11 +119,11 @@ fn summary(found: &Certification, console: &Console) -> String {
             words::or_nothing(section.reason.as_ref())
         );
     }
-    for row in findings::rows(&found.findings) {
-        out += &format!("finding: {}\n", findings::line(&row));
+    for finding in &found.findings {
+        out += &format!("finding: {}\n", findings::line(finding));
     }
     for note in &found.notes {
-        out += &format!("note: {note}\n");
+        out += &format!("note: {}\n", note.text());
     }
     let holds = found.verdict == Verdict::Validated;
     let title = found

@@ -90,6 +90,30 @@ pub fn downgrade(results: &mut Value) {
             entry.retain(|key, _| keys.get(key).is_none());
         });
     }
+    if let Some(Value::Array(findings)) = results.get_mut("findings") {
+        *findings = findings.iter().flat_map(of_each_place).collect();
+    }
+    sort_findings(results);
+}
+
+/// Brings findings into an order that does not depend on which of them were joined.
+pub fn sort_findings(results: &mut Value) {
+    if let Some(Value::Array(findings)) = results.get_mut("findings") {
+        findings.sort_by_cached_key(ToString::to_string);
+    }
+}
+
+/// A finding once for each of its places.
+fn of_each_place(finding: &Value) -> Vec<Value> {
+    let at_place = |place: &Value| {
+        let mut finding = finding.clone();
+        if let (Value::Object(finding), Value::Object(place)) = (&mut finding, place) {
+            finding.remove("places");
+            finding.extend(place.clone());
+        }
+        finding
+    };
+    finding["places"].as_array().into_iter().flatten().map(at_place).collect()
 }
 
 /// The data of a scope from its text: `zone 1, wheelset 2`. What is neither a zone nor one of the

@@ -169,13 +169,15 @@ fn read(bytes: &[u8], shown: &str) -> Result<(String, Value, Certification), Pro
     if many > VALUES {
         return Err(unreadable(format!("more than {VALUES} values")));
     }
-    let value: Value = serde_json::from_str(text).map_err(|error| unreadable(error.to_string()))?;
+    let mut value: Value =
+        serde_json::from_str(text).map_err(|error| unreadable(error.to_string()))?;
     if value.get("fishplate").is_none() {
         return Err(unreadable("missing field `fishplate`".into()));
     }
     let mut current = value.clone();
     if before::states_no_format(&value) {
         before::upgrade(&mut current);
+        before::sort_findings(&mut value);
     }
     let results =
         Certification::deserialize(current).map_err(|error| unreadable(error.to_string()))?;

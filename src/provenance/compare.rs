@@ -78,13 +78,14 @@ impl Compared {
     fn values(&mut self, before: &Value, after: &Value, way: &Way) {
         match (before, after) {
             (Value::Object(old), Value::Object(new)) => {
-                // The data of a reason or finding say no more than the text beside them, which a
-                // version before has alone.
-                let text = |key: &str| match key {
-                    "reason_data" | "reasons_data" => false,
-                    "data" => !old.contains_key("says") || !new.contains_key("says"),
-                    _ => true,
+                // A version before has texts without the data that stand beside them now.
+                let text_of = |key: &str| match key {
+                    "data" => Some("says".to_owned()),
+                    key => key.strip_suffix("_data").map(str::to_owned),
                 };
+                let both = |key: &String| old.contains_key(key) && new.contains_key(key);
+                let text =
+                    |key: &String| both(key) || !text_of(key).is_some_and(|text| both(&text));
                 for (key, old) in old.iter().filter(|(key, _)| text(key)) {
                     match new.get(key) {
                         Some(new) => self.values(old, new, &way.key(key)),

@@ -94,14 +94,13 @@ pub fn figures(found: &Diagnosis) -> Vec<(String, String)> {
 }
 
 fn answer(found: &Diagnosis) -> Chapter {
-    let printed = |texts: &[String]| Block::list(texts.iter().map(|text| number::raised(text)));
-    let mut blocks = vec![printed(&found.says)];
+    let mut blocks = vec![Block::list(found.says.iter().map(number::raised))];
     if let Some(measure) = &found.discriminating_measurement {
         blocks.push(Block::text(format!("The causes can be distinguished by: {measure}.")));
     }
     if !found.notes.is_empty() {
         blocks.push(Block::heading("Remarks"));
-        blocks.push(printed(&found.notes));
+        blocks.push(Block::list(found.notes.iter().map(|note| number::raised(note.text()))));
     }
     Chapter::new("answer", "Answer", blocks)
 }

@@ -1,53 +1,31 @@
-//! Plausibility findings for print: the same finding in several sections is one row.
+//! Plausibility findings for print: a row for each, with its places.
+
+use indexmap::IndexSet;
 
 use super::document::{Cell, Column, Symbols, Table, Tone};
 use super::number;
 use crate::report::document::cells;
-use crate::result::{Consequence, Finding};
+use crate::result::{Consequence, Finding, Occurrence};
+use crate::words;
 
-/// Findings of one kind about one channel.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Row {
-    pub code: String,
+/// A finding with its places.
+struct Row {
+    code: String,
     /// `Y_1R, measurement`; empty if it concerns a section or the campaign.
-    pub subject: String,
+    subject: String,
     /// `S01, S02 and 30 more`; empty if it concerns the campaign.
-    pub sections: String,
-    /// The first finding as a sentence.
-    pub says: String,
+    sections: String,
+    /// What is found in the first place, as a sentence.
+    says: String,
     /// The likely cause; empty if none is known.
-    pub cause: String,
+    cause: String,
     /// `noted`, `section not used`, `not assessable`.
-    pub consequence: &'static str,
-    pub tone: Tone,
+    consequence: &'static str,
+    tone: Tone,
 }
 
-/// Number of sections that are named before the rest is counted.
-const NAMED_SECTIONS: usize = 4;
-
-/// Rows in the order of their first finding.
-pub fn rows(findings: &[Finding]) -> Vec<Row> {
-    let mut groups: Vec<(&Finding, Vec<&str>)> = Vec::new();
-    for finding in findings {
-        let section = finding.section.as_deref();
-        let alike = groups.iter_mut().find(|(first, _)| {
-            (&first.code, &first.channel, &first.record, &first.cause, first.consequence)
-                == (
-                    &finding.code,
-                    &finding.channel,
-                    &finding.record,
-                    &finding.cause,
-                    finding.consequence,
-                )
-                && (first.section.is_some() && section.is_some() || first.data == finding.data)
-        });
-        match alike {
-            Some((_, sections)) => sections.extend(section.filter(|name| !sections.contains(name))),
-            None => groups.push((finding, section.into_iter().collect())),
-        }
-    }
-    groups.iter().map(|(first, sections)| row(first, sections)).collect()
-}
+/// Number of names that are given before the rest is counted.
+const NAMED: usize = 4;
 
 /// All findings as a table.
 pub fn table(findings: &[Finding]) -> Table {
@@ -69,32 +47,48 @@ pub fn table(findings: &[Finding]) -> Table {
         Column::text("Likely cause").wide(1.9).sparse(),
         Column::text("Consequence").wide(0.8),
     ];
-    Table::new("Findings on the data", columns, rows(findings).into_iter().map(row)).size(7.5)
+    let rows = findings.iter().map(Row::of).map(row);
+    Table::new("Findings on the data", columns, rows).size(7.5)
 }
 
-fn row(first: &Finding, sections: &[&str]) -> Row {
-    let subject = [first.channel.as_deref(), first.record.as_deref()];
-    Row {
-        code: first.code.clone(),
-        subject: subject.into_iter().flatten().collect::<Vec<_>>().join(", "),
-        sections: named(sections),
-        says: number::raised(&String::from(first.text())),
-        cause: first.cause.clone().unwrap_or_default(),
-        consequence: first.consequence.in_words(),
-        tone: if first.consequence == Consequence::Note { Tone::Open } else { Tone::Bad },
+impl Row {
+    fn of(finding: &Finding) -> Self {
+        let named = |part: fn(&Occurrence) -> Option<&String>| {
+            let names: IndexSet<&String> = finding.places().iter().filter_map(part).collect();
+            let shown = if names.len() <= NAMED + 1 { names.len() } else { NAMED };
+            let list: Vec<&str> = names.iter().take(shown).map(|name| name.as_str()).collect();
+            match (names.len() - shown) as u64 {
+                0 => list.join(", "),
+                more => format!("{} and {} more", list.join(", "), number::count(more)),
+            }
+        };
+        let subject = [named(|at| at.channel.as_ref()), named(|at| at.record.as_ref())];
+        let subject: Vec<String> = subject.into_iter().filter(|part| !part.is_empty()).collect();
+        Self {
+            code: finding.code.clone(),
+            subject: subject.join(", "),
+            sections: named(|at| at.section.as_ref()),
+            says: number::raised(finding.first.text()),
+            cause: words::or_nothing(finding.cause.as_ref()),
+            consequence: finding.consequence.in_words(),
+            tone: if finding.consequence == Consequence::Note { Tone::Open } else { Tone::Bad },
+        }
     }
 }
 
-fn named(sections: &[&str]) -> String {
-    if sections.len() <= NAMED_SECTIONS + 1 {
-        return sections.join(", ");
-    }
-    let more = number::count((sections.len() - NAMED_SECTIONS) as u64);
-    format!("{} and {more} more", sections[..NAMED_SECTIONS].join(", "))
+/// Where it is, each with the value found: `S01 Y_1R measurement 5.3; S02 ...`.
+pub fn places(finding: &Finding) -> String {
+    let place = |at: &Occurrence| {
+        let names = [&at.campaign, &at.section, &at.channel, &at.record];
+        let names = names.into_iter().flatten().cloned();
+        names.chain(at.value.map(|value| value.to_string())).collect::<Vec<_>>().join(" ")
+    };
+    finding.places().iter().map(place).collect::<Vec<_>>().join("; ")
 }
 
-/// A row as one line of text.
-pub fn line(row: &Row) -> String {
+/// A finding as one line of text.
+pub fn line(finding: &Finding) -> String {
+    let row = Row::of(finding);
     let about: Vec<&str> = [&row.subject, &row.sections]
         .into_iter()
         .map(String::as_str)
@@ -112,27 +106,38 @@ pub fn line(row: &Row) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::result::FindingData;
+    use crate::result::{Channels, FindingData};
 
-    fn finding(section: Option<&str>, says: &str) -> Finding {
-        Finding {
+    fn finding(section: Option<&str>, rule: &str) -> Finding {
+        let data = FindingData::Copies {
+            rule: rule.into(),
+            channels: Channels::of(&["Y_1R"]),
+            copied: None,
+            record: None,
+            section: section.map(str::to_string),
+        };
+        let first = Occurrence {
             section: section.map(str::to_string),
             channel: Some("Y_1R".into()),
-            ..Finding::note("wheel-load", FindingData::Said { says: says.into() })
-        }
+            ..data.into()
+        };
+        Finding::note("copies", first)
     }
 
     #[test]
     fn the_same_in_many_sections_is_one_row() {
         let mut all: Vec<Finding> =
-            (1..=7).map(|at| finding(Some(&format!("S0{at}")), &format!("mean {at} kN"))).collect();
-        all.push(finding(None, "a fact of the campaign"));
-        let rows = rows(&all);
-        assert_eq!(rows.len(), 2);
+            (1..=7).map(|at| finding(Some(&format!("S0{at}")), "Copies")).collect();
+        all.push(finding(None, "Others"));
+        let joined = Finding::joined(all);
+        assert_eq!(joined.len(), 2);
+        let says = "Y_1R repeats the samples of the same channels";
         assert_eq!(
-            line(&rows[0]),
-            "Y_1R, S01, S02, S03, S04 and 3 more: mean 1 kN [wheel-load; noted]"
+            line(&joined[0]),
+            format!(
+                "Y_1R, S01, S02, S03, S04 and 3 more: Copies: {says} of section S01 [copies; noted]"
+            )
         );
-        assert_eq!(line(&rows[1]), "Y_1R: a fact of the campaign [wheel-load; noted]");
+        assert_eq!(line(&joined[1]), format!("Y_1R: Others: {says} [copies; noted]"));
     }
 }

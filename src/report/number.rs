@@ -3,6 +3,8 @@
 //! A printed number never hides a decision based on it: [`beside`] adds decimals until the printed
 //! value and limit compare as they do in full precision.
 
+use std::fmt::Display;
+
 /// Printed for a missing value: an en dash.
 pub const NONE: &str = "–";
 const MINUS: char = '\u{2212}';
@@ -163,14 +165,14 @@ pub fn unit(text: &str) -> String {
 }
 
 /// A formula or condition as printed: `|a| - 2 * b >= 0.1 m^-1` becomes `|a| − 2 · b ≥ 0.1 m⁻¹`.
-pub fn formula(text: &str) -> String {
-    raised(&text.replace(" - ", " \u{2212} ").replace(" * ", " · "))
+pub fn formula(text: impl Display) -> String {
+    raised(text.to_string().replace(" - ", " \u{2212} ").replace(" * ", " · "))
 }
 
 /// A sentence with its numbers and units as in the tables: `-2e-5 m/s^2 <= 1 1/m` becomes `−2·10⁻⁵
 /// m/s² ≤ 1 m⁻¹`.
-pub fn raised(text: &str) -> String {
-    let text = text.replace("<=", "≤").replace(">=", "≥");
+pub fn raised(text: impl Display) -> String {
+    let text = text.to_string().replace("<=", "≤").replace(">=", "≥");
     let mut printed = String::with_capacity(text.len());
     let mut before = None;
     let mut rest = text.as_str();

@@ -104,10 +104,11 @@ pub fn certification(found: &Certification) -> Result<Vec<File>, csv::Error> {
         .flat_map(|section| entries(&section.checks, json!({"section": section.section})));
     files.push(table("checks", "section, requirement = title, holds, found = says", checks)?);
     let titles = format!(
-        "rule = code, {campaign}section, record, channel, value, expected, unit, finding = says, likely cause = cause, consequence"
+        "rule = code, {campaign}section, record, channel, value, expected, unit, finding = says, likely cause = cause, consequence, places"
     );
     let findings = found.findings.iter().map(|of| {
-        let more = json!({"consequence": of.consequence.in_words()});
+        let places = super::findings::places(of);
+        let more = json!({"consequence": of.consequence.in_words(), "places": places});
         Entry { of, more }
     });
     files.push(table("findings", &titles, findings)?);

@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Verdict, zones};
+use super::{Remark, Verdict, told, zones};
 
 /// A diagnosis.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -54,7 +54,9 @@ pub struct Diagnosis {
     /// Closest candidates for the residual that are not named.
     pub nearest: Vec<Nearest>,
     pub how: How,
-    pub notes: Vec<String>,
+    #[serde(flatten, with = "told::notes")]
+    #[schemars(with = "told::Notes<Remark>")]
+    pub notes: Vec<Remark>,
     pub simulations_run: usize,
     /// Simulated time of all runs in s, inside the sections. Not wall-clock time, so that the same
     /// input gives the same bytes.

@@ -14,6 +14,7 @@ pub mod origin;
 mod parts;
 mod quantity;
 mod reason;
+mod remark;
 pub mod report;
 mod scope;
 mod shrink;
@@ -26,18 +27,19 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
 pub use domain::{CoordinateRange, DomainResult, DomainSection, WantedPoint};
-pub use finding::{Consequence, Finding};
+pub use finding::{Consequence, Finding, Occurrence};
 pub use kind::{Kind, VerdictWords};
 pub use origin::{FittedTo, ImportedOne, ImportedSide, OriginInfo};
 pub use parts::{
     Beyond, Channels, Datum, GivenVerdict, LimitNotMet, OfVehicle, Sections, ShortZone, Subject,
-    VehicleValue,
+    SuspectedFactor, VehicleValue,
 };
 pub use quantity::{
     Count, Figures, GroupRegression, GroupResult, LimitFactor, Outside, PairValue, QuantityResult,
     RegressionAt, RegressionFigure, RegressionPoint, Reported, Sample, StatisticResult,
 };
 pub use reason::{FindingData, Reason, UnusedSection};
+pub use remark::{OutlyingSection, RecordsOf, Remark, SectionOffset};
 pub use report::{Identification, ReportItem};
 pub use scope::{RecordName, Scope, StatisticName, zones};
 pub use spread::{ClassSpread, Furthest, OfRecord, Spread};
@@ -101,7 +103,9 @@ pub struct Certification {
     /// Plausibility findings, in the order of the protocol's rules and of the sections.
     pub findings: Vec<Finding>,
     /// Remarks that do not change the verdict (a short filter margin, a converted unit).
-    pub notes: Vec<String>,
+    #[serde(flatten, with = "told::notes")]
+    #[schemars(with = "told::Notes<Remark>")]
+    pub notes: Vec<Remark>,
     /// Plots of the most relevant sections: signals of the records, which the file names.
     #[serde(skip)]
     pub traces: Vec<Trace>,
@@ -169,7 +173,7 @@ pub struct Deviation {
     pub after: Option<String>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ParameterInfo {
     pub name: String,
     pub title: String,

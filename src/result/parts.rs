@@ -74,6 +74,18 @@ pub struct Beyond {
     pub unit: String,
 }
 
+/// A factor between a value and the expected one that a wrong unit of measure may cause, and which
+/// unit may stand in place of which.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "code", rename = "suspected-factor")]
+pub struct SuspectedFactor {
+    pub by: f64,
+    pub of_unit: bool,
+    pub units: Option<[String; 2]>,
+    /// The value is smaller by the factor, not larger.
+    pub inverse: bool,
+}
+
 /// What a reason is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]

@@ -383,7 +383,9 @@ pub struct RegressionAt {
 pub struct LimitFactor {
     pub by: f64,
     /// `vehicle category is freight`
-    pub because: String,
+    #[serde(flatten, with = "told::because")]
+    #[schemars(with = "told::Because<Reason>")]
+    pub because: Reason,
 }
 
 /// One section and signal.

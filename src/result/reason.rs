@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::parts::{
     Beyond, Channels, Datum, GivenVerdict, LimitNotMet, OfVehicle, Sections, ShortZone, Subject,
+    SuspectedFactor,
 };
 use super::told;
 use crate::words::{self, Text};
@@ -426,6 +427,22 @@ pub enum Reason {
     DependsOnVehicles {
         vehicles: usize,
     },
+
+    // Selections of sections.
+    NotAllEvaluated,
+    UndefinedInAnySelection,
+
+    // Causes.
+    /// Vehicle data on which a limit depends.
+    VehicleData {
+        data: Vec<Datum>,
+    },
+    WithoutSignal,
+    /// A value has another sign than the expected one, or differs from it by a factor.
+    WrongSize {
+        reversed: bool,
+        factor: Option<SuspectedFactor>,
+    },
 }
 
 /// What a finding says.
@@ -468,7 +485,7 @@ pub enum FindingData {
     /// Vehicle data are read in the units of the protocol.
     UnitsAssumed { vehicle: Option<String>, data: Vec<Datum> },
     /// Limits are multiplied for a reason in the vehicle data.
-    FactorOfLimits { quantities: Vec<String>, by: f64, because: String },
+    FactorOfLimits { quantities: Vec<String>, by: f64, because: Reason },
     /// Regressions are read outside their data. Of one estimate, its title and groups.
     ReadOutside {
         quantities: Vec<String>,
@@ -512,6 +529,20 @@ impl FindingData {
             | Self::Copies { rule, .. }
             | Self::Exchanged { rule, .. } => Some(rule),
             _ => None,
+        }
+    }
+
+    /// Whether both say the same of some place, whatever it is and whatever the values are.
+    pub fn alike(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Required { required, .. }, Self::Required { required: other_one, .. }) => {
+                self.rule() == other.rule() && required == other_one
+            }
+            (Self::Copies { .. }, Self::Copies { .. }) => self.rule() == other.rule(),
+            (Self::Exchanged { other: with, .. }, Self::Exchanged { other: other_one, .. }) => {
+                self.rule() == other.rule() && with == other_one
+            }
+            _ => self == other,
         }
     }
 }

@@ -6,8 +6,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::{
-    CampaignInfo, FORMAT, ProtocolInfo, Reason, Scope, StatisticName, THIS, UnusedSection, Verdict,
-    told,
+    CampaignInfo, FORMAT, ProtocolInfo, Reason, Remark, Scope, StatisticName, THIS, UnusedSection,
+    Verdict, told,
 };
 
 /// A study with its inputs, in the form of `study.json`.
@@ -21,7 +21,9 @@ pub struct Study {
     pub campaign: CampaignInfo,
     #[serde(flatten)]
     pub found: Found,
-    pub notes: Vec<String>,
+    #[serde(flatten, with = "told::notes")]
+    #[schemars(with = "told::Notes<Remark>")]
+    pub notes: Vec<Remark>,
 }
 
 /// What a study is of.
@@ -37,7 +39,7 @@ impl Study {
     pub fn new(
         protocol: ProtocolInfo,
         campaign: CampaignInfo,
-        notes: Vec<String>,
+        notes: Vec<Remark>,
         found: Found,
     ) -> Self {
         let kind = match &found {
@@ -84,7 +86,9 @@ pub struct SelectionStudy {
     /// Methods used, one sentence each.
     pub methods: Vec<String>,
     /// Why no selection can be assessed, if none can.
-    pub lacking: Option<String>,
+    #[serde(flatten, with = "told::lacking")]
+    #[schemars(with = "told::NoneOrLacking<Remark>")]
+    pub lacking: Option<Remark>,
 }
 
 /// How many selections there are, and the share of them that is validated.
@@ -116,7 +120,9 @@ pub struct Stratum {
     /// Usable sections.
     pub sections: Vec<String>,
     /// Sections that are not usable, with the reason.
-    pub not_used: Vec<UnusedSection>,
+    #[serde(flatten, with = "told::not_used")]
+    #[schemars(with = "told::NotUsed<Reason>")]
+    pub not_used: Vec<(String, Reason)>,
 }
 
 /// Share of the selections that are validated.
@@ -126,8 +132,9 @@ pub struct Share {
     #[serde(rename = "validated")]
     pub validated_of_all: Option<u64>,
     /// Why there is no such number.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub reason: Option<String>,
+    #[serde(flatten, with = "told::reason", skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "told::NoneOrReason<Reason>")]
+    pub reason: Option<Reason>,
     #[serde(rename = "share_validated")]
     pub share: f64,
     /// All selections were evaluated.
@@ -197,7 +204,9 @@ pub struct StatisticSpread {
     #[serde(rename = "normalised")]
     pub spread: Option<Spread>,
     /// Why there is none.
-    pub reason: Option<String>,
+    #[serde(flatten, with = "told::reason")]
+    #[schemars(with = "told::NoneOrReason<Reason>")]
+    pub reason: Option<Reason>,
 }
 
 /// A statistic over the selections.
@@ -323,8 +332,9 @@ pub struct AtOffset {
     #[serde(flatten)]
     pub selections: Selections,
     /// Differences from the case without offset.
-    #[serde(rename = "verdict_changes")]
-    pub changes: Vec<String>,
+    #[serde(flatten, with = "told::changes")]
+    #[schemars(with = "told::Changes<Remark>")]
+    pub changes: Vec<Remark>,
     #[serde(rename = "selections_changed")]
     pub flips: Flipped,
     /// Verdict over all usable sections.

@@ -62,6 +62,12 @@ keys! {
     reason: "reason", "reason_data";
     reasons: "reasons", "reasons_data";
     says: "says", "data";
+    cause: "cause", "cause_data";
+    because: "because", "because_data";
+    notes: "notes", "notes_data";
+    lacking: "lacking", "lacking_data";
+    changes: "verdict_changes", "verdict_changes_data";
+    not_used: "not_used", "not_used_data";
 }
 
 /// The keys of a field in a schema, for `#[schemars(with = "told::...")]` beside it.
@@ -106,5 +112,46 @@ in_schema! {
     pub struct Says<D> {
         says: String,
         data: D,
+    }
+
+    /// A cause, or none.
+    pub struct NoneOrCause<R> {
+        cause: Option<String>,
+        #[schemars(default, skip_serializing_if = "Option::is_none")]
+        cause_data: Option<R>,
+    }
+
+    /// Why a factor applies.
+    pub struct Because<R> {
+        because: String,
+        because_data: R,
+    }
+
+    /// Any number of remarks.
+    pub struct Notes<R> {
+        notes: Vec<String>,
+        #[schemars(default, skip_serializing_if = "Vec::is_empty")]
+        notes_data: Vec<R>,
+    }
+
+    /// A remark on what is lacking, or none.
+    pub struct NoneOrLacking<R> {
+        lacking: Option<String>,
+        #[schemars(default, skip_serializing_if = "Option::is_none")]
+        lacking_data: Option<R>,
+    }
+
+    /// Any number of changes of a verdict.
+    pub struct Changes<R> {
+        verdict_changes: Vec<String>,
+        #[schemars(default, skip_serializing_if = "Vec::is_empty")]
+        verdict_changes_data: Vec<R>,
+    }
+
+    /// Sections that are not used, each with the reason.
+    pub struct NotUsed<R> {
+        not_used: Vec<(String, String)>,
+        #[schemars(default, skip_serializing_if = "Vec::is_empty")]
+        not_used_data: Vec<(String, R)>,
     }
 }

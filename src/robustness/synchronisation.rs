@@ -6,7 +6,7 @@ use crate::check::plan::Plan;
 use crate::data::Campaigns;
 use crate::problem::Problems;
 use crate::result::study::{AtOffset, Estimated, Flipped, Found, Offset, Study, SyncStudy};
-use crate::result::{Reason, UnusedSection, Verdict, VerdictWords};
+use crate::result::{Reason, Remark, UnusedSection, Verdict, VerdictWords};
 use crate::run::{Evaluated, Progress, Shifts, evaluate};
 use crate::study::case::Case;
 use crate::study::fails::Fails;
@@ -140,45 +140,32 @@ fn at_offset(
 
 /// Differences from the case without offset: the verdict on all sections, limits of all sections,
 /// limits of the single selection, and the number of selections with another verdict.
-fn changes(base: &AtOffset, at: &AtOffset, words: &VerdictWords) -> Vec<String> {
+fn changes(base: &AtOffset, at: &AtOffset, words: &VerdictWords) -> Vec<Remark> {
     let mut changes = Vec::new();
     if base.verdict != at.verdict {
-        changes.push(format!(
-            "all sections: {} instead of {}",
-            words.word(at.verdict),
-            words.word(base.verdict)
-        ));
+        changes.push(Remark::VerdictChanged {
+            now: words.word(at.verdict).into(),
+            before: words.word(base.verdict).into(),
+        });
     }
-    for reason in at
-        .reasons
-        .iter()
-        .filter(|reason| at.verdict != Verdict::NotAssessable && !same_limit(&base.reasons, reason))
-    {
-        changes.push(format!("all sections: {}", reason.text()));
-    }
-    for reason in base
-        .reasons
-        .iter()
-        .filter(|reason| at.verdict != Verdict::NotAssessable && !same_limit(&at.reasons, reason))
-    {
-        changes.push(format!("all sections, no longer: {}", reason.text()));
+    if at.verdict != Verdict::NotAssessable {
+        for (of, others, gone) in [(at, base, false), (base, at, true)] {
+            let other =
+                |reason: &&Reason| !others.reasons.iter().any(|known| known.same_limit(reason));
+            let changed = of.reasons.iter().filter(other).cloned();
+            changes.extend(changed.map(|reason| Remark::ReasonChanged { gone, reason }));
+        }
     }
     for (before, now) in
         base.selected.iter().zip(&at.selected).filter(|(before, now)| before.holds != now.holds)
     {
-        let word = if now.holds { "met" } else { "not met" };
-        changes.push(format!(
-            "single selection: criterion on the {} of {} {word} instead of {}",
-            before.name,
-            before.id,
-            if now.holds { "not met" } else { "met" }
-        ));
+        changes.push(Remark::CriterionChanged {
+            statistic: before.name.clone(),
+            quantity: before.id.clone(),
+            met: now.holds,
+        });
     }
     changes
-}
-
-fn same_limit(reasons: &[Reason], reason: &Reason) -> bool {
-    reasons.iter().any(|known| known.same_limit(reason))
 }
 
 fn lost(base: &Evaluated, at: &Evaluated, plan: &Plan) -> Vec<UnusedSection> {

@@ -30,7 +30,7 @@ pub struct Stratum {
     /// Usable sections by index.
     pub members: Vec<usize>,
     /// Other sections of the zone, with the reason.
-    pub not_used: Vec<UnusedSection>,
+    pub not_used: Vec<(String, Reason)>,
 }
 
 #[derive(Clone, Debug)]
@@ -116,7 +116,7 @@ impl Case {
                     members.push(at);
                 } else {
                     let reason = section.reason.clone().unwrap_or(Reason::LeftOut);
-                    not_used.push(UnusedSection { section: section.name.clone(), reason });
+                    not_used.push((section.name.clone(), reason));
                 }
             }
             (members, not_used)
@@ -152,7 +152,13 @@ impl Case {
             zone,
             sections,
             take: stratum.take,
-            unused: stratum.not_used.iter().take(NAMED).cloned().collect(),
+            unused: stratum
+                .not_used
+                .iter()
+                .take(NAMED)
+                .cloned()
+                .map(|(section, reason)| UnusedSection { section, reason })
+                .collect(),
         })?;
         for (first, repeat) in repeats(pool) {
             case.take_together(first, repeat);

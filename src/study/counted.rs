@@ -2,10 +2,10 @@
 //! influence of each section.
 
 use super::case::Case;
-use crate::result::StatisticName;
 use crate::result::study::{
     Importance, QuantitySpread, Share, Spread, StatisticSpread, WorstSelection,
 };
+use crate::result::{Reason, StatisticName};
 
 /// Results of many selections.
 #[derive(Debug)]
@@ -62,7 +62,7 @@ impl Counted {
                     at_least: measure.at_least,
                     overall: measure.over(usable.iter().copied()),
                     failing: share_of(found.failing),
-                    reason: found.spread.is_none().then(|| "not defined for any selection".into()),
+                    reason: found.spread.is_none().then_some(Reason::UndefinedInAnySelection),
                     spread: found.spread,
                 });
                 worst.extend(found.worst.map(|(sections, normalised)| WorstSelection {

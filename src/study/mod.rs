@@ -47,6 +47,7 @@ pub mod spread;
 pub mod verdicts;
 mod window;
 
+use crate::result::Remark;
 use crate::result::study::{Counted, SelectionStudy, Stratum};
 use case::Case;
 use fails::Fails;
@@ -120,7 +121,7 @@ pub fn marked(case: &Case, settings: &Settings) -> (SelectionStudy, Option<Fails
 
 /// Why no selection can be assessed: even the sections with the most pairs have fewer than a
 /// quantity needs.
-fn lacking(case: &Case) -> Option<String> {
+fn lacking(case: &Case) -> Option<Remark> {
     let most = |pairs: &dyn Fn(usize) -> usize| -> usize {
         let of_stratum = |stratum: &case::Stratum| {
             let mut all: Vec<usize> = stratum.members.iter().map(|&at| pairs(at)).collect();
@@ -138,10 +139,8 @@ fn lacking(case: &Case) -> Option<String> {
         let (needed, most) = std::iter::once(in_all)
             .chain(of_groups)
             .find(|(needed, most)| most < needed && *needed < usize::MAX)?;
-        Some(format!(
-            "No selection can be assessed: {} has at most {most} pairs, and {needed} are required.",
-            quantity.symbol
-        ))
+        let quantity = quantity.symbol.clone();
+        Some(Remark::NoSelectionSuffices { quantity, most, needed })
     };
     case.quantities.iter().find_map(of_quantity)
 }

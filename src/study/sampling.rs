@@ -10,8 +10,8 @@ use super::known::{self, known};
 use super::quartiles::estimated;
 use super::random::{Count, draw_until};
 use crate::metrics::interval::wilson;
-use crate::result::Verdict;
 use crate::result::study::{Share, Spread};
+use crate::result::{Reason, Verdict};
 
 /// Number of selections whose values are kept for the quartiles.
 const KEPT: usize = 1 << 16;
@@ -105,7 +105,7 @@ pub fn some(case: &Case, settings: &Settings) -> Counted {
     let interval = wilson(drawn.validated, all);
     let share = Share {
         validated_of_all: None,
-        reason: Some("not all selections were evaluated".into()),
+        reason: Some(Reason::NotAllEvaluated),
         exact: false,
         interval: Some(interval),
         seed: Some(settings.seed),

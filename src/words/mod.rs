@@ -133,7 +133,7 @@ mod tests {
     use serde::de::DeserializeOwned;
 
     use super::*;
-    use crate::result::{Channels, FindingData, Reason, Sections, VehicleValue};
+    use crate::result::{Channels, FindingData, Reason, Remark, Sections, VehicleValue};
 
     /// A value for a field, whatever its type: the first that fits.
     const FITS: [&str; 15] = [
@@ -191,10 +191,15 @@ mod tests {
     fn every_variant_has_a_text_with_its_fields() {
         let mut all = examples::<Reason>();
         all.extend(examples::<FindingData>());
+        all.extend(examples::<Remark>());
         all.extend(examples::<VehicleValue>());
         all.push(serde_json::to_value(Sections::of(&["S01"], 2)).expect("data"));
         all.push(serde_json::to_value(Channels::of(&["Y"])).expect("data"));
-        let mut used = BTreeSet::from(["titled".to_owned(), "usable-sections".to_owned()]);
+        all.push(serde_json::json!({
+            "code": "suspected-factor", "by": 9.8, "of_unit": true, "units": ["kgf", "N"], "inverse": true,
+        }));
+        let mut used: BTreeSet<String> =
+            ["and", "titled", "usable-sections"].map(String::from).into();
         for example in &all {
             let code = example["code"].as_str().expect("a code");
             used.insert(code.to_owned());

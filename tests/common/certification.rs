@@ -107,9 +107,8 @@ pub fn certification() -> Certification {
         traces,
         findings: Vec::new(),
         notes: vec![
-            "Section S07: 3.1 s of record before the section; the band-pass needs 5 s to settle."
-                .into(),
-            format!("Column `{HOSTILE}` of sections.csv is not used."),
+            Remark::Said { says: "Section S07: 3.1 s of record before the section; the band-pass needs 5 s to settle.".into() },
+            Remark::Said { says: format!("Column `{HOSTILE}` of sections.csv is not used.") },
         ],
     }
 }

@@ -5,8 +5,8 @@
 use fishplate::result::{
     CampaignInfo, Certification, CheckResult, Curve, DataItem, Deviation, DomainRange, FORMAT,
     Figures, FileHash, FilterInfo, Identification, PairValue, ParameterInfo, ProtocolFile,
-    ProtocolInfo, QuantityResult, Reason, RulePlace, Sample, Scope, SectionResult, StatisticResult,
-    THIS, Trace, Verdict, ZoneResult,
+    ProtocolInfo, QuantityResult, Reason, Remark, RulePlace, Sample, Scope, SectionResult,
+    StatisticResult, THIS, Trace, Verdict, ZoneResult,
 };
 
 /// A vehicle's name that would run if it were taken for markup.
@@ -146,9 +146,11 @@ pub fn certification() -> Certification {
         application: Vec::new(),
         traces: traces(&mut noise),
         findings: Vec::new(),
-        notes: vec![format!(
-            "Section {BREAKOUT}: margin of 4.2 s before the section is short for a filter that reaches to 0.4 Hz"
-        )],
+        notes: vec![Remark::Said {
+            says: format!(
+                "Section {BREAKOUT}: margin of 4.2 s before the section is short for a filter that reaches to 0.4 Hz"
+            ),
+        }],
         quantities,
         sections,
     }

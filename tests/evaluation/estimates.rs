@@ -299,25 +299,29 @@ fn regressions_outside_their_data_are_told() {
     let ((low, high), near) =
         (of_zone("4"), |a: Option<f64>, b: f64| (a.expect("a number") - b).abs() < 1e-9);
     assert!(
-        near(told[0].value, 143.0)
-            && near(told[0].expected, high)
-            && told[0].unit.as_deref() == Some("mm")
+        near(told[0].first.value, 143.0)
+            && near(told[0].first.expected, high)
+            && told[0].first.unit.as_deref() == Some("mm")
     );
     let says = format!(
         "{} mm above the data, which reach from {low} to {high} mm",
         fishplate::metrics::rounded(143.0 - high)
     );
     assert!(
-        told[0].text().to_string().contains(&says),
+        told[0].first.text().to_string().contains(&says),
         "{} without {says}",
-        told[0].text().to_string()
+        told[0].first.text().to_string()
     );
     let groups = "(zone 4, wheelset 1; zone 4, wheelset 2; zone 4, wheelset 3; zone 4, wheelset 4)";
-    assert!(told[0].text().to_string().ends_with(groups), "{}", told[0].text().to_string());
     assert!(
-        near(told[1].value, 60.0)
-            && near(told[1].expected, of_zone("3").0)
-            && told[1].text().to_string().contains("below the data")
+        told[0].first.text().to_string().ends_with(groups),
+        "{}",
+        told[0].first.text().to_string()
+    );
+    assert!(
+        near(told[1].first.value, 60.0)
+            && near(told[1].first.expected, of_zone("3").0)
+            && told[1].first.text().to_string().contains("below the data")
     );
     assert!(all(&found).all(|one| one.value.is_some()));
 }

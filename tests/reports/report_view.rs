@@ -10,7 +10,7 @@ use fishplate::report::figure::figures;
 use fishplate::report::html::html;
 use fishplate::report::view::document;
 use fishplate::result::{
-    Certification, Kind, Outcome, Reason, RulePlace, Subject, Verdict, VerdictResult,
+    Certification, Kind, Outcome, Reason, Remark, RulePlace, Subject, Verdict, VerdictResult,
 };
 
 fn data() -> Document {
@@ -200,7 +200,7 @@ fn what_a_person_decides_is_no_lack_of_data() {
 #[test]
 fn sentences_are_printed_as_tables_are() {
     let mut found = certification::certification();
-    found.notes = vec!["0.2 m/s^2 where -3 1/m <= x".into()];
+    found.notes = vec![Remark::Said { says: "0.2 m/s^2 where -3 1/m <= x".into() }];
     found.quantities[0].statistics[0].normalised = Some(3e40);
     let data = on_screen(&found);
     assert!(sentences(&data).contains(&"0.2 m/s² where −3 m⁻¹ ≤ x".to_owned()));

@@ -396,20 +396,13 @@ impl Campaign {
         }
     }
 
-    /// The offsets of all sections as a sentence; `None` if there are none.
-    pub fn offsets_in_words(&self) -> Option<String> {
-        let unit = |axis: &str| if axis == AXES[0].0 { "m" } else { "s" };
-        let one = |name: &Cell| {
+    /// The sections with an offset: the name, the axis and the offset in SI.
+    pub fn offsets(&self) -> impl Iterator<Item = (&str, &str, f64)> {
+        self.names.iter().filter_map(|name| {
             let (axis, offset) =
                 self.offset(name).ok().flatten().filter(|(_, offset)| *offset != 0.0)?;
-            Some((axis, format!("{} {offset:+} {}", name.value, unit(axis))))
-        };
-        let all: Vec<(&str, String)> = self.names.iter().filter_map(one).collect();
-        let axis = all.first()?.0;
-        let list = all.into_iter().map(|(_, text)| text).collect::<Vec<_>>().join(", ");
-        Some(format!(
-            "Added to the {axis} of the measurement (column `{OFFSET}` of the table of sections): {list}."
-        ))
+            Some((name.value.as_str(), axis, offset))
+        })
     }
 }
 

@@ -5,8 +5,8 @@ use crate::diagnose::levels::common::NINETY;
 use crate::diagnose::levels::verdict::{MISFIT, ROOMY};
 use crate::diagnose::run::Found;
 use crate::diagnose::selection::lack::{left, with_room};
-use crate::result::Verdict as OfProtocol;
 use crate::result::diagnosis::{Fit, Shrink};
+use crate::result::{Remark, Verdict as OfProtocol};
 
 /// The verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -167,21 +167,16 @@ pub fn fit(found: &Found) -> Fit {
 
 /// A remark where what is allowed does not fit what is left.
 #[must_use]
-pub fn remark(fit: &Fit) -> Option<String> {
-    let Fit { chi2_per_feature, allowance_scale, allowance_scale_sd, .. } = fit;
-    let scale = format!("{allowance_scale:.2} \u{b1} {:.2}", NINETY * allowance_scale_sd);
-    if *chi2_per_feature > MISFIT {
-        Some(format!(
-            "chi-squared per feature is {chi2_per_feature:.2}: noise, tolerances and model discrepancy would have to be {scale} times as large"
-        ))
-    } else if *chi2_per_feature < ROOMY {
-        Some(format!(
-            "chi-squared per feature is {chi2_per_feature:.2}: noise, tolerances and model discrepancy are assumed larger than the data show \
-             (a factor of {scale} would suffice), so smaller effects cannot be seen"
-        ))
-    } else {
-        None
-    }
+pub fn remark(fit: &Fit) -> Option<Remark> {
+    let Fit { chi2_per_feature, allowance_scale: factor, allowance_scale_sd, .. } = *fit;
+    let within = NINETY * allowance_scale_sd;
+    let larger = chi2_per_feature > MISFIT;
+    (larger || chi2_per_feature < ROOMY).then_some(Remark::WrongAllowance {
+        larger,
+        chi2_per_feature,
+        factor,
+        within,
+    })
 }
 
 #[cfg(test)]
@@ -234,6 +229,7 @@ mod tests {
                 allowance_scale: scale,
                 allowance_scale_sd: scale / 20.0,
             })
+            .map(|remark| remark.text().to_string())
         };
         assert!(of(1.0).is_none());
         assert!(of(7.8).is_some_and(|says| says.contains("2.79 \u{b1} 0.23 times as large")));

@@ -14,7 +14,7 @@ use crate::diagnose::run::{Found, chi, deviations};
 use crate::diagnose::selection::lack::unexplained;
 use crate::diagnose::selection::suspects::Suspect;
 use crate::result::diagnosis::{Cause, Diagnosis, Fault, HeldOut, How, Nearest, Shrink, Vetoed};
-use crate::result::{FORMAT, THIS, Verdict as OfProtocol};
+use crate::result::{FORMAT, OutlyingSection, Remark, THIS, Verdict as OfProtocol};
 use crate::simulate::Units;
 
 /// The verdict of the protocol without the effects and, where effects are named, with them.
@@ -124,47 +124,35 @@ pub fn diagnosis(
         says.extend(crate::diagnose::localisation::shapes::worth_a_word(&shapes));
     }
     says.extend(neither(inputs, found, &causes, verdict));
-    let noted = found
-        .runs
-        .failed
-        .iter()
-        .map(|failed| format!("a simulation failed and was excluded: {failed}"));
-    let left_out = found
-        .seen
-        .left_out
-        .iter()
-        .map(|(section, reason)| format!("section {section} was excluded: {reason}"));
+    let noted =
+        found.runs.failed.iter().map(|failed| Remark::SimulationFailed { says: failed.clone() });
+    let left_out = found.seen.left_out.iter().map(|(section, says)| Remark::SectionExcluded {
+        section: section.clone(),
+        says: says.clone(),
+    });
     let again = found
         .seen
         .sections
         .iter()
         .filter(|observed| observed.again)
-        .map(|observed| observed.section.name());
-    let again = again
-        .map(|name| format!("section {name} repeats another section and is not counted twice"));
-    let mut notes: Vec<String> = noted.chain(left_out).chain(again).collect();
+        .map(|observed| Remark::SectionRepeats { section: observed.section.name().into() });
+    let mut notes: Vec<Remark> = noted.chain(left_out).chain(again).collect();
     let unknown = found.declared.unknown.iter();
-    notes.extend(unknown.map(|name| format!("the catalogue has no tolerance `{name}`; the value that the campaign declares is not used")));
+    notes.extend(unknown.map(|name| Remark::UnknownTolerance { name: name.clone() }));
     let tolerances = if found.declared.any {
         "declared by the campaign"
     } else {
-        notes.push("the campaign declares no tolerances; documented defaults were used, which weakens the verdict".into());
+        notes.push(Remark::NoToleranceDeclared);
         "documented defaults"
     };
     notes.extend(alone(found));
     notes.extend(verdict::remark(&fit));
     if !inputs.references.is_empty() {
-        let names: Vec<&str> =
-            inputs.references.iter().map(|reference| reference.campaign.name.as_str()).collect();
-        notes.push(format!(
-            "the standing discrepancy of the simulation was estimated from: {}",
-            names.join(", ")
-        ));
+        let names = inputs.references.iter().map(|reference| reference.campaign.name.clone());
+        notes.push(Remark::StandingDiscrepancyFrom { campaigns: names.collect() });
     }
     if inputs.simulator.is_none() {
-        notes.push(
-            "no simulator could be run; only effects of the measuring chain were tested".into(),
-        );
+        notes.push(Remark::NoSimulator);
     }
     Diagnosis {
         fishplate: THIS.into(),
@@ -222,28 +210,22 @@ fn simulated_time(found: &Found) -> f64 {
 }
 
 /// Outlying sections with the channels concerned.
-fn alone(found: &Found) -> Option<String> {
+fn alone(found: &Found) -> Option<Remark> {
     let one = |at: usize| {
-        let mut channels: Vec<&str> = found
+        let mut channels: Vec<String> = found
             .answer
             .lack_after
             .iter()
             .filter(|lack| lack.alone.contains(&at))
-            .map(|lack| lack.channel.as_str())
+            .map(|lack| lack.channel.clone())
             .collect();
         channels.dedup();
-        (!channels.is_empty()).then(|| {
-            format!("{} in {}", found.seen.sections[at].section.name(), channels.join(", "))
-        })
+        let section = found.seen.sections[at].section.name().into();
+        (!channels.is_empty()).then_some(OutlyingSection { section, channels })
     };
-    let all: Vec<String> = (0..found.seen.sections.len()).filter_map(one).collect();
-    let told = !all.is_empty() && !found.answer.chosen.members.is_empty();
-    told.then(|| {
-        format!(
-            "individual outlying sections, which do not decide whether the gap is explained: {}",
-            all.join("; ")
-        )
-    })
+    let sections: Vec<_> = (0..found.seen.sections.len()).filter_map(one).collect();
+    let told = !sections.is_empty() && !found.answer.chosen.members.is_empty();
+    told.then_some(Remark::Outlying { sections })
 }
 
 fn vetoed(inputs: &Inputs<'_>, found: &Found) -> Vec<Vetoed> {

@@ -126,7 +126,7 @@ pub fn differences(found: &Comparison) -> Option<Chapter> {
 fn rules(found: &Comparison) -> Table {
     let row = |one: &Difference| {
         let ratio = |ratio: Option<f64>| three(ratio).printed().letters();
-        let reason = || one.reason.as_ref().map(|reason| reason.text().into());
+        let reason = || one.reason.as_ref().map(|reason| reason.text().to_string());
         let after = one.verdict_after.clone().or_else(reason);
         vec![
             Cell::sentence(&one.rule),

@@ -175,7 +175,7 @@ impl From<String> for Cell {
 
 impl From<Reason> for Cell {
     fn from(reason: Reason) -> Self {
-        Self::text(String::from(reason.text()))
+        Self::text(reason.text().to_string())
     }
 }
 

@@ -160,8 +160,7 @@ impl Row {
     /// With what the row came to as its last cell, and the reason.
     pub fn ending(mut self, finding: Finding, reason: Option<&Reason>) -> Self {
         let tone = finding.tone;
-        let reason =
-            reason.map(|reason| format!(": {}", number::raised(&String::from(reason.text()))));
+        let reason = reason.map(|reason| format!(": {}", number::raised(reason.text())));
         let text = Text::from(Run::Finding(finding)).and(reason.unwrap_or_default());
         self.cells.push(Cell::text(text));
         self.toned(tone)

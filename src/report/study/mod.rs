@@ -47,7 +47,8 @@ pub fn document(study: &Study) -> Document {
         Found::Parameters(found) => parameters::chapters(found, words),
     };
     if !study.notes.is_empty() {
-        chapters.push(Chapter::new("remarks", "Remarks", vec![Block::list(&study.notes)]));
+        let notes = study.notes.iter().map(|note| note.text().to_string());
+        chapters.push(Chapter::new("remarks", "Remarks", vec![Block::list(notes)]));
     }
     chapters.push(settings(study));
     let over = format!("Robustness of the verdict: {}", subject(study).to_lowercase());

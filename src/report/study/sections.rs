@@ -11,7 +11,7 @@ use crate::report::view::Opening;
 use crate::result::study::{
     Importance, QuantitySpread, Reduction, Removal, SelectionStudy, Spread,
 };
-use crate::result::{Reason, UnusedSection, Verdict, VerdictWords};
+use crate::result::{Reason, Verdict, VerdictWords};
 
 /// Maximum number of rows of a table; the CSV tables contain all.
 const MOST_ROWS: usize = 60;
@@ -49,7 +49,8 @@ pub fn opening(found: &SelectionStudy, words: &VerdictWords) -> Opening {
             number::count(found.counted.share.looked_at)
         )
     };
-    let lacking = found.lacking.as_ref().map_or_else(String::new, |lacking| format!(" {lacking}"));
+    let lacking =
+        found.lacking.as_ref().map_or_else(String::new, |lacking| format!(" {}", lacking.text()));
     Opening {
         headline: Finding::new(
             holds,
@@ -369,9 +370,9 @@ fn reduction(reduction: &Reduction) -> Chapter {
 
 /// Sections that are not used for the same reason, with the reason once: `S01, S02: left out by the
 /// reduction`.
-fn by_reason(sections: &[UnusedSection]) -> Vec<String> {
+fn by_reason(sections: &[(String, Reason)]) -> Vec<String> {
     let mut reasons: Vec<(&Reason, Vec<&str>)> = Vec::new();
-    for UnusedSection { section, reason } in sections {
+    for (section, reason) in sections {
         match reasons.iter_mut().find(|(known, _)| *known == reason) {
             Some((_, names)) => names.push(section),
             None => reasons.push((reason, vec![section])),

@@ -81,7 +81,8 @@ fn shares(found: &SyncStudy, words: &VerdictWords) -> Vec<Block> {
     let row = |at: &AtOffset| {
         let (study, flips) = (at.selections.counted().ok(), at.flips.compared());
         let shown_share = |share: f64, interval| super::share_with(share, interval);
-        let changes = Some(at.changes.join("; ")).filter(|changes| !changes.is_empty());
+        let changes: Vec<String> = at.changes.iter().map(|of| of.text().to_string()).collect();
+        let changes = (!changes.is_empty()).then(|| changes.join("; "));
         vec![
             Cell::from(shown(found, at.offset.value())),
             Cell::or_missing(study.map(|study| share(&study.share))),

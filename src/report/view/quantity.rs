@@ -24,8 +24,7 @@ pub(super) fn chapter(view: &View<'_>) -> Option<Chapter> {
 fn part(at: usize, quantity: &QuantityResult, view: &View<'_>) -> Part {
     let finding = Finding::of_quantity(quantity);
     let rows = if sides_apart(quantity) { "Pairs" } else { "Values" };
-    let reason =
-        quantity.reason.as_ref().map(|reason| number::raised(&String::from(reason.text())));
+    let reason = quantity.reason.as_ref().map(|reason| number::raised(reason.text()));
     let reason = reason.map_or_else(String::new, |reason| format!(": {reason}"));
     let mut opening = vec![
         Block::text(Text::from(Run::Finding(finding.clone())).and(reason)),

@@ -51,7 +51,7 @@ fn rejected(all: &[Rejected], tried: usize) -> Table {
     let row = |rejected: &Rejected| {
         let share = 100.0 * rejected.places as f64 / tried.max(1) as f64;
         cells![
-            capital(&String::from(rejected.reason.text())),
+            capital(&rejected.reason.text().to_string()),
             (rejected.places as u64),
             Cell::text(format!("{share:.1} %"))
         ]

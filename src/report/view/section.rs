@@ -150,7 +150,7 @@ fn checks(sections: &[&SectionResult], caption: &str) -> Vec<Table> {
     }
     let cell = |check: &CheckResult| {
         let mark = Run::Mark(Finding::of(check.holds));
-        Text::from(mark).and(format!(" {}", number::formula(&String::from(check.says.text()))))
+        Text::from(mark).and(format!(" {}", number::formula(check.says.text())))
     };
     let table = |known: &[&CheckResult]| {
         let row = |section: &&SectionResult| {

@@ -26,7 +26,7 @@ pub(super) fn chapter(view: &View<'_>) -> Chapter {
         remarks.push(findings::table(&found.findings).into());
     }
     if !found.notes.is_empty() {
-        let notes = found.notes.iter().map(|note| view.symbols.text(&number::raised(note)));
+        let notes = found.notes.iter().map(|note| view.symbols.text(&number::raised(note.text())));
         let title = "Remarks that do not affect the verdict";
         remarks.push(Block::Boxed { tone: None, title, entries: notes.collect() });
     }

@@ -128,7 +128,7 @@ fn lacks(found: &Certification) -> Option<Reason> {
 
 /// A reason for print.
 fn told(reason: &Reason) -> String {
-    number::raised(&String::from(reason.text()))
+    number::raised(reason.text())
 }
 
 /// What is said of an overall verdict with words of its own: the protocol says what it means.

@@ -5,7 +5,9 @@ use crate::data::Campaigns;
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
 use crate::result::study::Reduction;
-use crate::result::{DataItem, DomainRange, DomainResult, FileHash, Finding, SectionResult, Trace};
+use crate::result::{
+    DataItem, DomainRange, DomainResult, FileHash, Finding, Remark, SectionResult, Trace,
+};
 use crate::run::describe::traces::{self, Kept, Signals};
 use crate::run::describe::{domain, not_asked, told};
 use crate::run::estimate::extrapolation;
@@ -25,7 +27,7 @@ pub struct Outcome {
     /// The vehicle data that the protocol reads.
     pub vehicle: Vec<DataItem>,
     pub findings: Vec<Finding>,
-    pub notes: Vec<String>,
+    pub notes: Vec<Remark>,
     /// The sections that are kept, where the protocol reduces them.
     pub reduction: Option<Reduction>,
     /// Records in the order of the sections.
@@ -90,7 +92,7 @@ pub fn judge(
         judged,
         application: application.clone(),
         traces,
-        findings,
+        findings: Finding::joined(findings),
         notes,
         files: files.clone(),
         reduction: reduction.clone(),

@@ -4,12 +4,11 @@ use std::collections::HashMap;
 
 use crate::check::plan::{OnFault, Plan};
 use crate::problem::{Problem, Problems};
-use crate::result::{Consequence, Finding, Reason, Sections};
+use crate::result::{Consequence, Finding, Reason, Remark, Sections};
 use crate::run::sections::requirements::{asked, not_stated, of_check};
 use crate::run::sections::{Facts, Unit};
 use crate::run::values::SectionValues;
 use crate::run::values::margins::margin_note;
-use crate::words;
 
 /// The consequence of a finding, from the rule's `otherwise`. For `stop`, the run ends elsewhere.
 pub fn consequence(otherwise: OnFault) -> Consequence {
@@ -30,12 +29,12 @@ pub fn take_over(
     units: &mut [Unit],
     values: &[SectionValues],
     copies: &[Finding],
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Remark>,
 ) -> Result<(), Problems> {
     let mut stop = Problems::default();
     let mut of_section: HashMap<&str, Vec<&Finding>> = HashMap::new();
     for copy in copies {
-        of_section.entry(copy.section.as_deref().unwrap_or_default()).or_default().push(copy);
+        of_section.entry(copy.first.section.as_deref().unwrap_or_default()).or_default().push(copy);
     }
     for (unit, values) in units.iter_mut().zip(values) {
         for (check, rule) in
@@ -44,7 +43,9 @@ pub fn take_over(
             let reason = of_check(check);
             match rule.otherwise {
                 OnFault::NotUsed | OnFault::NotAssessable => unit.refuse(reason, false),
-                OnFault::Note => notes.push(format!("Section {}: {}.", unit.name, reason.text())),
+                OnFault::Note => {
+                    notes.push(Remark::OfSection { section: unit.name.clone(), reason })
+                }
                 OnFault::Stop => {
                     let says = format!("section {}: {}", unit.name, reason.text());
                     stop.push(Problem::error("section-check", says).at(&rule.span));
@@ -58,12 +59,12 @@ pub fn take_over(
             .chain(of_section.get(name.as_str()).into_iter().flatten().copied())
         {
             if finding.consequence == Consequence::NotUsed {
-                let finding = Box::new(finding.data.clone());
+                let finding = Box::new(finding.first.data.clone());
                 unit.refuse(Reason::Finding { finding }, false);
             }
             let rule = plan.plausibility.iter().find(|rule| rule.name == finding.code);
             if let Some(rule) = rule.filter(|rule| rule.otherwise == OnFault::Stop) {
-                let says = format!("section {name}: {}", finding.text());
+                let says = format!("section {name}: {}", finding.first.text());
                 stop.push(Problem::error("not-plausible", says).at(&rule.span));
             }
         }
@@ -81,7 +82,7 @@ pub fn take_over(
 }
 
 /// One note for each requirement that could not be checked in sections that are used nevertheless.
-fn unchecked(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<String> {
+fn unchecked(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Remark> {
     let mut found: Vec<(&str, &Reason, Vec<&str>)> = Vec::new();
     for unit in units.iter().filter(|unit| unit.fault.is_none()) {
         for check in unit.checks.iter().filter(|check| check.holds.is_none()) {
@@ -100,9 +101,10 @@ fn unchecked(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<String> {
             }
         }
     }
-    let sentence = |(title, says, names): (&str, &Reason, Vec<&str>)| {
-        let of = words::text(&Sections::of(&names, units.len()));
-        format!("{title}: {} ({of}).", says.text())
+    let remark = |(title, says, names): (&str, &Reason, Vec<&str>)| Remark::Unchecked {
+        check: title.into(),
+        reason: says.clone(),
+        sections: Sections::of(&names, units.len()),
     };
-    found.into_iter().map(sentence).collect()
+    found.into_iter().map(remark).collect()
 }

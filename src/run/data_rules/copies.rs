@@ -7,7 +7,7 @@ use rayon::slice::ParallelSliceMut;
 use super::consequence::consequence;
 use crate::check::plan::{Distinct, Plan, Plausibility, Test};
 use crate::data::{RecordKind, WhichRecord};
-use crate::result::{Channels, Finding, FindingData};
+use crate::result::{Channels, Finding, FindingData, Occurrence, Reason};
 use crate::run::sections::Unit;
 use crate::run::values::SectionValues;
 use crate::words;
@@ -50,13 +50,12 @@ pub fn find(plan: &Plan, units: &[Unit], values: &[SectionValues]) -> Vec<Findin
                 continue;
             }
             let (later, earlier) = (&units[later], &units[earlier]);
-            let found = finding(
+            findings.push(finding(
                 rule,
-                (&later.name, found.later),
+                (later, found.later),
                 (&earlier.name, found.earlier),
                 &found.channels,
-            );
-            findings.push(Finding { campaign: later.campaign_name.clone(), ..found });
+            ));
         }
     }
     findings
@@ -152,28 +151,29 @@ fn shared<'a>(rule: &str, distinct: Distinct, values: &'a [SectionValues]) -> Sh
 
 fn finding(
     rule: &Plausibility,
-    (section, record): (&str, &str),
+    (unit, record): (&Unit, &str),
     (of_section, of_record): (&str, &str),
     channels: &[(&str, &str)],
 ) -> Finding {
     let (own, other): (Vec<&str>, Vec<&str>) = channels.iter().copied().unzip();
     let names = Channels::of(&own);
-    Finding {
+    let first = Occurrence {
         channel: Some(words::text(&names).to_string()),
-        section: Some(section.to_string()),
+        campaign: unit.campaign_name.clone(),
+        section: Some(unit.name.clone()),
         record: Some(record.to_string()),
-        cause: rule.cause.clone(),
+        ..Occurrence::from(FindingData::Copies {
+            rule: rule.title.clone(),
+            channels: names,
+            copied: (own != other || own.len() == 1).then(|| Channels::of(&other)),
+            record: (record != of_record).then(|| of_record.to_string()),
+            section: (unit.name != of_section).then(|| of_section.to_string()),
+        })
+    };
+    Finding {
+        cause: rule.cause.clone().map(Reason::said),
         consequence: consequence(rule.otherwise),
-        ..Finding::note(
-            &rule.name,
-            FindingData::Copies {
-                rule: rule.title.clone(),
-                channels: names,
-                copied: (own != other || own.len() == 1).then(|| Channels::of(&other)),
-                record: (record != of_record).then(|| of_record.to_string()),
-                section: (section != of_section).then(|| of_section.to_string()),
-            },
-        )
+        ..Finding::note(&rule.name, first)
     }
 }
 

@@ -9,7 +9,7 @@ use crate::check::plan::{Exchanged, Plausibility};
 use crate::graph::NodeId;
 use crate::metrics::resample::Located;
 use crate::metrics::statistics::correlation;
-use crate::result::{Finding, FindingData};
+use crate::result::{Finding, FindingData, Occurrence, Reason};
 use crate::run::record::{Along, Samples, Work};
 use crate::run::sections::Unit;
 use crate::run::values::{RecordOfSide, Sides};
@@ -64,8 +64,7 @@ fn in_record(
         else {
             continue;
         };
-        findings.push(Finding {
-            code: rule.name.clone(),
+        let first = Occurrence {
             channel: Some((*name).to_string()),
             section: Some(unit.name.clone()),
             campaign: unit.campaign_name.clone(),
@@ -80,8 +79,11 @@ fn in_record(
                 correlation: with_other,
                 own_correlation: with_own,
             },
-            cause: rule.cause.clone(),
+        };
+        findings.push(Finding {
+            cause: rule.cause.clone().map(Reason::said),
             consequence: consequence(rule.otherwise),
+            ..Finding::note(&rule.name, first)
         });
     }
     findings

@@ -10,7 +10,7 @@ use crate::check::plan::{
     Comparison, Exchanged, InputSide, Looks, Plausibility, Requirement, Test,
 };
 use crate::graph::{InputNode, NodeId, PositionNodes};
-use crate::result::{Finding, FindingData, Reason};
+use crate::result::{Finding, FindingData, Occurrence, Reason};
 use crate::run::record::Work;
 use crate::run::sections::{Known, Unit, needed};
 use crate::run::values::{NodeValues, Print, RecordOfSide, SectionValues, Sides};
@@ -206,11 +206,17 @@ impl Position<'_> {
         let guessed = amounts.and_then(|(value, expected, unit, ..)| {
             causes::likely(*value, *expected, unit.dimension)
         });
-        let cause: Vec<String> = guessed.into_iter().chain(self.rule.cause.clone()).collect();
+        let named = self.rule.cause.clone().map(Reason::said);
+        let cause = match (guessed, named) {
+            (Some(first), Some(second)) => {
+                Some(Reason::Both { first: Box::new(first), second: Box::new(second) })
+            }
+            (guessed, named) => guessed.or(named),
+        };
         let value = numbers.as_ref().map(|(value, ..)| *value);
         let expected = numbers.as_ref().map(|(_, expected, ..)| *expected);
         let unit = numbers.as_ref().map(|(_, _, unit, ..)| unit.text.clone());
-        Some(Finding {
+        let first = Occurrence {
             data: FindingData::Required {
                 rule: self.rule.title.clone(),
                 what: numbers.map(|(_, _, _, what, _)| what),
@@ -219,7 +225,6 @@ impl Position<'_> {
                 unit: unit.clone().unwrap_or_default(),
                 required: self.requirement.words.clone(),
             },
-            code: self.rule.name.clone(),
             channel: (!self.name.is_empty()).then(|| self.name.to_string()),
             section: Some(self.unit.name.clone()),
             campaign: self.unit.campaign_name.clone(),
@@ -227,8 +232,8 @@ impl Position<'_> {
             value,
             expected,
             unit,
-            cause: (!cause.is_empty()).then(|| cause.join("; ")),
-            consequence: consequence(self.rule.otherwise),
-        })
+        };
+        let consequence = consequence(self.rule.otherwise);
+        Some(Finding { cause, consequence, ..Finding::note(&self.rule.name, first) })
     }
 }

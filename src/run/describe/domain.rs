@@ -7,7 +7,7 @@ use crate::check::plan::{Coordinate, DatumKind, Domain, OnFault, Plan, Scalar};
 use crate::metrics::hull::{self, Nearest};
 use crate::result::{
     Beyond, Consequence, CoordinateRange, DomainRange, DomainResult, DomainSection, Finding,
-    FindingData, Reason, Scope, WantedPoint,
+    FindingData, Occurrence, Reason, Scope, WantedPoint,
 };
 use crate::run::limit::rule_place;
 use crate::run::sections::wanted::{Point, value, word};
@@ -366,12 +366,9 @@ fn outside(result: &DomainResult) -> Vec<Finding> {
             by: by.filter_map(far).collect(),
             nearest: point.nearest_section.clone(),
         };
-        Finding {
-            value: point.distance,
-            expected: Some(0.0),
-            consequence: result.otherwise,
-            ..Finding::note(OUTSIDE, data)
-        }
+        let first =
+            Occurrence { value: point.distance, expected: Some(0.0), ..Occurrence::from(data) };
+        Finding { consequence: result.otherwise, ..Finding::note(OUTSIDE, first) }
     };
     result.points.iter().filter(|point| point.inside == Some(false)).map(finding).collect()
 }

@@ -3,7 +3,7 @@
 
 use crate::check::evaluate::flag;
 use crate::check::plan::{Plan, Plausibility, Test};
-use crate::result::{Finding, FindingData, Reason, Sections};
+use crate::result::{Finding, FindingData, Occurrence, Reason, Sections};
 use crate::run::sections::{Facts, Known, Unit};
 
 /// Code of the finding about rules that were not asked. It does not change the verdict.
@@ -35,7 +35,7 @@ pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
             sections: Sections::of(&names, units.len()),
             rules: rules.into_iter().map(Into::into).collect(),
         };
-        Finding { channel: Some(key.clone()), ..Finding::note(NOT_ASKED, data) }
+        Finding::note(NOT_ASKED, Occurrence { channel: Some(key.clone()), ..data.into() })
     };
     found.into_iter().map(finding).collect()
 }

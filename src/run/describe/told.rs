@@ -2,7 +2,9 @@
 //! data.
 
 use crate::check::plan::Plan;
-use crate::result::{DataItem, Datum, Finding, FindingData, LimitFactor, QuantityResult};
+use crate::result::{
+    DataItem, Datum, Finding, FindingData, LimitFactor, Occurrence, QuantityResult,
+};
 use crate::run::sections::{Facts, Vehicle, is_dimensioned, vehicle_item};
 
 /// Code of the finding about units that the vehicle file does not state.
@@ -56,7 +58,7 @@ fn multiplied(quantities: &[QuantityResult]) -> Vec<Finding> {
             by: factor.by,
             because: factor.because.clone(),
         };
-        Finding { value: Some(factor.by), ..Finding::note(LIMIT_FACTOR, data) }
+        Finding::note(LIMIT_FACTOR, Occurrence { value: Some(factor.by), ..data.into() })
     };
     found.into_iter().map(finding).collect()
 }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::check::plan::{Evaluation, Plan, Records, Side};
 use crate::data::WhichRecord;
 use crate::graph::{Graph, NodeId};
-use crate::result::{Curve, QuantityResult, Reason, RecordName, Trace};
+use crate::result::{Curve, QuantityResult, Reason, RecordName, Remark, Trace};
 use crate::run::data_rules::take_over;
 use crate::run::record::{NodeValue, Opened, Samples, Work, with_record};
 use crate::run::sections::{Extent, Unit as Section};
@@ -65,7 +65,7 @@ pub fn traces(
     quantities: &[QuantityResult],
     most: usize,
     signals: &Signals<'_>,
-) -> Vec<Result<Trace, String>> {
+) -> Vec<Result<Trace, Remark>> {
     let mut picks: Vec<(f64, Pick<'_>)> = Vec::new();
     for (index, quantity) in quantities.iter().enumerate() {
         let limit = quantity
@@ -111,13 +111,10 @@ pub fn traces(
                 })
                 .map_or_else(|| Err(Reason::SignalsNotKept), |kept| kept.found.clone()),
         };
-        found.map_err(|reason| {
-            format!(
-                "there is no plot of {} in section {}: {}",
-                quantities[pick.quantity].id,
-                units[pick.unit].name,
-                reason.text()
-            )
+        found.map_err(|reason| Remark::NoPlot {
+            quantity: quantities[pick.quantity].id.clone(),
+            section: units[pick.unit].name.clone(),
+            reason,
         })
     };
     picks.par_iter().map(one).collect()

@@ -3,7 +3,7 @@
 use super::estimates::Group;
 use super::table::Member;
 use crate::check::plan::{EstimateKind, Expr, Fit, OfGroup, Taking};
-use crate::result::{Finding, FindingData, Outside, QuantityResult, Scope};
+use crate::result::{Finding, FindingData, Occurrence, Outside, QuantityResult, Scope};
 
 /// Code of the finding about regressions that are read outside their data.
 const EXTRAPOLATED: &str = "extrapolated";
@@ -118,10 +118,7 @@ fn finding(outside: &Outside, reads: &[Read<'_>]) -> Finding {
         high,
         unit: unit.clone(),
     };
-    Finding {
-        value: Some(target),
-        expected: Some(edge),
-        unit: Some(unit),
-        ..Finding::note(EXTRAPOLATED, data)
-    }
+    let first =
+        Occurrence { value: Some(target), expected: Some(edge), unit: Some(unit), ..data.into() };
+    Finding::note(EXTRAPOLATED, first)
 }

@@ -2,7 +2,7 @@
 
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{Expr, Kind, Limit, Operator, Plan};
-use crate::result::LimitFactor;
+use crate::result::{Datum, LimitFactor, Reason};
 use crate::run::sections::{Known, Vehicle, vehicle_item};
 
 /// The factors of a limit that apply because of vehicle data alone, each with its reason.
@@ -23,21 +23,16 @@ fn of_vehicle(plan: &Plan, vehicle: &Vehicle, limit: &Limit) -> Vec<LimitFactor>
     let of = |(factor, condition): &(Expr, Expr)| {
         let on = flag(condition, &known).ok()?;
         let by = number(factor, &known).ok()?;
-        let mut because = Vec::new();
-        reasons(plan, vehicle, condition, true, &mut because);
-        (on && !because.is_empty()).then(|| LimitFactor { by, because: because.join(" and ") })
+        let mut data = Vec::new();
+        reasons(plan, vehicle, condition, true, &mut data);
+        (on && !data.is_empty())
+            .then_some(LimitFactor { by, because: Reason::VehicleData { data } })
     };
     limit.factors.iter().filter_map(of).collect()
 }
 
-/// The parts of a condition that decide its result, in words: `vehicle category is freight`.
-fn reasons(
-    plan: &Plan,
-    vehicle: &Vehicle,
-    condition: &Expr,
-    wanted: bool,
-    found: &mut Vec<String>,
-) {
+/// The vehicle data of the parts of a condition that decide its result.
+fn reasons(plan: &Plan, vehicle: &Vehicle, condition: &Expr, wanted: bool, found: &mut Vec<Datum>) {
     match &condition.kind {
         Kind::Not(inner) => reasons(plan, vehicle, inner, !wanted, found),
         Kind::Binary(Operator::And | Operator::Or, a, b) => {
@@ -56,13 +51,10 @@ fn reasons(
             });
             for index in read {
                 let item = vehicle_item(&plan.vehicle[index], &vehicle.data[index]);
-                let unit = item
-                    .unit
-                    .filter(|unit| unit != "-")
-                    .map_or(String::new(), |unit| format!(" {unit}"));
-                let says = format!("{} is {}{unit}", item.name.to_lowercase(), item.value);
-                if !found.contains(&says) {
-                    found.push(says);
+                let unit = item.unit.filter(|unit| unit != "-");
+                let datum = Datum { name: item.name, value: item.value, unit };
+                if !found.contains(&datum) {
+                    found.push(datum);
                 }
             }
         }

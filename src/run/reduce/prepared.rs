@@ -1,9 +1,11 @@
 //! What is opened and checked before any record is read.
 
 use crate::check::plan::{Plan, Side};
-use crate::data::Campaigns;
+use crate::data::campaign::OFFSET;
+use crate::data::{Campaign, Campaigns};
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
+use crate::result::{Remark, SectionOffset};
 use crate::run::data_rules::stop_on_fault;
 use crate::run::record::{Soundness, Work};
 use crate::run::sections::{Basis, Facts, Unit, columns, requirements, stretches, units, wanted};
@@ -66,7 +68,7 @@ impl<'a> Prepared<'a> {
             ));
             recorded.push(columns::recorded_positions(graph, &seen, &facts, &units));
             if plan.reads(Side::Measured) {
-                notes.extend(campaign.offsets_in_words());
+                notes.extend(shifted(campaign));
             }
         }
         requirements::check_data(plan, &facts, &mut units);
@@ -98,6 +100,19 @@ impl<'a> Prepared<'a> {
             stretches: None,
         }
     }
+}
+
+/// What the table of sections adds to the axis of the measurement.
+fn shifted(campaign: &Campaign) -> Option<Remark> {
+    let (_, axis, _) = campaign.offsets().next()?;
+    let of =
+        |(section, _, offset): (&str, &str, f64)| SectionOffset { section: section.into(), offset };
+    Some(Remark::Shifted {
+        axis: axis.into(),
+        unit: if axis == "distance" { "m" } else { "s" }.into(),
+        column: OFFSET.into(),
+        offsets: campaign.offsets().map(of).collect(),
+    })
 }
 
 /// What a protocol calls by name must be in every campaign.

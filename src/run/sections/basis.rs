@@ -7,7 +7,7 @@ use super::facts::Facts;
 use super::unit::Unit;
 use super::wanted::Point;
 use crate::check::plan::{Domain, Plan};
-use crate::result::DataItem;
+use crate::result::{DataItem, Remark};
 
 /// Data read before any record.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -16,7 +16,7 @@ pub struct Basis {
     pub units: Vec<Unit>,
     /// Wanted operation, for each domain.
     pub wanted: Vec<Vec<Point>>,
-    pub notes: Vec<String>,
+    pub notes: Vec<Remark>,
 }
 
 impl Basis {

@@ -11,6 +11,7 @@ use crate::check::plan::{Plan, Side};
 use crate::data::record::RecordSource;
 use crate::data::{Campaign, RecordKind, WhichRecord};
 use crate::graph::{Graph, NodeId, Operation};
+use crate::result::{RecordsOf, Remark};
 
 impl Side {
     /// The kind of its records.
@@ -93,10 +94,9 @@ pub fn present_columns(
     seen: &Seen,
     facts: &Facts,
     units: &[&Unit],
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Remark>,
 ) -> Vec<Vec<bool>> {
     let called = units.first().and_then(|unit| unit.campaign_name.as_ref());
-    let of = called.map_or_else(String::new, |name| format!(" of {name}"));
     let mut left_out = LeftOut::default();
     let present = graph
         .quantities
@@ -128,10 +128,8 @@ pub fn present_columns(
                 .map(|missing| {
                     if !none {
                         for (column, which) in missing {
-                            left_out.add(
-                                column,
-                                format!("the {}{of}", campaign.record_in_words(*which)),
-                            );
+                            let records = campaign.record_in_words(*which);
+                            left_out.add(column, RecordsOf { records, campaign: called.cloned() });
                         }
                     }
                     none || missing.is_empty()
@@ -146,11 +144,11 @@ pub fn present_columns(
 /// Columns that are in no record of some records, in the order of the protocol.
 #[derive(Default)]
 struct LeftOut {
-    columns: Vec<(String, Vec<String>)>,
+    columns: Vec<(String, Vec<RecordsOf>)>,
 }
 
 impl LeftOut {
-    fn add(&mut self, column: &str, record: String) {
+    fn add(&mut self, column: &str, record: RecordsOf) {
         let at = self.columns.iter().position(|(known, _)| known == column).unwrap_or_else(|| {
             self.columns.push((column.to_owned(), Vec::new()));
             self.columns.len() - 1
@@ -162,36 +160,16 @@ impl LeftOut {
     }
 
     /// One note for all columns that the same records lack.
-    fn notes(&self) -> Vec<String> {
-        let mut groups: Vec<(Vec<String>, &[String])> = Vec::new();
-        for (column, records) in &self.columns {
-            let column = format!("`{column}`");
-            match groups.iter_mut().find(|(_, known)| known == records) {
+    fn notes(self) -> Vec<Remark> {
+        let mut groups: Vec<(Vec<String>, Vec<RecordsOf>)> = Vec::new();
+        for (column, records) in self.columns {
+            match groups.iter_mut().find(|(_, known)| *known == records) {
                 Some((columns, _)) => columns.push(column),
                 None => groups.push((vec![column], records)),
             }
         }
-        let said = |(columns, records): (Vec<String>, &[String])| {
-            let (are, their) = if columns.len() > 1 {
-                ("are", "their positions are")
-            } else {
-                ("is", "its position is")
-            };
-            format!(
-                "{} {are} in no record of {}; {their} left out",
-                listed(&columns),
-                listed(records)
-            )
-        };
-        groups.into_iter().map(said).collect()
-    }
-}
-
-/// `a, b and c`.
-fn listed(words: &[String]) -> String {
-    match words {
-        [several @ .., last] if !several.is_empty() => format!("{} and {last}", several.join(", ")),
-        _ => words.concat(),
+        let remark = |(channels, records)| Remark::LackingChannels { channels, records };
+        groups.into_iter().map(remark).collect()
     }
 }
 

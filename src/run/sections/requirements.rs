@@ -7,7 +7,7 @@ use crate::check::plan::{Expr, Kind, Plan, Zone};
 use crate::check::possible::{Possible, possible};
 use crate::check::values::Watched;
 use crate::result::{
-    CheckResult, DataItem, Datum, Finding, FindingData, Reason, Sections, Subject,
+    CheckResult, DataItem, Datum, Finding, FindingData, Occurrence, Reason, Sections, Subject,
 };
 
 /// Relative tolerance for a minimum length, for the rounding of section ends written with two
@@ -190,7 +190,8 @@ pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
             check: title.to_lowercase(),
             sections: Sections::of(&names, units.len()),
         };
-        Finding { channel: Some(key.clone()), ..Finding::note("vehicle-data-not-stated", data) }
+        let first = Occurrence { channel: Some(key.clone()), ..data.into() };
+        Finding::note("vehicle-data-not-stated", first)
     };
     found.into_iter().map(finding).collect()
 }

@@ -6,25 +6,30 @@ use super::section_values::SectionValues;
 use crate::check::plan::StepSpec;
 use crate::graph::{NodeId, Operation};
 use crate::metrics::filter::{Band, Roots};
+use crate::result::Remark;
 use crate::run::record::{Opened, Work};
 use crate::run::sections::Unit;
 
 /// One note for all sections used whose record is too short for a slow filter.
-pub fn margin_note<'a>(used: impl Iterator<Item = &'a SectionValues>) -> Option<String> {
+pub fn margin_note<'a>(used: impl Iterator<Item = &'a SectionValues>) -> Option<Remark> {
     let margins: Vec<Option<f64>> = used.map(|values| values.short_margin).collect();
     let short: Vec<f64> = margins.iter().copied().flatten().collect();
     let least = short.iter().copied().reduce(f64::min)?;
-    let (_, rms, peak) = MARGIN_TRIALS
+    let (_, rms, extreme) = MARGIN_TRIALS
         .iter()
         .rev()
         .find(|(margin, _, _)| *margin <= least)
         .copied()
         .unwrap_or(MARGIN_TRIALS[0]);
-    Some(format!(
-        "In {} of {} sections the records extend less than {SLOW_FILTER_MARGIN} s beyond the section (minimum {least:.1} s). A filter with a cut-off below {SLOW_FILTER} Hz has not fully settled there. In trials with a 0.4 Hz edge and records cut so short, rms values moved by up to {rms} % and extreme values by up to {peak} %.",
-        short.len(),
-        margins.len()
-    ))
+    Some(Remark::ShortMargins {
+        short: short.len(),
+        sections: margins.len(),
+        least,
+        needed: SLOW_FILTER_MARGIN,
+        frequency: SLOW_FILTER,
+        rms,
+        extreme,
+    })
 }
 
 /// Effect of a short margin: margin in s, and the largest change in % of an rms value and of an

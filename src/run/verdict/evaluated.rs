@@ -5,7 +5,7 @@ use crate::check::plan::Plan;
 use crate::graph::Graph;
 use crate::problem::Problems;
 use crate::result::study::Reduction;
-use crate::result::{Consequence, DataItem, DomainResult, FileHash, Finding, Reason};
+use crate::result::{Consequence, DataItem, DomainResult, FileHash, Finding, Reason, Remark};
 use crate::run::data_rules::{copies, nothing_usable, stop_on_fault, take_over};
 use crate::run::describe::domain;
 use crate::run::limit::keep;
@@ -37,7 +37,7 @@ pub struct Evaluated {
     /// Wanted operation against what the sections used cover.
     pub application: Vec<DomainResult>,
     /// Remarks that do not change the verdict.
-    pub notes: Vec<String>,
+    pub notes: Vec<Remark>,
     pub reduction: Option<Reduction>,
     /// Sections whose values are missing.
     pub missing: Option<Reason>,

@@ -127,11 +127,12 @@ fn not_plausible(plan: &Plan, findings: &[Finding], complete: bool) -> Vec<Reaso
     for rule in &plan.plausibility {
         let sections = |consequence: Consequence| {
             let mut names: Vec<&str> = Vec::new();
-            for finding in findings
+            for place in findings
                 .iter()
                 .filter(|finding| finding.code == rule.name && finding.consequence == consequence)
+                .flat_map(Finding::places)
             {
-                let name = finding.section.as_deref().unwrap_or_default();
+                let name = place.section.as_deref().unwrap_or_default();
                 if !names.contains(&name) {
                     names.push(name);
                 }

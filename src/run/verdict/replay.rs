@@ -228,16 +228,15 @@ fn refused(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<String> {
 
 /// Sections that are used although a finding excludes them.
 fn barred(units: &[Unit], findings: &[Finding]) -> Vec<String> {
-    let of = |finding: &Finding, unit: &Unit| {
-        finding.consequence == Consequence::NotUsed
-            && finding.section.as_deref() == Some(&unit.name)
-    };
     let says = |unit: &Unit| {
-        let finding =
-            findings.iter().find(|finding| of(finding, unit)).filter(|_| unit.fault.is_none())?;
-        Some(format!("section {} is used: {}", unit.name, finding.text()))
+        let mut places = findings
+            .iter()
+            .filter(|finding| finding.consequence == Consequence::NotUsed)
+            .flat_map(Finding::places);
+        let place = places.find(|place| place.section.as_ref() == Some(&unit.name))?;
+        Some(format!("section {} is used: {}", unit.name, place.text()))
     };
-    units.iter().filter_map(says).collect()
+    units.iter().filter(|unit| unit.fault.is_none()).filter_map(says).collect()
 }
 
 /// The operations by which one value of a result was computed, in order of execution.
