@@ -12,7 +12,7 @@ use fishplate::report::figure::canvas::{Canvas, Font, Group};
 use fishplate::report::figure::figures;
 use fishplate::report::html::html;
 use fishplate::report::view::document;
-use fishplate::result::Reason;
+use fishplate::result::{Reason, Remark};
 
 use super::campaign::certified;
 
@@ -88,7 +88,7 @@ fn whole(text: &str) -> String {
     ] {
         text.clone_into(place);
     }
-    found.notes = vec![text.into()];
+    found.notes = vec![Remark::Said { says: text.into() }];
     found.reasons = vec![Reason::said(text)];
     found.protocol.notes = vec![text.into()];
     found.protocol.edition = Some(text.into());

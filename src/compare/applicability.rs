@@ -22,10 +22,11 @@ pub fn tried(
     let plan = &base.compiled.plan;
     let judge = |evaluated: &Evaluated| evaluated.judge(plan, &base.compiled.graph);
     let (doubled, exchanged) = (doubled.map(judge), exchanged.map(judge));
-    let mut found: Vec<Applicability> = metric::all(plan)
-        .into_iter()
+    let metrics = metric::all(plan);
+    let mut found: Vec<Applicability> = metrics
+        .iter()
         .map(|(name, limited)| {
-            let own = quantities(plan, &name);
+            let own = quantities(plan, name);
             Applicability {
                 protocol: protocol.into(),
                 quantities: own.len(),
@@ -41,7 +42,7 @@ pub fn tried(
                     .as_deref()
                     .and_then(symmetric),
                 campaign: Some(campaign.into()),
-                metric: if limited { name } else { name + WITHOUT },
+                metric: if *limited { name.clone() } else { format!("{name} (no limit)") },
                 number_of_one_quantity: Tried::default(),
                 number_of_one_section: Tried::default(),
                 verdict_of_one_quantity: Tried::default(),
@@ -55,9 +56,9 @@ pub fn tried(
         }
         let judged = judge(&base.evaluated.with_quantity(at));
         let numbers = numbers(plan, &judged, at);
-        for one in &mut found {
-            if quantities(plan, one.metric.trim_end_matches(WITHOUT)).contains(&at) {
-                one.number_of_one_quantity.add(numbers.contains(&one.metric));
+        for (one, metric) in found.iter_mut().zip(&metrics) {
+            if quantities(plan, &metric.0).contains(&at) {
+                one.number_of_one_quantity.add(numbers.contains(metric));
                 one.verdict_of_one_quantity.add(judged.verdict != Verdict::NotAssessable);
             }
         }
@@ -72,20 +73,17 @@ pub fn tried(
         let judged = judge(&base.evaluated.with_sections(&|name| name == section));
         let numbers: Vec<String> =
             (0..plan.quantities.len()).flat_map(|at| numbers(plan, &judged, at)).collect();
-        for one in &mut found {
-            let own = quantities(plan, one.metric.trim_end_matches(WITHOUT));
+        for (one, metric) in found.iter_mut().zip(&metrics) {
+            let own = quantities(plan, &metric.0);
             // A section that a quantity leaves out says nothing about the metric.
             if own.iter().any(|&at| !judged.quantities[at].values.is_empty()) {
-                one.number_of_one_section.add(numbers.contains(&one.metric));
+                one.number_of_one_section.add(numbers.contains(metric));
                 one.verdict_of_one_section.add(judged.verdict != Verdict::NotAssessable);
             }
         }
     }
     found
 }
-
-/// Behind the name of a metric whose quantities have no limit.
-const WITHOUT: &str = " (no limit)";
 
 /// The quantities with a metric.
 fn quantities(plan: &Plan, name: &str) -> Vec<usize> {
@@ -98,14 +96,14 @@ fn quantities(plan: &Plan, name: &str) -> Vec<usize> {
     (0..plan.quantities.len()).filter(has).collect()
 }
 
-/// The metrics that have a number of a quantity.
-fn numbers(plan: &Plan, judged: &Judged, at: usize) -> Vec<String> {
+/// The metrics that have a number of a quantity, and whether they have limits.
+fn numbers(plan: &Plan, judged: &Judged, at: usize) -> Vec<(String, bool)> {
     let quantity = &judged.quantities[at];
     let statistics = quantity.statistics.iter().filter(|statistic| statistic.value.is_some());
-    let mut found: Vec<String> =
-        statistics.map(|statistic| metric::of(plan, at, statistic)).collect();
+    let mut found: Vec<(String, bool)> =
+        statistics.map(|statistic| (metric::of(plan, at, statistic), true)).collect();
     if quantity.statistics.is_empty() && !quantity.values.is_empty() {
-        found.push(metric::name(&plan.quantities[at], None) + WITHOUT);
+        found.push((metric::name(&plan.quantities[at], None), false));
     }
     found
 }

@@ -147,6 +147,9 @@ pub struct Where {
     pub zones: Vec<String>,
     pub sections: Vec<String>,
     pub wavelength_or_band: String,
+    /// Lower edge of the band, in Hz.
+    #[serde(skip)]
+    pub frequency: Option<f64>,
     /// Mean difference, simulated - measured. Levels in the unit of the channel, as sign(measured)
     /// (simulated - measured); bands as the ratio of the rms, simulated / measured - 1.
     pub difference: f64,

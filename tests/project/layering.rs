@@ -426,6 +426,85 @@ fn rules_live_in_protocols() {
     }
 }
 
+/// What a result means is in its data: its printed text is shown, and not looked into.
+#[test]
+fn printed_texts_are_not_looked_into() {
+    let words = code(&root().join("src/words/mod.rs"));
+    assert!(words.contains("pub struct Text(String);"), "its letters are its own");
+    let of_text = words.lines().filter(|line| line.starts_with("impl") && line.contains("Text"));
+    assert_eq!(
+        of_text.collect::<Vec<_>>(),
+        ["impl fmt::Display for Text {", "impl From<Text> for String {"],
+        "a text can be written, or handed on whole"
+    );
+    let looks = [
+        ".contains(",
+        ".starts_with(",
+        ".ends_with(",
+        ".strip_",
+        ".split",
+        ".rsplit",
+        ".find(",
+        ".rfind(",
+        ".replace",
+        ".parse",
+        ".trim",
+        ".chars(",
+        ".lines(",
+        ".as_bytes(",
+        ".matches(",
+    ];
+    let of_results = [
+        "certify",
+        "cli",
+        "compare",
+        "deliver",
+        "diagnose",
+        "provenance",
+        "report",
+        "robustness",
+        "run",
+        "study",
+        "values",
+    ];
+    for (_, path) in
+        sources().into_iter().filter(|(module, _)| of_results.contains(&module.as_str()))
+    {
+        let code: String = code(&path).split_whitespace().collect();
+        // The text of a place in an input is another one.
+        let code = code.replace("span.text()", "");
+        for call in [".text()", "words::text(", "or_nothing("] {
+            for (at, _) in code.match_indices(call) {
+                let mut rest = &code[at + call.len()..];
+                if call.ends_with('(') {
+                    rest = behind_bracket(rest);
+                }
+                loop {
+                    let next = rest.trim_start_matches([')', '?']);
+                    match next.strip_prefix(".to_string()") {
+                        Some(next) => rest = next,
+                        None if next.len() < rest.len() => rest = next,
+                        None => break,
+                    }
+                }
+                let look = looks.iter().find(|look| rest.starts_with(**look));
+                let shown: String = code[at..].chars().take(80).collect();
+                assert!(look.is_none(), "{}: `{shown}`", path.display());
+            }
+        }
+    }
+}
+
+/// The code behind the bracket that closes an open one.
+fn behind_bracket(code: &str) -> &str {
+    let mut depth = 1;
+    let closes = |letter| {
+        depth += i32::from(letter == '(') - i32::from(letter == ')');
+        depth == 0
+    };
+    code.find(closes).map_or("", |at| &code[at + 1..])
+}
+
 /// With the same features of all crates, the program and its tests share one build of them.
 #[test]
 fn tests_and_program_share_one_build() {

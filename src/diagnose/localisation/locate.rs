@@ -30,6 +30,10 @@ pub fn locate(settings: &Settings, found: &Found, units: &Units) -> Vec<Where> {
             .map(|at| found.seen.sections[*at].section.name().to_string())
             .collect(),
         wavelength_or_band: cell.band(found),
+        frequency: match cell.kind {
+            Kind::Band(band) => Some(found.seen.layout.edges[band]),
+            _ => None,
+        },
         difference: test.mean,
         difference_rms: test.rms,
         unit: cell.unit(found, units),

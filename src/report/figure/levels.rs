@@ -31,6 +31,8 @@ pub struct Levels {
     pub lines: Vec<Level>,
     pub bands: Vec<Band>,
     pub legend: Vec<Entry>,
+    /// Texts of the limits around zero, each once.
+    limits: Vec<String>,
 }
 
 impl Levels {
@@ -143,6 +145,14 @@ impl Levels {
         }
     }
 
+    /// The number of a limit around zero, by its text.
+    fn number(&mut self, text: &str) -> usize {
+        self.limits.iter().position(|known| known == text).unwrap_or_else(|| {
+            self.limits.push(text.into());
+            self.limits.len() - 1
+        })
+    }
+
     fn mean(&mut self, statistic: &StatisticResult, with: Shown) {
         if let Some(value) = statistic.value.filter(|_| over_sections(statistic)) {
             let text = says(statistic, &shown(statistic, value));
@@ -150,6 +160,7 @@ impl Levels {
         }
         if let Some(limit) = statistic.limit {
             let text = says_of_limit(statistic, with);
+            self.number(&text);
             let pen = Pen { color: BLUE, ..LIMIT };
             self.line(statistic, &both(0.0, limit, with.two_sided), pen, text);
         }
@@ -183,10 +194,7 @@ impl Levels {
         if let Some(limit) = statistic.limit {
             let text = says_of_limit(statistic, with);
             // Limits of several estimates have a dash each.
-            let known: Vec<&Entry> =
-                self.legend.iter().filter(|entry| entry.text.starts_with(LIMIT_OF)).collect();
-            let nth = known.iter().position(|entry| entry.text == text).unwrap_or(known.len());
-            let pen = Pen { dash: LIMITS[nth % NAMED], ..LIMIT };
+            let pen = Pen { dash: LIMITS[self.number(&text) % NAMED], ..LIMIT };
             self.line(statistic, &both(0.0, limit, with.two_sided), pen, text);
         }
     }
@@ -199,9 +207,6 @@ struct Shown {
     /// Whether all groups have the same limit.
     same: bool,
 }
-
-/// First words of a limit in the legend.
-const LIMIT_OF: &str = "limit of ";
 
 /// The sections that a result is drawn over: each of its zones, or all.
 fn scopes(statistic: &StatisticResult) -> Vec<Scope> {
@@ -266,7 +271,7 @@ fn says_of_limit(statistic: &StatisticResult, Shown { two_sided, same }: Shown) 
         .filter(|_| one)
         .map(|limit| format!("{}{}", sign(two_sided), shown(statistic, limit)));
     format!(
-        "{LIMIT_OF}{} {}",
+        "limit of {} {}",
         statistic.title,
         limit.unwrap_or_else(|| format!("by {}", by(statistic)))
     )

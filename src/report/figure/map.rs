@@ -31,7 +31,8 @@ pub fn map(places: &[Where]) -> String {
     rows.sort_by(|a, b| b.1.total_cmp(&a.1));
     // Zones in order; in each, quasi-static first, then bands by frequency.
     let edge = |band: &str| {
-        band.split(' ').next().and_then(|word| word.parse::<f64>().ok()).unwrap_or(-1.0)
+        let place = places.iter().find(|place| place.wavelength_or_band == band);
+        place.and_then(|place| place.frequency).unwrap_or(-1.0)
     };
     columns.sort_by(|a, b| a.0.cmp(&b.0).then(edge(&a.1).total_cmp(&edge(&b.1))));
     let wide = (WIDTH - NAMES) / columns.len().max(1) as f64;
@@ -101,10 +102,7 @@ fn scale(canvas: &mut Canvas, top: f64, most: f64) {
 }
 
 fn name(place: &Where) -> String {
-    let position = place.says.strip_prefix(&format!("{}, ", place.quantity)).unwrap_or(&place.says);
-    let position =
-        position.split(&format!(", {}", place.wavelength_or_band)).next().unwrap_or(position);
-    format!("{}, {position}", place.quantity)
+    format!("{}, {}", place.quantity, place.position)
 }
 
 /// What is drawn on a shade.
