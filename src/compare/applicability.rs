@@ -71,7 +71,7 @@ pub fn tried(
         .collect();
     for section in used {
         let judged = judge(&base.evaluated.with_sections(&|name| name == section));
-        let numbers: Vec<String> =
+        let numbers: Vec<(String, bool)> =
             (0..plan.quantities.len()).flat_map(|at| numbers(plan, &judged, at)).collect();
         for (one, metric) in found.iter_mut().zip(&metrics) {
             let own = quantities(plan, &metric.0);
