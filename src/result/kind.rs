@@ -108,7 +108,8 @@ impl Certification {
 
     /// The same with its note: `validated, with a simulation fitted to the same measurements`
     pub fn verdict_in_words(&self) -> String {
-        let note = self.verdict_note.as_ref().map_or(String::new(), |note| format!(", {note}"));
+        let note =
+            self.verdict_note.as_ref().map_or(String::new(), |note| format!(", {}", note.text()));
         format!("{}{note}", self.verdict_word())
     }
 

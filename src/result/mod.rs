@@ -73,7 +73,9 @@ pub struct Certification {
     #[serde(rename = "verdict_word", default, skip_serializing_if = "Option::is_none")]
     pub own_word: Option<String>,
     /// Note on the verdict if the simulation was changed after the comparison.
-    pub verdict_note: Option<String>,
+    #[serde(flatten, with = "told::verdict_note")]
+    #[schemars(with = "told::NoneOrNote<Remark>")]
+    pub verdict_note: Option<Remark>,
     /// Why the verdict is not "validated"; empty if it is.
     #[serde(flatten, with = "told::reasons")]
     #[schemars(with = "told::Reasons<Reason>")]

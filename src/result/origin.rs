@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::Remark;
+
 /// Origin of the simulated records of a campaign, where stated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct OriginInfo {
@@ -57,17 +59,12 @@ impl OriginInfo {
     }
 
     /// Text after the verdict, following a comma.
-    pub fn note(&self) -> Option<String> {
+    pub fn note(&self) -> Option<Remark> {
         if self.fitted_to_these > 0 {
-            return Some("with a simulation fitted to the same measurements".into());
+            return Some(Remark::FittedToTheSame);
         }
-        let effects = match self.effects.len() {
-            0 => return None,
-            1 => format!("effect {}", self.effects[0]),
-            _ => format!("effects {}", self.effects.join(" and ")),
-        };
-        let fitted = if self.fitted_to.is_empty() { "" } else { ", fitted to other measurements" };
-        Some(format!("simulation with {effects}{fitted}"))
+        let (effects, fitted) = (self.effects.clone(), !self.fitted_to.is_empty());
+        (!effects.is_empty()).then_some(Remark::SimulationWith { effects, fitted })
     }
 }
 
@@ -89,6 +86,7 @@ mod tests {
                 imported: Vec::new(),
             }
             .note()
+            .map(|note| note.text().to_string())
         };
         assert_eq!(of(&[], &[], 0), None);
         assert_eq!(

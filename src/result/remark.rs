@@ -29,6 +29,12 @@ pub enum Remark {
     Origin {
         says: String,
     },
+    FittedToTheSame,
+    /// Effects that were added to the simulation, which was fitted to other measurements if so.
+    SimulationWith {
+        effects: Vec<String>,
+        fitted: bool,
+    },
     /// Channels that some records lack, whose positions are left out.
     LackingChannels {
         channels: Vec<String>,

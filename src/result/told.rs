@@ -39,119 +39,86 @@ fn said(texts: Value) -> Value {
     }
 }
 
-/// For `#[serde(flatten, with = "told::...")]`.
+/// For `#[serde(flatten, with = "told::...")]`, and, for `#[schemars(with = "told::...")]` beside it,
+/// the keys in a schema. Data may be missing where a function says so.
 macro_rules! keys {
-    ($($module:ident: $text:literal, $data:literal;)*) => {$(
+    ($($(#[$of:meta])* $module:ident $name:ident<$each:ident> {
+        $text:ident: $texts:ty, $data:ident: $all:ty $(, missing if $none:literal)?
+    })*) => {$(
         pub mod $module {
             use super::*;
 
             pub fn serialize<S: Serializer>(of: &impl Serialize, to: S) -> Result<S::Ok, S::Error> {
-                write(of, [$text, $data], to)
+                write(of, [stringify!($text), stringify!($data)], to)
             }
 
             pub fn deserialize<'de, T: DeserializeOwned, D: Deserializer<'de>>(
                 from: D,
             ) -> Result<T, D::Error> {
-                read([$text, $data], from)
+                read([stringify!($text), stringify!($data)], from)
             }
+        }
+
+        $(#[$of])*
+        #[derive(JsonSchema)]
+        #[allow(dead_code, reason = "the schema describes it")]
+        pub struct $name<$each> {
+            $text: $texts,
+            $(#[schemars(default, skip_serializing_if = $none)])?
+            $data: $all,
         }
     )*};
 }
 
 keys! {
-    reason: "reason", "reason_data";
-    reasons: "reasons", "reasons_data";
-    says: "says", "data";
-    cause: "cause", "cause_data";
-    because: "because", "because_data";
-    notes: "notes", "notes_data";
-    lacking: "lacking", "lacking_data";
-    changes: "verdict_changes", "verdict_changes_data";
-    not_used: "not_used", "not_used_data";
-}
-
-/// The keys of a field in a schema, for `#[schemars(with = "told::...")]` beside it.
-macro_rules! in_schema {
-    ($($(#[$of:meta])* pub struct $name:ident<$data:ident> { $($fields:tt)* })*) => {$(
-        $(#[$of])*
-        #[derive(JsonSchema)]
-        #[allow(dead_code, reason = "the schema describes it")]
-        pub struct $name<$data> { $($fields)* }
-    )*};
-}
-
-in_schema! {
     /// A reason, or none.
-    pub struct NoneOrReason<R> {
-        reason: Option<String>,
-        #[schemars(default, skip_serializing_if = "Option::is_none")]
-        reason_data: Option<R>,
+    reason NoneOrReason<R> {
+        reason: Option<String>, reason_data: Option<R>, missing if "Option::is_none"
     }
-
-    /// A reason.
-    pub struct OneReason<R> {
-        reason: String,
-        reason_data: R,
-    }
-
     /// Any number of reasons.
-    pub struct Reasons<R> {
-        reasons: Vec<String>,
-        #[schemars(default, skip_serializing_if = "Vec::is_empty")]
-        reasons_data: Vec<R>,
-    }
-
-    /// Of each value a reason, or none.
-    pub struct EachReason<R> {
-        reasons: Vec<Option<String>>,
-        #[schemars(default, skip_serializing_if = "Vec::is_empty")]
-        reasons_data: Vec<Option<R>>,
-    }
-
+    reasons Reasons<R> { reasons: Vec<String>, reasons_data: Vec<R>, missing if "Vec::is_empty" }
     /// What a check or a finding says.
-    pub struct Says<D> {
-        says: String,
-        data: D,
-    }
-
+    says Says<D> { says: String, data: D }
     /// A cause, or none.
-    pub struct NoneOrCause<R> {
-        cause: Option<String>,
-        #[schemars(default, skip_serializing_if = "Option::is_none")]
-        cause_data: Option<R>,
+    cause NoneOrCause<R> {
+        cause: Option<String>, cause_data: Option<R>, missing if "Option::is_none"
     }
-
     /// Why a factor applies.
-    pub struct Because<R> {
-        because: String,
-        because_data: R,
-    }
-
+    because Because<R> { because: String, because_data: R }
     /// Any number of remarks.
-    pub struct Notes<R> {
-        notes: Vec<String>,
-        #[schemars(default, skip_serializing_if = "Vec::is_empty")]
-        notes_data: Vec<R>,
+    notes Notes<R> { notes: Vec<String>, notes_data: Vec<R>, missing if "Vec::is_empty" }
+    /// A remark on the verdict, or none.
+    verdict_note NoneOrNote<R> {
+        verdict_note: Option<String>, verdict_note_data: Option<R>, missing if "Option::is_none"
     }
-
     /// A remark on what is lacking, or none.
-    pub struct NoneOrLacking<R> {
-        lacking: Option<String>,
-        #[schemars(default, skip_serializing_if = "Option::is_none")]
-        lacking_data: Option<R>,
+    lacking NoneOrLacking<R> {
+        lacking: Option<String>, lacking_data: Option<R>, missing if "Option::is_none"
     }
-
     /// Any number of changes of a verdict.
-    pub struct Changes<R> {
-        verdict_changes: Vec<String>,
-        #[schemars(default, skip_serializing_if = "Vec::is_empty")]
-        verdict_changes_data: Vec<R>,
+    changes Changes<R> {
+        verdict_changes: Vec<String>, verdict_changes_data: Vec<R>, missing if "Vec::is_empty"
     }
-
     /// Sections that are not used, each with the reason.
-    pub struct NotUsed<R> {
-        not_used: Vec<(String, String)>,
-        #[schemars(default, skip_serializing_if = "Vec::is_empty")]
-        not_used_data: Vec<(String, R)>,
+    not_used NotUsed<R> {
+        not_used: Vec<(String, String)>, not_used_data: Vec<(String, R)>,
+        missing if "Vec::is_empty"
     }
+}
+
+/// A reason, as [`reason`] writes it where there is always one.
+#[derive(JsonSchema)]
+#[allow(dead_code, reason = "the schema describes it")]
+pub struct OneReason<R> {
+    reason: String,
+    reason_data: R,
+}
+
+/// Of each value a reason, or none, as [`reasons`] writes them.
+#[derive(JsonSchema)]
+#[allow(dead_code, reason = "the schema describes it")]
+pub struct EachReason<R> {
+    reasons: Vec<Option<String>>,
+    #[schemars(default, skip_serializing_if = "Vec::is_empty")]
+    reasons_data: Vec<Option<R>>,
 }

@@ -43,7 +43,7 @@ pub(super) fn cover(view: &View<'_>) -> Cover {
     let result = ResultBox {
         label: Some(title.map_or("Verdict".into(), |title| format!("Verdict: {title}"))),
         finding: finding(view),
-        note: found.verdict_note.clone(),
+        note: found.verdict_note.as_ref().map(|note| note.text().into()),
         sentence: wording::sentence(found).to_owned() + &origin.unwrap_or_default(),
     };
     let mut blocks = reasons(view);
