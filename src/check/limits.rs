@@ -113,7 +113,7 @@ impl Checker<'_> {
     ) -> Option<Limit> {
         let dimension =
             estimate.unit.as_ref().or(common.unit.map(|(unit, _)| unit)).map(|unit| unit.dimension);
-        let names =
+        let others: Vec<String> =
             common.names.iter().filter(|name| **name != written.statistic.node).cloned().collect();
         let scope = || Scope {
             // A limit of every single value may depend on its section; a limit of a statistic has
@@ -122,7 +122,7 @@ impl Checker<'_> {
             ..Scope::zone(zone.as_deref())
         };
         let mut of_bound = scope();
-        of_bound.limits = Some((dimension.unwrap_or(Dimension::ONE), names));
+        of_bound.limits = Some((dimension.unwrap_or(Dimension::ONE), others.clone()));
         let bound = if of_bound.section {
             self.expr(&written.bound, text, &mut of_bound)
                 .map(|expr| OfGroup { expr, taken: Vec::new() })
@@ -166,6 +166,7 @@ impl Checker<'_> {
         };
         let bound = bound.filter(|_| ok)?;
         let words = self.with_values(&normalised(&text.text[written.statistic.range.end..]));
+        let printed = naming_limit(&words, &others);
         Some(Limit {
             estimate: estimate.clone(),
             at_least: written.at_least,
@@ -174,6 +175,7 @@ impl Checker<'_> {
             only_when,
             scope: applies,
             words,
+            printed,
             unconfirmed: self.unconfirmed,
             span: text.span.clone(),
         })
@@ -412,6 +414,17 @@ impl Checker<'_> {
     }
 }
 
+/// The words of a limit, saying so where the name of another statistic stands for its limit: `2/3 of
+/// the limit of std` for `2/3 of std`.
+fn naming_limit(words: &str, others: &[String]) -> String {
+    let (bound, rest) = words.split_at(words.find(", ").unwrap_or(words.len()));
+    let named = |name: &String| match bound.strip_suffix(name.as_str())? {
+        "" => Some(format!("limit of {name}{rest}")),
+        share => Some(format!("{}of the limit of {name}{rest}", share.strip_suffix("of ")?)),
+    };
+    others.iter().find_map(named).unwrap_or_else(|| words.to_owned())
+}
+
 /// Says so behind each limit with a number that is to be confirmed, and behind each that refers to
 /// such a limit.
 fn say_unconfirmed(limits: &mut [Limit], words: &str) {
@@ -429,6 +442,7 @@ fn say_unconfirmed(limits: &mut [Limit], words: &str) {
     }
     for limit in limits.iter_mut().filter(|limit| limit.unconfirmed) {
         limit.words += words;
+        limit.printed += words;
     }
 }
 

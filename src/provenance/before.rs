@@ -35,7 +35,7 @@ fn added() -> [(&'static str, Value); 11] {
             "quantities.*.statistics.*",
             json!({
                 "scope_data": null, "sample": {"mean": null, "std": null}, "regression": null,
-                "divided_at": null, "outside": [],
+                "divided_at": null, "outside": [], "limit_printed": "",
             }),
         ),
         ("quantities.*.reported.*", scope()),

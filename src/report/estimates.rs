@@ -138,6 +138,7 @@ mod tests {
             holds,
             factors: Vec::new(),
             limit_text: "1 kN".into(),
+            limit_printed: "1 kN".into(),
             reason: None,
             rule: RulePlace { file: "a.fp".into(), line: 1 },
         }

@@ -193,6 +193,8 @@ pub struct StatisticResult {
     pub factors: Vec<LimitFactor>,
     /// The limit in the words of the protocol: `2/3 of std`.
     pub limit_text: String,
+    /// The same as printed: `2/3 of the limit of std`.
+    pub limit_printed: String,
     #[serde(flatten, with = "told::reason")]
     #[schemars(with = "told::NoneOrReason<Reason>")]
     pub reason: Option<Reason>,

@@ -165,6 +165,7 @@ fn estimate(name: &str, zone: &str, wheelset: &str, values: &[PairValue]) -> Sta
         holds: (!open).then_some(value <= 46.0),
         factors: Vec::new(),
         limit_text: "10 kN + 2/3 * Q0".into(),
+        limit_printed: "10 kN + 2/3 * Q0".into(),
         reason: open.then(|| Reason::said("`cant` does not vary")),
         rule: RulePlace {
             file: "on-track.fp".into(),

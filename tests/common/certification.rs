@@ -400,6 +400,7 @@ fn quantity(kind: &Kind, sections: &[SectionResult], noise: &mut Noise) -> Quant
         holds: Some(value.abs() <= limit),
         factors: Vec::new(),
         limit_text: text.into(),
+        limit_printed: text.replace("of std", "of the limit of std"),
         reason: None,
         rule: RulePlace { file: "annex-t.fp".into(), line: 345 },
     };
@@ -498,6 +499,7 @@ fn metric(sections: &[SectionResult], noise: &mut Noise) -> QuantityResult {
             holds: Some(true),
             factors: Vec::new(),
             limit_text: "0.3".into(),
+            limit_printed: "0.3".into(),
             reason: None,
             rule: RulePlace { file: "annex-t.fp".into(), line: 345 },
         })

@@ -365,6 +365,7 @@ fn statistics(values: &[PairValue], unit: &str, limit: f64) -> Vec<StatisticResu
             holds: Some(value.abs() <= limit),
             factors: Vec::new(),
             limit_text: text.into(),
+            limit_printed: text.replace("of std", "of the limit of std"),
             reason: None,
             rule: RulePlace { file: "annex-t.fp".into(), line: 345 },
         };

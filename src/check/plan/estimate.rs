@@ -17,6 +17,8 @@ pub struct Limit {
     pub scope: Scope,
     /// As written: `2/3 of std`.
     pub words: String,
+    /// As printed: `2/3 of the limit of std`.
+    pub printed: String,
     /// A number in it is to be confirmed.
     pub unconfirmed: bool,
     pub span: Span,

@@ -316,6 +316,7 @@ mod tests {
             holds: Some(true),
             factors: Vec::new(),
             limit_text: "1 kN".into(),
+            limit_printed: "1 kN".into(),
             reason: None,
             rule: RulePlace { file: "a.fp".into(), line: 1 },
         }

@@ -1,7 +1,6 @@
 //! Estimates by group: one row for each limit in the summary, one table for each limit with its
 //! groups.
 
-use super::wording::limit_in_words;
 use super::{View, caption, name, statistic};
 use crate::report::document::{Cell, Column, Finding, Format, Medium, Row, Table, cells};
 use crate::report::estimates::{self, OfLimit};
@@ -85,7 +84,7 @@ fn table(quantity: &QuantityResult, limit: &OfLimit<'_>, rows: &str) -> Table {
     columns.push(Column::number("|Value| / limit"));
     columns.push(Column::text("Finding").wide(1.0));
     let caption = caption(&format!("{} of ", number::formula(&first.title)), quantity)
-        .and(format!(", limit {}", limit_in_words(first, quantity)));
+        .and(format!(", limit {}", number::formula(&first.limit_printed)));
     Table::new(caption, columns, limit.results.iter().map(row)).size(8.0)
 }
 

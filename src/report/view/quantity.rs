@@ -1,6 +1,5 @@
 //! One quantity: its statistics and limits, its worst pairs, and all its values.
 
-use super::wording::limit_in_words;
 use super::{View, brief, caption, groups, in_unit, reports, spread, statistic, values};
 use crate::report::brief::in_full;
 use crate::report::document::{
@@ -122,7 +121,7 @@ fn statistics(quantity: &QuantityResult, rows: &str) -> Table {
         cells.extend(statistic::interval(one));
         cells.extend([
             statistic::limit(Some(one)),
-            limit_in_words(one, quantity).into(),
+            Cell::formula(&one.limit_printed),
             statistic::normalised(Some(one)),
         ]);
         Row::from(cells).ending(Finding::of_statistic(Some(one)), one.reason.as_ref())

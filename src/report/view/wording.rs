@@ -1,8 +1,7 @@
 //! Words that depend on what the protocol is about: a validation, an assessment, a comparison of
 //! records.
 
-use crate::report::number;
-use crate::result::{Certification, Kind, QuantityResult, StatisticResult, Verdict};
+use crate::result::{Certification, Kind, Verdict};
 
 /// Words of a report.
 #[derive(Clone, Debug)]
@@ -130,28 +129,4 @@ pub(super) fn measurement_statement(found: &Certification) -> Option<&'static st
     found.reads().1.then_some(
         "The measured records named in this report are those of the test runs described. Channels, calibration and sections were checked.",
     )
-}
-
-/// A limit as worded. Where the name of another statistic stands for the limit of that one, so it
-/// says.
-pub(super) fn limit_in_words(found: &StatisticResult, quantity: &QuantityResult) -> String {
-    let (limit, rest) = found
-        .limit_text
-        .split_once(", ")
-        .map_or((found.limit_text.as_str(), None), |(limit, rest)| (limit, Some(rest)));
-    let of = |name: &str| -> Option<String> {
-        match limit.strip_suffix(name)? {
-            "" => Some(format!("limit of {name}")),
-            share => {
-                share.strip_suffix("of ").map(|share| format!("{share}of the limit of {name}"))
-            }
-        }
-    };
-    let mut others = quantity
-        .statistics
-        .iter()
-        .filter(|other| other.name != found.name)
-        .map(|other| other.name.to_string());
-    let words = others.find_map(|name| of(&name)).unwrap_or_else(|| limit.to_owned());
-    number::formula(&rest.map_or_else(|| words.clone(), |rest| format!("{words}, {rest}")))
 }

@@ -243,6 +243,7 @@ impl<'a> Judging<'a> {
             holds: None,
             factors: Vec::new(),
             limit_text: limit.words.clone(),
+            limit_printed: limit.printed.clone(),
             reason: None,
             rule: rule_place(&limit.span),
         }
