@@ -529,7 +529,7 @@ mod tests {
         let exceeds = |value: f64, how: &str| {
             assert_eq!(told(value, 10.0, false), format!("mean (zone 1) {how}"));
         };
-        exceeds(13.05, "13.1 kN exceeds the limit 10.0 kN by 30 %");
+        exceeds(13.04, "13.0 kN exceeds the limit 10.0 kN by 30 %");
         exceeds(10.5, "10.5 kN exceeds the limit 10.0 kN by 5.0 %");
         exceeds(10.004, "10.004 kN exceeds the limit 10.000 kN by less than 0.1 %");
         exceeds(-12.34, "\u{2212}12.3 kN exceeds in magnitude the limit 10.0 kN by 23 %");
