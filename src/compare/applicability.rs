@@ -20,7 +20,7 @@ pub fn tried(
     (protocol, campaign): (&str, &str),
 ) -> Vec<Applicability> {
     let plan = &base.compiled.plan;
-    let judge = |evaluated: &Evaluated| evaluated.judge(plan, &base.compiled.graph);
+    let judge = |evaluated: &Evaluated| evaluated.judge(plan);
     let (doubled, exchanged) = (doubled.map(judge), exchanged.map(judge));
     let metrics = metric::all(plan);
     let mut found: Vec<Applicability> = metrics

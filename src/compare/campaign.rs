@@ -41,7 +41,7 @@ pub fn found(
         .par_iter()
         .zip(&all.as_recorded)
         .map(|(compiled, evaluated)| {
-            evaluated.as_ref().map(|evaluated| evaluated.judge(&compiled.plan, &compiled.graph))
+            evaluated.as_ref().map(|evaluated| evaluated.judge(&compiled.plan))
         })
         .collect();
     let judgement =
@@ -73,8 +73,7 @@ pub fn found(
         .map(|changed| Some((changed.as_ref().ok()?, evaluated.next()?)))
         .collect();
     let of_change = |(compiled, evaluated): (&Compiled, &Result<Evaluated, Problems>)| {
-        let judged =
-            evaluated.as_ref().map(|evaluated| evaluated.judge(&compiled.plan, &compiled.graph));
+        let judged = evaluated.as_ref().map(|evaluated| evaluated.judge(&compiled.plan));
         judgement(
             names[0],
             compiled,

@@ -50,7 +50,7 @@ impl Moved {
     }
 
     fn judge(&mut self, base: &Base<'_>, evaluated: &Evaluated) {
-        let judged = evaluated.judge(&base.compiled.plan, &base.compiled.graph);
+        let judged = evaluated.judge(&base.compiled.plan);
         self.add(base.numbers, &metric::numbers(&base.compiled.plan, &judged));
         self.verdicts += 1;
         self.verdicts_changed += usize::from(judged.verdict != base.judged.verdict);

@@ -73,6 +73,12 @@ pub fn peak_magnitude(values: &[f64]) -> Option<f64> {
     extremes(values).map(|(least, greatest)| greatest.abs().max(least.abs()))
 }
 
+/// The least and the largest value; without values, the ends of an empty range.
+pub fn ends(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
+    let empty = (f64::INFINITY, f64::NEG_INFINITY);
+    values.into_iter().fold(empty, |(low, high), value| (low.min(value), high.max(value)))
+}
+
 /// Largest minus smallest value.
 pub fn range(values: &[f64]) -> Option<f64> {
     finite(extremes(values).map(|(least, greatest)| greatest - least)?)

@@ -144,7 +144,7 @@ fn protocol_text(carried: &Carried, texts: &[&str]) -> Check {
 /// Checks that statistics, verdict and reasons follow from the printed values.
 fn statistics(carried: &Carried, compiled: &Compiled) -> Check {
     const NAME: &str = "statistics";
-    let replayed = replay(&compiled.plan, &compiled.graph, &carried.results);
+    let replayed = replay(&compiled.plan, &carried.results);
     let replayed = match replayed {
         Ok(replayed) => replayed,
         Err(says) => {

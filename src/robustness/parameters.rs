@@ -203,7 +203,7 @@ fn at_value(
     value: &str,
     is_base: bool,
 ) -> AtValue {
-    let judged = evaluated.judge(&compiled.plan, &compiled.graph);
+    let judged = evaluated.judge(&compiled.plan);
     let statistics: Vec<Selected> = judged
         .quantities
         .iter()

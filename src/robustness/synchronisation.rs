@@ -100,8 +100,8 @@ fn at_offset(
     offset: f64,
     without: &Without<'_>,
 ) -> AtOffset {
-    let Compiled { plan, graph, .. } = compiled;
-    let judged = evaluated.judge(plan, graph);
+    let plan = &compiled.plan;
+    let judged = evaluated.judge(plan);
     let pool = evaluated.pool(plan);
     let usable = without.selection.iter().all(|&at| pool.sections[at].used);
     let case = Case::of(&pool, settings.take).and_then(|case| match settings.reduce {

@@ -346,8 +346,7 @@ fn an_offset_moves_the_measurement_forward_along_the_axis() {
     let found = evaluate(&compiled.plan, &compiled.graph, &campaign, &shifts, &|_| {})
         .unwrap_or_else(|problems| panic!("{}", problems.render(false)));
     assert_eq!(found.len(), OFFSETS.len());
-    let judged: Vec<_> =
-        found.iter().map(|found| found.judge(&compiled.plan, &compiled.graph)).collect();
+    let judged: Vec<_> = found.iter().map(|found| found.judge(&compiled.plan)).collect();
     let mut compared = 0;
     for (judged, offset) in judged.iter().zip(OFFSETS) {
         let table =

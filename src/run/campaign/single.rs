@@ -8,10 +8,9 @@ use crate::data::Campaigns;
 use crate::graph::Graph;
 use crate::problem::{Problem, Problems};
 use crate::result::{FileHash, RecordName};
-use crate::run::record::{Fault, NodeValue, Work};
+use crate::run::record::{Fault, NodeValue, SectionWork, Work};
 use crate::run::reduce::section::{original, records};
 use crate::run::reduce::{Prepared, wanted_of};
-use crate::run::sections::Unit;
 use crate::run::values::{Meetings, RecordOfSide, Row, SectionValues, Sides};
 
 /// The value of one section and signal of a quantity.
@@ -65,7 +64,8 @@ pub fn single<'a>(
         let says = format!("section {section} is not used: {}", fault.text());
         return Err(Problem::error("not-evaluated", says).into());
     }
-    let found = computed(&prepared.work(), unit, quantity, signal).map_err(|fault| {
+    let work = prepared.work();
+    let found = computed(&SectionWork::new(&work, unit), quantity, signal).map_err(|fault| {
         let mut problems = Problems(fault.problems);
         problems.push(Problem::error(
             "not-evaluated",
@@ -135,39 +135,35 @@ type Placed = Vec<(plan::Side, RecordOfSide)>;
 
 /// One position of one quantity in one section: its rows, and the values of each record.
 fn computed(
-    work: &Work<'_>,
-    unit: &Unit,
+    section: &SectionWork<'_>,
     index: usize,
-    signal: usize,
+    position: usize,
 ) -> Result<(Vec<Row>, Placed), Fault> {
-    let known = unit.known(work.facts);
-    let (quantity, nodes) =
-        (&work.plan.quantities[index], &work.graph.quantities[index].signals[signal]);
+    let Work { plan, graph, .. } = *section.work;
+    let quantity = &plan.quantities[index];
     let mut wanted = BTreeSet::new();
-    wanted_of(quantity, nodes, &mut wanted);
+    wanted_of(quantity, &graph.quantities[index].signals[position], &mut wanted);
     let of = |side: plan::Side| match quantity.evaluation.reads(side) {
-        true => records(work, unit, side, &wanted, &known, &mut SectionValues::default()),
+        true => records(section, side, &wanted, &mut SectionValues::default()),
         false => Ok(Vec::new()),
     };
     let (simulated, measured) = (of(plan::Side::Simulated)?, of(plan::Side::Measured)?);
     let repeats = quantity.evaluation.of_repeats();
-    let original = if repeats { original(work, unit, &wanted).transpose()? } else { None };
+    let original = if repeats { original(section, &wanted).transpose()? } else { None };
     let sides = Sides {
-        work,
+        section,
         simulated: &simulated,
         measured: &measured,
         original: original.as_ref(),
-        known: &known,
-        meetings: &Meetings::default(),
+        meetings: Meetings::default(),
     };
-    let rows = sides.rows(signal, nodes).map_err(Fault::new)?;
+    let rows = sides.rows(index, position).map_err(Fault::new)?;
     let measured_as = if repeats { plan::Side::Simulated } else { plan::Side::Measured };
     let first = original.into_iter().flat_map(|original| original.records);
-    let placed = |side| move |record| (side, record);
     let placed = simulated
         .into_iter()
-        .map(placed(plan::Side::Simulated))
-        .chain(measured.into_iter().map(placed(measured_as)))
-        .chain(first.map(placed(plan::Side::Measured)));
+        .map(|record| (plan::Side::Simulated, record))
+        .chain(measured.into_iter().map(|record| (measured_as, record)))
+        .chain(first.map(|record| (plan::Side::Measured, record)));
     Ok((rows, placed.collect()))
 }

@@ -7,8 +7,7 @@ use crate::problem::{Problem, Problems};
 use crate::result::{Consequence, Finding, Reason, Remark, Sections};
 use crate::run::sections::requirements::{asked, not_stated, of_check};
 use crate::run::sections::{Facts, Unit};
-use crate::run::values::SectionValues;
-use crate::run::values::margins::margin_note;
+use crate::run::values::{SectionValues, margin_note};
 
 /// The consequence of a finding, from the rule's `otherwise`. For `stop`, the run ends elsewhere.
 pub fn consequence(otherwise: OnFault) -> Consequence {

@@ -10,8 +10,7 @@ use crate::graph::NodeId;
 use crate::metrics::resample::Located;
 use crate::metrics::statistics::correlation;
 use crate::result::{Finding, FindingData, Occurrence, Reason};
-use crate::run::record::{Along, Samples, Work};
-use crate::run::sections::Unit;
+use crate::run::record::{Along, Samples, SectionWork};
 use crate::run::values::{RecordOfSide, Sides};
 
 /// Channels of one rule in a section: name, and the signal.
@@ -19,27 +18,23 @@ pub type Channels<'a> = Vec<(&'a str, NodeId)>;
 
 /// A finding for each measured channel that another simulated channel of the rule explains better.
 pub fn find(
-    work: &Work<'_>,
     rule: &Plausibility,
     test: Exchanged,
     channels: &Channels<'_>,
-    unit: &Unit,
     sides: &Sides<'_>,
 ) -> Vec<Finding> {
     let (Some(simulated), false) = (sides.simulated.first(), channels.len() < 2) else {
         return Vec::new();
     };
-    sides
-        .measured
-        .iter()
-        .flat_map(|measured| in_record((rule, test), channels, (work, unit), simulated, measured))
-        .collect()
+    let in_record =
+        |measured| in_record((rule, test), channels, sides.section, simulated, measured);
+    sides.measured.iter().flat_map(in_record).collect()
 }
 
 fn in_record(
     (rule, test): (&Plausibility, Exchanged),
     channels: &Channels<'_>,
-    (work, unit): (&Work<'_>, &Unit),
+    section: &SectionWork<'_>,
     simulated: &RecordOfSide,
     measured: &RecordOfSide,
 ) -> Vec<Finding> {
@@ -66,9 +61,9 @@ fn in_record(
         };
         let first = Occurrence {
             channel: Some((*name).to_string()),
-            section: Some(unit.name.clone()),
-            campaign: unit.campaign_name.clone(),
-            record: Some(work.campaign(unit).record_in_words(measured.which)),
+            section: Some(section.unit.name.clone()),
+            campaign: section.unit.campaign_name.clone(),
+            record: Some(section.campaign().record_in_words(measured.which)),
             value: Some(with_own),
             expected: Some(with_other),
             unit: Some("-".into()),

@@ -9,11 +9,11 @@ use crate::check::evaluate::{flag, number, words};
 use crate::check::plan::{
     Comparison, Exchanged, InputSide, Looks, Plausibility, Requirement, Test,
 };
-use crate::graph::{InputNode, NodeId, PositionNodes};
+use crate::graph::{Graph, InputNode, NodeId, PositionNodes};
 use crate::result::{Finding, FindingData, Occurrence, Reason};
-use crate::run::record::Work;
-use crate::run::sections::{Known, Unit, needed};
-use crate::run::values::{NodeValues, Print, RecordOfSide, SectionValues, Sides};
+use crate::run::record::SectionWork;
+use crate::run::sections::{Known, needed};
+use crate::run::values::{NodeValues, Print, SectionValues, Sides};
 use crate::units::Dimension;
 
 /// A rule at a recorded position, its nodes and the name of the position.
@@ -25,48 +25,38 @@ pub struct Questions<'a>(Vec<Asked<'a>>);
 impl<'a> Questions<'a> {
     /// Every rule that applies to the section, at every recorded position. A rule is passed over
     /// where it cannot be determined, for a missing datum, whether it applies or to which signal.
-    pub fn of(work: &Work<'a>, unit: &Unit, known: &Known<'_>) -> Self {
-        let applies = |rule: &Plausibility| {
-            rule.unless.as_ref().map_or(Ok(false), |unless| flag(unless, known)) == Ok(false)
-        };
+    pub fn of(section: &SectionWork<'a>) -> Self {
+        let SectionWork { work, unit, known } = *section;
         let decided = |nodes: &PositionNodes| {
-            let nodes: BTreeSet<NodeId> = nodes
-                .own
-                .into_iter()
-                .chain(nodes.inputs.iter().flat_map(InputNode::nodes))
-                .collect();
-            needed(work.graph, &nodes, known).is_ok()
+            let inputs = nodes.inputs.iter().flat_map(InputNode::nodes);
+            needed(work.graph, &nodes.own.into_iter().chain(inputs).collect(), &known).is_ok()
         };
-        let (plan, graph, recorded) = (work.plan, work.graph, &work.recorded[unit.campaign]);
-        let of_rule = |(at, rule): (usize, &'a Plausibility)| {
-            let positions = graph.plausibility[at].positions.iter().zip(&recorded[at]).enumerate();
-            let name =
-                |position: usize| rule.signals.get(position).map_or("", |(name, _)| name.as_str());
-            let asked = positions.filter(|(_, (nodes, recorded))| **recorded && decided(nodes));
-            asked
-                .map(|(position, (nodes, _))| (rule, nodes, name(position)))
-                .collect::<Vec<Asked<'a>>>()
-        };
-        Self(
-            plan.plausibility
-                .iter()
-                .enumerate()
-                .filter(|(_, rule)| applies(rule))
-                .flat_map(of_rule)
-                .collect(),
-        )
+        let mut asked = Vec::new();
+        for (at, rule) in work.plan.plausibility.iter().enumerate() {
+            let spared = rule.unless.as_ref().map_or(Ok(false), |unless| flag(unless, &known));
+            if spared != Ok(false) {
+                continue;
+            }
+            let recorded = &work.recorded[unit.campaign][at];
+            let positions = work.graph.plausibility[at].positions.iter().zip(recorded).enumerate();
+            for (position, (nodes, recorded)) in positions {
+                if *recorded && decided(nodes) {
+                    let name = rule.signals.get(position).map_or("", |(name, _)| name.as_str());
+                    asked.push((rule, nodes, name));
+                }
+            }
+        }
+        Self(asked)
     }
 
     /// Nodes whose values the rules need, of the track record (`track`) or of the other records.
-    pub fn wanted(&self, work: &Work<'_>, track: bool) -> BTreeSet<NodeId> {
+    pub fn wanted(&self, graph: &Graph, track: bool) -> BTreeSet<NodeId> {
         let mut wanted = BTreeSet::new();
         for (rule, nodes, _) in &self.0 {
             let of_rule = nodes.inputs.iter().flat_map(InputNode::nodes);
-            wanted.extend(of_rule.filter(|&node| work.graph.nodes[node].track == track));
-            if let (Test::Distinct(_) | Test::Exchanged(_), Some(own), false) =
-                (&rule.test, nodes.own, track)
-            {
-                wanted.insert(own);
+            wanted.extend(of_rule.filter(|&node| graph.nodes[node].track == track));
+            if !track && matches!(rule.test, Test::Distinct(_) | Test::Exchanged(_)) {
+                wanted.extend(nodes.own);
             }
         }
         wanted
@@ -75,12 +65,12 @@ impl<'a> Questions<'a> {
 
 /// Checks one section and adds its findings to the values.
 pub fn look(
-    (work, unit): (&Work<'_>, &Unit),
     questions: &Questions<'_>,
     sides: &Sides<'_>,
     track: &NodeValues,
     values: &mut SectionValues,
 ) {
+    let section = sides.section;
     let mut channels: Vec<(&Plausibility, Exchanged, exchanged::Channels<'_>)> = Vec::new();
     for &(rule, nodes, name) in &questions.0 {
         match &rule.test {
@@ -92,36 +82,31 @@ pub fn look(
                 (None, _) => {}
             },
             Test::Require(requirement) => {
-                let at = Position { work, rule, requirement, unit, name };
+                let at = Position { section, rule, requirement, name };
                 at.look(sides, nodes, track, &mut values.findings);
             }
             Test::Distinct(_) => {
                 for record in sides.simulated.iter().chain(sides.measured) {
                     if let Some(samples) = nodes.own.and_then(|own| record.found.samples(own).ok())
                     {
-                        let words = work.campaign(unit).record_in_words(record.which);
-                        values.prints.push(Print::of(
-                            &rule.name,
-                            name,
-                            (record.which, words),
-                            &samples.values,
-                        ));
+                        let words = section.campaign().record_in_words(record.which);
+                        let print = (record.which, words);
+                        values.prints.push(Print::of(&rule.name, name, print, &samples.values));
                     }
                 }
             }
         }
     }
     for (rule, test, channels) in channels {
-        values.findings.extend(exchanged::find(work, rule, test, &channels, unit, sides));
+        values.findings.extend(exchanged::find(rule, test, &channels, sides));
     }
 }
 
 /// A requirement at one position in one section.
 struct Position<'a> {
-    work: &'a Work<'a>,
+    section: &'a SectionWork<'a>,
     rule: &'a Plausibility,
     requirement: &'a Requirement,
-    unit: &'a Unit,
     name: &'a str,
 }
 
@@ -133,28 +118,20 @@ impl Position<'_> {
         track: &NodeValues,
         findings: &mut Vec<Finding>,
     ) {
+        let mut look = |value: &dyn Fn(&InputNode) -> Result<f64, Reason>, record| {
+            let inputs: Vec<_> = nodes.inputs.iter().map(value).collect();
+            findings.extend(self.finding(&inputs, record));
+        };
         match self.requirement.of {
-            Looks::Data => findings.extend(self.finding(sides.known, &[], None)),
+            Looks::Data => findings.extend(self.finding(&[], None)),
             Looks::Track => {
-                let inputs: Vec<_> = nodes
-                    .inputs
-                    .iter()
-                    .map(|input: &InputNode| track.number(input.node).map(|(value, _)| value))
-                    .collect();
-                findings.extend(self.finding(sides.known, &inputs, Some("track".into())));
+                let value = |input: &InputNode| Ok(track.number(input.node)?.0);
+                look(&value, Some("track".into()));
             }
             Looks::BothSides => {
                 for (name, two) in sides.pairs() {
-                    let inputs: Vec<_> = nodes
-                        .inputs
-                        .iter()
-                        .map(|input| two.input(input, InputSide::Measured))
-                        .collect();
-                    findings.extend(self.finding(
-                        sides.known,
-                        &inputs,
-                        name.map(|name| name.to_string()),
-                    ));
+                    let name = name.map(|name| name.to_string());
+                    look(&|input| two.input(input, InputSide::Measured), name);
                 }
             }
             Looks::EachSide => {
@@ -162,30 +139,17 @@ impl Position<'_> {
                     [(sides.simulated, InputSide::Simulated), (sides.measured, InputSide::Measured)]
                 {
                     for record in records {
-                        let inputs: Vec<_> = nodes
-                            .inputs
-                            .iter()
-                            .map(|input| sides.alone(record).input(input, side))
-                            .collect();
-                        findings.extend(self.finding(sides.known, &inputs, Some(self.of(record))));
+                        let name = self.section.campaign().record_in_words(record.which);
+                        look(&|input| sides.alone(record).input(input, side), Some(name));
                     }
                 }
             }
         }
     }
 
-    fn of(&self, record: &RecordOfSide) -> String {
-        self.work.campaign(self.unit).record_in_words(record.which)
-    }
-
     /// `None` where the requirement is met, or cannot be evaluated because a datum is missing.
-    fn finding(
-        &self,
-        known: &Known<'_>,
-        inputs: &[Result<f64, Reason>],
-        record: Option<String>,
-    ) -> Option<Finding> {
-        let known = Known { inputs, ..*known };
+    fn finding(&self, inputs: &[Result<f64, Reason>], record: Option<String>) -> Option<Finding> {
+        let known = Known { inputs, ..self.section.known };
         if flag(&self.requirement.holds, &known) != Ok(false) {
             return None;
         }
@@ -226,8 +190,8 @@ impl Position<'_> {
                 required: self.requirement.words.clone(),
             },
             channel: (!self.name.is_empty()).then(|| self.name.to_string()),
-            section: Some(self.unit.name.clone()),
-            campaign: self.unit.campaign_name.clone(),
+            section: Some(self.section.unit.name.clone()),
+            campaign: self.section.unit.campaign_name.clone(),
             record,
             value,
             expected,

@@ -5,6 +5,7 @@ use indexmap::IndexMap;
 
 use crate::check::plan::{Coordinate, DatumKind, Domain, OnFault, Plan, Scalar};
 use crate::metrics::hull::{self, Nearest};
+use crate::metrics::statistics::ends;
 use crate::result::{
     Beyond, Consequence, CoordinateRange, DomainRange, DomainResult, DomainSection, Finding,
     FindingData, Occurrence, Reason, Scope, WantedPoint,
@@ -25,23 +26,15 @@ pub fn domain(plan: &Plan, units: &[Unit]) -> Vec<DomainRange> {
     for (index, datum) in plan.columns.iter().enumerate() {
         let DatumKind::Number(unit) = &datum.kind else { continue };
         for scope in &scopes {
-            let values: Vec<f64> = units
-                .iter()
-                .filter(|section| {
-                    section.fault.is_none() && scope.has_zone(section.zone.as_deref())
-                })
-                .filter_map(|section| {
-                    if let Ok(Scalar::Number(value)) = &section.columns[index] {
-                        Some(unit.from_si(*value))
-                    } else {
-                        None
-                    }
-                })
-                .collect();
-            let (low, high) =
-                values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-                    (low.min(*value), high.max(*value))
-                });
+            let inside = |section: &&Unit| {
+                section.fault.is_none() && scope.has_zone(section.zone.as_deref())
+            };
+            let number = |section: &Unit| match section.columns[index] {
+                Ok(Scalar::Number(value)) => Some(unit.from_si(value)),
+                _ => None,
+            };
+            let values: Vec<f64> = units.iter().filter(inside).filter_map(number).collect();
+            let (low, high) = ends(values.iter().copied());
             if !values.is_empty() {
                 found.push(DomainRange {
                     name: datum.title.clone(),

@@ -1,9 +1,10 @@
 //! Estimates without a limit: of the values of a quantity, and of the data of the sections used.
 
+use std::sync::Arc;
+
 use crate::check::plan::{EstimateKind, Plan, Report};
-use crate::graph::{Graph, NodeId, Operation};
 use crate::result::{Count, Reason, Reported};
-use crate::run::estimate::{Group, Grouped, Member, Part, count_independent, parts};
+use crate::run::estimate::{Group, Member, count_independent};
 use crate::run::limit::{Estimated, Judging, rule_place};
 use crate::run::sections::{Facts, Unit};
 use crate::run::values::Row;
@@ -13,20 +14,15 @@ use crate::units;
 static SECTION: Row = Row::single(0, 0, None, (0.0, 0));
 
 /// What is reported of a quantity, group by group.
-pub fn of_quantity(graph: &Graph, nodes: &[NodeId], judging: &Judging<'_>) -> Vec<Reported> {
-    let judging = *judging;
-    let of = |&node: &NodeId| match &graph.nodes[node].operation {
-        Operation::Report(report) => {
-            let unit = report.estimate.unit.as_ref().unwrap_or(&judging.quantity.unit);
-            let groups = judging.of_report(report);
-            groups
-                .into_iter()
-                .map(|group| reported(judging.plan, report, unit, &group, Count::Values))
-                .collect()
-        }
-        _ => Vec::new(),
+pub fn of_quantity(judging: &Judging<'_>) -> Vec<Reported> {
+    let of = |report: &Arc<Report>| {
+        let unit = report.estimate.unit.as_ref().unwrap_or(&judging.quantity.unit);
+        let groups = judging.of_report(report).into_iter();
+        groups
+            .map(|group| reported(judging.rows.plan, report, unit, &group, Count::Values))
+            .collect::<Vec<_>>()
     };
-    nodes.iter().flat_map(of).collect()
+    judging.quantity.reports.iter().flat_map(of).collect()
 }
 
 /// What is reported of the sections used, group by group.
@@ -37,35 +33,28 @@ pub fn of_sections<'a>(
 ) -> Vec<Reported> {
     let members: Vec<Member<'_>> =
         used.map(|unit| Member { unit, signal: "", row: &SECTION }).collect();
+    let all = Group { plan, facts, quantity: None, members: &members, table: &[] };
     let none = units::Unit::one();
-    let of = |report: &Report| -> Vec<Reported> {
-        let one = |part: Part<'_>| {
-            let inside = part.members(facts, &members);
-            let value = match (&inside, &report.estimate.kind) {
-                (Err(reason), _) => Err(reason.clone()),
-                (Ok(inside), _) if inside.is_empty() => Err(Reason::NoSectionUsed { group: None }),
-                (Ok(inside), EstimateKind::Of(of)) => {
-                    Group { plan, facts, positions: &[], members: inside, table: &[] }
-                        .number(of)
-                        .map(Some)
+    let mut found = Vec::new();
+    for report in &plan.sections.reports {
+        let unit = report.estimate.unit.as_ref().unwrap_or(&none);
+        for part in all.parts(&report.scope) {
+            let (inside, value) = match (part.members.clone(), &report.estimate.kind) {
+                (Err(reason), _) => (Vec::new(), Err(reason)),
+                (Ok(inside), _) if inside.is_empty() => {
+                    (inside, Err(Reason::NoSectionUsed { group: None }))
                 }
-                (Ok(_), EstimateKind::Each) => Ok(None),
+                (Ok(inside), EstimateKind::Of(of)) => {
+                    let value = all.with(&inside).number(of).map(Some);
+                    (inside, value)
+                }
+                (Ok(inside), EstimateKind::Each) => (inside, Ok(None)),
             };
-            let unit = report.estimate.unit.as_ref().unwrap_or(&none);
-            reported(
-                plan,
-                report,
-                unit,
-                &Estimated { value, ..Estimated::empty(part, inside.unwrap_or_default()) },
-                Count::Sections,
-            )
-        };
-        parts(plan, Grouped::sections(), &report.scope, &members, facts)
-            .into_iter()
-            .map(one)
-            .collect()
-    };
-    plan.sections.reports.iter().flat_map(of).collect()
+            let group = Estimated::plain(part, inside, value);
+            found.push(reported(plan, report, unit, &group, Count::Sections));
+        }
+    }
+    found
 }
 
 fn reported(

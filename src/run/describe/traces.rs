@@ -6,12 +6,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::check::plan::{Evaluation, Plan, Records, Side};
+use crate::check::plan::{self, Axis, Evaluation, Plan, Side};
 use crate::data::WhichRecord;
 use crate::graph::{Graph, NodeId};
+use crate::metrics::statistics::ends;
 use crate::result::{Curve, QuantityResult, Reason, RecordName, Remark, Trace};
 use crate::run::data_rules::take_over;
-use crate::run::record::{NodeValue, Opened, Samples, Work, with_record};
+use crate::run::record::{NodeValue, Samples, SectionWork, Work};
 use crate::run::sections::{Extent, Unit as Section};
 use crate::run::values::{Row, SectionValues};
 use crate::units::Unit;
@@ -101,9 +102,7 @@ pub fn traces(
     picks.truncate(most);
     let one = |(_, pick): &(f64, Pick<'_>)| {
         let found = match signals {
-            Signals::Of(work) => {
-                trace(work, *pick, &|unit, which, wanted| evaluated(work, unit, which, wanted))
-            }
+            Signals::Of(work) => Records::of(work, std::slice::from_ref(pick)).trace(pick),
             Signals::Kept(kept) => kept
                 .iter()
                 .find(|kept| {
@@ -156,15 +155,13 @@ pub fn kept(work: &Work<'_>, sections: &[(usize, SectionValues)]) -> Vec<Kept> {
         worst.into_iter().for_each(|(_, pick)| picks.entry(pick.unit).or_default().push(pick));
     }
     let of_section = |picks: &Vec<Pick<'_>>| {
-        let together = Together::of(work, picks);
+        let records = Records::of(work, picks);
         let one = |pick: &Pick<'_>| Kept {
             quantity: pick.quantity,
             unit: pick.unit,
             signal: pick.signal,
             record: pick.record.cloned(),
-            found: trace(work, *pick, &|unit, which, wanted| {
-                together.evaluated(unit, which, wanted)
-            }),
+            found: records.trace(pick),
         };
         picks.iter().map(one).collect::<Vec<_>>()
     };
@@ -185,194 +182,155 @@ impl<'a> Pick<'a> {
     fn key(&self) -> (usize, usize, usize, Option<&'a RecordName>) {
         (self.quantity, self.unit, self.signal, self.record)
     }
+
+    /// The signal that is plotted, and the horizontal axis: that of the records, or the signal that
+    /// a metric uses in its place. A loop is plotted from the signals that were compared; other
+    /// signals from the record around the section as well.
+    fn signals<'w>(&self, work: &Work<'w>) -> (NodeId, Option<NodeId>, &'w Axis) {
+        let nodes = &work.graph.quantities[self.quantity].signals[self.signal];
+        match (work.plan.quantities[self.quantity].evaluation.as_ref(), nodes.over) {
+            (Evaluation::Metric { over_axis: Some(axis), .. }, Some(over)) => {
+                (nodes.processed, Some(over), axis)
+            }
+            _ => (nodes.filtered, None, &work.plan.axis),
+        }
+    }
+
+    fn nodes(&self, work: &Work<'_>) -> BTreeSet<NodeId> {
+        let (signal, over, _) = self.signals(work);
+        BTreeSet::from_iter(Some(signal).into_iter().chain(over))
+    }
 }
 
-/// Values of nodes of a record, and the range that is shown.
-type Nodes = (Vec<(NodeId, NodeValue)>, Extent);
-type Signal = Result<Nodes, Reason>;
-/// Evaluates nodes of a record.
-type Evaluate<'a> = &'a dyn Fn(&Section, WhichRecord, &BTreeSet<NodeId>) -> Signal;
+/// Signals of a record, and the range that is shown.
+type Shown = Result<(BTreeMap<NodeId, Samples>, Extent), Reason>;
 
-fn evaluated(
-    work: &Work<'_>,
-    unit: &Section,
-    which: WhichRecord,
-    wanted: &BTreeSet<NodeId>,
-) -> Signal {
-    let known = unit.known(work.facts);
-    let evaluate = |opened: &Opened, needed: &BTreeSet<NodeId>| {
-        opened.evaluate((work.plan, work.graph), needed, wanted, &known, None)
-    };
-    let (found, opened) =
-        with_record(work, unit, which, wanted, &known, evaluate).map_err(|fault| fault.reason)?;
-    let around = |found: NodeValue| match found {
-        NodeValue::Samples(samples) => NodeValue::Samples(opened.around_section(samples)),
-        other => other,
-    };
-    Ok((
-        found
-            .map_err(|fault| fault.reason)?
-            .into_iter()
-            .map(|(node, found)| (node, around(found)))
-            .collect(),
-        opened.extent,
-    ))
-}
-
-/// The signals of several plots of a section: each record is read once.
-struct Together<'a> {
+/// The records of the plots of a section: each is read once.
+struct Records<'a> {
     work: &'a Work<'a>,
+    /// The signals of all plots.
     all: BTreeSet<NodeId>,
-    found: RefCell<BTreeMap<(String, WhichRecord), Option<Nodes>>>,
+    found: RefCell<BTreeMap<(String, WhichRecord), Shown>>,
 }
 
-impl<'a> Together<'a> {
+impl<'a> Records<'a> {
     fn of(work: &'a Work<'a>, picks: &[Pick<'_>]) -> Self {
-        let all = picks.iter().flat_map(|pick| wanted(work, pick)).collect();
+        let all = picks.iter().flat_map(|pick| pick.nodes(work)).collect();
         Self { work, all, found: RefCell::default() }
     }
 
-    fn evaluated(&self, unit: &Section, which: WhichRecord, wanted: &BTreeSet<NodeId>) -> Signal {
+    fn read(&self, unit: &Section, which: WhichRecord, wanted: &BTreeSet<NodeId>) -> Shown {
+        let Work { plan, graph, .. } = *self.work;
+        let section = SectionWork::new(self.work, unit);
+        let read = section.with_record(which, wanted, |opened, needed| {
+            opened.evaluate((plan, graph), needed, wanted, &section.known, None)
+        });
+        let (found, opened) = read.map_err(|fault| fault.reason)?;
+        let samples = |(node, found): (NodeId, NodeValue)| match found {
+            NodeValue::Samples(samples) => Some((node, opened.around_section(samples))),
+            NodeValue::Number(..) | NodeValue::Failed(_) => None,
+        };
+        let found = found.map_err(|fault| fault.reason)?;
+        Ok((found.into_iter().filter_map(samples).collect(), opened.extent))
+    }
+
+    fn signals(&self, unit: &Section, which: WhichRecord, pick: &Pick<'_>) -> Shown {
         let mut found = self.found.borrow_mut();
-        let of_all = || evaluated(self.work, unit, which, &self.all).ok();
+        let of_all = || self.read(unit, which, &self.all);
         match found.entry((unit.name.clone(), which)).or_insert_with(of_all) {
-            Some((found, extent)) => Ok((
-                found.iter().filter(|(node, _)| wanted.contains(node)).cloned().collect(),
-                *extent,
-            )),
+            Ok(found) => Ok(found.clone()),
             // One of them cannot be evaluated: each by itself.
-            None => evaluated(self.work, unit, which, wanted),
+            Err(_) => self.read(unit, which, &pick.nodes(self.work)),
         }
     }
-}
 
-/// The signals of a plot: what is plotted, and the signal that a metric uses in place of the axis.
-/// A loop is plotted from the signals that were compared; other signals from the record around the
-/// section as well.
-fn wanted(work: &Work<'_>, pick: &Pick<'_>) -> Vec<NodeId> {
-    let nodes = &work.graph.quantities[pick.quantity].signals[pick.signal];
-    match (work.plan.quantities[pick.quantity].evaluation.as_ref(), nodes.over) {
-        (Evaluation::Metric { over_axis: Some(_), .. }, Some(over)) => vec![nodes.processed, over],
-        _ => vec![nodes.filtered],
-    }
-}
-
-/// The horizontal axis of a plot: the axis of the records, or the signal that the metric uses in
-/// its place.
-struct Over {
-    node: Option<NodeId>,
-    name: String,
-    unit: Unit,
-}
-
-fn trace(work: &Work<'_>, pick: Pick<'_>, evaluate: Evaluate<'_>) -> Result<Trace, Reason> {
-    let Pick { quantity: index, signal, record, .. } = pick;
-    let unit = &work.units[pick.unit];
-    let quantity = &work.plan.quantities[index];
-    let nodes = &work.graph.quantities[index].signals[signal];
-    let axis = &work.plan.axis;
-    let over = match (quantity.evaluation.as_ref(), nodes.over) {
-        (Evaluation::Metric { over_axis: Some(over), .. }, Some(node)) => {
-            Over { node: Some(node), name: over.column.clone(), unit: over.unit.clone() }
-        }
-        _ => Over { node: None, name: axis.column.clone(), unit: axis.unit.clone() },
-    };
-    let all = wanted(work, &pick);
-    let (node, wanted) = (all[0], BTreeSet::from_iter(all));
-    let curve_of = |unit: &Section, which: WhichRecord| {
-        let (found, extent) = evaluate(unit, which, &wanted)?;
-        let of = |node: NodeId| {
-            found.iter().find_map(|(id, found)| {
-                if let (true, NodeValue::Samples(samples)) = (*id == node, found) {
-                    Some(samples)
-                } else {
-                    None
+    fn trace(&self, pick: &Pick<'_>) -> Result<Trace, Reason> {
+        let Pick { quantity, signal, record, .. } = *pick;
+        let work = self.work;
+        let (unit, quantity) = (&work.units[pick.unit], &work.plan.quantities[quantity]);
+        let campaign = work.campaigns.get(unit.campaign);
+        let (node, over, axis) = pick.signals(work);
+        let name = |which| campaign.record_name(which).map(|name| name.as_ref());
+        let curve_of = |unit: &Section, which: WhichRecord| {
+            let (found, extent) = self.signals(unit, which, pick)?;
+            let of = |node: NodeId| found.get(&node).ok_or(Reason::NoSamples);
+            let samples = of(node)?;
+            let x: &[f64] = match over {
+                Some(node) => &of(node)?.values,
+                None => &samples.along.axis,
+            };
+            Ok::<_, Reason>((thinned(samples, x, &quantity.signal_unit, &axis.unit), extent))
+        };
+        let curve = |unit: &Section, side: Side| {
+            let took_part =
+                |which| RecordName::took_part(record, side == Side::Simulated, name(which));
+            let which = campaign.records(side.kind()).into_iter().find(|&which| took_part(which));
+            let none = || Reason::NoRecordOfSide { side: side.in_words().into() };
+            curve_of(unit, which.ok_or_else(none)?)
+        };
+        let of =
+            |side: Side| quantity.evaluation.reads(side).then(|| curve(unit, side)).transpose();
+        let original = unit
+            .original
+            .and_then(|original| work.units.get(original))
+            .filter(|_| quantity.evaluation.of_repeats());
+        let (measured, simulated) = match original {
+            // The original stands in the place of the measurement; distances count from the start
+            // of each section.
+            Some(original) => {
+                let repeat = curve(unit, Side::Measured)?;
+                let (mut first, extent) = curve(original, Side::Measured)?;
+                if over.is_none() {
+                    let shift = axis.unit.from_si(repeat.1.0) - axis.unit.from_si(extent.0);
+                    first.x.iter_mut().for_each(|x| *x += shift);
                 }
-            })
-        };
-        let samples = of(node).ok_or(Reason::NoSamples)?;
-        let x: &[f64] = match over.node {
-            Some(node) => &of(node).ok_or(Reason::NoSamples)?.values,
-            None => &samples.along.axis,
-        };
-        Ok::<_, Reason>((thinned(samples, x, &quantity.signal_unit, &over.unit), extent))
-    };
-    let name = |which| work.campaign(unit).record_name(which).map(|name| name.as_ref());
-    let curve = |unit: &Section, side: Side| {
-        let all = work.campaign(unit).records(side.kind());
-        let which = all
-            .into_iter()
-            .find(|&which| RecordName::took_part(record, side == Side::Simulated, name(which)));
-        curve_of(
-            unit,
-            which.ok_or_else(|| Reason::NoRecordOfSide { side: side.in_words().into() })?,
-        )
-    };
-    let of = |side: Side| -> Result<_, Reason> {
-        if quantity.evaluation.reads(side) { curve(unit, side).map(Some) } else { Ok(None) }
-    };
-    let original = unit
-        .original
-        .and_then(|original| work.units.get(original))
-        .filter(|_| quantity.evaluation.of_repeats());
-    let (measured, simulated) = match original {
-        // The original stands in the place of the measurement; distances count from the start of
-        // each section.
-        Some(original) => {
-            let (repeat, (mut first, extent)) =
-                (curve(unit, Side::Measured)?, curve(original, Side::Measured)?);
-            if over.node.is_none() {
-                let shift = over.unit.from_si(repeat.1.0) - over.unit.from_si(extent.0);
-                first.x.iter_mut().for_each(|x| *x += shift);
+                (Some((first, repeat.1)), Some(repeat))
             }
-            (Some((first, repeat.1)), Some(repeat))
-        }
-        None => (of(Side::Measured)?, of(Side::Simulated)?),
-    };
-    let mut others = Vec::new();
-    if let Evaluation::Values { records: Records::Spread { of, .. }, .. } =
-        quantity.evaluation.as_ref()
-    {
-        for which in work
-            .campaign(unit)
-            .records(of.side.kind())
-            .into_iter()
-            .filter(|&which| name(which) != record.map(|record| record.first().as_ref()))
+            None => (of(Side::Measured)?, of(Side::Simulated)?),
+        };
+        let mut others = Vec::new();
+        if let Evaluation::Values { records: plan::Records::Spread { of, .. }, .. } =
+            quantity.evaluation.as_ref()
         {
-            others.push((name(which).unwrap_or_default().to_string(), curve_of(unit, which)?.0));
+            let own = record.map(|record| record.first().as_ref());
+            for which in campaign.records(of.side.kind()) {
+                if name(which) != own {
+                    let name = name(which).unwrap_or_default().to_string();
+                    others.push((name, curve_of(unit, which)?.0));
+                }
+            }
         }
+        let shown = measured.as_ref().or(simulated.as_ref());
+        let (start, end) = shown.map_or((0.0, 0.0), |(_, extent)| *extent);
+        let of_curve =
+            |curve: Option<(Curve, _)>| curve.map(|(curve, _)| curve).unwrap_or_default();
+        let (measured, simulated) = (of_curve(measured), of_curve(simulated));
+        let (start, end) = match over {
+            None => (axis.unit.from_si(start), axis.unit.from_si(end)),
+            Some(_) => ends(measured.x.iter().copied()),
+        };
+        Ok(Trace {
+            quantity: quantity.id.clone(),
+            section: unit.name.clone(),
+            zone: unit.zone.clone(),
+            signal: quantity.positions[signal].name.clone(),
+            why: format!(
+                "largest {} of {}{}",
+                if quantity.evaluation.assesses() { "value" } else { "difference" },
+                quantity.id,
+                record.map_or_else(String::new, |name| format!(" ({name})"))
+            ),
+            unit: quantity.signal_unit.text.clone(),
+            axis: axis.column.clone(),
+            axis_unit: axis.unit.text.clone(),
+            start,
+            end,
+            measured,
+            simulated,
+            record: record.map(ToString::to_string),
+            others,
+        })
     }
-    let extent = measured.as_ref().or(simulated.as_ref()).map_or((0.0, 0.0), |(_, extent)| *extent);
-    let of_curve = |curve: Option<(Curve, _)>| curve.map(|(curve, _)| curve).unwrap_or_default();
-    let (measured, simulated) = (of_curve(measured), of_curve(simulated));
-    let (start, end) = match over.node {
-        None => (over.unit.from_si(extent.0), over.unit.from_si(extent.1)),
-        Some(_) => measured
-            .x
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x))),
-    };
-    Ok(Trace {
-        quantity: quantity.id.clone(),
-        section: unit.name.clone(),
-        zone: unit.zone.clone(),
-        signal: quantity.positions[signal].name.clone(),
-        why: format!(
-            "largest {} of {}{}",
-            if quantity.evaluation.assesses() { "value" } else { "difference" },
-            quantity.id,
-            record.map_or_else(String::new, |name| format!(" ({name})"))
-        ),
-        unit: quantity.signal_unit.text.clone(),
-        axis: over.name,
-        axis_unit: over.unit.text,
-        start,
-        end,
-        measured,
-        simulated,
-        record: record.map(ToString::to_string),
-        others,
-    })
 }
 
 fn thinned(samples: &Samples, x: &[f64], unit: &Unit, x_unit: &Unit) -> Curve {

@@ -4,13 +4,13 @@ use std::collections::{BTreeSet, HashSet};
 
 use indexmap::IndexMap;
 
-use super::groups::of_key;
-use super::table::{Member, Table, independent};
+use super::groups::Group;
+use super::table::{Member, independent};
 use crate::catalog::Statistic;
 use crate::check::evaluate::{flag, number, words};
 use crate::check::plan::{
-    DataReducer, DatumKind, Estimate, EstimateKind, Expr, Fit, Key, Kind, OfGroup, Operator, Plan,
-    Position, Taking, Type,
+    DataReducer, DatumKind, Estimate, EstimateKind, Expr, Fit, Key, Kind, OfGroup, Operator,
+    Taking, Type,
 };
 use crate::metrics::cluster::{self, Bounds, Draws, Mean, StandardDeviation};
 use crate::metrics::percentile::{Method, percentile};
@@ -19,18 +19,8 @@ use crate::metrics::weighted;
 use crate::result::{
     Reason, RegressionAt, RegressionFigure, RegressionPoint, Subject, VehicleValue,
 };
-use crate::run::sections::{Facts, Known, Unit, Vehicle};
+use crate::run::sections::{Known, Unit, Vehicle};
 use crate::units;
-
-/// The rows of one group.
-#[derive(Clone, Copy, Debug)]
-pub struct Group<'a> {
-    pub plan: &'a Plan,
-    pub facts: &'a Facts,
-    pub positions: &'a [Position],
-    pub members: &'a [Member<'a>],
-    pub table: &'a Table<'a>,
-}
 
 impl Group<'_> {
     pub fn values(&self) -> Vec<f64> {
@@ -176,7 +166,7 @@ impl Group<'_> {
         let mut groups: IndexMap<String, Vec<usize>> = IndexMap::new();
         for (row, member) in self.members.iter().enumerate() {
             let named = |key: &Key| {
-                let (key, member) = of_key(self.plan, self.positions, key, member);
+                let (key, member) = self.of_key(key, member);
                 format!("{key} {member}")
             };
             let name: Vec<String> = keys.iter().map(named).collect();

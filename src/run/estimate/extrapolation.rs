@@ -1,8 +1,9 @@
 //! Regressions that are read outside the data that they were fitted to.
 
-use super::estimates::Group;
+use super::groups::Group;
 use super::table::Member;
 use crate::check::plan::{EstimateKind, Expr, Fit, OfGroup, Taking};
+use crate::metrics::statistics::ends;
 use crate::result::{Finding, FindingData, Occurrence, Outside, QuantityResult, Scope};
 
 /// Code of the finding about regressions that are read outside their data.
@@ -42,10 +43,7 @@ impl Group<'_> {
     fn outside_of(&self, fit: &Fit) -> Vec<Outside> {
         let Ok(fitted) = self.fitted(fit, &self.values()) else { return Vec::new() };
         let one = |(over, (data, target)): (&Expr, (&Vec<f64>, &f64))| {
-            let (low, high) =
-                data.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                    (low.min(*x), high.max(*x))
-                });
+            let (low, high) = ends(data.iter().copied());
             let room = ROUNDING * (high - low);
             if (low - room..=high + room).contains(target) {
                 return None;

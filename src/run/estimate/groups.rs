@@ -4,11 +4,22 @@ use std::collections::HashMap;
 
 use indexmap::IndexSet;
 
-use super::table::Member;
+use super::table::{Member, Table};
 use crate::check::evaluate::flag;
 use crate::check::plan::{Key, Limit, Plan, Position, Quantity, Scalar, Scope};
 use crate::result::{self, Reason};
 use crate::run::sections::{Facts, Unit};
+
+/// Rows that are looked at together, with the rules and vehicles that they are looked at by.
+#[derive(Clone, Copy, Debug)]
+pub struct Group<'a> {
+    pub plan: &'a Plan,
+    pub facts: &'a Facts,
+    /// What the rows are of; `None` of sections by themselves, each of which is one row.
+    pub quantity: Option<&'a Quantity>,
+    pub members: &'a [Member<'a>],
+    pub table: &'a Table<'a>,
+}
 
 /// The group of rows of an estimate.
 #[derive(Clone, Debug)]
@@ -18,165 +29,106 @@ pub struct Part<'a> {
     zones: Vec<String>,
     /// Each key with its printed name and the member of the group.
     keys: Vec<(&'a Key, String, String)>,
-    /// Indices of its rows among those of the quantity, where keys define the groups.
-    rows: Vec<usize>,
+    /// Its rows; an error where it cannot be determined which ones belong to it.
+    pub members: Result<Vec<Member<'a>>, Reason>,
 }
 
-/// What the rows that are grouped are of.
-#[derive(Clone, Copy, Debug)]
-pub struct Grouped<'a> {
-    pub positions: &'a [Position],
-    /// Whether a zone without rows has none because of the rules of the quantity.
-    selective: bool,
-}
+impl<'a> Group<'a> {
+    /// The same with other rows.
+    pub fn with<'g>(&self, members: &'g [Member<'g>]) -> Group<'g>
+    where
+        'a: 'g,
+    {
+        Group { members, ..*self }
+    }
 
-impl<'a> Grouped<'a> {
-    pub fn values(quantity: &'a Quantity) -> Self {
-        Self {
-            positions: &quantity.positions,
-            selective: quantity.only.is_some() || quantity.evaluation.of_repeats(),
+    /// The positions of the rows.
+    pub fn positions(&self) -> &'a [Position] {
+        self.quantity.map_or(&[], |quantity| &quantity.positions)
+    }
+
+    /// The groups of a limit, a minimum or a report.
+    ///
+    /// Left out are: zones that need no section and have none; zones that the condition of the
+    /// quantity excludes or that have no repeats, unless all are excluded; groups in which a
+    /// condition leaves no row, unless it leaves none in any group. A group of a place exists
+    /// wherever the place was recorded.
+    pub fn parts<'s>(&self, scope: &'s Scope) -> Vec<Part<'s>>
+    where
+        'a: 's,
+    {
+        let members = self.members;
+        // A zone without rows has none because of the rules of the quantity.
+        let selective = !members.is_empty()
+            && self
+                .quantity
+                .is_none_or(|quantity| quantity.only.is_some() || quantity.evaluation.of_repeats());
+        let needed = |name: &str| {
+            let mut zones = self.plan.zones.iter();
+            !selective && zones.any(|zone| zone.name == name && zone.minimum_sections > 0)
+        };
+        let filled =
+            |zone: &str| members.iter().any(|member| member.unit.zone.as_deref() == Some(zone));
+        if !scope.zones.is_empty() && !scope.zones.iter().any(|zone| needed(zone) || filled(zone)) {
+            return Vec::new();
         }
-    }
-
-    /// Sections by themselves, each of which is one row.
-    pub fn sections() -> Self {
-        Self { positions: &[], selective: true }
-    }
-}
-
-/// The groups of a limit, a minimum or a report.
-///
-/// Left out are: zones that need no section and have none; zones that the condition of the quantity
-/// excludes or that have no repeats, unless all are excluded; groups in which a condition leaves no
-/// row, unless it leaves none in any group. A group of a place exists wherever the place was
-/// recorded.
-pub fn parts<'a>(
-    plan: &Plan,
-    of: Grouped<'_>,
-    scope: &'a Scope,
-    members: &[Member<'_>],
-    facts: &Facts,
-) -> Vec<Part<'a>> {
-    let selective = of.selective && !members.is_empty();
-    let needed = |name: &str| {
-        !selective && plan.zones.iter().any(|zone| zone.name == name && zone.minimum_sections > 0)
-    };
-    let filled =
-        |zone: &str| members.iter().any(|member| member.unit.zone.as_deref() == Some(zone));
-    if !scope.zones.is_empty() && !scope.zones.iter().any(|zone| needed(zone) || filled(zone)) {
-        return Vec::new();
-    }
-    let whole = Part { scope, zones: scope.zones.clone(), keys: Vec::new(), rows: Vec::new() };
-    let inside: Vec<Result<bool, Reason>> =
-        members.iter().map(|member| whole.has_section(member.unit, facts)).collect();
-    // Where it cannot be determined which rows belong to it, the limit is not assessable, and the
-    // reason is given.
-    if inside.iter().any(Result::is_err) {
-        return vec![whole];
-    }
-    let everywhere = Part { zones: Vec::new(), ..whole.clone() };
-    let meets = |member: &Member<'_>| everywhere.has_section(member.unit, facts) == Ok(true);
-    if scope.condition.is_some() && !members.iter().any(meets) {
-        return vec![whole];
-    }
-    let rows: Vec<usize> = (0..members.len()).filter(|&at| inside[at] == Ok(true)).collect();
-    if scope.each.is_empty() {
-        let excluded = scope.condition.is_some() && !scope.zones.is_empty() && rows.is_empty();
-        return if excluded { Vec::new() } else { vec![whole] };
-    }
-    let groups = whole.by_keys(plan, of.positions, members, &rows);
-    // Missing groups are reported for the group of all rows.
-    if groups.is_empty() && scope.condition.is_none() { vec![whole] } else { groups }
-}
-
-/// The printed name of a key, and its member that a row belongs to.
-pub(in crate::run) fn of_key(
-    plan: &Plan,
-    positions: &[Position],
-    key: &Key,
-    member: &Member<'_>,
-) -> (String, String) {
-    let named = |key: &str, member: String| (key.to_owned(), member);
-    match key {
-        Key::Section => named("section", member.unit.name.clone()),
-        Key::Site => named("site", member.unit.site_name.clone()),
-        Key::Record => {
-            named("record", member.row.record.as_ref().map_or("1".into(), ToString::to_string))
+        let empty =
+            Part { scope, zones: scope.zones.clone(), keys: Vec::new(), members: Ok(Vec::new()) };
+        let mut inside: Vec<Member<'s>> = Vec::new();
+        for member in members {
+            match empty.has_section(member.unit, self.facts) {
+                Ok(true) => inside.push(*member),
+                Ok(false) => {}
+                // Where it cannot be determined which rows belong to it, the limit is not
+                // assessable, and the reason is given.
+                Err(reason) => return vec![Part { members: Err(reason), ..empty }],
+            }
         }
-        Key::Place(place) => {
-            let places =
-                positions.get(member.row.position).map_or(&[][..], |position| &position.places);
-            let of = places
-                .iter()
-                .find(|(known, _)| known == place)
-                .map_or(String::new(), |(_, member)| member.clone());
-            named(&place.replace('_', " "), of)
+        let everywhere = Part { zones: Vec::new(), ..empty.clone() };
+        let meets =
+            |member: &Member<'_>| everywhere.has_section(member.unit, self.facts) == Ok(true);
+        let met = scope.condition.is_none() || members.iter().any(meets);
+        if met && !scope.each.is_empty() {
+            let groups = self.by_keys(&empty, &inside);
+            // Missing groups are reported for the group of all rows.
+            if !groups.is_empty() || scope.condition.is_some() {
+                return groups;
+            }
+        } else if met && scope.condition.is_some() && !scope.zones.is_empty() && inside.is_empty() {
+            return Vec::new();
         }
-        Key::Column(index) => {
-            let datum = &plan.columns[*index];
-            let of = match &member.unit.columns[*index] {
-                Ok(Scalar::Word(word)) => word.clone(),
-                Ok(Scalar::Flag(flag)) => flag.to_string(),
-                Ok(Scalar::Number(number)) => format!("{number}"),
-                Err(_) => "not stated".into(),
-            };
-            named(&datum.key, of)
-        }
+        vec![Part { members: Ok(inside), ..empty }]
     }
-}
 
-impl<'a> Part<'a> {
-    /// Groups of rows by keys. For places, every recorded position has a group; for sections, the
-    /// groups that occur.
-    fn by_keys(
-        &self,
-        plan: &Plan,
-        positions: &[Position],
-        members: &[Member<'_>],
-        rows: &[usize],
-    ) -> Vec<Self> {
-        let keys = &self.scope.each;
-        let of = |member: &Member<'_>, key: &Key| of_key(plan, positions, key, member);
-        let mut rows_of: HashMap<Vec<String>, Vec<usize>> = HashMap::new();
+    /// The rows of a group by its keys. For places, every recorded position has a group; for
+    /// sections, the groups that occur.
+    fn by_keys<'s>(&self, empty: &Part<'s>, inside: &[Member<'s>]) -> Vec<Part<'s>> {
+        let keys = &empty.scope.each;
+        let is_place = |key: &Key| matches!(key, Key::Place(_));
+        let mut rows_of: HashMap<Vec<String>, Vec<Member<'s>>> = HashMap::new();
         // Combinations of the section keys, in order of occurrence.
         let mut of_sections: IndexSet<Vec<Option<(String, String)>>> = IndexSet::new();
-        for &row in rows {
+        for member in inside {
             let found: Vec<(String, String)> =
-                keys.iter().map(|key| of(&members[row], key)).collect();
-            rows_of
-                .entry(found.iter().map(|(_, member)| member.clone()).collect())
-                .or_default()
-                .push(row);
-            let by_section = keys
-                .iter()
-                .zip(found)
-                .map(|(key, found)| (!matches!(key, Key::Place(_))).then_some(found));
-            of_sections.insert(by_section.collect());
+                keys.iter().map(|key| self.of_key(key, member)).collect();
+            let names = found.iter().map(|(_, name)| name.clone()).collect();
+            rows_of.entry(names).or_default().push(*member);
+            let by_section = keys.iter().zip(found);
+            of_sections
+                .insert(by_section.map(|(key, found)| (!is_place(key)).then_some(found)).collect());
         }
-        if rows.is_empty()
-            && self.scope.condition.is_none()
-            && keys.iter().all(|key| matches!(key, Key::Place(_)))
-        {
+        if inside.is_empty() && empty.scope.condition.is_none() && keys.iter().all(is_place) {
             of_sections.insert(vec![None; keys.len()]);
         }
-        let places: Vec<IndexSet<(String, String)>> = keys
-            .iter()
-            .map(|key| {
-                if let Key::Place(_) = key {
-                    members.iter().map(|member| of(member, key)).collect()
-                } else {
-                    IndexSet::new()
-                }
-            })
-            .collect();
         let mut groups = Vec::new();
         for section in &of_sections {
-            let mut all = vec![Self { keys: Vec::new(), ..self.clone() }];
-            for (at, key) in keys.iter().enumerate() {
-                let choices: Vec<(String, String)> = section[at]
-                    .clone()
-                    .map_or_else(|| places[at].iter().cloned().collect(), |of| vec![of]);
-                let with = |group: &Self, (name, member): &(String, String)| {
+            let mut all = vec![empty.clone()];
+            for (key, of_section) in keys.iter().zip(section) {
+                let choices: IndexSet<(String, String)> = match of_section {
+                    Some(found) => IndexSet::from([found.clone()]),
+                    None => self.members.iter().map(|member| self.of_key(key, member)).collect(),
+                };
+                let with = |group: &Part<'s>, (name, member): &(String, String)| {
                     let mut group = group.clone();
                     group.keys.push((key, name.clone(), member.clone()));
                     group
@@ -190,15 +142,50 @@ impl<'a> Part<'a> {
         }
         for group in &mut groups {
             let names: Vec<String> = group.keys.iter().map(|(.., member)| member.clone()).collect();
-            group.rows = rows_of.remove(&names).unwrap_or_default();
+            group.members = Ok(rows_of.remove(&names).unwrap_or_default());
         }
         groups
     }
 
+    /// The printed name of a key, and its member that a row belongs to.
+    pub(super) fn of_key(&self, key: &Key, member: &Member<'_>) -> (String, String) {
+        let named = |key: &str, member: String| (key.to_owned(), member);
+        match key {
+            Key::Section => named("section", member.unit.name.clone()),
+            Key::Site => named("site", member.unit.site_name.clone()),
+            Key::Record => {
+                named("record", member.row.record.as_ref().map_or("1".into(), ToString::to_string))
+            }
+            Key::Place(place) => {
+                let places = self
+                    .positions()
+                    .get(member.row.position)
+                    .map_or(&[][..], |position| &position.places);
+                let of = places
+                    .iter()
+                    .find(|(known, _)| known == place)
+                    .map_or(String::new(), |(_, member)| member.clone());
+                named(&place.replace('_', " "), of)
+            }
+            Key::Column(index) => {
+                let datum = &self.plan.columns[*index];
+                let of = match &member.unit.columns[*index] {
+                    Ok(Scalar::Word(word)) => word.clone(),
+                    Ok(Scalar::Flag(flag)) => flag.to_string(),
+                    Ok(Scalar::Number(number)) => format!("{number}"),
+                    Err(_) => "not stated".into(),
+                };
+                named(&datum.key, of)
+            }
+        }
+    }
+}
+
+impl<'a> Part<'a> {
     /// The group for a limit of a single value: the zone of its section.
     pub fn of_section(plan: &Plan, limit: &'a Limit, unit: &Unit) -> Self {
         let zones = unit.zone.iter().filter(|_| !plan.zones.is_empty()).cloned().collect();
-        Self { scope: &limit.scope, zones, keys: Vec::new(), rows: Vec::new() }
+        Self { scope: &limit.scope, zones, keys: Vec::new(), members: Ok(Vec::new()) }
     }
 
     /// The group as it stands in results.
@@ -208,27 +195,6 @@ impl<'a> Part<'a> {
             keys: self.keys.iter().map(|(_, name, of)| (name.clone(), of.clone())).collect(),
             condition: self.scope.condition.as_ref().map(|(_, words)| words.clone()),
         }
-    }
-
-    /// The rows of the group.
-    ///
-    /// # Errors
-    /// It cannot be determined whether a section belongs to it.
-    pub fn members<'m>(
-        &self,
-        facts: &Facts,
-        all: &[Member<'m>],
-    ) -> Result<Vec<Member<'m>>, Reason> {
-        if !self.keys.is_empty() {
-            return Ok(self.rows.iter().map(|&row| all[row]).collect());
-        }
-        let mut inside = Vec::new();
-        for member in all {
-            if self.has_section(member.unit, facts)? {
-                inside.push(*member);
-            }
-        }
-        Ok(inside)
     }
 
     /// Whether rows of a section belong to it, at any position.
@@ -252,18 +218,16 @@ impl<'a> Part<'a> {
 
     /// Which positions of the quantity belong to it.
     pub fn positions(&self, quantity: &Quantity) -> Vec<bool> {
-        let of_place =
-            |key: &Key| if let Key::Place(place) = key { Some(place.clone()) } else { None };
-        let asked: Vec<(String, &String)> =
-            self.keys.iter().filter_map(|(key, _, of)| Some((of_place(key)?, of))).collect();
-        let at = |places: &[(String, String)], place: &str, of: &str| {
-            places.iter().any(|(known, member)| known == place && member == of)
+        let at = |position: &Position, place: &str, of: &str| {
+            position.places.iter().any(|(known, member)| known == place && member == of)
         };
-        quantity
-            .positions
-            .iter()
-            .map(|position| asked.iter().all(|(place, of)| at(&position.places, place, of)))
-            .collect()
+        let belongs = |position: &Position| {
+            self.keys.iter().all(|(key, _, of)| match key {
+                Key::Place(place) => at(position, place, of),
+                _ => true,
+            })
+        };
+        quantity.positions.iter().map(belongs).collect()
     }
 
     /// Whether a limit of this scope also applies to the group, and how specific it is.

@@ -1,30 +1,33 @@
-//! The rows of a quantity over all sections, and why they are not sufficient.
+//! The rows of a quantity over all sections used, and why they are not sufficient.
 
 use std::collections::BTreeSet;
 
-use super::minima::{self, TooFew};
-use super::table::Member;
+use super::groups::Group;
+use super::table::{Member, independent};
 use crate::check::constant;
 use crate::check::plan::{Evaluation, Plan, Quantity, Records, Valued};
-use crate::result::Reason;
+use crate::result::{Reason, Scope};
 use crate::run::sections::{Facts, Unit};
-use crate::run::values::SectionValues;
+use crate::run::values::{Row, SectionValues};
 
 /// The sections that are used, with their values.
 pub type Used<'a> = [(&'a Unit, &'a SectionValues)];
 
-/// The rows of a quantity over all sections used.
-pub fn members<'a>(quantity: &'a Quantity, index: usize, used: &Used<'a>) -> Vec<Member<'a>> {
-    let mut members = Vec::new();
-    for (unit, values) in used {
-        for row in values.rows.get(index).into_iter().flatten() {
-            members.push(Member { unit, signal: &quantity.positions[row.position].name, row });
-        }
-    }
-    members
+/// The sections that are used.
+pub fn used<'a>(
+    units: &'a [Unit],
+    values: &'a [SectionValues],
+) -> Vec<(&'a Unit, &'a SectionValues)> {
+    units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect()
 }
 
-/// The rows of a quantity, or the reason why they are not sufficient.
+/// Pairs of members: of one unit of independence and signal, repeats are no further pairs.
+fn pairs(plan: &Plan, members: &[Member<'_>]) -> usize {
+    let units = independent(plan, members).into_iter();
+    units.zip(members.iter().map(|member| member.signal)).collect::<BTreeSet<_>>().len()
+}
+
+/// The rows of a quantity over all sections used, or the reason why they are not sufficient.
 pub struct Rows<'a> {
     pub members: Vec<Member<'a>>,
     pub too_few: Vec<TooFew>,
@@ -33,9 +36,35 @@ pub struct Rows<'a> {
 
 impl<'a> Rows<'a> {
     /// Of each quantity.
-    pub fn of_all(plan: &'a Plan, facts: &Facts, used: &Used<'a>) -> Vec<Self> {
-        let of = |(index, quantity)| rows(plan, quantity, index, used, facts);
-        plan.quantities.iter().enumerate().map(of).collect()
+    pub fn of_all(plan: &'a Plan, facts: &'a Facts, used: &Used<'a>) -> Vec<Self> {
+        (0..plan.quantities.len()).map(|index| Self::of(plan, facts, index, used)).collect()
+    }
+
+    fn of(plan: &'a Plan, facts: &'a Facts, index: usize, used: &Used<'a>) -> Self {
+        let quantity = &plan.quantities[index];
+        let mut members = Vec::new();
+        for (unit, values) in used {
+            for row in values.rows.get(index).into_iter().flatten() {
+                members.push(Member { unit, signal: &quantity.positions[row.position].name, row });
+            }
+        }
+        let recorded = members.iter().map(|member| member.signal).collect::<BTreeSet<_>>().len();
+        let pairs = pairs(plan, &members);
+        let group = Group { plan, facts, quantity: Some(quantity), members: &members, table: &[] };
+        let too_few = too_few(quantity, &group);
+        let reason = if let Some(reason) = impossible(index, used) {
+            Some(reason)
+        } else if members.is_empty() && quantity.evaluation.of_repeats() {
+            Some(Reason::NoRepeats)
+        } else if recorded < quantity.minimum_signals {
+            Some(Reason::TooFewSignals { signals: recorded, minimum: quantity.minimum_signals })
+        } else if pairs < quantity.minimum_pairs {
+            let (rows, minimum) = (members.len(), quantity.minimum_pairs);
+            Some(Reason::TooFewPairs { pairs, rows, minimum })
+        } else {
+            in_groups(&too_few).or_else(|| whatever_the_records(quantity, &members, facts))
+        };
+        Self { members, too_few, reason }
     }
 
     /// The rows, for a quantity or limit that uses numbers of this one.
@@ -44,31 +73,54 @@ impl<'a> Rows<'a> {
     }
 }
 
-fn rows<'a>(
-    plan: &Plan,
-    quantity: &'a Quantity,
-    index: usize,
-    used: &Used<'a>,
-    facts: &Facts,
-) -> Rows<'a> {
-    let members = members(quantity, index, used);
-    let recorded = members.iter().map(|member| member.signal).collect::<BTreeSet<_>>().len();
-    let pairs = minima::pairs(plan, &members);
-    let too_few = minima::too_few(plan, quantity, &members, facts);
-    let impossible = impossible(index, used);
-    let reason = if impossible.is_some() {
-        impossible
-    } else if members.is_empty() && quantity.evaluation.of_repeats() {
-        Some(Reason::NoRepeats)
-    } else if recorded < quantity.minimum_signals {
-        Some(Reason::TooFewSignals { signals: recorded, minimum: quantity.minimum_signals })
-    } else if pairs < quantity.minimum_pairs {
-        let (rows, minimum) = (members.len(), quantity.minimum_pairs);
-        Some(Reason::TooFewPairs { pairs, rows, minimum })
-    } else {
-        minima::reason(&too_few).or_else(|| whatever_the_records(quantity, &members, facts))
-    };
-    Rows { members, too_few, reason }
+/// A group with too few pairs.
+#[derive(Debug)]
+pub struct TooFew {
+    group: Scope,
+    reason: Reason,
+    /// Its rows, by where they are kept.
+    rows: Vec<*const Row>,
+}
+
+impl TooFew {
+    /// Why nothing is estimated of some rows: all of them are of this group.
+    pub fn reason(&self, members: &[Member<'_>]) -> Option<Reason> {
+        let inside = |member: &Member<'_>| self.rows.contains(&std::ptr::from_ref(member.row));
+        members.iter().all(inside).then(|| self.reason.clone())
+    }
+}
+
+/// The groups of a quantity with fewer pairs than the protocol requires.
+fn too_few(quantity: &Quantity, all: &Group<'_>) -> Vec<TooFew> {
+    let mut found = Vec::new();
+    for minimum in &quantity.minimum_of_groups {
+        for part in all.parts(&minimum.scope) {
+            let (reason, inside) = match &part.members {
+                Ok(inside) => {
+                    let pairs = pairs(all.plan, inside);
+                    if pairs >= minimum.needed {
+                        continue;
+                    }
+                    let (rows, minimum) = (inside.len(), minimum.needed);
+                    (Reason::TooFewPairs { pairs, rows, minimum }, inside.as_slice())
+                }
+                Err(reason) => (reason.clone(), &[][..]),
+            };
+            let rows = inside.iter().map(|member| std::ptr::from_ref(member.row)).collect();
+            found.push(TooFew { group: part.scope(), reason, rows });
+        }
+    }
+    found
+}
+
+/// Why the quantity is not assessable: the first of its groups in full.
+fn in_groups(too_few: &[TooFew]) -> Option<Reason> {
+    let (first, others) = too_few.split_first()?;
+    Some(Reason::TooFewInGroups {
+        group: first.group.to_string(),
+        reason: Box::new(first.reason.clone()),
+        others: others.len(),
+    })
 }
 
 /// Why the values say nothing of the records: with the data of these sections and vehicles, each is
@@ -109,16 +161,10 @@ fn whatever_the_records(
 
 /// Why a quantity cannot be evaluated in some of the sections: the first of them in full.
 fn impossible(index: usize, used: &Used<'_>) -> Option<Reason> {
-    let of_section = |values: &SectionValues| {
-        values
-            .impossible
-            .iter()
-            .find(|(quantity, _)| *quantity == index)
-            .map(|(_, reason)| reason.clone())
-    };
-    let mut found =
-        used.iter().filter_map(|(unit, values)| Some((&unit.name, of_section(values)?)));
+    let mut found = used.iter().filter_map(|(unit, values)| {
+        let (_, reason) = values.impossible.iter().find(|(quantity, _)| *quantity == index)?;
+        Some((unit.name.clone(), Box::new(reason.clone())))
+    });
     let (section, reason) = found.next()?;
-    let (section, reason) = (section.clone(), Box::new(reason));
     Some(Reason::NotEvaluated { section, reason, others: found.count() })
 }

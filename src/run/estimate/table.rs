@@ -1,7 +1,7 @@
 //! The table of values, one row for each section, position and record or pair of records: rows with
 //! their sections, and what their vehicles agree on.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 use crate::check::plan::{Independent, Plan, Scalar};
 use crate::result::{OfVehicle, Reason, VehicleValue};
@@ -22,30 +22,21 @@ pub type Table<'a> = [Result<&'a [Member<'a>], Reason>];
 
 /// The index of the independent unit of each member.
 pub fn independent(plan: &Plan, members: &[Member<'_>]) -> Vec<usize> {
-    let mut names: Vec<String> = Vec::new();
-    let mut of_column = |unit: &Unit, index: usize| {
-        let name = match &unit.columns[index] {
+    let mut names: HashMap<String, usize> = HashMap::new();
+    let mut number = |name: String| {
+        let next = names.len();
+        *names.entry(name).or_insert(next)
+    };
+    let one = |member: &Member<'_>| match plan.independent {
+        Independent::Site => member.unit.site,
+        Independent::Section => number(member.unit.name.clone()),
+        Independent::Column(index) => number(match &member.unit.columns[index] {
             Ok(Scalar::Word(word)) => word.clone(),
             Ok(Scalar::Number(number)) => format!("{number:e}"),
             Ok(Scalar::Flag(flag)) => flag.to_string(),
             // A section that does not state its unit counts as part of its site.
-            Err(_) => format!("site {}", unit.site),
-        };
-        names.iter().position(|known| *known == name).unwrap_or_else(|| {
-            names.push(name);
-            names.len() - 1
-        })
-    };
-    let mut sections: Vec<String> = Vec::new();
-    let one = |member: &Member<'_>| match plan.independent {
-        Independent::Site => member.unit.site,
-        Independent::Section => {
-            sections.iter().position(|known| *known == member.unit.name).unwrap_or_else(|| {
-                sections.push(member.unit.name.clone());
-                sections.len() - 1
-            })
-        }
-        Independent::Column(index) => of_column(member.unit, index),
+            Err(_) => format!("site {}", member.unit.site),
+        }),
     };
     members.iter().map(one).collect()
 }

@@ -3,18 +3,15 @@
 use super::factors::factors;
 use crate::catalog::Statistic;
 use crate::check::evaluate::{flag, number};
-use crate::check::plan::{Estimate, EstimateKind, Limit, Plan, Quantity, Report, Scalar};
+use crate::check::plan::{Estimate, EstimateKind, Limit, Quantity, Report, Scalar};
 use crate::check::values::Values;
-use crate::graph::{Graph, LimitNodes, Operation, QuantityNodes};
 use crate::metrics::statistics::{Divisor, mean, standard_deviation};
 use crate::result::{
     LimitNotMet, Outside, Reason, RegressionFigure, RulePlace, Sample, Scope, StatisticResult,
     Subject, VehicleValue,
 };
-use crate::run::estimate::{
-    Closeness, Group, Grouped, Member, Part, Table, TooFew, count_independent, parts,
-};
-use crate::run::sections::{Facts, Known, Vehicle};
+use crate::run::estimate::{Closeness, Group, Member, Part, TooFew, count_independent};
+use crate::run::sections::{Facts, Known, Unit as Section, Vehicle};
 use crate::source::Span;
 use crate::units::Unit;
 
@@ -37,9 +34,12 @@ pub struct Estimated<'a> {
 }
 
 impl<'a> Estimated<'a> {
-    /// Of a group without an estimate.
-    pub fn empty(part: Part<'a>, members: Vec<Member<'a>>) -> Self {
-        let value = Err(Reason::NoValueInGroup);
+    /// Nothing but a value, or why there is none.
+    pub fn plain(
+        part: Part<'a>,
+        members: Vec<Member<'a>>,
+        value: Result<Option<f64>, Reason>,
+    ) -> Self {
         Self {
             part,
             members,
@@ -62,11 +62,9 @@ pub struct Compared {
 /// Rows and rules of one quantity.
 #[derive(Clone, Copy, Debug)]
 pub struct Judging<'a> {
-    pub plan: &'a Plan,
-    pub facts: &'a Facts,
     pub quantity: &'a Quantity,
-    pub members: &'a [Member<'a>],
-    pub table: &'a Table<'a>,
+    /// All its rows.
+    pub rows: Group<'a>,
     /// Groups with fewer pairs than the protocol requires.
     pub too_few: &'a [TooFew],
 }
@@ -102,72 +100,49 @@ pub fn applying<'m>(
 }
 
 impl<'a> Judging<'a> {
-    /// The estimates of a limit, group by group; empty where the limit does not apply to this
+    /// The estimates and limits of the quantity, group by group.
+    pub fn compared(&self) -> Vec<Compared> {
+        self.quantity.limits.iter().flat_map(|limit| self.with_limit(limit)).collect()
+    }
+
+    /// The estimates of a limit, group by group; none where the limit does not apply to this
     /// vehicle.
-    ///
-    /// # Errors
-    /// It cannot be determined whether the limit applies.
-    pub fn estimate(&self, limit: &'a Limit) -> Result<Vec<Estimated<'a>>, Reason> {
-        match applies_to(limit, self.facts, &[]) {
-            Ok(false) => return Ok(Vec::new()),
-            Err(reason) if self.facts.vehicles.len() == 1 => return Err(reason),
+    fn with_limit(&self, limit: &'a Limit) -> Vec<Compared> {
+        let facts = self.rows.facts;
+        match applies_to(limit, facts, &[]) {
+            Ok(false) => return Vec::new(),
+            Err(reason) if facts.vehicles.len() == 1 => {
+                let mut result = self.empty(limit, Scope::default(), &[]);
+                result.reason = Some(unknown_whether(reason));
+                return vec![Compared { result, fails: None }];
+            }
             // Of several vehicles, those of each group decide.
             _ => {}
         }
-        let parts = parts(
-            self.plan,
-            Grouped::values(self.quantity),
-            &limit.scope,
-            self.members,
-            self.facts,
-        );
-        Ok(parts.into_iter().filter_map(|part| self.of_part(limit, part)).collect())
-    }
-
-    fn group<'g>(&'g self, members: &'g [Member<'g>]) -> Group<'g> {
-        Group {
-            plan: self.plan,
-            facts: self.facts,
-            positions: &self.quantity.positions,
-            members,
-            table: self.table,
-        }
+        let parts = self.rows.parts(&limit.scope).into_iter();
+        let estimated = parts.filter_map(|part| self.of_part(limit, part));
+        estimated.map(|group| self.of_group(limit, &group)).collect()
     }
 
     /// `None` of a group whose vehicle the limit does not apply to.
     fn of_part(&self, limit: &Limit, part: Part<'a>) -> Option<Estimated<'a>> {
-        let none = |reason: Reason| Estimated {
-            value: Err(reason),
-            ..Estimated::empty(part.clone(), Vec::new())
-        };
-        let members = match part
-            .members(self.facts, self.members)
-            .map(|members| applying(limit, self.facts, members))
-        {
-            Ok(Ok(Some(members))) => members,
-            Ok(Ok(None)) => return None,
+        let members = part.members.clone();
+        match members.map(|members| applying(limit, self.rows.facts, members)) {
+            Ok(Ok(members)) => Some(self.estimated(&limit.estimate, part, members?)),
             Ok(Err(reason)) => {
-                return Some(none(Reason::LimitApplicationUnknown { reason: Box::new(reason) }));
+                Some(Estimated::plain(part, Vec::new(), Err(unknown_whether(reason))))
             }
-            Err(reason) => return Some(none(reason)),
-        };
-        Some(self.estimated(&limit.estimate, part, members))
+            Err(reason) => Some(Estimated::plain(part, Vec::new(), Err(reason))),
+        }
     }
 
     /// An estimate of each of its groups, without a limit.
     pub fn of_report(&self, report: &'a Report) -> Vec<Estimated<'a>> {
-        let parts = parts(
-            self.plan,
-            Grouped::values(self.quantity),
-            &report.scope,
-            self.members,
-            self.facts,
-        );
-        let of_part = |part: Part<'a>| match part.members(self.facts, self.members) {
+        let of_part = |part: Part<'a>| match part.members.clone() {
             Ok(members) => self.estimated(&report.estimate, part, members),
-            Err(reason) => Estimated { value: Err(reason), ..Estimated::empty(part, Vec::new()) },
+            Err(reason) => Estimated::plain(part, Vec::new(), Err(reason)),
         };
-        parts.into_iter().map(of_part).collect()
+        self.rows.parts(&report.scope).into_iter().map(of_part).collect()
     }
 
     fn estimated(
@@ -177,59 +152,34 @@ impl<'a> Judging<'a> {
         members: Vec<Member<'a>>,
     ) -> Estimated<'a> {
         if members.is_empty() {
-            return Estimated::empty(part, members);
+            return Estimated::plain(part, members, Err(Reason::NoValueInGroup));
         }
         if let Some(reason) = self.too_few.iter().find_map(|few| few.reason(&members)) {
-            return Estimated { value: Err(reason), ..Estimated::empty(part, members) };
+            return Estimated::plain(part, members, Err(reason));
         }
-        let group = self.group(&members);
-        let (value, interval, regression, divided_at, outside) = match &estimate.kind {
-            EstimateKind::Each => (Ok(None), None, None, None, Vec::new()),
-            EstimateKind::Of(of) => {
-                let entry = match estimate.statistic() {
-                    Some((Statistic::Named(entry), _)) => Some(entry),
-                    _ => None,
-                };
-                let interval = entry.and_then(|entry| entry.interval);
-                let interval =
-                    interval.and_then(|interval| interval(&group.values(), &group.units()));
-                let divided_at = group.divided_at(of);
-                (
-                    group.number(of).map(Some),
-                    interval,
-                    group.figure(of, &self.quantity.unit),
-                    divided_at,
-                    group.outside(of),
-                )
-            }
+        let EstimateKind::Of(of) = &estimate.kind else {
+            return Estimated::plain(part, members, Ok(None));
         };
+        let group = self.rows.with(&members);
+        let interval = match estimate.statistic() {
+            Some((Statistic::Named(entry), _)) => entry.interval,
+            _ => None,
+        };
+        let interval = interval.and_then(|interval| interval(&group.values(), &group.units()));
+        let (regression, divided_at) =
+            (group.figure(of, &self.quantity.unit), group.divided_at(of));
+        let (value, outside) = (group.number(of).map(Some), group.outside(of));
         Estimated { part, members, value, interval, regression, divided_at, outside }
     }
 
-    /// Compares the estimates with the limit, group by group.
-    pub fn against(
-        &self,
-        limit: &'a Limit,
-        estimated: Result<Vec<Estimated<'a>>, Reason>,
-    ) -> Vec<Compared> {
-        match estimated {
-            Ok(groups) => groups.iter().map(|group| self.of_group(limit, group)).collect(),
-            Err(reason) => {
-                let mut result = self.empty(limit, Scope::default(), &[]);
-                result.reason = Some(Reason::LimitApplicationUnknown { reason: Box::new(reason) });
-                vec![Compared { result, fails: None }]
-            }
-        }
-    }
-
-    fn empty(&self, limit: &'a Limit, scope: Scope, members: &[Member<'_>]) -> StatisticResult {
+    fn empty(&self, limit: &Limit, scope: Scope, members: &[Member<'_>]) -> StatisticResult {
         StatisticResult {
             name: limit.estimate.name.clone().into(),
             title: limit.estimate.title.clone(),
             group: if scope.keys.is_empty() { Vec::new() } else { scope.owned_members() },
             scope,
             count: members.len(),
-            n: count_independent(self.plan, members),
+            n: count_independent(self.rows.plan, members),
             unit: self.unit(limit).text.clone(),
             value: None,
             interval: None,
@@ -255,9 +205,10 @@ impl<'a> Judging<'a> {
         Sample { mean: mean(&values), std: standard_deviation(&values, Divisor::Sample) }
     }
 
-    fn of_group(&self, limit: &'a Limit, group: &Estimated<'a>) -> Compared {
+    fn of_group(&self, limit: &Limit, group: &Estimated<'_>) -> Compared {
+        let Group { plan, facts, .. } = self.rows;
         let mut result = self.empty(limit, group.part.scope(), &group.members);
-        result.factors = factors(self.plan, &self.facts.among(&group.members), limit);
+        result.factors = factors(plan, &facts.among(&group.members), limit);
         result.regression = group.regression.clone().map(Box::new);
         result.divided_at = group.divided_at.map(|value| self.quantity.unit.from_si(value));
         result.outside.clone_from(&group.outside);
@@ -288,8 +239,8 @@ impl<'a> Judging<'a> {
     /// Compares one number with one limit.
     fn one(
         &self,
-        limit: &'a Limit,
-        group: &Estimated<'a>,
+        limit: &Limit,
+        group: &Estimated<'_>,
         value: f64,
         result: &mut StatisticResult,
     ) -> Result<bool, Reason> {
@@ -308,20 +259,16 @@ impl<'a> Judging<'a> {
     /// Compares every row with its own limit; the worst row decides.
     fn each(
         &self,
-        limit: &'a Limit,
+        limit: &Limit,
         members: &[Member<'_>],
         result: &mut StatisticResult,
     ) -> Result<bool, Reason> {
         let mut worst: Option<(bool, f64, f64, f64)> = None;
         let mut all_hold = true;
         for member in members {
-            let unit = member.unit;
-            // If this limit refers to that of another statistic, the latter is taken for the
-            // section's zone.
-            let part = Part::of_section(self.plan, limit, unit);
             let bound = self
-                .bound(limit, &part, &[*member], &unit.known(self.facts))
-                .map_err(|reason| no_limit(reason).about(Subject::Section, &unit.name))?;
+                .own_bound(limit, member.unit, &[*member])
+                .map_err(|reason| no_limit(reason).about(Subject::Section, &member.unit.name))?;
             let value = member.row.value;
             let (normalised, holds) = against(value, bound, limit.at_least);
             all_hold &= holds;
@@ -340,29 +287,47 @@ impl<'a> Judging<'a> {
     }
 
     /// The limit of a group with one estimate, SI: the same for all its vehicles.
+    ///
+    /// # Errors
+    /// It has no value, or one that differs from vehicle to vehicle.
     pub fn common_bound(
         &self,
         limit: &Limit,
         part: &Part<'_>,
         members: &[Member<'_>],
     ) -> Result<f64, Reason> {
-        let unit = self.unit(limit);
+        let (unit, facts) = (self.unit(limit), self.rows.facts);
         let of_vehicle =
             |vehicle: &Vehicle| self.bound(limit, part, members, &Known::vehicle(vehicle));
-        let found = self.facts.agreed(members, of_vehicle, |bound| VehicleValue::Amount {
+        let found = facts.agreed(members, of_vehicle, |bound| VehicleValue::Amount {
             value: unit.from_si(bound),
             unit: unit.text.clone(),
         });
-        found.map_err(|reason| match self.facts.vehicles.len() {
+        found.map_err(|reason| match facts.vehicles.len() {
             1 => reason,
-            _ => Reason::GiveEachItsOwn {
-                reason: Box::new(reason),
-                campaigns: self.facts.by_campaign,
-            },
+            _ => Reason::GiveEachItsOwn { reason: Box::new(reason), campaigns: facts.by_campaign },
         })
     }
 
+    /// The limit of a value of one section, SI. If it refers to that of another statistic, the
+    /// latter is taken for the section's zone.
+    ///
+    /// # Errors
+    /// It has no value.
+    pub fn own_bound(
+        &self,
+        limit: &Limit,
+        section: &Section,
+        members: &[Member<'_>],
+    ) -> Result<f64, Reason> {
+        let part = Part::of_section(self.rows.plan, limit, section);
+        self.bound(limit, &part, members, &section.known(self.rows.facts))
+    }
+
     /// The limit of one value or group, SI, with what names stand for there.
+    ///
+    /// # Errors
+    /// It has no value.
     pub fn bound(
         &self,
         limit: &Limit,
@@ -370,8 +335,8 @@ impl<'a> Judging<'a> {
         members: &[Member<'_>],
         known: &Known<'_>,
     ) -> Result<f64, Reason> {
-        let group = self.group(members);
-        Bounds { quantity: self.quantity, part, group, known }.of(limit, 0)
+        let group = self.rows.with(members);
+        Bound { quantity: self.quantity, part, group, known, taken: &[], depth: 0 }.of(limit)
     }
 }
 
@@ -404,6 +369,10 @@ fn no_limit(reason: Reason) -> Reason {
     Reason::NoLimit { reason: Box::new(reason) }
 }
 
+fn unknown_whether(reason: Reason) -> Reason {
+    Reason::LimitApplicationUnknown { reason: Box::new(reason) }
+}
+
 /// Share of the limit used, and whether the limit is met. For "at least", the share is limit /
 /// value.
 fn against(value: f64, bound: f64, at_least: bool) -> (Option<f64>, bool) {
@@ -414,25 +383,29 @@ fn against(value: f64, bound: f64, at_least: bool) -> (Option<f64>, bool) {
     ((bound > 0.0).then(|| value.abs() / bound), value.abs() <= bound + room)
 }
 
-/// Limits in SI, for one group of one quantity.
-#[derive(Debug)]
-pub struct Bounds<'a> {
-    pub quantity: &'a Quantity,
-    pub part: &'a Part<'a>,
+/// A limit in SI for one group of one quantity: what the names in it stand for.
+#[derive(Clone, Copy)]
+struct Bound<'a> {
+    quantity: &'a Quantity,
+    part: &'a Part<'a>,
     /// Data of its sections can be used in the limit.
-    pub group: Group<'a>,
-    pub known: &'a Known<'a>,
+    group: Group<'a>,
+    known: &'a Known<'a>,
+    /// The numbers that the limit takes from the group.
+    taken: &'a [Result<f64, Reason>],
+    /// How many limits refer to it.
+    depth: usize,
 }
 
-impl Bounds<'_> {
+impl Bound<'_> {
     /// The limit with its factors. A reference to another statistic means the limit of that
     /// statistic, with its factors.
-    pub fn of(&self, limit: &Limit, depth: usize) -> Result<f64, Reason> {
-        if depth > self.quantity.limits.len() {
+    fn of(&self, limit: &Limit) -> Result<f64, Reason> {
+        if self.depth > self.quantity.limits.len() {
             return Err(Reason::LimitDependsOnItself);
         }
         let taken = self.group.taken(&limit.bound);
-        let names = Named { bounds: self, depth, taken: &taken };
+        let names = Bound { taken: &taken, ..*self };
         let mut value = number(&limit.bound.expr, &names)?;
         for (factor, condition) in &limit.factors {
             if flag(condition, &names)? {
@@ -444,9 +417,31 @@ impl Bounds<'_> {
         }
         Ok(value)
     }
+}
+
+impl Values for Bound<'_> {
+    fn vehicle(&self, index: usize) -> Result<Scalar, Reason> {
+        self.known.vehicle(index)
+    }
+
+    fn column(&self, index: usize) -> Result<Scalar, Reason> {
+        self.known.column(index)
+    }
+
+    fn extent(&self) -> Result<(f64, f64), Reason> {
+        self.known.extent()
+    }
+
+    fn input(&self, index: usize) -> Result<f64, Reason> {
+        self.taken.get(index).cloned().unwrap_or_else(|| self.known.input(index))
+    }
+
+    fn sides(&self) -> Result<(f64, f64), Reason> {
+        self.known.sides()
+    }
 
     /// The limit of another statistic: one for just this group has priority over one for all.
-    fn of_statistic(&self, name: &str, depth: usize) -> Result<f64, Reason> {
+    fn limit_of(&self, name: &str) -> Result<f64, Reason> {
         let mut found: Option<(Closeness, &Limit)> = None;
         for limit in self.quantity.limits.iter().filter(|limit| limit.estimate.name == name) {
             let Some(closeness) = self.part.covered_by(&limit.scope) else { continue };
@@ -457,57 +452,8 @@ impl Bounds<'_> {
             }
         }
         let (_, limit) = found.ok_or_else(|| Reason::NoLimitOf { estimate: name.into() })?;
-        self.of(limit, depth)
+        Bound { depth: self.depth + 1, ..*self }.of(limit)
     }
-}
-
-/// Values of the names in a limit.
-struct Named<'a> {
-    bounds: &'a Bounds<'a>,
-    depth: usize,
-    /// The numbers that the limit takes from the group.
-    taken: &'a [Result<f64, Reason>],
-}
-
-impl Values for Named<'_> {
-    fn vehicle(&self, index: usize) -> Result<Scalar, Reason> {
-        self.bounds.known.vehicle(index)
-    }
-
-    fn column(&self, index: usize) -> Result<Scalar, Reason> {
-        self.bounds.known.column(index)
-    }
-
-    fn extent(&self) -> Result<(f64, f64), Reason> {
-        self.bounds.known.extent()
-    }
-
-    fn input(&self, index: usize) -> Result<f64, Reason> {
-        self.taken.get(index).cloned().unwrap_or_else(|| self.bounds.known.input(index))
-    }
-
-    fn sides(&self) -> Result<(f64, f64), Reason> {
-        self.bounds.known.sides()
-    }
-
-    fn limit_of(&self, statistic: &str) -> Result<f64, Reason> {
-        self.bounds.of_statistic(statistic, self.depth + 1)
-    }
-}
-
-/// Evaluates the estimates and limits of a quantity, group by group.
-pub fn compared(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) -> Vec<Compared> {
-    let of_limit = |nodes: &LimitNodes| match (
-        &graph.nodes[nodes.estimate].operation,
-        &graph.nodes[nodes.limit].operation,
-    ) {
-        (Operation::Estimate(estimate), Operation::Limit(limit)) => {
-            let judging = *judging;
-            judging.against(limit, judging.estimate(estimate))
-        }
-        _ => Vec::new(),
-    };
-    nodes.limits.iter().flat_map(of_limit).collect()
 }
 
 #[cfg(test)]

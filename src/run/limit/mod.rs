@@ -14,5 +14,4 @@ mod limits;
 pub mod pool;
 mod together;
 
-pub use limits::{Estimated, Judging, applying, compared, rule_place};
-pub use together::fails_alone;
+pub use limits::{Compared, Estimated, Judging, applying, rule_place};

@@ -8,11 +8,11 @@ use super::limits::{Judging, applying};
 use crate::catalog::Statistic;
 use crate::check::evaluate::number;
 use crate::check::plan::{
-    Decision, EstimateKind, Kind, Limit, MinimumOfGroups, OfGroup, Plan, Quantity, Taking,
+    self, Decision, EstimateKind, Kind, MinimumOfGroups, OfGroup, Plan, Quantity, Taking,
 };
 use crate::metrics::moments::{Moment, Moments};
 use crate::result::{Reason, Scope};
-use crate::run::estimate::{Group, Grouped, Member, Part, Rows, Table, Used, members, parts};
+use crate::run::estimate::{Group, Member, Part, Rows, used};
 use crate::run::sections::{Facts, Known, Unit, Vehicle};
 use crate::run::values::{Row, SectionValues};
 
@@ -94,55 +94,16 @@ pub struct Estimator {
 }
 
 impl Estimator {
-    fn new(
-        rules: &Arc<(Plan, Facts)>,
-        judging: &Judging<'_>,
-        limit: &Limit,
-        part: &Part<'_>,
-        units: &Units<'_>,
-    ) -> Self {
-        let Judging { plan, facts, quantity, members, table, .. } = *judging;
-        let inside = part.members(facts, members).unwrap_or_default();
-        let numbered = |member: &Member<'_>| {
-            Some((units.number(member.unit)?, member.unit.clone(), member.row.clone()))
-        };
-        let rows = inside.iter().filter_map(numbered).collect();
-        let others = match limit.estimate.others().is_empty() {
-            true => Vec::new(),
-            false => table
-                .iter()
-                .map(|rows| rows.clone().map(|rows| rows.iter().filter_map(numbered).collect()))
-                .collect(),
-        };
-        let bound = judging.common_bound(limit, part, &inside).unwrap_or(f64::NAN);
-        Self {
-            rules: Arc::clone(rules),
-            quantity: plan
-                .quantities
-                .iter()
-                .position(|known| known.id == quantity.id)
-                .unwrap_or_default(),
-            limit: quantity
-                .limits
-                .iter()
-                .position(|known| known.span == limit.span && known.scope.same(&limit.scope))
-                .unwrap_or_default(),
-            rows: Arc::new(rows),
-            others: Arc::new(others),
-            bound,
-        }
-    }
-
     /// Rows of a repeat are selected together with those of the section that it repeats.
     pub fn take_together(&mut self, first: usize, repeat: usize) {
         let moved = |(section, unit, row): &Numbered| {
             (if *section == repeat { first } else { *section }, unit.clone(), row.clone())
         };
         let all = |rows: &Vec<Numbered>| rows.iter().map(moved).collect();
+        let others = self.others.iter();
         self.rows = Arc::new(all(&self.rows));
-        self.others = Arc::new(
-            self.others.iter().map(|rows| rows.as_ref().map(all).map_err(Clone::clone)).collect(),
-        );
+        self.others =
+            Arc::new(others.map(|rows| rows.as_ref().map(all).map_err(Clone::clone)).collect());
     }
 
     /// Whether it needs rows of a section, given by index.
@@ -189,21 +150,17 @@ impl Estimator {
         let quantity = &plan.quantities[self.quantity];
         let limit = &quantity.limits[self.limit];
         let members = among(&self.rows, quantity, sections);
-        let others: Vec<Result<Vec<Member<'_>>, Reason>> = self
-            .others
-            .iter()
-            .zip(&plan.quantities)
+        let others = self.others.iter().zip(&plan.quantities);
+        let others: Vec<Result<Vec<Member<'_>>, Reason>> = others
             .map(|(rows, quantity)| {
                 rows.as_ref().map(|rows| among(rows, quantity, sections)).map_err(Clone::clone)
             })
             .collect();
-        let table: Vec<Result<&[Member<'_>], Reason>> = others
-            .iter()
-            .map(|rows| rows.as_ref().map(Vec::as_slice).map_err(Clone::clone))
-            .collect();
+        let table: Vec<Result<&[Member<'_>], Reason>> =
+            others.iter().map(|rows| rows.as_deref().map_err(Clone::clone)).collect();
         let EstimateKind::Of(of) = &limit.estimate.kind else { return None };
-        let group =
-            Group { plan, facts, positions: &quantity.positions, members: &members, table: &table };
+        let quantity = Some(quantity);
+        let group = Group { plan, facts, quantity, members: &members, table: &table };
         group.number(of).ok().map(|value| value / self.bound).filter(|value| value.is_finite())
     }
 }
@@ -274,28 +231,13 @@ pub struct PooledLimit {
     pub bounds: Vec<f64>,
 }
 
-/// All sections, and the number of each by its name: an archive has thousands of them.
-struct Units<'a> {
-    all: &'a [Unit],
+/// What a pool is made of.
+struct Making<'a> {
+    rules: Arc<(Plan, Facts)>,
+    units: &'a [Unit],
+    values: &'a [SectionValues],
+    /// The number of each section by its name: an archive has thousands of them.
     numbers: HashMap<&'a str, usize>,
-}
-
-impl<'a> Units<'a> {
-    fn of(all: &'a [Unit]) -> Self {
-        Self {
-            all,
-            numbers: all
-                .iter()
-                .enumerate()
-                .rev()
-                .map(|(number, unit)| (unit.name.as_str(), number))
-                .collect(),
-        }
-    }
-
-    fn number(&self, unit: &Unit) -> Option<usize> {
-        self.numbers.get(unit.name.as_str()).copied()
-    }
 }
 
 /// Limits whose bound has no value are left out; the run itself reports their quantity as not
@@ -305,155 +247,166 @@ pub fn pool(plan: &Plan, facts: &Facts, units: &[Unit], values: &[SectionValues]
         Decision::Limits { rule, quantities } => (Some(*rule), quantities.as_slice()),
         Decision::Verdicts(_) | Decision::Person(_) => (None, &[][..]),
     };
-    let rules = Arc::new((plan.clone(), facts.clone()));
-    let used: Vec<(&Unit, &SectionValues)> =
-        units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
+    let used = used(units, values);
     let rows = Rows::of_all(plan, facts, &used);
     let table: Vec<_> = rows.iter().map(Rows::usable).collect();
-    let all = Units::of(units);
+    // Of sections of the same name the first.
+    let numbered = units.iter().enumerate().rev();
+    let making = Making {
+        rules: Arc::new((plan.clone(), facts.clone())),
+        units,
+        values,
+        numbers: numbered.map(|(number, unit)| (unit.name.as_str(), number)).collect(),
+    };
+    let of_quantity = |&index: &usize| {
+        let (quantity, members) = (&plan.quantities[index], &rows[index].members);
+        let rows = Group { plan, facts, quantity: Some(quantity), members, table: &table };
+        making.quantity(index, &Judging { quantity, rows, too_few: &[] })
+    };
+    let section = |unit: &Unit| Section {
+        name: unit.name.clone(),
+        zone: unit.zone.clone(),
+        site: unit.site,
+        used: unit.fault.is_none(),
+        reason: unit.fault.clone(),
+    };
+    let zone = |zone: &plan::Zone| Zone {
+        name: zone.name.clone(),
+        title: zone.title.clone(),
+        needed: zone.minimum_sections,
+    };
     Pool {
-        sections: units
-            .iter()
-            .map(|unit| Section {
-                name: unit.name.clone(),
-                zone: unit.zone.clone(),
-                site: unit.site,
-                used: unit.fault.is_none(),
-                reason: unit.fault.clone(),
-            })
-            .collect(),
-        zones: plan
-            .zones
-            .iter()
-            .map(|zone| Zone {
-                name: zone.name.clone(),
-                title: zone.title.clone(),
-                needed: zone.minimum_sections,
-            })
-            .collect(),
+        sections: units.iter().map(section).collect(),
+        zones: plan.zones.iter().map(zone).collect(),
         minimum: plan.sections.minimum,
-        quantities: about
-            .iter()
-            .map(|&index| pooled(&rules, index, (&all, values, used.as_slice()), &table))
-            .collect(),
+        quantities: about.iter().map(of_quantity).collect(),
         rule,
     }
 }
 
-fn pooled(
-    rules: &Arc<(Plan, Facts)>,
-    index: usize,
-    (units, values, used): (&Units<'_>, &[SectionValues], &Used<'_>),
-    table: &Table<'_>,
-) -> PooledQuantity {
-    let (plan, facts) = rules.as_ref();
-    let quantity = &plan.quantities[index];
-    let members = members(quantity, index, used);
-    let of_section = |(unit, values): (&Unit, &SectionValues)| {
-        let rows = values.rows.get(index).filter(|_| unit.fault.is_none()).into_iter().flatten();
-        rows.map(|row| (row.position, quantity.unit.from_si(row.value))).collect::<Vec<_>>()
-    };
-    let impossible =
-        used.iter().any(|(_, values)| values.impossible.iter().any(|(at, _)| *at == index));
-    let judging = Judging { plan, facts, quantity, members: &members, table, too_few: &[] };
-    let mut limits = Vec::new();
-    for limit in &quantity.limits {
-        for part in parts(plan, Grouped::values(quantity), &limit.scope, &members, facts) {
-            limits.extend(of_part(rules, &judging, limit, &part, units));
-        }
+impl Making<'_> {
+    fn number(&self, member: &Member<'_>) -> Option<usize> {
+        self.numbers.get(member.unit.name.as_str()).copied()
     }
-    PooledQuantity {
-        id: quantity.id.clone(),
-        title: quantity.title.clone(),
-        symbol: quantity.symbol.clone(),
-        unit: quantity.unit.text.clone(),
-        values: units.all.iter().zip(values).map(of_section).collect(),
-        minimum_signals: quantity.minimum_signals,
-        // A quantity that cannot be evaluated in some section is not assessable, however many pairs
-        // the others give.
-        minimum_pairs: if impossible { usize::MAX } else { quantity.minimum_pairs },
-        minimum_of_groups: quantity
-            .minimum_of_groups
-            .iter()
-            .flat_map(|minimum| minima(minimum, &judging, units))
-            .collect(),
-        limits,
-    }
-}
 
-/// A minimum, group by group. Where it cannot be told which rows belong to a group, no selection of
-/// sections has enough.
-fn minima(
-    minimum: &MinimumOfGroups,
-    judging: &Judging<'_>,
-    units: &Units<'_>,
-) -> Vec<PooledMinimum> {
-    let Judging { plan, facts, quantity, members, .. } = *judging;
-    let of_part = |part: &Part<'_>| {
-        let mut signals: Vec<BTreeSet<&str>> = vec![BTreeSet::new(); units.all.len()];
-        for member in part.members(facts, members).unwrap_or_default() {
-            if let Some(number) = units.number(member.unit) {
-                signals[number].insert(member.signal);
+    fn quantity(&self, index: usize, judging: &Judging<'_>) -> PooledQuantity {
+        let quantity = judging.quantity;
+        let of_section = |(unit, values): (&Unit, &SectionValues)| {
+            let rows = values.rows.get(index).filter(|_| unit.fault.is_none());
+            rows.into_iter()
+                .flatten()
+                .map(|row| (row.position, quantity.unit.from_si(row.value)))
+                .collect::<Vec<_>>()
+        };
+        let sections = || self.units.iter().zip(self.values);
+        let impossible = sections().any(|(unit, values)| {
+            unit.fault.is_none() && values.impossible.iter().any(|(at, _)| *at == index)
+        });
+        let mut limits = Vec::new();
+        for (at, limit) in quantity.limits.iter().enumerate() {
+            for part in judging.rows.parts(&limit.scope) {
+                limits.extend(self.limit((index, at), judging, &part));
             }
         }
-        PooledMinimum { needed: minimum.needed, pairs: signals.iter().map(BTreeSet::len).collect() }
-    };
-    parts(plan, Grouped::values(quantity), &minimum.scope, members, facts)
-        .iter()
-        .map(of_part)
-        .collect()
-}
+        let minima = quantity.minimum_of_groups.iter();
+        PooledQuantity {
+            id: quantity.id.clone(),
+            title: quantity.title.clone(),
+            symbol: quantity.symbol.clone(),
+            unit: quantity.unit.text.clone(),
+            values: sections().map(of_section).collect(),
+            minimum_signals: quantity.minimum_signals,
+            // A quantity that cannot be evaluated in some section is not assessable, however many
+            // pairs the others give.
+            minimum_pairs: if impossible { usize::MAX } else { quantity.minimum_pairs },
+            minimum_of_groups: minima.flat_map(|minimum| self.minima(minimum, judging)).collect(),
+            limits,
+        }
+    }
 
-fn of_part(
-    rules: &Arc<(Plan, Facts)>,
-    judging: &Judging<'_>,
-    limit: &Limit,
-    part: &Part<'_>,
-    units: &Units<'_>,
-) -> Option<PooledLimit> {
-    let Judging { plan, facts, quantity, members, .. } = *judging;
-    let own = applying(limit, facts, part.members(facts, members).ok()?).ok()??;
-    let inside = if part.by_section() || facts.vehicles.len() > 1 {
-        let named: HashSet<&str> = own.iter().map(|member| member.unit.name.as_str()).collect();
-        units.all.iter().map(|unit| named.contains(unit.name.as_str())).collect()
-    } else {
-        units
-            .all
-            .iter()
-            .map(|unit| part.has_section(unit, facts))
-            .collect::<Result<Vec<_>, _>>()
-            .ok()?
-    };
-    let positions = part.positions(quantity);
-    let shown =
-        |bound: Result<f64, Reason>| bound.ok().map(|bound| judging.unit(limit).from_si(bound));
-    let bounds = if matches!(limit.estimate.kind, EstimateKind::Each) {
-        let own = |unit: &Unit| match unit.fault {
-            Some(_) => Some(f64::NAN),
-            None => shown(judging.bound(
-                limit,
-                &Part::of_section(plan, limit, unit),
-                &[],
-                &unit.known(facts),
-            )),
+    /// A minimum, group by group. Where it cannot be told which rows belong to a group, no
+    /// selection of sections has enough.
+    fn minima(&self, minimum: &MinimumOfGroups, judging: &Judging<'_>) -> Vec<PooledMinimum> {
+        let of_part = |part: Part<'_>| {
+            let mut signals: Vec<BTreeSet<&str>> = vec![BTreeSet::new(); self.units.len()];
+            for member in part.members.unwrap_or_default() {
+                if let Some(number) = self.number(&member) {
+                    signals[number].insert(member.signal);
+                }
+            }
+            let pairs = signals.iter().map(BTreeSet::len).collect();
+            PooledMinimum { needed: minimum.needed, pairs }
         };
-        units.all.iter().map(own).collect::<Option<Vec<_>>>()?
-    } else {
-        // Data of sections can be used in the limit. This bound is that of all sections; an
-        // estimate computes its own.
-        vec![shown(judging.common_bound(limit, part, &own))?]
-    };
-    let estimate = match limit.estimate.statistic() {
-        Some((statistic, ddof)) => Pooled::Statistic(statistic, ddof),
-        None => Pooled::Estimate(Estimator::new(rules, judging, limit, part, units)),
-    };
-    Some(PooledLimit {
-        estimate,
-        at_least: limit.at_least,
-        title: limit.estimate.title.clone(),
-        scope: part.scope(),
-        inside,
-        positions,
-        bounds,
-    })
+        judging.rows.parts(&minimum.scope).into_iter().map(of_part).collect()
+    }
+
+    /// The limit `at` of the quantity `index`, for one of its groups.
+    fn limit(
+        &self,
+        (index, at): (usize, usize),
+        judging: &Judging<'_>,
+        part: &Part<'_>,
+    ) -> Option<PooledLimit> {
+        let facts = judging.rows.facts;
+        let limit = &judging.quantity.limits[at];
+        let own = applying(limit, facts, part.members.clone().ok()?).ok()??;
+        let inside: Vec<bool> = if part.by_section() || facts.vehicles.len() > 1 {
+            let named: HashSet<&str> = own.iter().map(|member| member.unit.name.as_str()).collect();
+            self.units.iter().map(|unit| named.contains(unit.name.as_str())).collect()
+        } else {
+            let inside = self.units.iter().map(|unit| part.has_section(unit, facts));
+            inside.collect::<Result<_, _>>().ok()?
+        };
+        let shown = |bound: Result<f64, Reason>| Some(judging.unit(limit).from_si(bound.ok()?));
+        let bounds = if matches!(limit.estimate.kind, EstimateKind::Each) {
+            let own = |unit: &Unit| match unit.fault {
+                Some(_) => Some(f64::NAN),
+                None => shown(judging.own_bound(limit, unit, &[])),
+            };
+            self.units.iter().map(own).collect::<Option<Vec<_>>>()?
+        } else {
+            // Data of sections can be used in the limit. This bound is that of all sections; an
+            // estimate computes its own.
+            vec![shown(judging.common_bound(limit, part, &own))?]
+        };
+        let estimate = match limit.estimate.statistic() {
+            Some((statistic, ddof)) => Pooled::Statistic(statistic, ddof),
+            None => {
+                let inside = part.members.clone().unwrap_or_default();
+                let others = match limit.estimate.others().is_empty() {
+                    true => Vec::new(),
+                    false => judging
+                        .rows
+                        .table
+                        .iter()
+                        .map(|rows| rows.clone().map(|rows| self.numbered(rows)))
+                        .collect(),
+                };
+                Pooled::Estimate(Estimator {
+                    rules: Arc::clone(&self.rules),
+                    quantity: index,
+                    limit: at,
+                    rows: Arc::new(self.numbered(&inside)),
+                    others: Arc::new(others),
+                    bound: judging.common_bound(limit, part, &inside).unwrap_or(f64::NAN),
+                })
+            }
+        };
+        Some(PooledLimit {
+            estimate,
+            at_least: limit.at_least,
+            title: limit.estimate.title.clone(),
+            scope: part.scope(),
+            inside,
+            positions: part.positions(judging.quantity),
+            bounds,
+        })
+    }
+
+    fn numbered(&self, members: &[Member<'_>]) -> Vec<Numbered> {
+        let numbered = |member: &Member<'_>| {
+            Some((self.number(member)?, member.unit.clone(), member.row.clone()))
+        };
+        members.iter().filter_map(numbered).collect()
+    }
 }

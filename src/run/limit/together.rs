@@ -4,52 +4,59 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use super::limits::{Judging, compared};
+use super::limits::Judging;
 use crate::check::plan::{Chosen, Evaluation, Key, Limit, Pairing, Plan, Records, Side};
-use crate::graph::{Graph, QuantityNodes};
 use crate::result::{Reason, RecordName};
-use crate::run::estimate::{Member, Table};
+use crate::run::estimate::{Group, Member, Table};
 
-/// Why limits that all simulations together meet do not decide the quantity: the first simulation
-/// that does not meet one by itself. Only for values of simulations, by themselves or with
-/// measurements, where neither quantity nor limit names a record: otherwise the protocol knows of
-/// several.
-pub fn fails_alone(graph: &Graph, nodes: &QuantityNodes, judging: &Judging<'_>) -> Option<Reason> {
-    let Judging { plan, quantity, members, table, .. } = *judging;
-    let by_record = |limit: &Limit| limit.scope.each.contains(&Key::Record);
-    let several = members.iter().any(|member| member.row.record.is_some());
-    if !several || quantity.limits.iter().all(|limit| by_record(limit)) {
-        return None;
-    }
-    let simulations = match quantity.evaluation.as_ref() {
-        Evaluation::Values {
-            records: Records::Of(Chosen { side: Side::Simulated, record: None }),
-            ..
-        } => names_of(members),
-        evaluation if evaluation.pairing() == Some(Pairing::SIDES) => simulations(plan, table),
-        _ => return None,
-    };
-    simulations.iter().find_map(|simulation| {
-        let own: Vec<Member<'_>> = members
-            .iter()
-            .copied()
-            .filter(|member| member.row.record.as_ref().map(RecordName::first) == Some(*simulation))
-            .collect();
-        let fails = compared(graph, nodes, &Judging { members: &own, too_few: &[], ..*judging })
-            .into_iter()
-            .filter(|compared| compared.result.scope.keys.iter().all(|(key, _)| key != "record"))
-            .find_map(|compared| compared.fails)?;
-        // The result is that of a quantity, which is not named once more.
-        let reason = match fails {
-            Reason::About { reason, .. } => reason,
-            other => Box::new(other),
+impl Judging<'_> {
+    /// Why limits that all simulations together meet do not decide the quantity: the first simulation
+    /// that does not meet one by itself. Only for values of simulations, by themselves or with
+    /// measurements, where neither quantity nor limit names a record: otherwise the protocol knows of
+    /// several.
+    pub fn fails_alone(&self) -> Option<Reason> {
+        let (quantity, Group { plan, members, table, .. }) = (self.quantity, self.rows);
+        let by_record = |limit: &Limit| limit.scope.each.contains(&Key::Record);
+        let several = members.iter().any(|member| member.row.record.is_some());
+        if !several || quantity.limits.iter().all(|limit| by_record(limit)) {
+            return None;
+        }
+        let simulations = match quantity.evaluation.as_ref() {
+            Evaluation::Values {
+                records: Records::Of(Chosen { side: Side::Simulated, record: None }),
+                ..
+            } => names_of(members),
+            evaluation if evaluation.pairing() == Some(Pairing::SIDES) => simulations(plan, table),
+            _ => return None,
         };
-        Some(Reason::FailsAlone {
-            simulations: simulations.len(),
-            simulation: simulation.to_string(),
-            reason,
+        simulations.iter().find_map(|simulation| {
+            let own: Vec<Member<'_>> = members
+                .iter()
+                .copied()
+                .filter(|member| {
+                    member.row.record.as_ref().map(RecordName::first) == Some(*simulation)
+                })
+                .collect();
+            let alone = Judging { quantity, rows: self.rows.with(&own), too_few: &[] };
+            let fails = alone
+                .compared()
+                .into_iter()
+                .filter(|compared| {
+                    compared.result.scope.keys.iter().all(|(key, _)| key != "record")
+                })
+                .find_map(|compared| compared.fails)?;
+            // The result is that of a quantity, which is not named once more.
+            let reason = match fails {
+                Reason::About { reason, .. } => reason,
+                other => Box::new(other),
+            };
+            Some(Reason::FailsAlone {
+                simulations: simulations.len(),
+                simulation: simulation.to_string(),
+                reason,
+            })
         })
-    })
+    }
 }
 
 fn names_of<'a>(members: &[Member<'a>]) -> BTreeSet<&'a Arc<str>> {

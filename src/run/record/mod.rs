@@ -30,4 +30,4 @@ pub use signal::{Along, Rate, Samples, Signal, apply, arithmetic, each};
 pub use state::NodeValue;
 pub use stretch::{Soundness, Stretches};
 pub use trial::Trial;
-pub use work::{Work, with_record};
+pub use work::{SectionWork, Work};

@@ -13,8 +13,10 @@ use crate::result::{FileHash, Reason, RecordOf};
 use crate::run::sections::{Extent, Unit};
 use crate::units::Dimension;
 
-/// Code of the problem of a file that cannot be read.
-const UNREADABLE: &str = "file-unreadable";
+/// Whether a file of a record cannot be read.
+pub(super) fn unreadable(problems: &[Problem]) -> bool {
+    problems.iter().any(|problem| problem.code == "file-unreadable")
+}
 
 /// A reason why a record cannot be used, and the problems that caused it.
 #[derive(Debug)]
@@ -31,7 +33,7 @@ impl Fault {
     /// What is wrong with a record of a campaign.
     pub(super) fn of(campaign: &Campaign, problems: Vec<Problem>) -> Self {
         let says = said(campaign, &problems);
-        let reason = match problems.iter().any(|problem| problem.code == UNREADABLE) {
+        let reason = match unreadable(&problems) {
             true => Reason::Unreadable { says },
             false => Reason::Said { says },
         };
@@ -128,44 +130,58 @@ impl Sampled {
     }
 }
 
-/// A record that was read, checked for the section.
-pub(super) fn opened(
-    plan: &Plan,
-    campaign: &Campaign,
-    unit: &Unit,
-    which: WhichRecord,
-    (record, read): (Record, ReadFile),
-) -> Result<Opened, Fault> {
-    let axis = &plan.axis.column;
-    let section = unit.extent.map(|(start, end)| Section { start, end, at: unit.span.clone() });
-    let time = clock(plan, which.kind).map_or(axis, |time| &time.column);
-    let checked = check_axis(&record, time, axis, section.as_ref())
-        .map_err(|problems| Fault::of(campaign, problems))?;
-    let sampled = Sampled::of_record(plan, which.kind, record, checked.sampling_rate);
-    Ok(Opened {
-        extent: unit.extent.or(sampled.extent()).unwrap_or_default(),
-        file: file_of(campaign, unit, which, &read),
-        margins: sampled.in_time.then_some((checked.before, checked.after)),
-        memo: None,
-        own: unit.stretch.and_then(|_| unit.part(plan)).map(|part| (part.from, part.to)),
-        stretch: None,
-        sampled,
-    })
+/// A record of a section that is read.
+#[derive(Clone, Copy, Debug)]
+pub struct Reading<'a> {
+    pub plan: &'a Plan,
+    pub campaign: &'a Campaign,
+    pub unit: &'a Unit,
+    pub which: WhichRecord,
 }
 
-pub(super) fn file_of(
-    campaign: &Campaign,
-    unit: &Unit,
-    which: WhichRecord,
-    read: &ReadFile,
-) -> FileHash {
-    let name = campaign.record_name(which).map(ToString::to_string);
-    let of = RecordOf { kind: which.kind.key().into(), section: unit.name.clone(), name };
-    let path = qualified(unit.campaign_name.as_deref(), &read.path);
-    FileHash { path, sha256: read.sha256.clone(), bytes: read.bytes, record: Some(of) }
+impl Reading<'_> {
+    /// The file of the record, as results state it.
+    pub(super) fn file(&self, read: &ReadFile) -> FileHash {
+        let name = self.campaign.record_name(self.which).map(ToString::to_string);
+        let section = self.unit.name.clone();
+        let path = qualified(self.unit.campaign_name.as_deref(), &read.path);
+        let record = Some(RecordOf { kind: self.which.kind.key().into(), section, name });
+        FileHash { path, sha256: read.sha256.clone(), bytes: read.bytes, record }
+    }
+
+    /// The part of a run that the section reads by itself.
+    pub(super) fn own(&self) -> Option<Extent> {
+        self.unit.part(self.plan).map(|part| (part.from, part.to))
+    }
 }
 
 impl Opened {
+    /// A record that was read, checked for the section.
+    ///
+    /// # Errors
+    /// Its axes are not sound, or it does not cover the section.
+    pub(super) fn new(
+        reading: &Reading<'_>,
+        (record, read): (Record, ReadFile),
+    ) -> Result<Self, Fault> {
+        let Reading { plan, campaign, unit, which } = *reading;
+        let axis = &plan.axis.column;
+        let place = unit.extent.map(|(start, end)| Section { start, end, at: unit.span.clone() });
+        let time = clock(plan, which.kind).map_or(axis, |time| &time.column);
+        let checked = check_axis(&record, time, axis, place.as_ref())
+            .map_err(|problems| Fault::of(campaign, problems))?;
+        let sampled = Sampled::of_record(plan, which.kind, record, checked.sampling_rate);
+        Ok(Self {
+            extent: unit.extent.or(sampled.extent()).unwrap_or_default(),
+            file: reading.file(&read),
+            margins: sampled.in_time.then_some((checked.before, checked.after)),
+            memo: None,
+            own: unit.stretch.and_then(|_| reading.own()),
+            stretch: None,
+            sampled,
+        })
+    }
+
     /// A piece of a run, in which sections are looked for.
     pub fn piece(
         plan: &Plan,

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 use super::memo::{Keys, Memo, locked};
-use super::opened::{Fault, Opened, opened};
+use super::opened::{Fault, Opened, Reading};
 use super::trial::Trial;
 use crate::check::plan::Plan;
 use crate::data::campaign::{Part, ReadFile};
@@ -197,16 +197,14 @@ impl<'a> SectionRecords<'a> {
     /// is wrong with it.
     pub fn open(
         &self,
-        plan: &Plan,
-        unit: &Unit,
-        which: WhichRecord,
+        reading: &Reading<'_>,
         wanted: &[Wanted],
         part: Option<&Part>,
     ) -> Option<Result<Opened, Fault>> {
         if part != self.part.as_ref() {
             return None;
         }
-        let shared = self.shared(which);
+        let shared = self.shared(reading.which);
         shared.asked.fetch_add(1, Ordering::Relaxed);
         let (record, file) = match &shared.record {
             Ok(record) => record.as_ref()?,
@@ -218,14 +216,14 @@ impl<'a> SectionRecords<'a> {
                 return None;
             }
         }
+        let Reading { plan, unit, which, .. } = *reading;
         let time = plan.time.as_ref().map(|time| time.column.clone());
         let view = (plan.axis.column.clone(), time, unit.extent, which);
         let mut known = locked(&shared.opened);
         if let Some((_, opened)) = known.iter().find(|(of, _)| *of == view) {
             return Some(Ok(opened.clone()));
         }
-        let read = (record.clone(), file.clone());
-        let mut one = opened(plan, self.campaign, unit, which, read).ok()?;
+        let mut one = Opened::new(reading, (record.clone(), file.clone())).ok()?;
         one.memo = Some(Arc::clone(&shared.memo));
         known.push((view, one.clone()));
         Some(Ok(one))

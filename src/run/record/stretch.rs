@@ -5,16 +5,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex};
 
 use super::memo::{Computed, Memo, locked};
-use super::opened::{Fault, Opened, Sampled, Stretched, clock, file_of};
+use super::opened::{Fault, Opened, Reading, Sampled, Stretched, clock};
 use super::signal::{Cutter, Signal};
 use super::state::State;
 use crate::check::plan::{AxisOperation, Kind, Plan, StepSpec};
 use crate::data::campaign::ReadFile;
 use crate::data::checks::check_axis;
-use crate::data::{Campaign, Record, RecordKind, WhichRecord};
+use crate::data::{Record, RecordKind, WhichRecord};
 use crate::graph::{Graph, NodeId, Operation};
 use crate::result::Reason;
-use crate::run::sections::{Facts, Unit};
+use crate::run::sections::{Extent, Known};
 
 /// A record of the stretch with this number.
 type RecordOfStretch = (usize, WhichRecord);
@@ -79,32 +79,24 @@ impl Stretched {
     /// kept for the sections.
     pub(super) fn is_sound(
         self: &Arc<Self>,
-        (plan, graph, facts): (&Plan, &Graph, &Facts),
-        campaign: &Campaign,
-        unit: &Unit,
-        which: WhichRecord,
+        reading: &Reading<'_>,
+        graph: &Graph,
+        known: &Known<'_>,
     ) -> bool {
         let Some(all) = self.sampled.extent() else { return false };
-        let track = which.kind == RecordKind::Track;
+        let track = reading.which.kind == RecordKind::Track;
         let nodes = common(graph, track, |column| self.sampled.column(column).is_some());
-        let whole = Opened { own: Some(all), ..self.opened(campaign, unit, which, all) };
-        let known = unit.known(facts);
-        let mut state = State::new(&whole, (plan, graph), &known);
+        let whole = Opened { own: Some(all), ..self.opened(reading, all) };
+        let mut state = State::new(&whole, (reading.plan, graph), known);
         let levels = state.count(&nodes);
         state.on_stretch(&nodes, &nodes, &levels).is_ok()
     }
 
-    fn opened(
-        self: &Arc<Self>,
-        campaign: &Campaign,
-        unit: &Unit,
-        which: WhichRecord,
-        extent: (f64, f64),
-    ) -> Opened {
+    fn opened(self: &Arc<Self>, reading: &Reading<'_>, extent: Extent) -> Opened {
         Opened {
             sampled: self.sampled.clone(),
             extent,
-            file: file_of(campaign, unit, which, &self.read),
+            file: reading.file(&self.read),
             margins: None,
             memo: None,
             own: None,
@@ -113,14 +105,8 @@ impl Stretched {
     }
 
     /// The record as one section sees it; `None` if it does not cover the section.
-    pub(super) fn section(
-        self: &Arc<Self>,
-        plan: &Plan,
-        campaign: &Campaign,
-        unit: &Unit,
-        which: WhichRecord,
-    ) -> Option<Opened> {
-        let (extent, (first, last)) = (unit.extent?, self.sampled.extent()?);
+    pub(super) fn section(self: &Arc<Self>, reading: &Reading<'_>) -> Option<Opened> {
+        let (extent, (first, last)) = (reading.unit.extent?, self.sampled.extent()?);
         let along = &self.sampled.along;
         let inside = along.inside(extent);
         if extent.0 < first || extent.1 > last || inside.is_empty() {
@@ -131,8 +117,8 @@ impl Stretched {
             (times[inside.start] - times[0], times[times.len() - 1] - times[inside.end - 1]);
         Some(Opened {
             margins: self.sampled.in_time.then_some(margins),
-            own: unit.part(plan).map(|part| (part.from, part.to)),
-            ..self.opened(campaign, unit, which, extent)
+            own: reading.own(),
+            ..self.opened(reading, extent)
         })
     }
 }

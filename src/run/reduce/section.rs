@@ -4,119 +4,96 @@
 use std::collections::BTreeSet;
 
 use crate::check::evaluate::flag;
-use crate::check::plan::{Evaluation, Expr, Position, Quantity, Side};
+use crate::check::plan::{Evaluation, Expr, Quantity, Side};
 use crate::data::RecordKind;
 use crate::graph::{InputNode, NodeId, SignalNodes};
 use crate::result::{Reason, Subject};
 use crate::run::data_rules::{Questions, plausibility, record_checks, track_checks};
-use crate::run::record::{Fault, Opened, Work};
-use crate::run::sections::{Known, Unit};
+use crate::run::record::{Fault, SectionWork, Work};
+use crate::run::sections::Unit;
 use crate::run::values::{
-    Meetings, Original, RecordOfSide, SectionValues, Shifts, Sides, one_record, read_record,
-    synchronisation,
+    Meetings, Original, RecordOfSide, SectionValues, Shifts, Sides, synchronisation,
 };
 
 /// The values of a section, once for each shift.
 pub fn of_section(work: &Work<'_>, unit: &Unit, shifts: &Shifts<'_>) -> Vec<SectionValues> {
     let mut common = SectionValues::default();
-    match fill(work, unit, shifts, &mut common) {
-        Ok(all) => all,
-        Err(fault) => {
-            common.fault = Some(fault.reason);
-            common.problems = fault.problems;
-            vec![common; shifts.offsets.len()]
-        }
-    }
+    fill(&SectionWork::new(work, unit), shifts, &mut common).unwrap_or_else(|fault| {
+        common.fault = Some(fault.reason);
+        common.problems = fault.problems;
+        vec![common; shifts.offsets.len()]
+    })
 }
 
 /// The positions of each quantity that are evaluated in a section; those of repeats only in a
 /// section that repeats another.
 type Active = Vec<Vec<bool>>;
 
-fn active(work: &Work<'_>, unit: &Unit, known: &Known<'_>) -> Result<Active, Fault> {
-    let holds = |only: Option<&Expr>| only.map_or(Ok(true), |only| flag(only, known));
+fn active(section: &SectionWork<'_>) -> Result<Active, Reason> {
+    let SectionWork { work, unit, known } = section;
+    let holds = |only: &Option<Expr>| only.as_ref().map_or(Ok(true), |only| flag(only, known));
+    let quantities = work.plan.quantities.iter().zip(&work.present[unit.campaign]);
     let of_quantity = |(quantity, present): (&Quantity, &Vec<bool>)| {
-        let all = holds(quantity.only.as_ref())?
+        let all = holds(&quantity.only)?
             && (unit.original.is_some() || !quantity.evaluation.of_repeats());
-        let of_position = |(position, present): (&Position, &bool)| {
-            Ok(all && *present && holds(position.only.as_ref())?)
-        };
-        quantity
-            .positions
-            .iter()
-            .zip(present)
-            .map(of_position)
-            .collect::<Result<Vec<bool>, Reason>>()
+        let positions = quantity.positions.iter().zip(present);
+        positions.map(|(position, present)| Ok(all && *present && holds(&position.only)?)).collect()
     };
-    work.plan
-        .quantities
-        .iter()
-        .zip(&work.present[unit.campaign])
-        .map(of_quantity)
-        .collect::<Result<_, _>>()
-        .map_err(Fault::new)
+    quantities.map(of_quantity).collect()
 }
 
 fn fill(
-    work: &Work<'_>,
-    unit: &Unit,
+    section: &SectionWork<'_>,
     shifts: &Shifts<'_>,
     common: &mut SectionValues,
 ) -> Result<Vec<SectionValues>, Fault> {
-    let known = unit.known(work.facts);
-    let questions = Questions::of(work, unit, &known);
-    let track = track_checks(work, unit, &questions, &known, common)?;
-    let active = active(work, unit, &known)?;
+    let questions = Questions::of(section);
+    let track = track_checks(section, &questions, common)?;
+    let active = active(section).map_err(Fault::new)?;
+    let wanted = |side: Side| wanted(section.work, &questions, &active, shifts, side);
     // A record is reduced to numbers before the next one is opened, so that one record is in memory
     // at a time, and of a run one stretch of each.
-    let simulated = records(
-        work,
-        unit,
-        Side::Simulated,
-        &wanted(work, &questions, &active, shifts, Side::Simulated),
-        &known,
-        common,
-    );
-    let wanted = wanted(work, &questions, &active, shifts, Side::Measured);
+    let simulated = records(section, Side::Simulated, &wanted(Side::Simulated), common);
+    let wanted = wanted(Side::Measured);
     let measured = match &simulated {
-        Ok(simulated) if !shifts.plain() => {
-            shifted(work, unit, shifts, &wanted, &known, simulated, common)
-        }
-        _ => records(work, unit, Side::Measured, &wanted, &known, common)
-            .map(|measured| vec![Ok(measured)]),
+        Ok(simulated) if !shifts.plain() => shifted(section, shifts, &wanted, simulated, common),
+        _ => records(section, Side::Measured, &wanted, common).map(|measured| vec![Ok(measured)]),
     };
-    let (simulated, measured) = match (simulated, measured) {
-        (Ok(simulated), Ok(measured)) => (simulated, measured),
-        (Err(first), Err(second)) => return Err(first.and(second)),
-        (Err(fault), _) | (_, Err(fault)) => return Err(fault),
-    };
+    let (simulated, measured) = both(simulated, measured)?;
     let mut repeated = BTreeSet::new();
-    of_quantities(work, &active, |evaluation| evaluation.of_repeats(), &mut repeated);
+    of_quantities(section.work, &active, Evaluation::of_repeats, &mut repeated);
     // A section whose original cannot be evaluated has no rows of repeats; the original itself
     // states the reason.
-    let original = original(work, unit, &repeated).and_then(Result::ok);
-    let one = |measured: Result<Vec<RecordOfSide>, Reason>| {
+    let original = original(section, &repeated).and_then(Result::ok);
+    let of_shift = |measured: Result<Vec<RecordOfSide>, Reason>| {
         let mut values = common.clone();
         match measured {
             Ok(measured) => {
-                let meetings = Meetings::default();
                 let sides = Sides {
-                    work,
+                    section,
                     simulated: &simulated,
                     measured: &measured,
                     original: original.as_ref(),
-                    known: &known,
-                    meetings: &meetings,
+                    meetings: Meetings::default(),
                 };
-                quantities(work, &sides, &active, &mut values);
+                quantities(&sides, &active, &mut values);
                 record_checks(&sides, &mut values);
-                plausibility::look((work, unit), &questions, &sides, &track, &mut values);
+                plausibility::look(&questions, &sides, &track, &mut values);
             }
             Err(reason) => values.fault = Some(reason),
         }
         values
     };
-    Ok(measured.into_iter().map(one).collect())
+    Ok(measured.into_iter().map(of_shift).collect())
+}
+
+/// Both, or the faults of both.
+fn both<A, B>(first: Result<A, Fault>, second: Result<B, Fault>) -> Result<(A, B), Fault> {
+    match (first, second) {
+        (Ok(first), Ok(second)) => Ok((first, second)),
+        (Err(first), Err(second)) => Err(first.and(second)),
+        (Err(fault), _) | (_, Err(fault)) => Err(fault),
+    }
 }
 
 /// The evaluated records of one side; empty where the protocol does not read that side.
@@ -124,34 +101,28 @@ fn fill(
 /// # Errors
 /// The faults of all its records.
 pub fn records(
-    work: &Work<'_>,
-    unit: &Unit,
+    section: &SectionWork<'_>,
     side: Side,
     wanted: &BTreeSet<NodeId>,
-    known: &Known<'_>,
     common: &mut SectionValues,
 ) -> Result<Vec<RecordOfSide>, Fault> {
-    if !work.reads(side) {
-        return Ok(Vec::new());
+    let mut records = Ok(Vec::new());
+    if !section.work.plan.reads(side) {
+        return records;
     }
-    let mut records: Result<Vec<RecordOfSide>, Fault> = Ok(Vec::new());
-    for which in work.campaign(unit).records(side.kind()) {
-        let one = one_record(work, unit, which, wanted, known, common);
-        if let Ok(one) = &one
+    for which in section.campaign().records(side.kind()) {
+        let record = section.record(which, wanted, common);
+        if let Ok(record) = &record
             // The first measurement defines the range of a whole record; without measurements, the
             // simulation.
             && (side == Side::Measured && which.number == 0 || common.extent.is_none())
         {
-            common.extent = Some(one.extent);
+            common.extent = Some(record.extent);
         }
-        records = match (records, one) {
-            (Ok(mut all), Ok(one)) => {
-                all.push(one);
-                Ok(all)
-            }
-            (Err(first), Err(second)) => Err(first.and(second)),
-            (Err(fault), _) | (_, Err(fault)) => Err(fault),
-        };
+        records = both(records, record).map(|(mut all, record): (Vec<_>, _)| {
+            all.push(record);
+            all
+        });
     }
     records
 }
@@ -159,49 +130,44 @@ pub fn records(
 /// The section that this one repeats, with the values that quantities of repeats need; `None` if
 /// there is none that is used.
 pub fn original<'a>(
-    work: &Work<'a>,
-    unit: &Unit,
+    section: &SectionWork<'a>,
     wanted: &BTreeSet<NodeId>,
 ) -> Option<Result<Original<'a>, Fault>> {
-    let original = work.units.get(unit.original?)?;
+    let original = section.work.units.get(section.unit.original?)?;
     if wanted.is_empty() || original.fault.is_some() {
         return None;
     }
-    let known = original.known(work.facts);
+    let section = SectionWork::new(section.work, original);
     // Its files and margins are reported with the original itself.
-    let mut own = SectionValues::default();
-    let records = records(work, original, Side::Measured, wanted, &known, &mut own);
-    Some(records.map(|records| Original { unit: original, known, records }))
+    let records = records(&section, Side::Measured, wanted, &mut SectionValues::default());
+    Some(records.map(|records| Original { section, records }))
 }
 
 /// The measured record cut at every shift; its filters run once.
 fn shifted(
-    work: &Work<'_>,
-    unit: &Unit,
+    section: &SectionWork<'_>,
     shifts: &Shifts<'_>,
     wanted: &BTreeSet<NodeId>,
-    known: &Known<'_>,
     simulated: &[RecordOfSide],
     common: &mut SectionValues,
 ) -> Result<Vec<Result<Vec<RecordOfSide>, Reason>>, Fault> {
+    let Work { plan, graph, .. } = *section.work;
     let which = RecordKind::Measurement.into();
     let mut extent = None;
-    let evaluate = |opened: &Opened, needed: &BTreeSet<NodeId>| {
+    let read = section.read(which, wanted, common, |opened, needed| {
         extent = Some(opened.extent);
-        let held = opened.hold((work.plan, work.graph), needed, wanted, known)?;
-        let first = shifts.farthest.zip(simulated.first());
-        let offset = first.and_then(|(farthest, simulated)| {
-            synchronisation::estimate(work.graph, unit, farthest, &simulated.found, &held)
+        let held = opened.hold((plan, graph), needed, wanted, &section.known)?;
+        let offset = shifts.farthest.zip(simulated.first()).and_then(|(farthest, simulated)| {
+            synchronisation::estimate(graph, section.unit, farthest, &simulated.found, &held)
         });
         let own = offset.as_ref().filter(|_| shifts.correct).map_or(0.0, |offset| offset.shift);
         let at = |offset: &f64| {
             held.at(own + offset)
-                .map(|found| vec![RecordOfSide::new(work, unit, which, opened, found)])
+                .map(|found| vec![RecordOfSide::new(section, which, opened, found)])
                 .map_err(|reason| reason.about(Subject::File, &opened.file.path))
         };
         Ok((shifts.offsets.iter().map(at).collect(), offset))
-    };
-    let read = read_record(work, unit, which, wanted, known, common, evaluate);
+    });
     common.extent = extent.or(common.extent);
     let (all, offset) = read?;
     common.offset = offset;
@@ -209,19 +175,14 @@ fn shifted(
 }
 
 /// A row that cannot be computed affects its quantity only; the section is used for the others.
-fn quantities(work: &Work<'_>, sides: &Sides<'_>, active: &Active, values: &mut SectionValues) {
-    for (index, quantity) in work.plan.quantities.iter().enumerate() {
+fn quantities(sides: &Sides<'_>, active: &Active, values: &mut SectionValues) {
+    for (index, quantity) in sides.section.work.plan.quantities.iter().enumerate() {
         let mut rows = Vec::new();
-        for (number, nodes) in work.graph.quantities[index]
-            .signals
-            .iter()
-            .enumerate()
-            .filter(|(number, _)| active[index][*number])
-        {
-            match sides.rows(number, nodes) {
+        for at in (0..quantity.positions.len()).filter(|at| active[index][*at]) {
+            match sides.rows(index, at) {
                 Ok(found) => rows.extend(found),
                 Err(reason) => {
-                    let signal = &quantity.positions[number].name;
+                    let signal = &quantity.positions[at].name;
                     values.impossible.push((index, reason.about(Subject::Signal, signal)));
                 }
             }
@@ -238,16 +199,12 @@ fn wanted(
     shifts: &Shifts<'_>,
     side: Side,
 ) -> BTreeSet<NodeId> {
-    let mut wanted = BTreeSet::new();
+    let mut wanted = questions.wanted(work.graph, false);
     of_quantities(work, active, |evaluation| evaluation.reads(side), &mut wanted);
-    for check in &work.graph.checks {
-        wanted.extend(
-            check.iter().flat_map(InputNode::nodes).filter(|&node| !work.graph.nodes[node].track),
-        );
-    }
-    wanted.extend(questions.wanted(work, false));
+    let of_checks = work.graph.checks.iter().flatten().flat_map(InputNode::nodes);
+    wanted.extend(of_checks.filter(|&node| !work.graph.nodes[node].track));
     if shifts.farthest.is_some() {
-        wanted.extend(synchronisation::signals(work, active));
+        wanted.extend(synchronisation::signals(work.graph, active));
     }
     wanted
 }
@@ -259,10 +216,10 @@ fn of_quantities(
     which: impl Fn(&Evaluation) -> bool,
     wanted: &mut BTreeSet<NodeId>,
 ) {
-    for (index, nodes) in work.graph.quantities.iter().enumerate() {
-        let quantity = &work.plan.quantities[index];
+    let quantities = work.plan.quantities.iter().zip(&work.graph.quantities).zip(active);
+    for ((quantity, nodes), active) in quantities {
         if which(&quantity.evaluation) {
-            let signals = nodes.signals.iter().zip(&active[index]).filter(|(_, active)| **active);
+            let signals = nodes.signals.iter().zip(active).filter(|(_, active)| **active);
             signals.for_each(|(signal, _)| wanted_of(quantity, signal, wanted));
         }
     }
@@ -271,11 +228,12 @@ fn of_quantities(
 /// Nodes that one position of a quantity needs.
 pub fn wanted_of(quantity: &Quantity, signal: &SignalNodes, wanted: &mut BTreeSet<NodeId>) {
     match quantity.evaluation.as_ref() {
-        Evaluation::Values { .. } => wanted.extend(
-            signal.values.iter().flat_map(|value| value.inputs.iter().flat_map(InputNode::nodes)),
-        ),
+        Evaluation::Values { .. } => {
+            let inputs = signal.values.iter().flat_map(|value| &value.inputs);
+            wanted.extend(inputs.flat_map(InputNode::nodes));
+        }
         Evaluation::Combined { .. } => {
-            wanted.extend(signal.inputs.iter().flat_map(InputNode::nodes))
+            wanted.extend(signal.inputs.iter().flat_map(InputNode::nodes));
         }
         Evaluation::Metric { metric, .. } => {
             let common = metric.on_common_points(quantity.keeps_samples());

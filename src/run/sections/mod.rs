@@ -27,5 +27,5 @@ pub use facts::{
     Facts, Known, NOT_STATED, Vehicle, absent, is_dimensioned, scalar, trimmed, vehicle_item,
 };
 pub use needed::{chosen, needed};
-pub use unit::{Extent, Unit};
+pub use unit::{Extent, Stretch, Unit};
 pub use units::of_run;

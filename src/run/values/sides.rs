@@ -5,128 +5,36 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::common::{Both, Meetings};
-use super::row::Row;
+use super::{NodeValues, RecordOfSide, Row};
 use crate::catalog::{Metric, Pair};
 use crate::check::evaluate::{flag, number};
 use crate::check::plan::{
     Center, Chosen, Evaluation, Expr, InputSide, Kind, Pairing, Records, Side,
 };
-use crate::data::WhichRecord;
 use crate::graph::{InputNode, Joint, NodeId, Operation, SignalNodes, ValueNodes};
 use crate::metrics::{pair, statistics};
-use crate::result::{FileHash, Reason, RecordName};
-use crate::run::record::{NodeValue, Opened, Rate, Samples, Work};
-use crate::run::sections::{Extent, Known, Unit};
+use crate::result::{Reason, RecordName};
+use crate::run::record::{NodeValue, Rate, Samples, SectionWork};
+use crate::run::sections::{Extent, Known};
 
 /// What is computed of two records, and of how many samples.
 type OfTwo<'a> = dyn Fn(&Two<'_>) -> Result<(f64, usize), Reason> + 'a;
 
-/// Values of the requested nodes of one record, in the order in which they were computed.
-#[derive(Clone, Debug, Default)]
-pub struct NodeValues {
-    all: Vec<(NodeId, NodeValue)>,
-    /// For each node, one more than the index of its value; 0 if it has no value.
-    places: Vec<usize>,
-}
-
-impl From<Vec<(NodeId, NodeValue)>> for NodeValues {
-    fn from(all: Vec<(NodeId, NodeValue)>) -> Self {
-        let mut places = vec![0; all.iter().map(|(node, _)| node + 1).max().unwrap_or(0)];
-        // If a node has two values, the first counts.
-        for (at, (node, _)) in all.iter().enumerate().rev() {
-            places[*node] = at + 1;
-        }
-        Self { all, places }
-    }
-}
-
-impl NodeValues {
-    pub fn get(&self, node: NodeId) -> Option<&NodeValue> {
-        let place = self.places.get(node)?.checked_sub(1)?;
-        self.all.get(place).map(|(_, found)| found)
-    }
-
-    pub fn iter(&self) -> impl Iterator<Item = &(NodeId, NodeValue)> {
-        self.all.iter()
-    }
-
-    /// A number of a signal, and of how many samples it is.
-    ///
-    /// # Errors
-    /// It could not be computed, and why.
-    pub fn number(&self, node: NodeId) -> Result<(f64, usize), Reason> {
-        match self.get(node) {
-            Some(NodeValue::Number(value, samples)) => Ok((*value, *samples)),
-            Some(NodeValue::Failed(reason)) => Err(reason.clone()),
-            _ => Err(Reason::ValueMissing),
-        }
-    }
-
-    /// # Errors
-    /// As [`NodeValues::number`].
-    pub fn samples(&self, node: NodeId) -> Result<&Samples, Reason> {
-        match self.get(node) {
-            Some(NodeValue::Samples(samples)) => Ok(samples),
-            Some(NodeValue::Failed(reason)) => Err(reason.clone()),
-            _ => Err(Reason::SignalMissing),
-        }
-    }
-}
-
-/// One record of a side.
-#[derive(Clone, Debug)]
-pub struct RecordOfSide {
-    /// Its name, where the campaign has several records of the side.
-    pub name: Option<Arc<str>>,
-    /// What the campaign calls it, also if it is the only one.
-    pub called: Option<Arc<str>>,
-    pub which: WhichRecord,
-    pub found: NodeValues,
-    pub file: FileHash,
-    /// The section on the axis; of a whole record all of it.
-    pub extent: Extent,
-    /// As [`Opened::rows`].
-    pub rows: [(usize, usize); 2],
-}
-
-impl RecordOfSide {
-    pub fn new(
-        work: &Work<'_>,
-        unit: &Unit,
-        which: WhichRecord,
-        opened: &Opened,
-        found: Vec<(NodeId, NodeValue)>,
-    ) -> Self {
-        let campaign = work.campaign(unit);
-        Self {
-            name: campaign.record_name(which).cloned(),
-            called: campaign.record_called(which).cloned(),
-            which,
-            found: found.into(),
-            file: opened.file.clone(),
-            extent: opened.extent,
-            rows: opened.rows(),
-        }
-    }
-}
-
 /// All records of a section.
 #[derive(Debug)]
 pub struct Sides<'a> {
-    pub work: &'a Work<'a>,
+    pub section: &'a SectionWork<'a>,
     pub simulated: &'a [RecordOfSide],
     pub measured: &'a [RecordOfSide],
     /// The section that this one repeats.
     pub original: Option<&'a Original<'a>>,
-    pub known: &'a Known<'a>,
-    pub meetings: &'a Meetings,
+    pub meetings: Meetings,
 }
 
 /// The original of a repeated section, and its measured records.
 #[derive(Debug)]
 pub struct Original<'a> {
-    pub unit: &'a Unit,
-    pub known: Known<'a>,
+    pub section: SectionWork<'a>,
     pub records: Vec<RecordOfSide>,
 }
 
@@ -144,7 +52,7 @@ pub struct Two<'a> {
 }
 
 /// The values of a side that is not read.
-static NOT_READ: NodeValues = NodeValues { all: Vec::new(), places: Vec::new() };
+static NOT_READ: NodeValues = NodeValues::NONE;
 
 impl<'a> Sides<'a> {
     fn of(&self, side: Side) -> &'a [RecordOfSide] {
@@ -155,8 +63,8 @@ impl<'a> Sides<'a> {
     }
 
     fn two(&'a self, simulated: &'a NodeValues, measured: &'a NodeValues) -> Two<'a> {
-        let (known, extent) = (self.known, self.known.extent);
-        Two { sides: self, simulated, measured, known, extent, shift: 0.0 }
+        let known = &self.section.known;
+        Two { sides: self, simulated, measured, known, extent: known.extent, shift: 0.0 }
     }
 
     /// One record in the place of both sides.
@@ -186,21 +94,20 @@ impl<'a> Sides<'a> {
     /// measurement. Distances are counted from the start of each section.
     fn repeats(&'a self) -> impl Iterator<Item = Joined<'a>> {
         self.original.into_iter().flat_map(move |original| {
-            let extent = original.unit.extent;
-            let own = self.known.extent;
+            let (extent, own) = (original.section.unit.extent, self.section.known.extent);
             let shift = extent.zip(own).map_or(0.0, |((first, _), (again, _))| first - again);
             self.measured.iter().zip(&original.records).map(move |(repeat, first)| Joined {
                 record: repeat.name.clone().map(RecordName::Single),
                 two: Two { extent, shift, ..self.two(&repeat.found, &first.found) },
                 first: self.alone(repeat),
-                second: Two { known: &original.known, ..self.alone(first) },
+                second: Two { known: &original.section.known, ..self.alone(first) },
             })
         })
     }
 
     /// The records that a rule asks for, in the order of the campaign.
     fn chosen(&self, chosen: Chosen) -> Vec<&'a RecordOfSide> {
-        let records = &self.work.plan.records;
+        let records = &self.section.work.plan.records;
         let members = chosen.record.map_or(&[][..], |index| &records[index].members);
         let named = |record: &&RecordOfSide| {
             members.iter().any(|member| record.called.as_deref() == Some(member.value.as_str()))
@@ -241,23 +148,22 @@ impl<'a> Sides<'a> {
         }
     }
 
-    /// The rows of one position.
+    /// The rows of one position of a quantity.
     ///
     /// # Errors
     /// Why it has none.
-    pub fn rows(&'a self, position: usize, nodes: &SignalNodes) -> Result<Vec<Row>, Reason> {
-        let Operation::Compare(evaluation) = &self.work.graph.nodes[nodes.compare].operation else {
-            return Err(Reason::Internal);
-        };
+    pub fn rows(&'a self, quantity: usize, position: usize) -> Result<Vec<Row>, Reason> {
+        let nodes = &self.section.work.graph.quantities[quantity].signals[position];
+        let quantity = &self.section.work.plan.quantities[quantity];
         let of_pairs = |pairing: Pairing, of_two: &OfTwo<'_>| -> Result<Vec<Row>, Reason> {
             let one = |Joined { record, two, .. }: Joined<'_>| {
                 Ok(Row::single(position, 0, record, of_two(&two)?))
             };
             self.joined(pairing)?.into_iter().map(one).collect()
         };
-        match evaluation.as_ref() {
+        match quantity.evaluation.as_ref() {
             Evaluation::Metric { metric, pairing, .. } => {
-                let common = metric.on_common_points(keeps_samples(self.work, nodes));
+                let common = metric.on_common_points(quantity.keeps_samples());
                 let node = if common { nodes.filtered } else { nodes.processed };
                 of_pairs(*pairing, &|two| two.compared(*metric, common, node, nodes.over))
             }
@@ -269,7 +175,7 @@ impl<'a> Sides<'a> {
                 let mut applied = false;
                 for (which, (value, of)) in values.iter().zip(&nodes.values).enumerate() {
                     // Of several values, only those whose case applies.
-                    if values.len() > 1 && !applies(&value.expr, self.known)? {
+                    if values.len() > 1 && !applies(&value.expr, &self.section.known)? {
                         continue;
                     }
                     applied = true;
@@ -301,7 +207,7 @@ impl<'a> Sides<'a> {
             })
         };
         let compared = |row: Row, difference: &Expr, (s, m): (f64, f64)| -> Result<Row, Reason> {
-            let value = number(difference, &Known { sides: Some((s, m)), ..*self.known })?;
+            let value = number(difference, &Known { sides: Some((s, m)), ..self.section.known })?;
             Ok(Row { simulated: Some(s), measured: Some(m), value, ..row })
         };
         match records {
@@ -369,16 +275,6 @@ fn own(side: Side) -> InputSide {
     }
 }
 
-/// Whether the samples of the record are still available after the quantity's filter.
-fn keeps_samples(work: &Work<'_>, nodes: &SignalNodes) -> bool {
-    let quantity = work
-        .graph
-        .quantities
-        .iter()
-        .position(|known| known.signals.iter().any(|signal| signal.compare == nodes.compare));
-    quantity.is_none_or(|index| work.plan.quantities[index].keeps_samples())
-}
-
 /// Whether some case of an expression holds; an expression without cases always applies.
 fn applies(expr: &Expr, known: &Known<'_>) -> Result<bool, Reason> {
     let Kind::Cases(arms, None) = &expr.kind else { return Ok(true) };
@@ -393,7 +289,7 @@ fn applies(expr: &Expr, known: &Known<'_>) -> Result<bool, Reason> {
 impl Two<'_> {
     /// The value of a node for one side.
     fn value(&self, value: &ValueNodes, side: InputSide) -> Result<f64, Reason> {
-        match &self.sides.work.graph.nodes[value.node].operation {
+        match &self.sides.section.work.graph.nodes[value.node].operation {
             Operation::Value(expr) => {
                 let inputs: Vec<Result<f64, Reason>> =
                     value.inputs.iter().map(|input| self.input(input, side)).collect();
@@ -410,7 +306,7 @@ impl Two<'_> {
         let samples = found.iter().flatten().map(|(_, samples)| *samples).max().unwrap_or(0);
         let inputs: Vec<Result<f64, Reason>> =
             found.into_iter().map(|found| found.map(|(value, _)| value)).collect();
-        Ok((number(of, &Known { inputs: &inputs, ..*self.sides.known })?, samples))
+        Ok((number(of, &Known { inputs: &inputs, ..self.sides.section.known })?, samples))
     }
 
     /// A metric of both signals of a node, and the number of measured samples.
@@ -477,9 +373,10 @@ impl Two<'_> {
                     known: self.known,
                     extent: self.extent,
                     shift: self.shift,
-                    meetings: self.sides.meetings,
+                    meetings: &self.sides.meetings,
                 };
-                both.reduced(*reducer, self.sides.work.plan.sections.percentiles, signal)
+                let method = self.sides.section.work.plan.sections.percentiles;
+                both.reduced(*reducer, method, signal)
             }
         }
     }
@@ -490,7 +387,7 @@ impl Two<'_> {
 
     /// Number of samples or windows of the quantity's own signal that a value was taken from.
     fn count(&self, nodes: &SignalNodes, value: &ValueNodes, side: InputSide) -> usize {
-        let graph = self.sides.work.graph;
+        let graph = self.sides.section.work.graph;
         let own = |input: &&InputNode| graph.nodes[input.node].inputs.contains(&nodes.processed);
         let input = value.inputs.iter().find(own).or(value.inputs.first());
         match input.and_then(|input| self.record(side).get(input.node)) {

@@ -2,27 +2,21 @@
 
 use std::collections::BTreeSet;
 
-use super::shifts::Offset;
-use super::sides::NodeValues;
+use super::{NodeValues, Offset};
 use crate::graph::{Graph, NodeId, Operation};
 use crate::metrics::synchronise::{self, Estimate, Search};
-use crate::run::record::{Held, NodeValue, Work};
+use crate::run::record::{Held, NodeValue};
 use crate::run::sections::Unit;
 
 /// Number of steps of the search up to its largest shift.
 const STEPS: f64 = 100.0;
 
 /// The filtered signals that are compared: each once, without those that are resampled.
-pub fn signals(work: &Work<'_>, active: &[Vec<bool>]) -> BTreeSet<NodeId> {
-    let mut found = BTreeSet::new();
-    for (index, quantity) in work.graph.quantities.iter().enumerate() {
-        for (number, signal) in quantity.signals.iter().enumerate() {
-            if active[index][number] {
-                found.insert(signal.filtered);
-            }
-        }
-    }
-    found
+pub fn signals(graph: &Graph, active: &[Vec<bool>]) -> BTreeSet<NodeId> {
+    let signals = graph.quantities.iter().zip(active).flat_map(|(quantity, active)| {
+        quantity.signals.iter().zip(active).filter(|(_, active)| **active)
+    });
+    signals.map(|(signal, _)| signal.filtered).collect()
 }
 
 /// `None` where the shift cannot be estimated: no signal that both sides have, or none that varies.

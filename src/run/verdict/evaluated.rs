@@ -1,16 +1,18 @@
 //! A campaign with every section evaluated: what verdicts are given on.
 
 use super::judge::{self, Judged, Told};
-use crate::check::plan::Plan;
-use crate::graph::Graph;
+use crate::check::plan::{EstimateKind, Plan};
 use crate::problem::Problems;
 use crate::result::study::Reduction;
-use crate::result::{Consequence, DataItem, DomainResult, FileHash, Finding, Reason, Remark};
+use crate::result::{
+    Consequence, DomainResult, FileHash, Finding, Reason, Remark, VehicleValue,
+};
 use crate::run::data_rules::{copies, nothing_usable, stop_on_fault, take_over};
 use crate::run::describe::domain;
-use crate::run::limit::keep;
+use crate::run::estimate::{Group, Rows, used};
 use crate::run::limit::pool::{self, Pool};
-use crate::run::sections::{Basis, Facts, Unit};
+use crate::run::limit::{Judging, applying, keep};
+use crate::run::sections::{Basis, Facts, Known, Unit, Vehicle};
 use crate::run::values::{Offset, SectionValues};
 
 /// The values of sections by their numbers, `None` where they are missing.
@@ -123,17 +125,11 @@ fn without_unused_originals(
 
 impl Evaluated {
     /// Results of quantities and verdicts over all usable sections.
-    pub fn judge(&self, plan: &Plan, graph: &Graph) -> Judged {
+    pub fn judge(&self, plan: &Plan) -> Judged {
         let barred =
             self.missing.iter().cloned().chain(domain::barred(&self.application)).collect();
-        judge::judge(
-            plan,
-            graph,
-            &self.facts,
-            &self.units,
-            &self.values,
-            &Told { findings: &self.findings, barred },
-        )
+        let told = Told { findings: &self.findings, barred };
+        judge::judge(plan, &self.facts, (&self.units, &self.values), told)
     }
 
     /// The same with other values of the sections. Those are used that are used here, as far as
@@ -164,15 +160,126 @@ impl Evaluated {
         pool::pool(plan, &self.facts, &self.units, &self.values)
     }
 
-    /// Vehicle data that the protocol reads.
-    pub fn vehicle(&self, plan: &Plan) -> Vec<DataItem> {
-        self.facts.items(plan)
-    }
-
     /// Each section with its estimated shift (SI of the axis), where it was requested.
     pub fn offsets(&self) -> impl Iterator<Item = (&str, Option<&str>, Option<&Offset>)> {
         self.units.iter().zip(&self.values).map(|(unit, values)| {
             (unit.name.as_str(), unit.zone.as_deref(), values.offset.as_ref())
         })
+    }
+}
+
+/// A value of a section against the limit of an estimate.
+#[derive(Clone, Debug)]
+pub struct SectionRatio {
+    /// Index into the plan's quantities.
+    pub quantity: usize,
+    /// Index into the limits of the quantity; `None` of a quantity without one, of which the value
+    /// itself stands here.
+    pub limit: Option<usize>,
+    pub section: String,
+    /// The largest of |value| / limit of the section's values.
+    pub ratio: f64,
+}
+
+impl Evaluated {
+    /// Names of the sections, and why one is not used.
+    pub fn sections(&self) -> impl Iterator<Item = (&str, Option<&Reason>)> {
+        self.units.iter().map(|unit| (unit.name.as_str(), unit.fault.as_ref()))
+    }
+
+    /// The same with some sections only; the others are not used.
+    #[must_use]
+    pub fn with_sections(&self, keeps: &dyn Fn(&str) -> bool) -> Self {
+        let mut some = self.clone();
+        let units = some.units.iter_mut().filter(|unit| !keeps(&unit.name));
+        units.for_each(|unit| unit.refuse(Reason::LeftOut, false));
+        some
+    }
+
+    /// The same with the values of one quantity only.
+    #[must_use]
+    pub fn with_quantity(&self, quantity: usize) -> Self {
+        let mut some = self.clone();
+        for values in &mut some.values {
+            let others = values.rows.iter_mut().enumerate().filter(|(at, _)| *at != quantity);
+            others.for_each(|(_, rows)| rows.clear());
+        }
+        some
+    }
+
+    /// Each limit's ratios of single sections: what is pooled is taken against the limit of the
+    /// pool.
+    pub fn section_ratios(&self, plan: &Plan) -> Vec<SectionRatio> {
+        let (facts, used) = (&self.facts, used(&self.units, &self.values));
+        let all = Rows::of_all(plan, facts, &used);
+        let table: Vec<_> = all.iter().map(Rows::usable).collect();
+        let mut found = Vec::new();
+        for (index, quantity) in plan.quantities.iter().enumerate() {
+            let members = &all[index].members;
+            if quantity.limits.is_empty() {
+                for member in members {
+                    let value = quantity.unit.from_si(member.row.value).abs();
+                    largest(&mut found, index, None, &member.unit.name, value);
+                }
+            }
+            let rows = Group { plan, facts, quantity: Some(quantity), members, table: &table };
+            let judging = Judging { quantity, rows, too_few: &[] };
+            for (at, limit) in quantity.limits.iter().enumerate() {
+                // An estimate in a unit of its own is no value of a section.
+                if judging.unit(limit).dimension != quantity.unit.dimension {
+                    continue;
+                }
+                let each = matches!(limit.estimate.kind, EstimateKind::Each);
+                for part in rows.parts(&limit.scope) {
+                    let inside =
+                        part.members.clone().and_then(|inside| applying(limit, facts, inside));
+                    let Ok(Some(inside)) = inside else { continue };
+                    let of_vehicle = |vehicle: &Vehicle| {
+                        judging.bound(limit, &part, &inside, &Known::vehicle(vehicle))
+                    };
+                    let shown = |value| VehicleValue::Si { value };
+                    let pooled = facts.agreed(&inside, of_vehicle, shown).ok();
+                    for member in &inside {
+                        let bound = match each {
+                            true => judging.own_bound(limit, member.unit, &[*member]).ok(),
+                            false => pooled,
+                        };
+                        let ratio =
+                            bound.and_then(|bound| ratio(member.row.value, bound, limit.at_least));
+                        if let Some(ratio) = ratio {
+                            largest(&mut found, index, Some(at), &member.unit.name, ratio);
+                        }
+                    }
+                }
+            }
+        }
+        found
+    }
+}
+
+fn ratio(value: f64, bound: f64, at_least: bool) -> Option<f64> {
+    let ratio = if at_least { bound / value } else { value.abs() / bound };
+    (ratio.is_finite() && ratio >= 0.0).then_some(ratio)
+}
+
+fn largest(
+    found: &mut Vec<SectionRatio>,
+    quantity: usize,
+    limit: Option<usize>,
+    section: &str,
+    ratio: f64,
+) {
+    // Rows of a quantity stand section by section, so its entry is among the last ones.
+    let same = |one: &&mut SectionRatio| {
+        one.quantity == quantity && one.limit == limit && one.section == section
+    };
+    match found
+        .iter_mut()
+        .rev()
+        .take_while(|one| one.quantity == quantity && one.limit == limit)
+        .find(same)
+    {
+        Some(one) => one.ratio = one.ratio.max(ratio),
+        None => found.push(SectionRatio { quantity, limit, section: section.to_string(), ratio }),
     }
 }

@@ -5,14 +5,13 @@ use std::collections::BTreeSet;
 
 use super::verdicts;
 use crate::check::plan::{Chosen, Evaluation, Pairing, Plan, Quantity, Records, Zone};
-use crate::graph::Graph;
 use crate::result::{
     Consequence, Figures, Finding, PairValue, QuantityResult, Reason, Reported, Verdict,
     VerdictResult, ZoneResult,
 };
 use crate::run::describe::{reports, spreads};
-use crate::run::estimate::{Member, Rows, count_independent};
-use crate::run::limit::{Judging, compared, fails_alone, rule_place};
+use crate::run::estimate::{Group, Member, Rows, count_independent, used};
+use crate::run::limit::{Compared, Judging, rule_place};
 use crate::run::sections::{Facts, Unit};
 use crate::run::values::SectionValues;
 
@@ -38,16 +37,14 @@ pub struct Told<'a> {
     pub barred: Vec<Reason>,
 }
 
+/// Results of quantities and verdicts from the values of sections.
 pub fn judge(
     plan: &Plan,
-    graph: &Graph,
     facts: &Facts,
-    units: &[Unit],
-    values: &[SectionValues],
-    told: &Told<'_>,
+    (units, values): (&[Unit], &[SectionValues]),
+    told: Told<'_>,
 ) -> Judged {
-    let used: Vec<(&Unit, &SectionValues)> =
-        units.iter().zip(values).filter(|(unit, _)| unit.fault.is_none()).collect();
+    let used = used(units, values);
     let mut missing: Vec<Reason> = Vec::new();
     let zones: Vec<ZoneResult> = plan.zones.iter().map(|zone| zone_result(zone, units)).collect();
     missing.extend(zones.iter().filter_map(ZoneResult::lack));
@@ -58,44 +55,27 @@ pub fn judge(
     }
     missing.extend(without_sections(units));
     missing.extend(not_plausible(plan, told.findings, missing.is_empty()));
-    missing.extend(told.barred.iter().cloned());
-    let rows = Rows::of_all(plan, facts, &used);
-    let table: Vec<_> = rows.iter().map(Rows::usable).collect();
-    let of_quantity = |(index, quantity): (usize, &Quantity)| {
-        let judging = Judging {
-            plan,
-            facts,
-            quantity,
-            members: &rows[index].members,
-            table: &table,
-            too_few: &rows[index].too_few,
-        };
-        quantity_result(graph, index, &judging, rows[index].reason.clone())
+    missing.extend(told.barred);
+    let all = Rows::of_all(plan, facts, &used);
+    let table: Vec<_> = all.iter().map(Rows::usable).collect();
+    let of_quantity = |(quantity, Rows { members, too_few, reason }): (&Quantity, &Rows<'_>)| {
+        let rows = Group { plan, facts, quantity: Some(quantity), members, table: &table };
+        quantity_result(&Judging { quantity, rows, too_few }, reason.clone())
     };
     let (quantities, fails): (Vec<QuantityResult>, Vec<Vec<Reason>>) =
-        plan.quantities.iter().enumerate().map(of_quantity).unzip();
-    let decided = verdicts::decide(
-        plan,
-        graph,
-        &verdicts::Given { barred: missing, quantities: &quantities, fails },
-    );
-    let named = verdicts::named(plan, &decided);
+        plan.quantities.iter().zip(&all).map(of_quantity).unzip();
+    let given = verdicts::Given { barred: missing, quantities: &quantities, fails };
+    let decided = verdicts::decide(plan, &given);
+    let verdicts = verdicts::named(plan, &decided);
     let (rule, overall) = (plan.overall(), decided.into_iter().next().unwrap_or_default());
     let verdict = overall.outcome.overall();
-    let own = rule.has_words().then(|| match verdict {
+    let own_word = rule.has_words().then(|| match verdict {
         Verdict::NotAssessable => verdict.in_words().to_string(),
         _ => overall.outcome.word(&rule.words).to_string(),
     });
     let reported = reports::of_sections(plan, facts, used.iter().map(|(unit, _)| *unit));
-    Judged {
-        verdict,
-        own_word: own,
-        reasons: overall.reasons,
-        verdicts: named,
-        quantities,
-        zones,
-        reported,
-    }
+    let reasons = overall.reasons;
+    Judged { verdict, own_word, reasons, verdicts, quantities, zones, reported }
 }
 
 /// One reason for each of several campaigns of which no section is used: the verdict names it, but
@@ -171,18 +151,12 @@ fn zone_result(zone: &Zone, units: &[Unit]) -> ZoneResult {
     }
 }
 
-/// The result, and a sentence for each limit that is not met.
-fn quantity_result(
-    graph: &Graph,
-    index: usize,
-    judging: &Judging<'_>,
-    reason: Option<Reason>,
-) -> (QuantityResult, Vec<Reason>) {
-    let Judging { plan, quantity, members, .. } = *judging;
-    let (statistics, fails): (Vec<_>, Vec<_>) = compared(graph, &graph.quantities[index], judging)
-        .into_iter()
-        .map(|compared| (compared.result, compared.fails))
-        .unzip();
+/// The result, and a reason for each limit that is not met.
+fn quantity_result(judging: &Judging<'_>, reason: Option<Reason>) -> (QuantityResult, Vec<Reason>) {
+    let (quantity, Group { plan, members, .. }) = (judging.quantity, judging.rows);
+    let compared = judging.compared().into_iter();
+    let (statistics, fails): (Vec<_>, Vec<_>) =
+        compared.map(|Compared { result, fails }| (result, fails)).unzip();
     let undefined =
         statistics.iter().find(|statistic| statistic.holds.is_none()).map(|statistic| {
             Reason::OfEstimate {
@@ -192,9 +166,8 @@ fn quantity_result(
             }
         });
     let met = statistics.iter().all(|statistic| statistic.holds == Some(true));
-    let alone = || fails_alone(graph, &graph.quantities[index], judging);
-    let reason = reason.or(undefined).or_else(|| if met { alone() } else { None });
-    let holds = if reason.is_some() { None } else { Some(met) };
+    let reason = reason.or(undefined).or_else(|| if met { judging.fails_alone() } else { None });
+    let holds = reason.is_none().then_some(met);
     let show = |value: f64| quantity.unit.from_si(value);
     let value = |member: &Member<'_>| PairValue {
         campaign: member.unit.campaign_name.clone(),
@@ -252,7 +225,7 @@ fn quantity_result(
             _ => None,
         },
         statistics,
-        reported: reports::of_quantity(graph, &graph.quantities[index].reports, judging),
+        reported: reports::of_quantity(judging),
         n: count_independent(plan, members),
         values,
         holds,

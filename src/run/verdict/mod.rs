@@ -5,13 +5,11 @@
 //! | `verdicts` | verdicts from limits, from other verdicts, or left to a person |
 //! | `judge` | results of quantities, and all verdicts |
 //! | `evaluated` | a campaign with every section evaluated: what is judged |
-//! | `section_ratios` | single sections against limits |
 //! | `replay` | a verdict again from the values of a result |
 
 mod evaluated;
 mod judge;
 pub mod replay;
-mod section_ratios;
 mod verdicts;
 
 pub use evaluated::{Evaluated, all_values};

@@ -35,7 +35,7 @@ const ROUNDING: f64 = 1e-9;
 ///
 /// # Errors
 /// The result does not agree with the protocol, in words.
-pub fn replay(plan: &Plan, graph: &Graph, results: &Certification) -> Result<Replayed, String> {
+pub fn replay(plan: &Plan, results: &Certification) -> Result<Replayed, String> {
     let facts = facts(plan, results)?;
     let mut units = units(plan, results)?;
     let mut values = vec![SectionValues::default(); units.len()];
@@ -89,7 +89,7 @@ pub fn replay(plan: &Plan, graph: &Graph, results: &Certification) -> Result<Rep
         domain::compared(plan, &facts, &units, &domain::recorded(plan, &results.application)?);
     let told = Told { findings: &results.findings, barred: domain::barred(&application) };
     Ok(Replayed {
-        judged: judge(plan, graph, &facts, &units, &values, &told),
+        judged: judge(plan, &facts, (&units, &values), told),
         application,
         contradictions,
     })

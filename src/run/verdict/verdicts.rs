@@ -1,7 +1,8 @@
 //! Verdicts: from limits of quantities, from other verdicts, or left to a person.
 
+use std::collections::BTreeMap;
+
 use crate::check::plan::{Decision, Over, Plan, Rule};
-use crate::graph::{Graph, Operation};
 use crate::result::{
     GivenVerdict, Outcome, QuantityResult, Reason, StatisticName, Subject, VerdictResult,
 };
@@ -39,25 +40,31 @@ impl Decided {
     }
 }
 
-/// One result for each verdict of the plan. They run in the order of their nodes, so that each
-/// comes after those it uses.
-pub fn decide(plan: &Plan, graph: &Graph, given: &Given<'_>) -> Vec<Decided> {
-    let mut order: Vec<usize> = (0..graph.verdicts.len()).collect();
-    order.sort_by_key(|&at| graph.verdicts[at]);
-    let mut decided = vec![Decided::default(); plan.verdicts.len()];
-    for at in order {
-        if let Operation::Verdict(decision) = &graph.nodes[graph.verdicts[at]].operation {
-            decided[at] = match decision.as_ref() {
-                Decision::Limits { rule, quantities } => by_limits(plan, given, *rule, quantities),
-                Decision::Verdicts(over) => by_verdicts(plan, over, &decided),
-                Decision::Person(person) => Decided {
-                    outcome: Outcome::Open,
-                    reasons: vec![Reason::ToBeJudged { person: person.clone() }],
-                },
-            };
-        }
+/// One result for each verdict of the plan.
+pub fn decide(plan: &Plan, given: &Given<'_>) -> Vec<Decided> {
+    let mut decided = BTreeMap::new();
+    (0..plan.verdicts.len()).for_each(|at| decide_one(plan, given, at, &mut decided));
+    decided.into_values().collect()
+}
+
+/// A verdict, after those that it uses. The checker has excluded verdicts that depend on
+/// themselves.
+fn decide_one(plan: &Plan, given: &Given<'_>, at: usize, decided: &mut BTreeMap<usize, Decided>) {
+    if decided.contains_key(&at) {
+        return;
     }
-    decided
+    let found = match &plan.verdicts[at].decision {
+        Decision::Limits { rule, quantities } => by_limits(plan, given, *rule, quantities),
+        Decision::Verdicts(over) => {
+            over.verdicts().into_iter().for_each(|of| decide_one(plan, given, of, decided));
+            by_verdicts(plan, over, decided)
+        }
+        Decision::Person(person) => Decided {
+            outcome: Outcome::Open,
+            reasons: vec![Reason::ToBeJudged { person: person.clone() }],
+        },
+    };
+    decided.insert(at, found);
 }
 
 /// The results of the verdicts with a name.
@@ -135,12 +142,13 @@ fn without_criterion(plan: &Plan, about: &[usize]) -> Reason {
 }
 
 /// A verdict that uses others can be given when all of them are given.
-fn by_verdicts(plan: &Plan, over: &Over, decided: &[Decided]) -> Decided {
+fn by_verdicts(plan: &Plan, over: &Over, decided: &BTreeMap<usize, Decided>) -> Decided {
     let title = |at: usize| plan.verdicts[at].title.as_str();
-    let undecided = over.verdicts().into_iter().filter(|&at| decided[at].outcome.holds().is_none());
+    let undecided =
+        over.verdicts().into_iter().filter(|&at| decided[&at].outcome.holds().is_none());
     let missing: Vec<Reason> = undecided
         .flat_map(|at| {
-            let reasons = decided[at].reasons.iter().cloned();
+            let reasons = decided[&at].reasons.iter().cloned();
             reasons.map(move |reason| reason.about(Subject::Verdict, title(at)))
         })
         .collect();
@@ -157,7 +165,7 @@ fn by_verdicts(plan: &Plan, over: &Over, decided: &[Decided]) -> Decided {
     let reason = |part: &Over| {
         let given = |at: usize| GivenVerdict {
             verdict: title(at).to_owned(),
-            word: decided[at].outcome.word(&plan.verdicts[at].words).to_owned(),
+            word: decided[&at].outcome.word(&plan.verdicts[at].words).to_owned(),
         };
         Reason::VerdictsRequired {
             verdicts: part.verdicts().into_iter().map(given).collect(),
@@ -171,8 +179,8 @@ fn by_verdicts(plan: &Plan, over: &Over, decided: &[Decided]) -> Decided {
 }
 
 /// Whether the condition holds, for verdicts that are all given.
-fn holds(over: &Over, decided: &[Decided]) -> bool {
-    let is = |at: &usize| decided[*at].outcome == Outcome::Holds;
+fn holds(over: &Over, decided: &BTreeMap<usize, Decided>) -> bool {
+    let is = |at: &usize| decided[at].outcome == Outcome::Holds;
     match over {
         Over::Holds(at) => is(at),
         Over::Same(one, other) => is(one) == is(other),
