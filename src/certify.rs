@@ -3,7 +3,6 @@
 mod about;
 mod again;
 mod opened;
-mod pool;
 
 use indexmap::IndexMap;
 

@@ -59,14 +59,8 @@ pub fn certification(found: &Certification, reports: Reports) -> Result<Files, P
 pub fn study(found: &Study, reports: Reports) -> Result<Files, Problems> {
     let mut files = in_folder(tables::study(found).map_err(|error| error.to_string()))?;
     let (data, figures) = (report::study::document(found), report::study::figures(found));
-    let numbers = result::text(found);
-    files.extend(document(
-        ("study.json", "Every number of this study"),
-        numbers,
-        &data,
-        &figures,
-        reports,
-    )?);
+    let name = ("study.json", "Every number of this study");
+    files.extend(document(name, result::text(found), &data, &figures, reports)?);
     Ok(files)
 }
 
@@ -74,17 +68,11 @@ pub fn study(found: &Study, reports: Reports) -> Result<Files, Problems> {
 /// As [`certification`].
 pub fn comparison(found: &Comparison, reports: Reports) -> Result<Files, Problems> {
     let mut files = in_folder(tables::comparison(found).map_err(|error| error.to_string()))?;
-    let numbers = result::text(found);
-    if !reports.pdf && !reports.html {
-        files.push((COMPARISON.0.into(), numbers.into_bytes()));
-        return Ok(files);
-    }
     let (data, figures) = (report::comparison::document(found), report::comparison::figures(found));
-    files.extend(document(COMPARISON, numbers, &data, &figures, reports)?);
+    let name = ("comparison.json", "Every number of this comparison");
+    files.extend(document(name, result::text(found), &data, &figures, reports)?);
     Ok(files)
 }
-
-const COMPARISON: (&str, &str) = ("comparison.json", "Every number of this comparison");
 
 /// # Errors
 /// As [`certification`].
@@ -92,13 +80,8 @@ pub fn diagnosis(outcome: &Outcome, reports: Reports) -> Result<Files, Problems>
     let found = &outcome.diagnosis;
     let (data, figures) =
         (report::diagnosis::document(found, &outcome.before), report::diagnosis::figures(found));
-    document(
-        ("diagnosis.json", "Every number of this diagnosis"),
-        result::text(found),
-        &data,
-        &figures,
-        reports,
-    )
+    let name = ("diagnosis.json", "Every number of this diagnosis");
+    document(name, result::text(found), &data, &figures, reports)
 }
 
 /// A document as report.pdf with its numbers attached, as report.html, and the numbers as `name`.

@@ -1,18 +1,18 @@
-//! The campaign as a report prints it. Everything but the records is known before any record is
-//! read.
+//! The campaign as a report prints it, and what the campaigns of a pool have in common. Everything but
+//! the records is known before any record is read.
 
 use serde::{Deserialize, Serialize};
 
-use super::pool;
 use crate::check::plan::Plan;
-use crate::data::campaign::Fact;
+use crate::data::Campaigns;
+use crate::data::campaign::{Fact, ReadFile};
 use crate::data::identification::Stated;
 use crate::data::origin::{ImportedRecord, Origin};
-use crate::data::{Campaigns, qualified};
 use crate::result::{
     CampaignInfo, CampaignMember, DataItem, FileHash, FittedTo, Identification, ImportedOne,
     ImportedSide, OriginInfo, ReportItem,
 };
+use crate::run::file_hash;
 use crate::yaml::{Node, Value};
 
 /// The campaigns of a run without their records, and the vehicle data.
@@ -45,12 +45,7 @@ impl About {
         let campaigns = campaigns.into();
         let mut members = Vec::new();
         for (number, campaign) in campaigns.iter().enumerate() {
-            let file = |file: &crate::data::campaign::ReadFile| FileHash {
-                path: qualified(campaigns.name_of(number), &file.path),
-                sha256: file.sha256.clone(),
-                bytes: file.bytes,
-                record: None,
-            };
+            let file = |file: &ReadFile| file_hash(file, campaigns.name_of(number), None);
             members.push(Member {
                 short_name: campaign.short_name.value.clone(),
                 name: campaign.name.clone(),
@@ -106,12 +101,12 @@ impl About {
             member.facts.iter().map(|fact| DataItem { of: short_name(), ..fact.clone() }).collect()
         };
         CampaignInfo {
-            name: pool::name(&members),
-            origin: pool::origin(&members),
+            name: pool_name(&members),
+            origin: pool_origin(&members),
             files,
             vehicle: self.vehicle.clone(),
-            facts: pool::facts(self.members.iter().map(of)),
-            report: Identification(pool::report(&members)),
+            facts: pool_facts(self.members.iter().map(of)),
+            report: Identification(pool_report(&members)),
             members,
         }
     }
@@ -209,9 +204,7 @@ fn fact_item(fact: &Fact) -> DataItem {
         name,
         value: fact.text.clone(),
         unit: fact.unit.clone().filter(|unit| unit != "-"),
-        used: false,
-        unit_assumed: false,
-        of: None,
+        ..DataItem::default()
     }
 }
 
@@ -244,40 +237,23 @@ fn vehicle_items(
 }
 
 fn flatten(prefix: &str, node: &Node, items: &mut Vec<DataItem>) {
-    match &node.value {
+    let (value, unit) = match &node.value {
         Value::Map(entries) => {
             for (key, value) in entries {
-                let name = if prefix.is_empty() {
-                    key.text.clone()
-                } else {
-                    format!("{prefix}.{}", key.text)
+                let name = match prefix {
+                    "" => key.text.clone(),
+                    prefix => format!("{prefix}.{}", key.text),
                 };
                 flatten(&name, value, items);
             }
+            return;
         }
         Value::List(list) => {
-            let value = list.iter().map(|item| item.raw.as_str()).collect::<Vec<_>>().join(", ");
-            items.push(DataItem {
-                name: prefix.to_string(),
-                value,
-                unit: None,
-                used: false,
-                unit_assumed: false,
-                of: None,
-            });
+            (list.iter().map(|item| item.raw.as_str()).collect::<Vec<_>>().join(", "), None)
         }
-        _ => {
-            let (value, unit) = number_and_unit(&node.raw);
-            items.push(DataItem {
-                name: prefix.to_string(),
-                value,
-                unit,
-                used: false,
-                unit_assumed: false,
-                of: None,
-            });
-        }
-    }
+        _ => number_and_unit(&node.raw),
+    };
+    items.push(DataItem { name: prefix.to_string(), value, unit, ..DataItem::default() });
 }
 
 /// `9.5 m` in its parts; any other text is a value as it is.
@@ -288,4 +264,103 @@ fn number_and_unit(text: &str) -> (String, Option<String>) {
         }
         _ => (text.to_string(), None),
     }
+}
+
+/// Campaigns that the name of a pool lists before it counts them.
+const NAMED: usize = 4;
+
+/// `series 1 + series 2`
+fn pool_name(members: &[CampaignMember]) -> String {
+    let names: Vec<&str> = members.iter().map(|member| member.short_name.as_str()).collect();
+    if names.len() <= NAMED {
+        return names.join(" + ");
+    }
+    format!("{} + {} more campaigns", names[..NAMED - 1].join(" + "), names.len() - NAMED + 1)
+}
+
+/// Items that identify the one report, which none of the campaigns can state for all.
+const OF_ONE_REPORT: [&[&str]; 3] = [&["number"], &["revision"], &["dates", "issue"]];
+
+/// What all state alike once, anything else with the campaign that states it.
+fn pool_report(members: &[CampaignMember]) -> Vec<ReportItem> {
+    let Some(first) = members.first() else { return Vec::new() };
+    let one = |(at, item): (usize, &ReportItem)| {
+        let values: Vec<(&str, Option<&str>)> = members
+            .iter()
+            .map(|member| {
+                (
+                    member.short_name.as_str(),
+                    member.report.get(at).and_then(|item| item.value.as_deref()),
+                )
+            })
+            .collect();
+        let alike = values.iter().all(|(_, value)| *value == item.value.as_deref());
+        let of_report = OF_ONE_REPORT.iter().any(|path| item.path == *path);
+        let stated: Vec<String> = values
+            .iter()
+            .filter_map(|(of, value)| value.map(|value| format!("{of}: {value}")))
+            .filter(|_| !of_report)
+            .collect();
+        let value = if alike {
+            item.value.clone()
+        } else {
+            Some(stated.join("; ")).filter(|text| !text.is_empty())
+        };
+        ReportItem { value, ..item.clone() }
+    };
+    first.report.iter().enumerate().map(one).collect()
+}
+
+/// The origins of all simulations as one.
+fn pool_origin(members: &[CampaignMember]) -> Option<OriginInfo> {
+    let stated: Vec<(&str, &OriginInfo)> = members
+        .iter()
+        .filter_map(|member| Some((member.short_name.as_str(), member.origin.as_ref()?)))
+        .collect();
+    if stated.is_empty() {
+        return None;
+    }
+    let join = |texts: &mut dyn Iterator<Item = String>| texts.collect::<Vec<_>>().join("; ");
+    Some(OriginInfo {
+        made_by: join(&mut stated.iter().map(|(of, origin)| format!("{of}: {}", origin.made_by))),
+        says: join(&mut stated.iter().map(|(of, origin)| format!("{of}: {}", origin.says))),
+        effects: stated
+            .iter()
+            .flat_map(|(of, origin)| {
+                origin.effects.iter().map(move |effect| format!("{effect} ({of})"))
+            })
+            .collect(),
+        fitted_to: stated
+            .iter()
+            .flat_map(|(_, origin)| &origin.fitted_to)
+            .cloned()
+            .collect::<Vec<FittedTo>>(),
+        fitted_to_these: stated.iter().map(|(_, origin)| origin.fitted_to_these).sum(),
+        imported: stated
+            .iter()
+            .flat_map(|(of, origin)| {
+                origin.imported.iter().map(move |side| ImportedSide {
+                    side: format!("{of}, {}", side.side),
+                    ..side.clone()
+                })
+            })
+            .collect(),
+    })
+}
+
+/// Facts that all campaigns state alike once, the others with their campaign.
+fn pool_facts(of_campaigns: impl Iterator<Item = Vec<DataItem>>) -> Vec<DataItem> {
+    let all: Vec<Vec<DataItem>> = of_campaigns.collect();
+    let same =
+        |a: &DataItem, b: &DataItem| (&a.name, &a.value, &a.unit) == (&b.name, &b.value, &b.unit);
+    let common =
+        |item: &DataItem| all.iter().all(|facts| facts.iter().any(|other| same(item, other)));
+    let mut found: Vec<DataItem> = Vec::new();
+    for item in all.iter().flatten() {
+        let item = if common(item) { DataItem { of: None, ..item.clone() } } else { item.clone() };
+        if !found.contains(&item) {
+            found.push(item);
+        }
+    }
+    found
 }

@@ -1,5 +1,7 @@
 //! Agreement of protocols and of metrics, section by section.
 
+use indexmap::IndexSet;
+
 use super::found::Found;
 use crate::metrics::rank::spearman;
 use crate::result::Reason;
@@ -30,18 +32,10 @@ pub fn agreement(names: &[&str], found: &[Found]) -> Vec<Agreement> {
         }
     }
     for protocol in names {
-        let mut metrics: Vec<&str> = Vec::new();
-        for metric in scores
-            .iter()
-            .filter(|score| score.protocol == *protocol)
-            .filter_map(|score| score.metric.as_deref())
-        {
-            if !metrics.contains(&metric) {
-                metrics.push(metric);
-            }
-        }
+        let own = scores.iter().filter(|score| score.protocol == *protocol);
+        let metrics: IndexSet<&str> = own.filter_map(|score| score.metric.as_deref()).collect();
         for (at, a) in metrics.iter().enumerate() {
-            for b in &metrics[at + 1..] {
+            for b in metrics.iter().skip(at + 1) {
                 let pair = pair(&of(protocol, Some(a)), &of(protocol, Some(b)));
                 let protocol = Some((*protocol).to_string());
                 all.push(Agreement {

@@ -1,8 +1,8 @@
 //! What a metric can be applied to, found by trying: one quantity, one section, doubled and
 //! exchanged records.
 
-use super::found::Found;
-use super::metric::{self, Base};
+use super::found::{Base, Found};
+use super::metric;
 use crate::check::plan::Plan;
 use crate::result::comparison::{Applicability, Tried};
 use crate::result::{PairValue, QuantityResult, Verdict};
@@ -17,44 +17,33 @@ pub fn tried(
     base: &Base<'_>,
     doubled: Option<&Evaluated>,
     exchanged: Option<&Evaluated>,
-    (protocol, campaign): (&str, &str),
 ) -> Vec<Applicability> {
-    let plan = &base.compiled.plan;
-    let judge = |evaluated: &Evaluated| evaluated.judge(plan);
-    let (doubled, exchanged) = (doubled.map(judge), exchanged.map(judge));
+    let plan = base.plan;
+    let (doubled, exchanged) =
+        (doubled.map(|trial| trial.judge(plan)), exchanged.map(|trial| trial.judge(plan)));
     let metrics = metric::all(plan);
-    let mut found: Vec<Applicability> = metrics
-        .iter()
-        .map(|(name, limited)| {
-            let own = quantities(plan, name);
-            Applicability {
-                protocol: protocol.into(),
-                quantities: own.len(),
-                scale: doubled
-                    .as_ref()
-                    .map(|judged| pairs(base.judged, judged, &own))
-                    .as_deref()
-                    .and_then(scale)
-                    .map(str::to_string),
-                symmetric: exchanged
-                    .as_ref()
-                    .map(|judged| pairs(base.judged, judged, &own))
-                    .as_deref()
-                    .and_then(symmetric),
-                campaign: Some(campaign.into()),
-                metric: if *limited { name.clone() } else { format!("{name} (no limit)") },
-                number_of_one_quantity: Tried::default(),
-                number_of_one_section: Tried::default(),
-                verdict_of_one_quantity: Tried::default(),
-                verdict_of_one_section: Tried::default(),
-            }
-        })
-        .collect();
+    let of_metric = |(name, limited): &(String, bool)| {
+        let own = quantities(plan, name);
+        let pairs = |trial| pairs(&base.judged, trial, &own);
+        Applicability {
+            protocol: base.protocol.into(),
+            quantities: own.len(),
+            scale: doubled.as_ref().and_then(|trial| scale(&pairs(trial))).map(str::to_string),
+            symmetric: exchanged.as_ref().and_then(|trial| symmetric(&pairs(trial))),
+            campaign: Some(base.campaign.into()),
+            metric: if *limited { name.clone() } else { format!("{name} (no limit)") },
+            number_of_one_quantity: Tried::default(),
+            number_of_one_section: Tried::default(),
+            verdict_of_one_quantity: Tried::default(),
+            verdict_of_one_section: Tried::default(),
+        }
+    };
+    let mut found: Vec<Applicability> = metrics.iter().map(of_metric).collect();
     for at in 0..plan.quantities.len() {
         if base.judged.quantities[at].values.is_empty() {
             continue;
         }
-        let judged = judge(&base.evaluated.with_quantity(at));
+        let judged = base.evaluated.with_quantity(at).judge(plan);
         let numbers = numbers(plan, &judged, at);
         for (one, metric) in found.iter_mut().zip(&metrics) {
             if quantities(plan, &metric.0).contains(&at) {
@@ -63,14 +52,8 @@ pub fn tried(
             }
         }
     }
-    let used: Vec<&str> = base
-        .evaluated
-        .sections()
-        .filter(|(_, fault)| fault.is_none())
-        .map(|(name, _)| name)
-        .collect();
-    for section in used {
-        let judged = judge(&base.evaluated.with_sections(&|name| name == section));
+    for section in base.evaluated.used() {
+        let judged = base.evaluated.with_sections(&|name| name == section).judge(plan);
         let numbers: Vec<(String, bool)> =
             (0..plan.quantities.len()).flat_map(|at| numbers(plan, &judged, at)).collect();
         for (one, metric) in found.iter_mut().zip(&metrics) {

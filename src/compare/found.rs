@@ -1,8 +1,10 @@
 //! What the protocols made of a campaign.
 
+use super::metric::Number;
+use crate::check::plan::Plan;
 use crate::result::comparison::{Applicability, Cell, Ratio, Score};
 use crate::result::{FileHash, Reason};
-use crate::run::Counts;
+use crate::run::{Counts, Evaluated, Judged};
 
 /// What all protocols made of a campaign.
 #[derive(Debug)]
@@ -38,7 +40,8 @@ pub struct Moved {
     pub reason: Option<Reason>,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+/// What a metric did at one size of one disturbance.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct OfMetric {
     pub metric: String,
     pub limited: bool,
@@ -46,4 +49,14 @@ pub struct OfMetric {
     pub squares: f64,
     pub count: usize,
     pub largest: Option<f64>,
+}
+
+/// A protocol on the records of a campaign as they are.
+pub struct Base<'a> {
+    pub campaign: &'a str,
+    pub protocol: &'a str,
+    pub plan: &'a Plan,
+    pub evaluated: &'a Evaluated,
+    pub judged: Judged,
+    pub numbers: Vec<Number>,
 }

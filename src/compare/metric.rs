@@ -1,9 +1,10 @@
 //! The metrics of a protocol: limits about the same kind of number.
 
-use crate::certify::Compiled;
+use indexmap::IndexSet;
+
 use crate::check::plan::{EstimateKind, Evaluation, Limit, Plan, Quantity, Records};
 use crate::result::{QuantityResult, StatisticName, StatisticResult};
-use crate::run::{Evaluated, Judged};
+use crate::run::Judged;
 
 /// The metric of a limit, or of a quantity without one.
 pub fn name(quantity: &Quantity, limit: Option<&Limit>) -> String {
@@ -44,17 +45,12 @@ pub fn of(plan: &Plan, quantity: usize, statistic: &StatisticResult) -> String {
 
 /// The metrics of a protocol in the order of its quantities, and whether they have limits.
 pub fn all(plan: &Plan) -> Vec<(String, bool)> {
-    let mut found: Vec<(String, bool)> = Vec::new();
+    let mut found = IndexSet::new();
     for quantity in &plan.quantities {
-        let limits = quantity.limits.iter().map(|limit| (name(quantity, Some(limit)), true));
-        let own = quantity.limits.is_empty().then(|| (name(quantity, None), false));
-        for metric in limits.chain(own) {
-            if !found.contains(&metric) {
-                found.push(metric);
-            }
-        }
+        found.extend(quantity.limits.iter().map(|limit| (name(quantity, Some(limit)), true)));
+        found.extend(quantity.limits.is_empty().then(|| (name(quantity, None), false)));
     }
-    found
+    found.into_iter().collect()
 }
 
 pub fn names(plan: &Plan) -> Vec<String> {
@@ -113,12 +109,4 @@ fn signed(statistic: &StatisticResult) -> Option<f64> {
 fn mean(quantity: &QuantityResult) -> Option<f64> {
     let sum: f64 = quantity.values.iter().map(|value| value.difference).sum();
     (!quantity.values.is_empty()).then(|| sum / quantity.values.len() as f64)
-}
-
-/// A protocol on the records as they are.
-pub struct Base<'a> {
-    pub compiled: &'a Compiled,
-    pub evaluated: &'a Evaluated,
-    pub judged: &'a Judged,
-    pub numbers: &'a [Number],
 }

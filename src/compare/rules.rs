@@ -1,8 +1,7 @@
 //! What differs between two protocols, and what each difference does to the verdict by itself.
 
-use super::Subject;
 use super::found::{Found, Judgement};
-use super::subject::WithProtocols;
+use super::subject::{Subject, WithProtocols};
 use crate::check::diff::{self, Change};
 use crate::result::Reason;
 use crate::result::comparison::{Difference, Ratio};

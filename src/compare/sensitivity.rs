@@ -2,8 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use super::found::{Found, Moved, OfMetric};
-use super::metric::{self, Base, Number};
+use indexmap::IndexSet;
+
+use super::found::{Base, Found, Moved, OfMetric};
+use super::metric::{self, Number};
 use super::{KINDS, Settings};
 use crate::metrics::disturb::stream;
 use crate::metrics::random::mixed;
@@ -28,20 +30,13 @@ impl Moved {
                 .iter()
                 .position(|known| known.metric == number.metric && known.limited == number.limited);
             let at = at.unwrap_or_else(|| {
-                let metric = number.metric.clone();
-                self.metrics.push(OfMetric {
-                    metric,
-                    limited: number.limited,
-                    squares: 0.0,
-                    count: 0,
-                    largest: None,
-                });
+                let (metric, limited) = (number.metric.clone(), number.limited);
+                self.metrics.push(OfMetric { metric, limited, ..OfMetric::default() });
                 self.metrics.len() - 1
             });
             let metric = &mut self.metrics[at];
-            metric.largest = Some(
-                metric.largest.map_or(number.value.abs(), |known| known.max(number.value.abs())),
-            );
+            let size = number.value.abs();
+            metric.largest = Some(metric.largest.map_or(size, |known| known.max(size)));
             if let Some(before) = before {
                 metric.squares += (number.value - before.value).powi(2);
                 metric.count += 1;
@@ -50,8 +45,8 @@ impl Moved {
     }
 
     fn judge(&mut self, base: &Base<'_>, evaluated: &Evaluated) {
-        let judged = evaluated.judge(&base.compiled.plan);
-        self.add(base.numbers, &metric::numbers(&base.compiled.plan, &judged));
+        let judged = evaluated.judge(base.plan);
+        self.add(&base.numbers, &metric::numbers(base.plan, &judged));
         self.verdicts += 1;
         self.verdicts_changed += usize::from(judged.verdict != base.judged.verdict);
     }
@@ -92,12 +87,7 @@ fn lost(base: &Evaluated, trial: &Evaluated) -> Option<Reason> {
 
 /// Some sections left out, in several draws.
 fn chosen(base: &Base<'_>, size: f64) -> Moved {
-    let used: Vec<&str> = base
-        .evaluated
-        .sections()
-        .filter(|(_, fault)| fault.is_none())
-        .map(|(name, _)| name)
-        .collect();
+    let used: Vec<&str> = base.evaluated.used().collect();
     let mut moved = Moved::default();
     if used.len() < 2 {
         moved.reason = Some(Reason::SectionAlone);
@@ -127,15 +117,11 @@ pub fn curves(names: &[&str], found: &[Found], sizes: &[f64]) -> Vec<Sensitivity
         return all;
     }
     for (at, protocol) in names.iter().enumerate() {
-        let mut metrics: Vec<(String, bool)> = Vec::new();
-        for moved in found.iter().flat_map(|found| found.moved[at].iter().flatten()) {
-            for metric in &moved.metrics {
-                let key = (metric.metric.clone(), metric.limited);
-                if !metrics.contains(&key) {
-                    metrics.push(key);
-                }
-            }
-        }
+        let moved = found.iter().flat_map(|found| found.moved[at].iter().flatten());
+        let metrics: IndexSet<(&str, bool)> = moved
+            .flat_map(|moved| &moved.metrics)
+            .map(|metric| (metric.metric.as_str(), metric.limited))
+            .collect();
         for (metric, limited) in metrics {
             for (kind, name) in KINDS.iter().map(|(_, name)| *name).chain([SECTIONS]).enumerate() {
                 let of = |size: usize| {
@@ -145,7 +131,7 @@ pub fn curves(names: &[&str], found: &[Found], sizes: &[f64]) -> Vec<Sensitivity
                 };
                 all.push(Sensitivity {
                     disturbance: name.into(),
-                    ..curve((protocol, &metric, limited), &of, found, sizes)
+                    ..curve((protocol, metric, limited), &of, found, sizes)
                 });
             }
         }

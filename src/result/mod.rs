@@ -270,7 +270,7 @@ pub struct RulePlace {
 }
 
 /// A named value of the campaign or the vehicle, as text.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DataItem {
     pub name: String,
     pub value: String,

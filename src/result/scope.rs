@@ -86,11 +86,13 @@ impl fmt::Display for Scope {
 struct ScopeInFile {
     /// In words: `all`, `zones 2, 3`, `zone 1, wheelset 2`.
     scope: String,
-    scope_data: ScopeData,
+    #[serde(with = "ScopeData")]
+    scope_data: Scope,
 }
 
 /// See [`Scope`].
 #[derive(Serialize, Deserialize, JsonSchema)]
+#[serde(remote = "Scope")]
 struct ScopeData {
     /// Only values of these zones; of all sections if empty.
     zones: Vec<String>,
@@ -104,16 +106,13 @@ struct ScopeData {
 
 impl From<Scope> for ScopeInFile {
     fn from(found: Scope) -> Self {
-        let scope = found.to_string();
-        let Scope { zones, keys, condition } = found;
-        Self { scope, scope_data: ScopeData { zones, keys, condition } }
+        Self { scope: found.to_string(), scope_data: found }
     }
 }
 
 impl From<ScopeInFile> for Scope {
-    fn from(ScopeInFile { scope_data, .. }: ScopeInFile) -> Self {
-        let ScopeData { zones, keys, condition } = scope_data;
-        Self { zones, keys, condition }
+    fn from(file: ScopeInFile) -> Self {
+        file.scope_data
     }
 }
 

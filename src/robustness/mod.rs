@@ -2,13 +2,12 @@
 //!
 //! Joins the stages as `certify` does: `run` evaluates records, `study` evaluates selections.
 
-mod asked;
 mod parameters;
 mod rule;
 mod scale;
 mod synchronisation;
 
-use crate::certify::{Compiled, campaign_info, protocol_info};
+use crate::certify::{Compiled, Opened, campaign_info, protocol_info};
 use crate::check::plan::{Decision, Plan};
 use crate::data::Campaigns;
 use crate::problem::{Problem, Problems};
@@ -18,7 +17,6 @@ use crate::run::{Evaluated, Progress, Shifts, evaluate};
 use crate::study::case::Case;
 use crate::study::{self, reduced, selections};
 
-pub use asked::Asked;
 pub use parameters::{Vary, all_choices, parameters};
 pub use synchronisation::{Synchronisation, synchronisation};
 
@@ -30,6 +28,63 @@ pub struct Settings {
     pub take: Option<usize>,
     /// Sections per zone that are kept before selections are formed.
     pub reduce: Option<usize>,
+}
+
+/// A study that is asked for, of any kind.
+#[derive(Clone, Debug)]
+pub enum Asked {
+    Sections,
+    Sync(Synchronisation),
+    /// Without any, every parameter with a choice of words is varied.
+    Parameters(Vec<Vary>),
+}
+
+impl Asked {
+    /// Whether the study can be made; the number of its steps.
+    ///
+    /// # Errors
+    /// The verdict does not rest on limits alone; `several-records`: a selection takes one value of
+    /// each section and signal.
+    pub fn ready(&self, opened: &Opened) -> Result<usize, Problems> {
+        let (compiled, campaigns) = (&opened.compiled, opened.campaigns());
+        countable(compiled)?;
+        match self {
+            Self::Sections | Self::Sync(_) => {
+                campaigns.one_of_each()?;
+                Ok(campaigns.sections())
+            }
+            Self::Parameters(_) => {
+                Ok(1 + self.vary(compiled).iter().map(|vary| vary.values.len()).sum::<usize>())
+            }
+        }
+    }
+
+    fn vary(&self, compiled: &Compiled) -> Vec<Vary> {
+        match self {
+            Self::Parameters(vary) if vary.is_empty() => all_choices(&compiled.plan),
+            Self::Parameters(vary) => vary.clone(),
+            Self::Sections | Self::Sync(_) => Vec::new(),
+        }
+    }
+
+    /// # Errors
+    /// Of the evaluation.
+    pub fn run(
+        &self,
+        opened: &Opened,
+        settings: &Settings,
+        progress: Progress<'_>,
+    ) -> Result<Study, Problems> {
+        let Opened { compiled, overrides, .. } = opened;
+        let campaigns = opened.campaigns();
+        match self {
+            Self::Sections => sections(compiled, campaigns, settings, progress),
+            Self::Sync(asked) => synchronisation(compiled, campaigns, settings, asked, progress),
+            Self::Parameters(_) => {
+                parameters(compiled, campaigns, overrides, settings, &self.vary(compiled), progress)
+            }
+        }
+    }
 }
 
 /// Study of all selections of sections.

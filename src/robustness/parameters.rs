@@ -111,13 +111,13 @@ impl<'a> Variable<'a> {
         if Scale::asked(name) {
             return Scale::find(&compiled.family.merged, name)
                 .map(Self::Scale)
-                .map_err(|problem| problems.push(*problem))
+                .map_err(|problem| problems.push(problem))
                 .ok();
         }
         if name.contains(char::is_whitespace) {
             return Rule::find(&compiled.family.merged, name)
                 .map(Self::Rule)
-                .map_err(|problem| problems.push(*problem))
+                .map_err(|problem| problems.push(problem))
                 .ok();
         }
         let parameters = &compiled.plan.parameters;

@@ -25,7 +25,7 @@ impl Rule {
     ///
     /// # Errors
     /// No such block, no such field, or several of them; the message lists the available ones.
-    pub fn find(document: &Document, address: &str) -> Result<Self, Box<Problem>> {
+    pub fn find(document: &Document, address: &str) -> Result<Self, Problem> {
         let words: Vec<&str> = address.split_whitespace().collect();
         let wrong = |says: String| Problem::error("unknown-rule", says);
         let kind = words[0];
@@ -33,7 +33,7 @@ impl Rule {
             let kinds = document.blocks.iter().map(|block| block.kind.text.as_str());
             let problem = wrong(format!("`--vary {address}`: a protocol has no block `{kind}`"))
                 .suggest(kind, kinds);
-            return Err(Box::new(problem.help("write a parameter's name, or a block, its name and a key: `quantity <name> limit std`")));
+            return Err(problem.help("write a parameter's name, or a block, its name and a key: `quantity <name> limit std`"));
         };
         let named = words.get(1).is_some_and(|name| {
             document
@@ -62,10 +62,8 @@ impl Rule {
                 .filter(|block| block.kind.text == kind)
                 .map(Block::name_text)
                 .collect();
-            return Err(Box::new(
-                wrong(format!("`--vary {address}`: the protocol has no {kind} `{name}`"))
-                    .suggest(name, names),
-            ));
+            return Err(wrong(format!("`--vary {address}`: the protocol has no {kind} `{name}`"))
+                .suggest(name, names));
         };
         let fields: Vec<(usize, String)> = block
             .fields
@@ -93,13 +91,11 @@ impl Rule {
                 let has: Vec<&str> =
                     block.fields.iter().map(|field| field.key.text.as_str()).collect();
                 let key = rest.first().copied().unwrap_or("");
-                Err(Box::new(
-                    wrong(format!(
-                        "`--vary {address}`: {block_words} has no rule `{}`",
-                        rest.join(" ")
-                    ))
-                    .suggest(key, has),
+                Err(wrong(format!(
+                    "`--vary {address}`: {block_words} has no rule `{}`",
+                    rest.join(" ")
                 ))
+                .suggest(key, has))
             }
             several => {
                 let each = several.iter().map(|(at, _)| {
@@ -109,7 +105,7 @@ impl Rule {
                     "add the first words of one of them: {}",
                     each.collect::<Vec<_>>().join(", ")
                 );
-                Err(Box::new(wrong(format!("`--vary {address}` matches several rules")).help(help)))
+                Err(wrong(format!("`--vary {address}` matches several rules")).help(help))
             }
         }
     }

@@ -24,14 +24,12 @@ impl Scale {
     ///
     /// # Errors
     /// Another address, or a statistic without a limit; the message lists those that have one.
-    pub fn find(document: &Document, address: &str) -> Result<Self, Box<Problem>> {
+    pub fn find(document: &Document, address: &str) -> Result<Self, Problem> {
         let wrong =
             |says: String| Problem::error("unknown-rule", format!("`--vary {address}`: {says}"));
         let [_, "limit", statistic] = address.split_whitespace().collect::<Vec<_>>()[..] else {
             let says = "`every` must be followed by `limit` and a statistic".to_owned();
-            return Err(Box::new(
-                wrong(says).help("write `every limit std`, with factors as its values"),
-            ));
+            return Err(wrong(says).help("write `every limit std`, with factors as its values"));
         };
         let fields = document.blocks.iter().enumerate().flat_map(|(at, block)| {
             let limits =
@@ -43,7 +41,7 @@ impl Scale {
         let (limits, others): (Vec<_>, Vec<_>) = fields.partition(|(_, of)| *of == statistic);
         if limits.is_empty() {
             let says = format!("the protocol has no limit of `{statistic}`");
-            return Err(Box::new(wrong(says).suggest(statistic, others.iter().map(|(_, of)| *of))));
+            return Err(wrong(says).suggest(statistic, others.iter().map(|(_, of)| *of)));
         }
         let limits = limits.into_iter().map(|(place, _)| place).collect();
         Ok(Self {

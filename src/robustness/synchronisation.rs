@@ -2,7 +2,6 @@
 
 use super::{Settings, joined, too_few};
 use crate::certify::Compiled;
-use crate::check::plan::Plan;
 use crate::data::Campaigns;
 use crate::problem::Problems;
 use crate::result::study::{AtOffset, Estimated, Flipped, Found, Offset, Study, SyncStudy};
@@ -64,7 +63,7 @@ pub fn synchronisation<'a>(
     let words = plan.verdict_words();
     for at in (0..found.len()).filter(|at| *at != zero) {
         found[at].changes = changes(&found[zero], &found[at], &words);
-        found[at].lost = lost(&all[zero], &all[at], plan);
+        found[at].lost = lost(&all[zero], &all[at]);
     }
     let estimates = all[zero].offsets().map(|(section, zone, offset)| Estimated {
         section: section.to_owned(),
@@ -168,9 +167,10 @@ fn changes(base: &AtOffset, at: &AtOffset, words: &VerdictWords) -> Vec<Remark> 
     changes
 }
 
-fn lost(base: &Evaluated, at: &Evaluated, plan: &Plan) -> Vec<UnusedSection> {
-    let (before, now) = (base.pool(plan).sections, at.pool(plan).sections);
-    let gone = before.into_iter().zip(now).filter(|(before, now)| before.used && !now.used);
-    gone.filter_map(|(_, now)| Some(UnusedSection { section: now.name, reason: now.reason? }))
-        .collect()
+fn lost(base: &Evaluated, at: &Evaluated) -> Vec<UnusedSection> {
+    let both = base.sections().zip(at.sections()).filter(|((_, before), _)| before.is_none());
+    both.filter_map(|(_, (section, now))| {
+        Some(UnusedSection { section: section.into(), reason: now?.clone() })
+    })
+    .collect()
 }

@@ -37,7 +37,7 @@ pub use check_data::check_data;
 pub use data_rules::consequence::consequence;
 pub use describe::traces::{Kept, Signals};
 pub use limit::{keep, pool};
-pub use record::{Counts, trial};
+pub use record::{Counts, file_hash, trial};
 pub use reduce::{Numbered, Progress, Shard};
 pub use sections::{Basis, Facts, Unit, scalar};
 pub use values::{Offset, Print, Row, SectionValues, Shifts};

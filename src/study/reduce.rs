@@ -16,7 +16,7 @@ pub fn reduced(case: &Case, most: usize) -> (Case, Reduction) {
     let strata = case.strata.iter();
     let keep: Vec<usize> =
         strata.clone().map(|stratum| most.max(stratum.take).min(stratum.members.len())).collect();
-    let groups = strata.map(|stratum| (stratum.zone.clone(), stratum.members.clone())).collect();
+    let groups = strata.map(|stratum| (stratum.zone.clone(), stratum.members.clone()));
     let name = |at: usize| case.sections[at].clone();
     let (kept, reduction) = reduction(groups, most, &keep, (&symbols, &measures), name);
     let mut smaller = case.clone();

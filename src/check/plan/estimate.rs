@@ -68,8 +68,8 @@ impl Estimate {
     pub fn statistic(&self) -> Option<(Statistic, usize)> {
         match &self.kind {
             EstimateKind::Each => Some((Statistic::Each, 0)),
-            EstimateKind::Of(of) => match (&of.expr.kind, of.taken.as_slice()) {
-                (Kind::Input(0), [Taking::Statistic(statistic, ddof)]) => Some((*statistic, *ddof)),
+            EstimateKind::Of(of) => match of.alone()? {
+                Taking::Statistic(statistic, ddof) => Some((*statistic, *ddof)),
                 _ => None,
             },
         }
@@ -78,10 +78,8 @@ impl Estimate {
     /// The weighted statistic that it is and nothing more: statistic, n - `ddof`, weight.
     pub fn weighted(&self) -> Option<(Statistic, usize, &Expr)> {
         let EstimateKind::Of(of) = &self.kind else { return None };
-        match (&of.expr.kind, of.taken.as_slice()) {
-            (Kind::Input(0), [Taking::Weighted { statistic, ddof, by }]) => {
-                Some((*statistic, *ddof, by))
-            }
+        match of.alone()? {
+            Taking::Weighted { statistic, ddof, by } => Some((*statistic, *ddof, by)),
             _ => None,
         }
     }
@@ -96,6 +94,14 @@ pub struct OfGroup {
 }
 
 impl OfGroup {
+    /// The number taken from the rows, if it is that and nothing more.
+    pub fn alone(&self) -> Option<&Taking> {
+        match (&self.expr.kind, self.taken.as_slice()) {
+            (Kind::Input(0), [taking]) => Some(taking),
+            _ => None,
+        }
+    }
+
     /// Indices of the other quantities whose rows it needs.
     pub fn others(&self) -> Vec<usize> {
         fn of(taking: &Taking) -> Vec<usize> {

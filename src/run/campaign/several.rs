@@ -34,19 +34,10 @@ pub struct Several {
 
 /// The rules of a protocol that make numbers: what is asked of data has been asked of the records
 /// as they were.
-struct Bare {
-    plan: Plan,
-    graph: Graph,
-}
-
-impl Bare {
-    fn of(plan: &Plan) -> Self {
-        let mut plan = plan.clone();
-        plan.plausibility.clear();
-        plan.checks.clear();
-        let graph = graph::from_plan(&plan);
-        Self { plan, graph }
-    }
+fn bare(plan: &Plan) -> (Plan, Graph) {
+    let plan = Plan { plausibility: Vec::new(), checks: Vec::new(), ..plan.clone() };
+    let graph = graph::from_plan(&plan);
+    (plan, graph)
 }
 
 /// Protocols that are evaluated; `None` where the campaign does not meet the needs of one.
@@ -66,18 +57,15 @@ pub fn several(
         .par_iter()
         .map(|rules| Prepared::new(rules.plan, rules.graph, campaign.into()))
         .collect();
-    let is_tried = |rules: &Rules<'_>| rules.tried && !trials.is_empty();
-    let bare: Vec<Option<Bare>> = rules
-        .iter()
-        .zip(&prepared)
-        .map(|(rules, prepared)| {
-            (is_tried(rules) && prepared.is_ok()).then(|| Bare::of(rules.plan))
-        })
-        .collect();
+    let is_tried = |(rules, prepared): (&Rules<'_>, &Result<Prepared<'_>, Problems>)| {
+        rules.tried && !trials.is_empty() && prepared.is_ok()
+    };
+    let bare: Vec<Option<(Plan, Graph)>> =
+        rules.iter().zip(&prepared).map(|of| is_tried(of).then(|| bare(of.0.plan))).collect();
     let tried: Vec<Option<Prepared<'_>>> = bare
         .par_iter()
         .map(|bare| {
-            let Bare { plan, graph } = bare.as_ref()?;
+            let (plan, graph) = bare.as_ref()?;
             Prepared::new(plan, graph, campaign.into()).ok()
         })
         .collect();

@@ -1,17 +1,13 @@
 //! Exchanged channels: a measured channel that agrees with another simulated channel better than
 //! with its own.
 
-use std::ops::Range;
-use std::sync::Arc;
-
 use super::consequence::consequence;
 use crate::check::plan::{Exchanged, Plausibility};
 use crate::graph::NodeId;
-use crate::metrics::resample::Located;
 use crate::metrics::statistics::correlation;
 use crate::result::{Finding, FindingData, Occurrence, Reason};
-use crate::run::record::{Along, Samples, SectionWork};
-use crate::run::values::{RecordOfSide, Sides};
+use crate::run::record::{Samples, SectionWork};
+use crate::run::values::{Meetings, RecordOfSide, Sides};
 
 /// Channels of one rule in a section: name, and the signal.
 pub type Channels<'a> = Vec<(&'a str, NodeId)>;
@@ -39,12 +35,10 @@ fn in_record(
     measured: &RecordOfSide,
 ) -> Vec<Finding> {
     let mut findings = Vec::new();
-    let mut covered = Covered::default();
+    let meetings = Meetings::default();
     for (at, (name, node)) in channels.iter().enumerate() {
         let Ok(own) = measured.found.samples(*node) else { continue };
-        let mut with = |node: NodeId| {
-            simulated.found.samples(node).ok().and_then(|other| covered.agreement(own, other))
-        };
+        let with = |node: NodeId| agreement(&meetings, own, simulated.found.samples(node).ok()?);
         let Some(with_own) = with(*node) else { continue };
         // No correlation is above 1: most channels need no comparison with the others.
         if with_own + test.more >= 1.0 {
@@ -84,62 +78,10 @@ fn in_record(
     findings
 }
 
-/// The points of the measurement that the simulation covers, the same for all signals of two
-/// records.
-#[derive(Default)]
-struct Covered(Vec<Both>);
-
-struct Both {
-    of: (Arc<Along>, Arc<Along>),
-    measured: Range<usize>,
-    /// `None` where the simulation has no value.
-    simulated: Option<Onto>,
-}
-
-enum Onto {
-    /// Its samples lie there.
-    Samples,
-    Interpolated(Located),
-}
-
-impl Covered {
-    /// Correlation at these points.
-    fn agreement(&mut self, measured: &Samples, simulated: &Samples) -> Option<f64> {
-        let same = |both: &&Both| {
-            Arc::ptr_eq(&both.of.0, &measured.along) && Arc::ptr_eq(&both.of.1, &simulated.along)
-        };
-        let known = match self.0.iter().position(|both| same(&both)) {
-            Some(known) => known,
-            None => {
-                self.0.push(Both::of(&measured.along, &simulated.along));
-                self.0.len() - 1
-            }
-        };
-        let both = &self.0[known];
-        let values = measured.values.get(both.measured.clone())?;
-        match both.simulated.as_ref()? {
-            Onto::Samples => correlation(values, &simulated.values),
-            Onto::Interpolated(located) => correlation(values, &located.values(&simulated.values)),
-        }
-    }
-}
-
-impl Both {
-    fn of(measured: &Arc<Along>, simulated: &Arc<Along>) -> Self {
-        let (axis, along) = (&measured.axis, &simulated.axis);
-        let of = (Arc::clone(measured), Arc::clone(simulated));
-        if axis == along {
-            return Self { of, measured: 0..axis.len(), simulated: Some(Onto::Samples) };
-        }
-        let (Some(first), Some(last)) = (along.first(), along.last()) else {
-            return Self { of, measured: 0..0, simulated: None };
-        };
-        let inside = axis.partition_point(|at| at < first)..axis.partition_point(|at| at <= last);
-        let points = axis.get(inside.clone()).unwrap_or_default();
-        Self {
-            of,
-            measured: inside.clone(),
-            simulated: Located::on(along, points).ok().map(Onto::Interpolated),
-        }
-    }
+/// Correlation at the points of the measurement that the simulation covers.
+fn agreement(meetings: &Meetings, measured: &Samples, simulated: &Samples) -> Option<f64> {
+    let axis = &simulated.along.axis;
+    let covered = (*axis.first()?, *axis.last()?);
+    let meeting = meetings.of(simulated, measured, Some(covered), 0.0).ok()?;
+    correlation(meeting.measured(measured), &meeting.simulated(simulated))
 }

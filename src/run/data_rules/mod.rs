@@ -7,18 +7,15 @@
 //! | `plausibility`, `exchanged` | plausibility rules in one section |
 //! | `checks` | checks of a section on its records |
 //! | `copies` | signals that are copies, in all sections |
-//! | `consequence` | sections that are not used, for what was found |
-//! | `faults` | faults that end a run |
+//! | `consequence` | sections that are not used, for what was found; faults that end a run |
 
 mod causes;
 mod checks;
 pub mod consequence;
 pub mod copies;
 mod exchanged;
-mod faults;
 pub mod plausibility;
 
 pub use checks::{record_checks, track_checks};
-pub use consequence::take_over;
-pub use faults::{nothing_usable, stop_on_fault};
+pub use consequence::{nothing_usable, stop_on_fault, take_over};
 pub use plausibility::Questions;

@@ -1,6 +1,8 @@
 //! Plausibility rules that cannot be asked of a section, because a cell of the table of sections is
 //! empty: sound data and data that were never looked at must not look alike.
 
+use indexmap::{IndexMap, IndexSet};
+
 use crate::check::evaluate::flag;
 use crate::check::plan::{Plan, Plausibility, Test};
 use crate::result::{Finding, FindingData, Occurrence, Reason, Sections};
@@ -11,28 +13,20 @@ const NOT_ASKED: &str = "plausibility-not-checked";
 
 /// One finding for each column that is empty in used sections, with the rules that need it there.
 pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
-    let mut found: Vec<(usize, Vec<&str>, Vec<&str>)> = Vec::new();
+    let mut found: IndexMap<usize, [IndexSet<&str>; 2]> = IndexMap::new();
     for unit in units.iter().filter(|unit| unit.fault.is_none()) {
         for rule in &plan.plausibility {
             let Some(column) = missing(rule, facts, unit) else { continue };
-            let at = found.iter().position(|(known, ..)| *known == column).unwrap_or_else(|| {
-                found.push((column, Vec::new(), Vec::new()));
-                found.len() - 1
-            });
-            let (_, names, rules) = &mut found[at];
-            if names.last() != Some(&unit.name.as_str()) {
-                names.push(&unit.name);
-            }
-            if !rules.contains(&rule.title.as_str()) {
-                rules.push(&rule.title);
-            }
+            let [names, rules] = found.entry(column).or_default();
+            names.insert(&unit.name);
+            rules.insert(&rule.title);
         }
     }
-    let finding = |(column, names, rules): (usize, Vec<&str>, Vec<&str>)| {
+    let finding = |(column, [names, rules]): (usize, [IndexSet<&str>; 2])| {
         let key = &plan.columns[column].key;
         let data = FindingData::RulesWithoutColumn {
             column: key.clone(),
-            sections: Sections::of(&names, units.len()),
+            sections: Sections::of(&names.into_iter().collect::<Vec<_>>(), units.len()),
             rules: rules.into_iter().map(Into::into).collect(),
         };
         Finding::note(NOT_ASKED, Occurrence { channel: Some(key.clone()), ..data.into() })

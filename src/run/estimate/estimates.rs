@@ -183,11 +183,7 @@ impl Group<'_> {
         values: &[f64],
     ) -> Result<f64, Reason> {
         let one = |(name, rows): (String, Vec<usize>)| {
-            let members: Vec<Member<'_>> = rows.iter().map(|&row| self.members[row]).collect();
-            let values: Vec<f64> = rows.iter().map(|&row| values[row]).collect();
-            Group { members: &members, ..*self }
-                .over(of, &values)
-                .map_err(|reason| reason.about(Subject::Group, name))
+            self.over_rows(of, &rows, values).map_err(|reason| reason.about(Subject::Group, name))
         };
         let numbers =
             self.groups(keys).into_iter().map(one).collect::<Result<Vec<f64>, Reason>>()?;
@@ -213,8 +209,12 @@ impl Group<'_> {
         some_scatter(values)?;
         let units = self.units();
         let probability = if upper { confidence } else { 1.0 - confidence };
-        if let Some((Statistic::Named(entry), _, by)) = of.weighted().filter(|_| !bootstrap)
-            && entry.name == "mean"
+        let named = |statistic: Statistic, name: &str| match statistic {
+            Statistic::Named(entry) => !bootstrap && entry.name == name,
+            _ => false,
+        };
+        if let Some((statistic, _, by)) = of.weighted()
+            && named(statistic, "mean")
         {
             let weights = self.weights(by, self.units_of_rows())?;
             let rows: Vec<(f64, f64)> = values.iter().copied().zip(weights).collect();
@@ -222,42 +222,37 @@ impl Group<'_> {
                 .and_then(|sites| cluster::weighted_mean(&sites)?.bound(probability));
             return found.map_err(Reason::method);
         }
-        let found = match of.statistic() {
-            Some((Statistic::Named(entry), _)) if !bootstrap && entry.name == "mean" => {
-                cluster::by_site(values, &units)
-                    .and_then(|sites| Mean::of(&sites)?.bound(probability))
+        let sites = || cluster::by_site(values, &units);
+        let found = match (of.statistic(), of_group.alone()) {
+            (Some((statistic, _)), _) if named(statistic, "mean") => {
+                sites().and_then(|sites| Mean::of(&sites)?.bound(probability))
             }
-            Some((Statistic::Named(entry), 1)) if !bootstrap && entry.name == "std" => {
-                cluster::by_site(values, &units)
-                    .and_then(|sites| StandardDeviation::of(&sites)?.bound(probability))
+            (Some((statistic, 1)), _) if named(statistic, "std") => {
+                sites().and_then(|sites| StandardDeviation::of(&sites)?.bound(probability))
             }
+            // A statistic alone depends on the values only, and the draws are many.
+            (_, Some(Taking::Statistic(statistic, ddof))) => sites().and_then(|sites| {
+                let estimate = |values: &[f64]| statistic_of(*statistic, *ddof, values).ok();
+                cluster::bootstrap(&sites, &*Draws::usual(sites.len())?, estimate)?
+                    .bound(probability)
+            }),
             _ => {
-                // A statistic alone depends on the values only, and the draws are many.
-                if let (Kind::Input(0), [Taking::Statistic(statistic, ddof)]) =
-                    (&of_group.expr.kind, of_group.taken.as_slice())
-                {
-                    let found = cluster::by_site(values, &units).and_then(|sites| {
-                        let estimate =
-                            |values: &[f64]| statistic_of(*statistic, *ddof, values).ok();
-                        cluster::bootstrap(&sites, &*Draws::usual(sites.len())?, estimate)?
-                            .bound(probability)
-                    });
-                    return found.map_err(Reason::method);
-                }
                 let rows: Vec<usize> = (0..values.len()).collect();
-                let estimate = |rows: &[usize]| {
-                    let members: Vec<Member<'_>> =
-                        rows.iter().map(|&row| self.members[row]).collect();
-                    let values: Vec<f64> = rows.iter().map(|&row| values[row]).collect();
-                    Group { members: &members, ..*self }.over(of_group, &values).ok()
-                };
                 cluster::by_site(&rows, &units).and_then(|sites| {
+                    let estimate = |rows: &[usize]| self.over_rows(of_group, rows, values).ok();
                     cluster::bootstrap(&sites, &*Draws::usual(sites.len())?, estimate)?
                         .bound(probability)
                 })
             }
         };
         found.map_err(Reason::method)
+    }
+
+    /// As [`Self::over`], for some of the rows and of their values.
+    fn over_rows(&self, of: &OfGroup, rows: &[usize], values: &[f64]) -> Result<f64, Reason> {
+        let members: Vec<Member<'_>> = rows.iter().map(|&row| self.members[row]).collect();
+        let values: Vec<f64> = rows.iter().map(|&row| values[row]).collect();
+        self.with(&members).over(of, &values)
     }
 
     fn fit(&self, fit: &Fit, values: &[f64]) -> Result<f64, Reason> {
@@ -271,7 +266,7 @@ impl Group<'_> {
         }
     }
 
-    pub(in crate::run) fn fitted(&self, fit: &Fit, values: &[f64]) -> Result<Fitted, Reason> {
+    pub fn fitted(&self, fit: &Fit, values: &[f64]) -> Result<Fitted, Reason> {
         let regressors = fit
             .over
             .iter()
@@ -286,9 +281,7 @@ impl Group<'_> {
     /// The bound of a share of the values: X of `share where value <= X`, in SI. `None` of other
     /// estimates, and of a bound that differs from section to section.
     pub fn divided_at(&self, of: &OfGroup) -> Option<f64> {
-        let (Kind::Input(0), [Taking::Share { condition, of_sections: false, others, by: None }]) =
-            (&of.expr.kind, of.taken.as_slice())
-        else {
+        let Taking::Share { condition, of_sections: false, others, by: None } = of.alone()? else {
             return None;
         };
         let Kind::Binary(operator, left, right) = &condition.kind else { return None };
@@ -315,9 +308,7 @@ impl Group<'_> {
     /// The diagram of a regression with one regressor, in the unit of the quantity; `None` for
     /// other estimates and where there is no value.
     pub fn figure(&self, of: &OfGroup, unit: &units::Unit) -> Option<RegressionFigure> {
-        let (Kind::Input(0), [Taking::Fit(fit)]) = (&of.expr.kind, of.taken.as_slice()) else {
-            return None;
-        };
+        let Taking::Fit(fit) = of.alone()? else { return None };
         let [over] = fit.over.as_slice() else { return None };
         let values = self.values();
         let Fitted { regression, regressors, at } = self.fitted(fit, &values).ok()?;
@@ -363,7 +354,7 @@ impl Group<'_> {
 
 impl Group<'_> {
     /// In which a regressor is printed.
-    pub(in crate::run) fn unit_of(&self, regressor: &Expr) -> units::Unit {
+    pub fn unit_of(&self, regressor: &Expr) -> units::Unit {
         match (&regressor.kind, &regressor.ty) {
             (Kind::Column(index), _)
                 if let DatumKind::Number(unit) = &self.plan.columns[*index].kind =>
@@ -381,7 +372,7 @@ impl Group<'_> {
 const STEPS: usize = 32;
 
 /// A regression with the numbers it was fitted to and the point at which it is evaluated.
-pub(in crate::run) struct Fitted {
+pub struct Fitted {
     regression: Regression,
     pub regressors: Vec<Vec<f64>>,
     pub at: Vec<f64>,

@@ -148,7 +148,7 @@ impl<'a> Group<'a> {
     }
 
     /// The printed name of a key, and its member that a row belongs to.
-    pub(super) fn of_key(&self, key: &Key, member: &Member<'_>) -> (String, String) {
+    pub fn of_key(&self, key: &Key, member: &Member<'_>) -> (String, String) {
         let named = |key: &str, member: String| (key.to_owned(), member);
         match key {
             Key::Section => named("section", member.unit.name.clone()),

@@ -2,8 +2,6 @@
 //! run, in a window that moves with the search. What is in memory does not grow with the length of
 //! a run.
 
-mod chosen;
-mod course;
 mod drift;
 mod place;
 mod signals;
@@ -20,8 +18,7 @@ use crate::result::Reason;
 use crate::result::found::{FoundInRun, FoundSections, Rejected, Stretch};
 use crate::run::reduce::Progress;
 use crate::run::sections::Facts;
-use chosen::Chosen;
-use place::{Rules, Tried};
+use place::{Chosen, Rules, Tried};
 use signals::{Signals, Source};
 use window::Window;
 
@@ -153,7 +150,7 @@ fn drifts(
         let of_places: Vec<&Place> = own.iter().map(|&at| &places[at].1).collect();
         let extent = (plan.axis.unit.to_si(in_run.start), plan.axis.unit.to_si(in_run.end));
         let course =
-            course::course(plan, graph, found, run, &of_places, extent, drift::FARTHEST * shortest);
+            drift::course(plan, graph, found, run, &of_places, extent, drift::FARTHEST * shortest);
         in_run.drift = drift::told(plan, run, (&names, &starts), &of_run, &course);
         let shift: Vec<Option<f64>> =
             of_run.iter().map(|shift| shift.as_ref().map(|shift| shift.shift)).collect();
@@ -235,7 +232,7 @@ impl Windows {
 
     /// Where all records have begun.
     fn start(&self) -> f64 {
-        self.all.iter().filter_map(|(_, window)| window.first()).fold(f64::NEG_INFINITY, f64::max)
+        self.all.iter().filter_map(|(_, window)| window.first).fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Where the first of them ends; not known as long as all go on.
@@ -245,14 +242,14 @@ impl Windows {
 
     /// Up to where each of them goes at least, as far as it is known.
     fn furthest(&self) -> f64 {
-        self.all.iter().map(|(_, window)| window.last()).fold(f64::INFINITY, f64::min)
+        self.all.iter().map(|(_, window)| window.last).fold(f64::INFINITY, f64::min)
     }
 
     /// Up to where all of them are read.
     fn read_to(&self) -> f64 {
         self.all
             .iter()
-            .map(|(_, window)| window.end().map_or_else(|| window.last(), |_| f64::INFINITY))
+            .map(|(_, window)| window.end().map_or_else(|| window.last, |_| f64::INFINITY))
             .fold(f64::INFINITY, f64::min)
     }
 }

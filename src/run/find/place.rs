@@ -1,10 +1,10 @@
-//! One place of a run: the length of a section there, its data, its zone, and the conditions.
+//! One place of a run: the length of a section there, its data, its zone, and the conditions; which of
+//! several places that would overlap are taken.
 
 use super::signals::Signals;
 use crate::check::evaluate::{evaluate, flag, number};
 use crate::check::plan::{Datum, DatumKind, Expr, Find, FindCondition, Kind, Plan, Scalar, Zone};
 use crate::check::possible::{Possible, possible};
-use crate::check::values::Values;
 use crate::data::Campaign;
 use crate::data::campaign::Run;
 use crate::graph::{Graph, InputNode};
@@ -22,27 +22,6 @@ const ROUNDING: f64 = 1e-12;
 /// Significant digits of found section data in their unit: a radius of 10 km to the tenth of a
 /// millimetre.
 const DIGITS: usize = 8;
-
-/// Values of a place, with bounds met up to rounding.
-struct Rounded<'a>(Known<'a>);
-
-impl Values for Rounded<'_> {
-    fn vehicle(&self, index: usize) -> Result<Scalar, Reason> {
-        self.0.vehicle(index)
-    }
-    fn column(&self, index: usize) -> Result<Scalar, Reason> {
-        self.0.column(index)
-    }
-    fn extent(&self) -> Result<Extent, Reason> {
-        self.0.extent()
-    }
-    fn input(&self, index: usize) -> Result<f64, Reason> {
-        self.0.input(index)
-    }
-    fn rounding(&self) -> f64 {
-        ROUNDING
-    }
-}
 
 /// A place where a section was found.
 #[derive(Clone, Debug)]
@@ -316,8 +295,9 @@ impl<'a> Rules<'a> {
                 return true;
             }
             let inputs = signals.values(nodes, around);
-            flag(&condition.require.expr, &Rounded(self.known(columns, (start, end), &inputs)))
-                != Ok(true)
+            // Bounds are met up to rounding.
+            let known = self.known(columns, (start, end), &inputs);
+            flag(&condition.require.expr, &Known { rounding: ROUNDING, ..known }) != Ok(true)
         };
         let at = self.find.conditions.iter().zip(&self.graph.find.conditions).position(fails)?;
         Some(CONDITIONS + at)
@@ -347,4 +327,96 @@ pub fn is_stated(plan: &Plan, find: &Find, column: usize) -> bool {
     plan.sections.zone != Some(column)
         && plan.columns[column].kind != DatumKind::Campaign
         && find.data.iter().all(|datum| datum.column != column)
+}
+
+/// The places that are taken so far, and those that may still overlap with one that comes.
+#[derive(Debug)]
+pub struct Chosen {
+    by_value: bool,
+    taken: Vec<Place>,
+    /// Places that overlap, directly or through others.
+    open: Vec<Place>,
+    open_end: f64,
+}
+
+impl Chosen {
+    pub fn new(by_value: bool) -> Self {
+        Self { by_value, taken: Vec::new(), open: Vec::new(), open_end: f64::NEG_INFINITY }
+    }
+
+    /// Whether a place is taken as soon as it is found.
+    pub fn takes_first(&self) -> bool {
+        !self.by_value
+    }
+
+    /// Places come in the order of their starts.
+    pub fn add(&mut self, place: Place) {
+        if !self.by_value {
+            self.taken.push(place);
+            return;
+        }
+        if place.start >= self.open_end {
+            self.close();
+        }
+        self.open_end = self.open_end.max(place.end);
+        self.open.push(place);
+    }
+
+    pub fn finish(mut self) -> Vec<Place> {
+        self.close();
+        self.taken
+    }
+
+    /// Takes the place with the highest value, then the highest of those that do not overlap with
+    /// it, and so on; of equal values the first.
+    fn close(&mut self) {
+        let mut open = std::mem::take(&mut self.open);
+        open.sort_by(|a, b| b.value.total_cmp(&a.value).then(a.start.total_cmp(&b.start)));
+        let mut taken: Vec<Place> = Vec::new();
+        for place in open {
+            if taken.iter().all(|other| place.end <= other.start || place.start >= other.end) {
+                taken.push(place);
+            }
+        }
+        taken.sort_by(|a, b| a.start.total_cmp(&b.start));
+        self.taken.append(&mut taken);
+        self.open_end = f64::NEG_INFINITY;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn taken(by_value: bool, places: &[(f64, f64, f64)]) -> Vec<(f64, f64)> {
+        let mut chosen = Chosen::new(by_value);
+        for &(start, end, value) in places {
+            chosen.add(Place { start, end, zone: None, columns: Vec::new(), value });
+        }
+        chosen.finish().iter().map(|place| (place.start, place.end)).collect()
+    }
+
+    #[test]
+    fn of_places_that_overlap_the_highest_is_taken() {
+        let places = [
+            (0.0, 10.0, 1.0),
+            (5.0, 15.0, 3.0),
+            (14.0, 24.0, 2.0),
+            (15.0, 25.0, 2.0),
+            (30.0, 40.0, 0.0),
+        ];
+        assert_eq!(taken(true, &places), [(5.0, 15.0), (15.0, 25.0), (30.0, 40.0)]);
+    }
+
+    #[test]
+    fn of_equal_values_the_first_is_taken() {
+        assert_eq!(
+            taken(true, &[(0.0, 10.0, 1.0), (1.0, 11.0, 1.0), (10.0, 20.0, 1.0)]),
+            [(0.0, 10.0), (10.0, 20.0)]
+        );
+        assert_eq!(
+            taken(false, &[(0.0, 10.0, 1.0), (10.0, 20.0, 5.0)]),
+            [(0.0, 10.0), (10.0, 20.0)]
+        );
+    }
 }

@@ -105,7 +105,7 @@ impl<'a> Signals<'a> {
         let method = plan.sections.percentiles;
         let mut signals = Self { graph, own, method, samples: Vec::new(), covered: Vec::new() };
         for (of, window) in &windows.all {
-            let (Some(first), last) = (window.first_held(), window.last()) else { continue };
+            let (Some(first), last) = (window.first_held(), window.last) else { continue };
             signals.covered.push((*of, (first, last)));
             let mut wanted = BTreeSet::new();
             for input in inputs(graph).filter(|input| source(graph, input, own) == *of) {
@@ -121,11 +121,11 @@ impl<'a> Signals<'a> {
             }
             let known = Known::vehicle(vehicle);
             let failed = |reason: Reason| {
-                let says = format!("`{}`: {}", window.shown(), reason.text());
+                let says = format!("`{}`: {}", window.shown, reason.text());
                 Problems(vec![Problem::error("find-signal", says)])
             };
             let needed = needed(graph, &wanted, &known).map_err(failed)?;
-            let opened = Opened::piece(plan, of.kind(), window.columns(), window.first_row());
+            let opened = Opened::piece(plan, of.kind(), window.columns(), window.first_row);
             let found = opened.evaluate((plan, graph), &needed, &wanted, &known, None);
             let found = found.map_err(failed)?;
             for (id, found) in found {

@@ -8,13 +8,15 @@ use crate::problem::Problem;
 /// A stretch of a record; its first column is the axis.
 pub struct Window {
     blocks: Option<Blocks>,
-    shown: String,
+    pub shown: String,
     names: Vec<String>,
     columns: Vec<Vec<f64>>,
     /// Row of the file of the first sample that is held.
-    first_row: usize,
-    first: Option<f64>,
-    last: f64,
+    pub first_row: usize,
+    /// Where the record begins.
+    pub first: Option<f64>,
+    /// Up to where it is read.
+    pub last: f64,
 }
 
 impl Window {
@@ -29,10 +31,6 @@ impl Window {
             first: None,
             last: f64::NEG_INFINITY,
         }
-    }
-
-    pub fn shown(&self) -> &str {
-        &self.shown
     }
 
     /// Reads until the record goes beyond `to`, or ends.
@@ -76,19 +74,9 @@ impl Window {
         self.first_row += count;
     }
 
-    /// Where the record begins.
-    pub fn first(&self) -> Option<f64> {
-        self.first
-    }
-
     /// Where what is held begins.
     pub fn first_held(&self) -> Option<f64> {
         self.columns[0].first().copied()
-    }
-
-    /// Up to where it is read.
-    pub fn last(&self) -> f64 {
-        self.last
     }
 
     /// Where the record ends, once this is known.
@@ -98,9 +86,5 @@ impl Window {
 
     pub fn columns(&self) -> impl Iterator<Item = (String, Vec<f64>)> {
         self.names.iter().cloned().zip(self.columns.iter().cloned())
-    }
-
-    pub fn first_row(&self) -> usize {
-        self.first_row
     }
 }

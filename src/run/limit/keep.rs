@@ -2,6 +2,8 @@
 
 use std::collections::HashSet;
 
+use indexmap::IndexMap;
+
 use super::pool::{Pool, Pooled, PooledLimit, PooledQuantity, pool};
 use crate::catalog::Statistic;
 use crate::check::plan::{Keep, Plan, Scalar};
@@ -32,7 +34,7 @@ pub fn keep(
 }
 
 fn of(keep: &Keep, pool: &Pool, units: &[Unit]) -> Reduction {
-    let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
+    let mut groups: IndexMap<String, Vec<usize>> = IndexMap::new();
     for (at, unit) in units.iter().enumerate().filter(|(_, unit)| unit.fault.is_none()) {
         let word = |column: &usize| match unit.columns.get(*column) {
             Some(Ok(Scalar::Word(word))) => word.clone(),
@@ -40,10 +42,7 @@ fn of(keep: &Keep, pool: &Pool, units: &[Unit]) -> Reduction {
             _ => String::new(),
         };
         let name = keep.each.iter().map(word).collect::<Vec<_>>().join(", ");
-        match groups.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, members)) => members.push(at),
-            None => groups.push((name, vec![at])),
-        }
+        groups.entry(name).or_default().push(at);
     }
     let limits = pool
         .quantities
@@ -52,7 +51,7 @@ fn of(keep: &Keep, pool: &Pool, units: &[Unit]) -> Reduction {
     let (symbols, measures): (Vec<&str>, Vec<Summed>) = limits
         .filter_map(|(quantity, limit)| Some((quantity.symbol.as_str(), measure(quantity, limit)?)))
         .unzip();
-    let most: Vec<usize> = groups.iter().map(|(_, members)| keep.most.min(members.len())).collect();
+    let most: Vec<usize> = groups.values().map(|members| keep.most.min(members.len())).collect();
     let name = |at: usize| units[at].name.clone();
     reduction(groups, keep.most, &most, (&symbols, &measures), name).1
 }
@@ -61,7 +60,7 @@ fn of(keep: &Keep, pool: &Pool, units: &[Unit]) -> Reduction {
 /// scatter: of each measure with the symbol of its quantity. `most` is the number that was asked
 /// for.
 pub fn reduction(
-    groups: Vec<(String, Vec<usize>)>,
+    groups: impl IntoIterator<Item = (String, Vec<usize>)>,
     most: usize,
     keep: &[usize],
     (symbols, measures): (&[&str], &[Summed]),

@@ -3,15 +3,14 @@
 use super::factors::factors;
 use crate::catalog::Statistic;
 use crate::check::evaluate::{flag, number};
-use crate::check::plan::{Estimate, EstimateKind, Limit, Quantity, Report, Scalar};
-use crate::check::values::Values;
+use crate::check::plan::{Estimate, EstimateKind, Limit, Quantity, Report};
 use crate::metrics::statistics::{Divisor, mean, standard_deviation};
 use crate::result::{
     LimitNotMet, Outside, Reason, RegressionFigure, RulePlace, Sample, Scope, StatisticResult,
     Subject, VehicleValue,
 };
 use crate::run::estimate::{Closeness, Group, Member, Part, TooFew, count_independent};
-use crate::run::sections::{Facts, Known, Unit as Section, Vehicle};
+use crate::run::sections::{Facts, Known, Limits, Unit as Section, Vehicle};
 use crate::source::Span;
 use crate::units::Unit;
 
@@ -336,7 +335,7 @@ impl<'a> Judging<'a> {
         known: &Known<'_>,
     ) -> Result<f64, Reason> {
         let group = self.rows.with(members);
-        Bound { quantity: self.quantity, part, group, known, taken: &[], depth: 0 }.of(limit)
+        OfGroup { quantity: self.quantity, part, group, known, depth: 0 }.bound(limit)
     }
 }
 
@@ -383,29 +382,27 @@ fn against(value: f64, bound: f64, at_least: bool) -> (Option<f64>, bool) {
     ((bound > 0.0).then(|| value.abs() / bound), value.abs() <= bound + room)
 }
 
-/// A limit in SI for one group of one quantity: what the names in it stand for.
-#[derive(Clone, Copy)]
-struct Bound<'a> {
+/// The limits of one quantity, for one group of its rows.
+#[derive(Clone, Copy, Debug)]
+struct OfGroup<'a> {
     quantity: &'a Quantity,
     part: &'a Part<'a>,
-    /// Data of its sections can be used in the limit.
+    /// Data of its sections can be used in a limit.
     group: Group<'a>,
     known: &'a Known<'a>,
-    /// The numbers that the limit takes from the group.
-    taken: &'a [Result<f64, Reason>],
-    /// How many limits refer to it.
+    /// How many limits refer to the one that is computed.
     depth: usize,
 }
 
-impl Bound<'_> {
-    /// The limit with its factors. A reference to another statistic means the limit of that
+impl OfGroup<'_> {
+    /// A limit with its factors, SI. A reference to another statistic means the limit of that
     /// statistic, with its factors.
-    fn of(&self, limit: &Limit) -> Result<f64, Reason> {
+    fn bound(&self, limit: &Limit) -> Result<f64, Reason> {
         if self.depth > self.quantity.limits.len() {
             return Err(Reason::LimitDependsOnItself);
         }
         let taken = self.group.taken(&limit.bound);
-        let names = Bound { taken: &taken, ..*self };
+        let names = Known { inputs: &taken, limits: Some(self), ..*self.known };
         let mut value = number(&limit.bound.expr, &names)?;
         for (factor, condition) in &limit.factors {
             if flag(condition, &names)? {
@@ -419,28 +416,8 @@ impl Bound<'_> {
     }
 }
 
-impl Values for Bound<'_> {
-    fn vehicle(&self, index: usize) -> Result<Scalar, Reason> {
-        self.known.vehicle(index)
-    }
-
-    fn column(&self, index: usize) -> Result<Scalar, Reason> {
-        self.known.column(index)
-    }
-
-    fn extent(&self) -> Result<(f64, f64), Reason> {
-        self.known.extent()
-    }
-
-    fn input(&self, index: usize) -> Result<f64, Reason> {
-        self.taken.get(index).cloned().unwrap_or_else(|| self.known.input(index))
-    }
-
-    fn sides(&self) -> Result<(f64, f64), Reason> {
-        self.known.sides()
-    }
-
-    /// The limit of another statistic: one for just this group has priority over one for all.
+impl Limits for OfGroup<'_> {
+    /// One for just this group has priority over one for all.
     fn limit_of(&self, name: &str) -> Result<f64, Reason> {
         let mut found: Option<(Closeness, &Limit)> = None;
         for limit in self.quantity.limits.iter().filter(|limit| limit.estimate.name == name) {
@@ -452,7 +429,7 @@ impl Values for Bound<'_> {
             }
         }
         let (_, limit) = found.ok_or_else(|| Reason::NoLimitOf { estimate: name.into() })?;
-        Bound { depth: self.depth + 1, ..*self }.of(limit)
+        OfGroup { depth: self.depth + 1, ..*self }.bound(limit)
     }
 }
 

@@ -1,14 +1,14 @@
 //! What a run reads: columns of records and of the table of sections, vehicle data, and the rules
 //! that need each of them.
 
-mod parts;
+mod reads;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use parts::{See, input, of_signals, quantity, report, signal};
+use indexmap::IndexSet;
 
 use crate::check::plan::{
-    Datum, DatumKind, Expr, Independent, InputSide, Kind, Plan, Quantity, Scalar, Side, Test,
+    Axis, Datum, DatumKind, Domain, InputSide, Kind, Plan, Quantity, Scalar, Side,
 };
 use crate::data::campaign::POINT_KEY;
 use crate::data::sites;
@@ -18,6 +18,7 @@ use crate::run::sections::units::STATE;
 use crate::run::sections::wanted::columns as wanted_columns;
 use crate::run::sections::{NOT_STATED, trimmed};
 use crate::units::Unit;
+use reads::rules;
 
 #[derive(Clone, Debug, Default)]
 pub struct Needs {
@@ -114,7 +115,7 @@ pub struct ChannelNeed {
 }
 
 /// A column of the table of sections or of wanted operation, or a value of the vehicle file.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct DatumNeed {
     pub key: String,
     pub title: String,
@@ -133,6 +134,7 @@ const TRACK: &str = "track";
 
 pub fn needs(plan: &Plan, graph: &Graph) -> Needs {
     let [columns, vehicle] = data_users(plan);
+    let of_data = |(datum, users): (&Datum, Users)| datum_need(datum, users);
     let mut sections = Vec::new();
     if !plan.sections.whole_records {
         sections.push(given("section", "Name of the section and of its records", None, "sections"));
@@ -140,28 +142,21 @@ pub fn needs(plan: &Plan, graph: &Graph) -> Needs {
         sections.push(given("end", "End of the section", Some(&plan.axis.unit), "sections"));
         let own =
             plan.columns.iter().zip(columns).filter(|(datum, _)| datum.kind != DatumKind::Campaign);
-        sections.extend(own.map(|(datum, users)| datum_need(datum, users)));
-        let others: Vec<DatumNeed> = of_every_table(plan)
-            .into_iter()
-            .filter(|need| sections.iter().all(|known| known.key != need.key))
-            .collect();
+        sections.extend(own.map(of_data));
+        let mut others = of_every_table(plan);
+        others.retain(|need| sections.iter().all(|known| known.key != need.key));
         sections.extend(others);
     }
-    let vehicle =
-        plan.vehicle.iter().zip(vehicle).map(|(datum, users)| datum_need(datum, users)).collect();
     let found = plan.sections.find.as_ref().map(|find| {
-        let is_found = |index: &usize| !crate::run::find::is_stated(plan, find, *index);
-        (0..plan.columns.len())
-            .filter(is_found)
-            .map(|index| plan.columns[index].key.clone())
-            .collect()
+        let columns = plan.columns.iter().enumerate();
+        let found = columns.filter(|(index, _)| !crate::run::find::is_stated(plan, find, *index));
+        found.map(|(_, datum)| datum.key.clone()).collect()
     });
-    let channels = channels(plan, graph);
     Needs {
-        channels,
+        channels: channels(plan, graph),
         positions: positions(plan, graph),
         sections,
-        vehicle,
+        vehicle: plan.vehicle.iter().zip(vehicle).map(of_data).collect(),
         found,
         application: application(plan),
     }
@@ -173,11 +168,9 @@ fn given(key: &str, title: &str, unit: Option<&Unit>, rule: &str) -> DatumNeed {
         key: key.into(),
         title: title.into(),
         unit: unit.map(|unit| unit.text.clone()),
-        words: Vec::new(),
-        range: None,
-        default: None,
         required: true,
-        users: Users { quantities: Vec::new(), rules: vec![rule.into()] },
+        users: Users { rules: vec![rule.into()], ..Users::default() },
+        ..DatumNeed::default()
     }
 }
 
@@ -220,26 +213,23 @@ fn of_every_table(plan: &Plan) -> Vec<DatumNeed> {
 
 /// Columns of the table of wanted operation, in the order of the protocol.
 fn application(plan: &Plan) -> Vec<DatumNeed> {
-    let Some(first) = plan.domains.first() else { return Vec::new() };
-    let users = |index: usize| {
-        let of = plan.domains.iter().filter(|domain| wanted_columns(domain).contains(&index));
-        Users {
-            quantities: Vec::new(),
-            rules: of.map(|domain| format!("domain {}", domain.name)).collect(),
-        }
+    if plan.domains.is_empty() {
+        return Vec::new();
+    }
+    let users = |reads: &dyn Fn(&Domain) -> bool| {
+        let domains = plan.domains.iter().filter(|domain| reads(domain));
+        let rules = domains.map(|domain| format!("domain {}", domain.name)).collect();
+        Users { rules, ..Users::default() }
     };
-    let mut point = given(
-        POINT_KEY,
-        "Name of the point of wanted operation",
-        None,
-        &format!("domain {}", first.name),
-    );
-    point.users.rules =
-        plan.domains.iter().map(|domain| format!("domain {}", domain.name)).collect();
-    let read = plan.columns.iter().enumerate().map(|(index, datum)| (datum, users(index)));
-    let read =
-        read.filter(|(datum, users)| datum.kind != DatumKind::Campaign && !users.rules.is_empty());
-    std::iter::once(point).chain(read.map(|(datum, users)| datum_need(datum, users))).collect()
+    let point = given(POINT_KEY, "Name of the point of wanted operation", None, "");
+    let mut needs = vec![DatumNeed { users: users(&|_| true), ..point }];
+    for (index, datum) in plan.columns.iter().enumerate() {
+        let users = users(&|domain| wanted_columns(domain).contains(&index));
+        if datum.kind != DatumKind::Campaign && !users.rules.is_empty() {
+            needs.push(datum_need(datum, users));
+        }
+    }
+    needs
 }
 
 fn datum_need(datum: &Datum, users: Users) -> DatumNeed {
@@ -270,266 +260,148 @@ fn datum_need(datum: &Datum, users: Users) -> DatumNeed {
 }
 
 fn positions(plan: &Plan, graph: &Graph) -> Vec<Positions> {
-    let of = |(quantity, nodes): (&Quantity, &QuantityNodes)| Positions {
-        records: Side::ALL
-            .into_iter()
-            .filter(|side| quantity.evaluation.reads(*side))
-            .map(Side::in_words)
-            .collect(),
-        columns: nodes
-            .signals
-            .iter()
-            .map(|signal| {
-                let mut wanted = BTreeSet::new();
-                wanted_of(quantity, signal, &mut wanted);
-                graph
-                    .columns_of(wanted)
-                    .into_iter()
-                    .filter(|(_, of_track)| !of_track)
-                    .map(|(column, _)| column)
-                    .collect()
-            })
-            .collect(),
+    let of = |(quantity, nodes): (&Quantity, &QuantityNodes)| {
+        let columns = nodes.signals.iter().map(|signal| {
+            let mut wanted = BTreeSet::new();
+            wanted_of(quantity, signal, &mut wanted);
+            let columns = graph.columns_of(wanted).into_iter().filter(|(_, of_track)| !of_track);
+            columns.map(|(column, _)| column).collect()
+        });
+        let sides = Side::ALL.into_iter().filter(|side| quantity.evaluation.reads(*side));
+        Positions { records: sides.map(Side::in_words).collect(), columns: columns.collect() }
     };
     plan.quantities.iter().zip(&graph.quantities).map(of).collect()
 }
 
-/// By record and column: whether a number depends on it, and its users. In the order of the records
-/// and of the protocol.
-type Read = BTreeMap<(usize, usize), (bool, Users)>;
+/// Number of the track record; the sides stand before it.
+const TRACK_RECORD: usize = Side::ALL.len();
 
-fn channels(plan: &Plan, graph: &Graph) -> Vec<ChannelNeed> {
-    let declared = declared(plan);
-    let mut names: Vec<String> = Vec::new();
-    let mut read = Read::new();
-    let number = |names: &mut Vec<String>, column: &str| {
-        names.iter().position(|known| known == column).unwrap_or_else(|| {
-            names.push(column.to_string());
-            names.len() - 1
-        })
-    };
-    // Time and axis stand first; the track record needs no time.
-    let axes: Vec<_> = plan.time.iter().chain([&plan.axis]).collect();
-    let axes_at: Vec<usize> = axes.iter().map(|axis| number(&mut names, &axis.column)).collect();
-    let sides = |reads: &dyn Fn(Side) -> bool| {
-        (0..)
-            .zip(Side::ALL)
-            .filter(|(_, side)| reads(*side))
-            .map(|(at, _)| at)
-            .collect::<Vec<usize>>()
-    };
-    let all = sides(&|side| plan.reads(side));
-    for &side in &all {
-        axes_at.iter().for_each(|&at| {
-            drop(read.insert(
-                (side, at),
-                (true, Users { quantities: Vec::new(), rules: vec!["records".into()] }),
-            ))
-        });
-    }
-    let mut add = |nodes: BTreeSet<NodeId>,
-                   records: &[usize],
-                   user: &str,
-                   is_quantity: bool,
-                   [required, of_track_too]: [bool; 2]| {
+/// The numbers of some sides.
+fn sides(reads: impl Fn(Side) -> bool) -> Vec<usize> {
+    (0..TRACK_RECORD).filter(|&at| reads(Side::ALL[at])).collect()
+}
+
+/// The columns that are read, in the order of the records and of the protocol.
+#[derive(Default)]
+struct Columns {
+    names: IndexSet<String>,
+    /// By record and column: whether a number depends on it, and its users.
+    read: BTreeMap<(usize, usize), (bool, Users)>,
+}
+
+impl Columns {
+    /// Adds the columns of some nodes. `required`: whether numbers depend on those of a side, and
+    /// on those of the track record.
+    fn add(
+        &mut self,
+        graph: &Graph,
+        nodes: BTreeSet<NodeId>,
+        records: &[usize],
+        (user, is_quantity): (&str, bool),
+        required: [bool; 2],
+    ) {
         for (column, of_track) in graph.columns_of(nodes) {
-            let at = number(&mut names, &column);
-            let of: &[usize] = if of_track { &[Side::ALL.len()] } else { records };
-            for &record in of {
-                let (is_required, users) = read.entry((record, at)).or_default();
-                *is_required |= if of_track { of_track_too } else { required };
+            let (at, _) = self.names.insert_full(column);
+            for &record in if of_track { &[TRACK_RECORD][..] } else { records } {
+                let (is_required, users) = self.read.entry((record, at)).or_default();
+                *is_required |= required[usize::from(of_track)];
                 users.add(user, is_quantity);
             }
         }
-    };
+    }
+}
+
+fn channels(plan: &Plan, graph: &Graph) -> Vec<ChannelNeed> {
+    let mut columns = Columns::default();
+    // Time and axis stand first; the track record needs no time.
+    let axes: Vec<&Axis> = plan.time.iter().chain([&plan.axis]).collect();
+    columns.names.extend(axes.iter().map(|axis| axis.column.clone()));
+    let (all, axis_at) = (sides(|side| plan.reads(side)), columns.names.len() - 1);
+    let records = || Users { rules: vec!["records".into()], ..Users::default() };
+    for &side in &all {
+        columns.read.extend((0..=axis_at).map(|at| ((side, at), (true, records()))));
+    }
     for (quantity, nodes) in plan.quantities.iter().zip(&graph.quantities) {
         let mut wanted = BTreeSet::new();
         nodes.signals.iter().for_each(|signal| wanted_of(quantity, signal, &mut wanted));
-        add(
-            wanted,
-            &sides(&|side| quantity.evaluation.reads(side)),
-            &quantity.id,
-            true,
-            [true, false],
-        );
+        let sides = sides(|side| quantity.evaluation.reads(side));
+        columns.add(graph, wanted, &sides, (&quantity.id, true), [true, false]);
     }
-    let nodes_of =
-        |inputs: &[InputNode]| inputs.iter().flat_map(InputNode::nodes).collect::<BTreeSet<_>>();
     for (check, inputs) in plan.checks.iter().zip(&graph.checks) {
-        add(nodes_of(inputs), &all, &format!("check {}", check.name), false, [true, false]);
+        let nodes = inputs.iter().flat_map(InputNode::nodes).collect();
+        let user = format!("check {}", check.name);
+        columns.add(graph, nodes, &all, (&user, false), [true, false]);
     }
     for (rule, nodes) in plan.plausibility.iter().zip(&graph.plausibility) {
-        let of = nodes
+        let nodes = nodes
             .positions
             .iter()
-            .flat_map(|position| position.own.into_iter().chain(nodes_of(&position.inputs)))
-            .collect();
-        add(of, &all, &format!("{PLAUSIBILITY}{}", rule.name), false, [false; 2]);
+            .flat_map(|at| at.own.into_iter().chain(at.inputs.iter().flat_map(InputNode::nodes)));
+        let user = format!("{PLAUSIBILITY}{}", rule.name);
+        columns.add(graph, nodes.collect(), &all, (&user, false), [false; 2]);
     }
     if plan.sections.find.is_some() {
-        let own = sides(&|side| side == crate::run::find::own_side(plan));
-        for inputs in
-            graph.find.data.iter().chain(&graph.find.conditions).chain([&graph.find.prefer])
-        {
-            for input in inputs {
-                let of = match input.side {
-                    InputSide::Own => own.clone(),
-                    InputSide::Measured => sides(&|side| side == Side::Measured),
-                    InputSide::Simulated => sides(&|side| side == Side::Simulated),
-                };
-                add(BTreeSet::from([input.node]), &of, SEARCH, false, [true; 2]);
-            }
+        let own = crate::run::find::own_side(plan);
+        let find = &graph.find;
+        for input in find.data.iter().chain(&find.conditions).flatten().chain(&find.prefer) {
+            let of = match input.side {
+                InputSide::Own => own,
+                InputSide::Measured => Side::Measured,
+                InputSide::Simulated => Side::Simulated,
+            };
+            let sides = sides(|side| side == of);
+            columns.add(graph, [input.node].into(), &sides, (SEARCH, false), [true; 2]);
         }
     }
-    let track = Side::ALL.len();
-    if read.keys().any(|(record, _)| *record == track) {
-        let at = axes_at[axes_at.len() - 1];
-        read.entry((track, at)).or_default().1.rules.insert(0, "records".into());
+    if columns.read.keys().any(|(record, _)| *record == TRACK_RECORD) {
+        let (_, users) = columns.read.entry((TRACK_RECORD, axis_at)).or_default();
+        users.rules.insert(0, "records".into());
     }
-    read.into_iter()
-        .map(|((record, at), (required, users))| {
-            let column = names[at].clone();
-            let axis = axes
-                .iter()
-                .find(|axis| axis.column == column)
-                .map(|axis| (None, axis.unit.text.clone()));
-            let found = declared
-                .get(&(column.clone(), record == track))
-                .map(|(channel, unit)| (Some(channel.clone()), unit.text.clone()));
-            let (channel, unit) = found.or(axis).unwrap_or_default();
-            ChannelNeed {
-                record: Side::ALL.get(record).map_or(TRACK, |side| side.in_words()),
-                column,
-                channel,
-                unit,
-                required,
-                users,
-            }
-        })
-        .collect()
+    let declared = declared(plan);
+    let channel = |((record, at), (required, users)): ((usize, usize), (bool, Users))| {
+        let column = columns.names[at].clone();
+        let found = declared.get(&(column.clone(), record == TRACK_RECORD));
+        let axis = axes.iter().find(|axis| axis.column == column).map(|axis| &axis.unit);
+        let unit = found.map(|(_, unit)| unit).or(axis);
+        ChannelNeed {
+            record: Side::ALL.get(record).map_or(TRACK, |side| side.in_words()),
+            channel: found.map(|(channel, _)| channel.clone()),
+            unit: unit.map_or_else(String::new, |unit| unit.text.clone()),
+            column,
+            required,
+            users,
+        }
+    };
+    columns.read.into_iter().map(channel).collect()
 }
 
 /// Channel and unit of each column, with whether it is of the track record.
 fn declared(plan: &Plan) -> BTreeMap<(String, bool), (String, Unit)> {
-    struct Declared(BTreeMap<(String, bool), (String, Unit)>);
-    impl See for Declared {
-        fn expr(&mut self, _: &Expr) {}
-        fn channel(&mut self, column: &str, channel: &str, unit: &Unit, track: bool) {
-            self.0
-                .entry((column.to_string(), track))
-                .or_insert_with(|| (channel.to_string(), unit.clone()));
-        }
+    let mut found = BTreeMap::new();
+    for expr in rules(plan).into_iter().flat_map(|(.., reads)| reads.exprs) {
+        expr.visit(&mut |part| {
+            if let Kind::Channel { column, channel, unit } = &part.kind {
+                let key = (column.clone(), part.track());
+                found.entry(key).or_insert_with(|| (channel.clone(), unit.clone()));
+            }
+        });
     }
-    let mut found = Declared(BTreeMap::new());
-    rules(plan).iter().for_each(|(.., see)| see(&mut found));
-    found.0
+    found
 }
 
 /// The users of each section datum and of each vehicle datum.
 fn data_users(plan: &Plan) -> [Vec<Users>; 2] {
-    #[derive(Default)]
-    struct Data([BTreeSet<usize>; 2]);
-    impl See for Data {
-        fn expr(&mut self, expr: &Expr) {
+    let mut columns = vec![Users::default(); plan.columns.len()];
+    let mut vehicle = vec![Users::default(); plan.vehicle.len()];
+    for (name, is_quantity, reads) in rules(plan) {
+        reads.columns.iter().for_each(|&index| columns[index].add(&name, is_quantity));
+        for expr in reads.exprs {
             expr.visit(&mut |part| match part.kind {
-                Kind::Column(index) => drop(self.0[0].insert(index)),
-                Kind::Vehicle(index) => drop(self.0[1].insert(index)),
+                Kind::Column(index) => columns[index].add(&name, is_quantity),
+                Kind::Vehicle(index) => vehicle[index].add(&name, is_quantity),
                 _ => {}
             });
         }
-        fn column(&mut self, index: usize) {
-            self.0[0].insert(index);
-        }
     }
-    let mut users =
-        [vec![Users::default(); plan.columns.len()], vec![Users::default(); plan.vehicle.len()]];
-    for (name, is_quantity, see) in rules(plan) {
-        let mut data = Data::default();
-        see(&mut data);
-        for (users, found) in users.iter_mut().zip(&data.0) {
-            found.iter().for_each(|&index| users[index].add(&name, is_quantity));
-        }
-    }
-    users
-}
-
-/// Shows the parts of a rule.
-type Parts<'a> = Box<dyn Fn(&mut dyn See) + 'a>;
-
-/// The rules, each with its name, whether it is a quantity, and its parts.
-fn rules(plan: &Plan) -> Vec<(String, bool, Parts<'_>)> {
-    let mut rules: Vec<(String, bool, Parts<'_>)> = Vec::new();
-    for rule in &plan.quantities {
-        rules.push((rule.id.clone(), true, Box::new(move |see| quantity(rule, see))));
-    }
-    let mut others: Vec<(String, Parts<'_>)> = Vec::new();
-    others.push((
-        "sections".into(),
-        Box::new(|see| {
-            plan.sections.zone.into_iter().for_each(|index| see.column(index));
-            plan.sections.only.iter().for_each(|only| see.expr(only));
-            plan.sections.reports.iter().for_each(|one| report(one, see));
-        }),
-    ));
-    if let Some(find) = &plan.sections.find {
-        for datum in &find.data {
-            others.push((
-                format!("found {}", plan.columns[datum.column].key),
-                Box::new(|see| of_signals(&datum.of, see)),
-            ));
-        }
-        for condition in &find.conditions {
-            others.push((
-                format!("find {}", condition.name),
-                Box::new(|see| of_signals(&condition.require, see)),
-            ));
-        }
-        let rest = |see: &mut dyn See| {
-            find.length.iter().for_each(|length| see.expr(length));
-            find.prefer.iter().for_each(|prefer| of_signals(prefer, see));
-        };
-        others.push(("find".into(), Box::new(rest)));
-    }
-    if let Some(keep) = &plan.sections.keep {
-        others.push((
-            "keep".into(),
-            Box::new(|see| keep.each.iter().for_each(|&index| see.column(index))),
-        ));
-    }
-    for zone in &plan.zones {
-        let parts = move |see: &mut dyn See| {
-            zone.condition.iter().chain(&zone.minimum_length).for_each(|part| see.expr(part))
-        };
-        others.push((format!("zone {}", zone.name), Box::new(parts)));
-    }
-    for check in &plan.checks {
-        let parts = move |see: &mut dyn See| {
-            std::iter::once(&check.require).chain(&check.unless).for_each(|part| see.expr(part));
-            check.inputs.iter().for_each(|part| input(part, see));
-        };
-        others.push((format!("check {}", check.name), Box::new(parts)));
-    }
-    for rule in &plan.plausibility {
-        let parts = move |see: &mut dyn See| {
-            rule.signals.iter().for_each(|(_, part)| signal(part, see));
-            rule.unless.iter().for_each(|part| see.expr(part));
-            if let Test::Require(requirement) = &rule.test {
-                see.expr(&requirement.holds);
-                requirement.inputs.iter().for_each(|part| input(part, see));
-            }
-        };
-        others.push((format!("plausibility {}", rule.name), Box::new(parts)));
-    }
-    for domain in &plan.domains {
-        let parts = move |see: &mut dyn See| {
-            domain.over.iter().for_each(|coordinate| see.expr(&coordinate.expr));
-            domain.each.iter().for_each(|&index| see.column(index));
-        };
-        others.push((format!("domain {}", domain.name), Box::new(parts)));
-    }
-    if let Independent::Column(index) = plan.independent {
-        others.push(("verdict".into(), Box::new(move |see| see.column(index))));
-    }
-    rules.extend(others.into_iter().map(|(name, parts)| (name, false, parts)));
-    rules
+    [columns, vehicle]
 }

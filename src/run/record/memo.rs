@@ -136,7 +136,7 @@ pub struct Memo {
 }
 
 /// What a thread that panicked left is not looked at: its panic ends the run.
-pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+pub fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

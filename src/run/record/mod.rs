@@ -24,7 +24,7 @@ mod work;
 
 pub use evaluate::Held;
 pub use memo::{Keys, Numbers};
-pub use opened::{Fault, Opened};
+pub use opened::{Fault, Opened, file_hash};
 pub use section_records::{Columns, Counts, SectionRecords, Sharing};
 pub use signal::{Along, Rate, Samples, Signal, apply, arithmetic, each};
 pub use state::NodeValue;

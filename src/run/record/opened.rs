@@ -14,7 +14,7 @@ use crate::run::sections::{Extent, Unit};
 use crate::units::Dimension;
 
 /// Whether a file of a record cannot be read.
-pub(super) fn unreadable(problems: &[Problem]) -> bool {
+pub fn unreadable(problems: &[Problem]) -> bool {
     problems.iter().any(|problem| problem.code == "file-unreadable")
 }
 
@@ -31,7 +31,7 @@ impl Fault {
     }
 
     /// What is wrong with a record of a campaign.
-    pub(super) fn of(campaign: &Campaign, problems: Vec<Problem>) -> Self {
+    pub fn of(campaign: &Campaign, problems: Vec<Problem>) -> Self {
         let says = said(campaign, &problems);
         let reason = match unreadable(&problems) {
             true => Reason::Unreadable { says },
@@ -54,22 +54,22 @@ impl Fault {
 /// A record that was read and covers the section.
 #[derive(Clone, Debug)]
 pub struct Opened {
-    pub(super) sampled: Sampled,
+    pub sampled: Sampled,
     pub extent: Extent,
     pub file: FileHash,
     /// Time recorded before and after the section, in s, where records have a time.
     pub margins: Option<(f64, f64)>,
     /// What protocols that share the record have computed of it.
-    pub(super) memo: Option<Arc<Memo>>,
+    pub memo: Option<Arc<Memo>>,
     /// Of a stretch that sections share: the part of it that this section would read by itself.
-    pub(super) own: Option<Extent>,
+    pub own: Option<Extent>,
     /// The stretch, with what its sections have computed of it.
-    pub(super) stretch: Option<Arc<Stretched>>,
+    pub stretch: Option<Arc<Stretched>>,
 }
 
 /// The samples of a record.
 #[derive(Clone, Debug)]
-pub(super) struct Sampled {
+pub struct Sampled {
     columns: Arc<Vec<(String, Arc<Vec<f64>>)>>,
     pub along: Arc<Along>,
     /// Whether the record has a time.
@@ -79,14 +79,14 @@ pub(super) struct Sampled {
 /// A record of a stretch, and the values of nodes on it.
 #[derive(Debug)]
 pub struct Stretched {
-    pub(super) sampled: Sampled,
-    pub(super) read: ReadFile,
-    pub(super) numbers: Mutex<Numbers>,
-    pub(super) results: Memo,
+    pub sampled: Sampled,
+    pub read: ReadFile,
+    pub numbers: Mutex<Numbers>,
+    pub results: Memo,
 }
 
 /// The time of a record that runs along something else.
-pub(super) fn clock(plan: &Plan, kind: RecordKind) -> Option<&Axis> {
+pub fn clock(plan: &Plan, kind: RecordKind) -> Option<&Axis> {
     plan.time.as_ref().filter(|time| kind != RecordKind::Track && time.column != plan.axis.column)
 }
 
@@ -130,6 +130,12 @@ impl Sampled {
     }
 }
 
+/// A file as results state it; of several campaigns with that of the file.
+pub fn file_hash(read: &ReadFile, campaign: Option<&str>, record: Option<RecordOf>) -> FileHash {
+    let path = qualified(campaign, &read.path);
+    FileHash { path, sha256: read.sha256.clone(), bytes: read.bytes, record }
+}
+
 /// A record of a section that is read.
 #[derive(Clone, Copy, Debug)]
 pub struct Reading<'a> {
@@ -141,16 +147,15 @@ pub struct Reading<'a> {
 
 impl Reading<'_> {
     /// The file of the record, as results state it.
-    pub(super) fn file(&self, read: &ReadFile) -> FileHash {
+    pub fn file(&self, read: &ReadFile) -> FileHash {
         let name = self.campaign.record_name(self.which).map(ToString::to_string);
-        let section = self.unit.name.clone();
-        let path = qualified(self.unit.campaign_name.as_deref(), &read.path);
-        let record = Some(RecordOf { kind: self.which.kind.key().into(), section, name });
-        FileHash { path, sha256: read.sha256.clone(), bytes: read.bytes, record }
+        let (kind, section) = (self.which.kind.key().into(), self.unit.name.clone());
+        let record = RecordOf { kind, section, name };
+        file_hash(read, self.unit.campaign_name.as_deref(), Some(record))
     }
 
     /// The part of a run that the section reads by itself.
-    pub(super) fn own(&self) -> Option<Extent> {
+    pub fn own(&self) -> Option<Extent> {
         self.unit.part(self.plan).map(|part| (part.from, part.to))
     }
 }
@@ -160,10 +165,7 @@ impl Opened {
     ///
     /// # Errors
     /// Its axes are not sound, or it does not cover the section.
-    pub(super) fn new(
-        reading: &Reading<'_>,
-        (record, read): (Record, ReadFile),
-    ) -> Result<Self, Fault> {
+    pub fn new(reading: &Reading<'_>, (record, read): (Record, ReadFile)) -> Result<Self, Fault> {
         let Reading { plan, campaign, unit, which } = *reading;
         let axis = &plan.axis.column;
         let place = unit.extent.map(|(start, end)| Section { start, end, at: unit.span.clone() });

@@ -42,7 +42,17 @@ pub enum Signal {
     Constant(f64),
 }
 
+/// A column over the time or the axis, at some points of that.
+fn interpolated(over: &[f64], column: &[f64], points: &[f64]) -> Result<Vec<f64>, Reason> {
+    resample::interpolate(over, column, points).map_err(Reason::method)
+}
+
 impl Along {
+    /// The time, as far as there is one, or the axis.
+    fn over(&self, over_time: bool) -> &Arc<Vec<f64>> {
+        self.time.as_ref().filter(|_| over_time).unwrap_or(&self.axis)
+    }
+
     /// The samples with start <= axis <= end.
     pub fn inside(&self, (start, end): Extent) -> Range<usize> {
         let from = self.axis.partition_point(|&x| x < start);
@@ -81,7 +91,6 @@ impl Along {
         }
     }
 
-    /// Where a sample is, as text.
     /// The row of a sample in its file, or else where it is on the axis.
     fn place(&self, sample: usize) -> (Option<usize>, Option<f64>) {
         match self.first_row {
@@ -158,33 +167,31 @@ impl Samples {
     }
 
     fn resampled(&self, step: f64, over_time: bool) -> Result<Self, Reason> {
-        let axis = &self.along.axis;
-        let over = if over_time { self.along.time.as_ref().unwrap_or(axis) } else { axis };
+        let over = self.along.over(over_time);
         let (grid, values) =
             resample::resample(over, &self.values, step).map_err(Reason::method)?;
-        let along = if over_time {
-            let axis = resample::interpolate(over, axis, &grid).map_err(Reason::method)?;
-            Along {
-                axis: Arc::new(axis),
-                time: Some(Arc::new(grid)),
-                rate: Rate::PerTime(1.0 / step),
-                first_row: None,
-            }
+        let time = self.along.time.as_ref().filter(|_| !over_time);
+        let time = time.map(|time| interpolated(over, time, &grid)).transpose()?;
+        self.at_points(grid, values, step, over_time, time)
+    }
+
+    /// Values at points of the time or of the axis, `step` apart; `time` is that of points of the
+    /// axis.
+    fn at_points(
+        &self,
+        points: Vec<f64>,
+        values: Vec<f64>,
+        step: f64,
+        over_time: bool,
+        time: Option<Vec<f64>>,
+    ) -> Result<Self, Reason> {
+        let (axis, time, rate) = if over_time {
+            let axis = interpolated(self.along.over(true), &self.along.axis, &points)?;
+            (axis, Some(points), Rate::PerTime(1.0 / step))
         } else {
-            let time = self
-                .along
-                .time
-                .as_ref()
-                .map(|time| resample::interpolate(over, time, &grid))
-                .transpose()
-                .map_err(Reason::method)?;
-            Along {
-                axis: Arc::new(grid),
-                time: time.map(Arc::new),
-                rate: Rate::PerLength(1.0 / step),
-                first_row: None,
-            }
+            (points, time, Rate::PerLength(1.0 / step))
         };
+        let along = Along { axis: Arc::new(axis), time: time.map(Arc::new), rate, first_row: None };
         Ok(Self { along: Arc::new(along), values: Arc::new(values) })
     }
 
@@ -214,24 +221,7 @@ impl Samples {
                 let starts = sliding.starts(start, end).map_err(Reason::method)?;
                 let middle: Vec<f64> =
                     starts.iter().map(|from| from + width.min(end - start) / 2.0).collect();
-                let along = if *over_time {
-                    let axis = resample::interpolate(over, &self.along.axis, &middle)
-                        .map_err(Reason::method)?;
-                    Along {
-                        axis: Arc::new(axis),
-                        time: Some(Arc::new(middle)),
-                        rate: Rate::PerTime(1.0 / step),
-                        first_row: None,
-                    }
-                } else {
-                    Along {
-                        axis: Arc::new(middle),
-                        time: None,
-                        rate: Rate::PerLength(1.0 / step),
-                        first_row: None,
-                    }
-                };
-                Ok(Self { along: Arc::new(along), values: Arc::new(values) })
+                self.at_points(middle, values, *step, *over_time, None)
             }
             _ => Err(Reason::Internal),
         }
@@ -245,19 +235,14 @@ impl Samples {
         known: &dyn Values,
         extent: Extent,
     ) -> Result<Self, Reason> {
-        let axis = |over_time: bool| {
-            if over_time {
-                self.along.time.as_ref().unwrap_or(&self.along.axis)
-            } else {
-                &self.along.axis
-            }
-        };
         let values = match operation {
             AxisOperation::Derivative { over_time } => {
-                along::derivative(axis(*over_time), &self.values).ok_or(Reason::TooFewSamples)?
+                along::derivative(self.along.over(*over_time), &self.values)
+                    .ok_or(Reason::TooFewSamples)?
             }
             AxisOperation::Integral { over_time } => {
-                along::integral(axis(*over_time), &self.values).ok_or(Reason::TooFewSamples)?
+                along::integral(self.along.over(*over_time), &self.values)
+                    .ok_or(Reason::TooFewSamples)?
             }
             AxisOperation::Shifted(distance) => {
                 let distance = number(distance, known)?;
@@ -287,7 +272,7 @@ impl Samples {
         if !over_time {
             return Ok((&self.along.axis, extent));
         }
-        let time = self.along.time.as_ref().unwrap_or(&self.along.axis);
+        let time = self.along.over(true);
         let inside = self.along.inside(extent);
         let (Some(first), Some(last)) =
             (time.get(inside.start), time.get(inside.end.wrapping_sub(1)))

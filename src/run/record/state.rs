@@ -26,26 +26,26 @@ pub enum NodeValue {
 
 /// The nodes of a graph on one record, level by level.
 #[derive(Clone, Debug)]
-pub(super) struct State<'a> {
-    pub(super) opened: &'a Opened,
-    pub(super) plan: &'a Plan,
-    pub(super) graph: &'a Graph,
-    pub(super) known: &'a Known<'a>,
-    pub(super) values: Vec<Option<Signal>>,
+pub struct State<'a> {
+    pub opened: &'a Opened,
+    pub plan: &'a Plan,
+    pub graph: &'a Graph,
+    pub known: &'a Known<'a>,
+    pub values: Vec<Option<Signal>>,
     /// Why a node has no value. Nodes that depend on it have none either; the others run on.
-    pub(super) failed: Vec<Option<Reason>>,
+    pub failed: Vec<Option<Reason>>,
     /// Number of nodes that still need the value.
-    pub(super) uses: Vec<usize>,
-    pub(super) cutter: Cutter,
+    pub uses: Vec<usize>,
+    pub cutter: Cutter,
     /// The part of the section that is evaluated.
-    pub(super) extent: Extent,
-    pub(super) found: Vec<(NodeId, NodeValue)>,
+    pub extent: Extent,
+    pub found: Vec<(NodeId, NodeValue)>,
     /// Where results are kept for other protocols, and under which numbers.
-    pub(super) memo: Option<(&'a Memo, &'a Keys)>,
+    pub memo: Option<(&'a Memo, &'a Keys)>,
 }
 
 impl<'a> State<'a> {
-    pub(super) fn new(
+    pub fn new(
         opened: &'a Opened,
         (plan, graph): (&'a Plan, &'a Graph),
         known: &'a Known<'a>,
@@ -69,7 +69,7 @@ impl<'a> State<'a> {
 
     /// The needed nodes by level, inputs before the nodes that use them, and the number of uses of
     /// each.
-    pub(super) fn count(&mut self, needed: &BTreeSet<NodeId>) -> Vec<Vec<NodeId>> {
+    pub fn count(&mut self, needed: &BTreeSet<NodeId>) -> Vec<Vec<NodeId>> {
         let mut level = vec![0_usize; self.graph.nodes.len()];
         let mut levels: Vec<Vec<NodeId>> = Vec::new();
         for &id in needed {
@@ -86,7 +86,7 @@ impl<'a> State<'a> {
     }
 
     /// Runs the chosen nodes and keeps the values of the requested ones.
-    pub(super) fn run(
+    pub fn run(
         &mut self,
         levels: &[Vec<NodeId>],
         wanted: &BTreeSet<NodeId>,
@@ -125,7 +125,7 @@ impl<'a> State<'a> {
 impl State<'_> {
     /// Takes results from a memo, from the nodes in `open` backwards, as far as nodes are `inside`;
     /// what is left to compute.
-    pub(super) fn recall(
+    pub fn recall(
         &mut self,
         (memo, keys): (&Memo, &Keys),
         mut open: Vec<NodeId>,
@@ -159,7 +159,7 @@ impl State<'_> {
     }
 
     /// Counts the filters among nodes for a comparison of protocols.
-    pub(super) fn count_asked(&self, memo: &Memo, needed: &BTreeSet<NodeId>) {
+    pub fn count_asked(&self, memo: &Memo, needed: &BTreeSet<NodeId>) {
         let filters = needed.iter().filter(|&&id| {
             matches!(&self.graph.nodes[id].operation, Operation::Step(spec) if spec.is_filter())
         });
@@ -236,7 +236,7 @@ impl State<'_> {
         )
     }
 
-    pub(super) fn samples(&self, id: NodeId) -> Result<Samples, Reason> {
+    pub fn samples(&self, id: NodeId) -> Result<Samples, Reason> {
         match self.signal(id)? {
             Signal::Samples(samples) => Ok(samples.clone()),
             // A constant becomes a signal of equal samples where a signal is needed.

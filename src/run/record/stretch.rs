@@ -28,7 +28,7 @@ impl Stretches {
     ///
     /// # Errors
     /// Of `read`.
-    pub(super) fn get(
+    pub fn get(
         &self,
         key: RecordOfStretch,
         read: impl FnOnce() -> Result<Option<Arc<Stretched>>, Fault>,
@@ -52,18 +52,18 @@ impl Stretches {
 pub struct Soundness(Mutex<BTreeMap<RecordOfStretch, bool>>);
 
 impl Soundness {
-    pub(super) fn known(&self, key: RecordOfStretch) -> Option<bool> {
+    pub fn known(&self, key: RecordOfStretch) -> Option<bool> {
         locked(&self.0).get(&key).copied()
     }
 
-    pub(super) fn keep(&self, key: RecordOfStretch, sound: bool) {
+    pub fn keep(&self, key: RecordOfStretch, sound: bool) {
         locked(&self.0).insert(key, sound);
     }
 }
 
 impl Stretched {
     /// `None` if its axes are not sound somewhere.
-    pub(super) fn new(
+    pub fn new(
         plan: &Plan,
         which: WhichRecord,
         (record, read): (Record, ReadFile),
@@ -77,7 +77,7 @@ impl Stretched {
 
     /// Whether the nodes that no section changes have finite values all along. Their values are
     /// kept for the sections.
-    pub(super) fn is_sound(
+    pub fn is_sound(
         self: &Arc<Self>,
         reading: &Reading<'_>,
         graph: &Graph,
@@ -105,7 +105,7 @@ impl Stretched {
     }
 
     /// The record as one section sees it; `None` if it does not cover the section.
-    pub(super) fn section(self: &Arc<Self>, reading: &Reading<'_>) -> Option<Opened> {
+    pub fn section(self: &Arc<Self>, reading: &Reading<'_>) -> Option<Opened> {
         let (extent, (first, last)) = (reading.unit.extent?, self.sampled.extent()?);
         let along = &self.sampled.along;
         let inside = along.inside(extent);
@@ -145,7 +145,7 @@ fn bound(graph: &Graph, needed: &BTreeSet<NodeId>) -> Vec<bool> {
 }
 
 /// Nodes with a property, and those that they lead to.
-pub(super) fn leading(
+pub fn leading(
     graph: &Graph,
     needed: &BTreeSet<NodeId>,
     has: impl Fn(&Operation) -> bool,
@@ -209,7 +209,7 @@ impl State<'_> {
     ///
     /// # Errors
     /// As of [`State::run`].
-    pub(super) fn on_stretch(
+    pub fn on_stretch(
         &mut self,
         needed: &BTreeSet<NodeId>,
         wanted: &BTreeSet<NodeId>,

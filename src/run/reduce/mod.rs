@@ -2,14 +2,11 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `prepared` | what is opened and checked before any record is read |
+//! | `prepared` | what is opened and checked before any record is read; all sections, or a part of them |
 //! | `section` | the values of one section |
-//! | `shards` | all sections, or a part of them |
 
 mod prepared;
 pub mod section;
-pub mod shards;
 
-pub use prepared::{Prepared, Progress};
+pub use prepared::{Numbered, Prepared, Progress, Shard};
 pub use section::wanted_of;
-pub use shards::{Numbered, Shard};

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use indexmap::IndexMap;
 use rayon::prelude::*;
 
-use super::facts::Facts;
-use super::needed::needed;
+use super::facts::{Facts, needed};
 use super::unit::Unit;
 use crate::check::plan::{Plan, Side};
 use crate::data::record::RecordSource;
@@ -28,27 +28,24 @@ pub type Seen = Vec<(WhichRecord, BTreeSet<String>)>;
 
 /// Reads the headings of every record.
 pub fn seen_columns(plan: &Plan, campaign: &Campaign, units: &[&Unit]) -> Seen {
-    let mut seen = Seen::new();
     let sides = Side::ALL.into_iter().filter(|side| plan.reads(*side)).map(Side::kind);
     let kinds = sides.chain(Some(RecordKind::Track).filter(|kind| campaign.has(*kind)));
-    for which in kinds.flat_map(|kind| campaign.records(kind)) {
+    let seen = |which: WhichRecord| {
         // A record that cannot be read is a fault of its section and is reported when it is opened.
-        let all: Vec<Option<RecordSource>> =
-            units.par_iter().map(|unit| campaign.source_of(which, &unit.cell).ok()).collect();
+        let all: Vec<RecordSource> = units
+            .par_iter()
+            .filter_map(|unit| campaign.source_of(which, &unit.cell).ok())
+            .collect();
         // Sections of a run are in one file.
         let mut read = BTreeSet::new();
-        let files: Vec<RecordSource> = all
-            .into_iter()
-            .flatten()
-            .filter(|source| read.insert(source.inside().to_string()))
-            .collect();
+        let files: Vec<RecordSource> =
+            all.into_iter().filter(|source| read.insert(source.inside().to_string())).collect();
         let names = |source: &RecordSource| {
             source.headings().into_iter().flatten().map(|heading| heading.name)
         };
-        let columns = files.par_iter().flat_map_iter(names).collect();
-        seen.push((which, columns));
-    }
-    seen
+        (which, files.par_iter().flat_map_iter(names).collect())
+    };
+    kinds.flat_map(|kind| campaign.records(kind)).map(seen).collect()
 }
 
 /// Positions of plausibility rules whose columns are in the records; other positions are not
@@ -129,7 +126,11 @@ pub fn present_columns(
                     if !none {
                         for (column, which) in missing {
                             let records = campaign.record_in_words(*which);
-                            left_out.add(column, RecordsOf { records, campaign: called.cloned() });
+                            let record = RecordsOf { records, campaign: called.cloned() };
+                            let known = left_out.entry(column.clone()).or_default();
+                            if !known.contains(&record) {
+                                known.push(record);
+                            }
                         }
                     }
                     none || missing.is_empty()
@@ -137,40 +138,24 @@ pub fn present_columns(
                 .collect()
         })
         .collect();
-    notes.extend(left_out.notes());
+    notes.extend(lacking(left_out));
     present
 }
 
 /// Columns that are in no record of some records, in the order of the protocol.
-#[derive(Default)]
-struct LeftOut {
-    columns: Vec<(String, Vec<RecordsOf>)>,
-}
+type LeftOut = IndexMap<String, Vec<RecordsOf>>;
 
-impl LeftOut {
-    fn add(&mut self, column: &str, record: RecordsOf) {
-        let at = self.columns.iter().position(|(known, _)| known == column).unwrap_or_else(|| {
-            self.columns.push((column.to_owned(), Vec::new()));
-            self.columns.len() - 1
-        });
-        let records = &mut self.columns[at].1;
-        if !records.contains(&record) {
-            records.push(record);
+/// One note for all columns that the same records lack.
+fn lacking(left_out: LeftOut) -> Vec<Remark> {
+    let mut groups: Vec<(Vec<String>, Vec<RecordsOf>)> = Vec::new();
+    for (column, records) in left_out {
+        match groups.iter_mut().find(|(_, known)| *known == records) {
+            Some((columns, _)) => columns.push(column),
+            None => groups.push((vec![column], records)),
         }
     }
-
-    /// One note for all columns that the same records lack.
-    fn notes(self) -> Vec<Remark> {
-        let mut groups: Vec<(Vec<String>, Vec<RecordsOf>)> = Vec::new();
-        for (column, records) in self.columns {
-            match groups.iter_mut().find(|(_, known)| *known == records) {
-                Some((columns, _)) => columns.push(column),
-                None => groups.push((vec![column], records)),
-            }
-        }
-        let remark = |(channels, records)| Remark::LackingChannels { channels, records };
-        groups.into_iter().map(remark).collect()
-    }
+    let remark = |(channels, records)| Remark::LackingChannels { channels, records };
+    groups.into_iter().map(remark).collect()
 }
 
 /// Columns that a node needs in some section.

@@ -1,15 +1,21 @@
-//! Vehicle data under the names of the protocol, and values of names in expressions during a run.
+//! Vehicle data under the names of the protocol, values of names in expressions during a run, and the
+//! nodes of the graph that a section needs by them.
+
+use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
 use super::unit::Unit;
-use crate::check::plan::{Datum, DatumKind, Plan, Scalar};
+use crate::check::evaluate::{flag, words};
+use crate::check::plan::{Datum, DatumKind, Expr, Plan, Scalar};
 use crate::check::values::Values;
 use crate::data::Campaigns;
 use crate::data::campaign::VehicleState;
+use crate::graph::{Graph, NodeId, Operation};
 use crate::problem::{Problem, Problems};
 use crate::result::{DataItem, Reason, Subject};
-use crate::units::{self, Dimension, number::Refused};
+use crate::units::number::Refused;
+use crate::units::{self, Dimension};
 use crate::yaml::Value;
 
 /// Values of one vehicle, one for each [`Plan::vehicle`].
@@ -77,11 +83,13 @@ impl Unit {
 impl Vehicle {
     /// The values as a report prints them.
     fn items(&self, plan: &Plan) -> Vec<DataItem> {
-        let of = |(datum, (value, assumed)): (&Datum, (&Result<Scalar, Reason>, &bool))| {
-            let unit_assumed = *assumed && is_dimensioned(&datum.kind);
-            DataItem { unit_assumed, of: self.of.clone(), ..vehicle_item(datum, value) }
-        };
-        plan.vehicle.iter().zip(self.data.iter().zip(&self.assumed)).map(of).collect()
+        let data = plan.vehicle.iter().zip(&self.data).zip(&self.assumed);
+        data.map(|((datum, value), assumed)| DataItem {
+            unit_assumed: *assumed && is_dimensioned(&datum.kind),
+            of: self.of.clone(),
+            ..vehicle_item(datum, value)
+        })
+        .collect()
     }
 
     /// A reason with the vehicle that it is of, where there are several.
@@ -112,8 +120,7 @@ pub fn item(datum: &Datum, value: Option<&Scalar>) -> DataItem {
         value,
         unit: unit.map(|unit| unit.text.clone()),
         used: true,
-        unit_assumed: false,
-        of: None,
+        ..DataItem::default()
     }
 }
 
@@ -129,14 +136,7 @@ pub const NOT_STATED: &str = "not stated";
 pub fn vehicle_item(datum: &Datum, value: &Result<Scalar, Reason>) -> DataItem {
     match value {
         Ok(value) => item(datum, Some(value)),
-        Err(_) => DataItem {
-            name: datum.title.clone(),
-            value: NOT_STATED.into(),
-            unit: None,
-            used: true,
-            unit_assumed: false,
-            of: None,
-        },
+        Err(_) => DataItem { value: NOT_STATED.into(), unit: None, ..item(datum, None) },
     }
 }
 
@@ -289,11 +289,32 @@ pub struct Known<'a> {
     pub extent: Option<(f64, f64)>,
     pub inputs: &'a [Result<f64, Reason>],
     pub sides: Option<(f64, f64)>,
+    /// Of the statistics that a limit may refer to.
+    pub limits: Option<&'a dyn Limits>,
+    /// See [`Values::rounding`].
+    pub rounding: f64,
+}
+
+/// Limits that other limits refer to.
+pub trait Limits: std::fmt::Debug {
+    /// The limit of a statistic, SI.
+    ///
+    /// # Errors
+    /// It has none.
+    fn limit_of(&self, statistic: &str) -> Result<f64, Reason>;
 }
 
 impl<'a> Known<'a> {
     pub fn vehicle(vehicle: &'a Vehicle) -> Self {
-        Self { vehicle, columns: None, extent: None, inputs: &[], sides: None }
+        Self {
+            vehicle,
+            columns: None,
+            extent: None,
+            inputs: &[],
+            sides: None,
+            limits: None,
+            rounding: 0.0,
+        }
     }
 }
 
@@ -320,4 +341,50 @@ impl Values for Known<'_> {
     fn sides(&self) -> Result<(f64, f64), Reason> {
         self.sides.ok_or(Reason::NoPairHere)
     }
+
+    fn limit_of(&self, statistic: &str) -> Result<f64, Reason> {
+        let unknown = || Reason::LimitUnknown { estimate: statistic.into() };
+        self.limits.ok_or_else(unknown)?.limit_of(statistic)
+    }
+
+    fn rounding(&self) -> f64 {
+        self.rounding
+    }
+}
+
+/// All nodes that the requested ones need in one section; of the cases of a signal, only the one
+/// that applies.
+pub fn needed(
+    graph: &Graph,
+    wanted: &BTreeSet<NodeId>,
+    known: &Known<'_>,
+) -> Result<BTreeSet<NodeId>, Reason> {
+    let mut needed = BTreeSet::new();
+    let mut open: Vec<NodeId> = wanted.iter().copied().collect();
+    while let Some(id) = open.pop() {
+        if !needed.insert(id) {
+            continue;
+        }
+        let node = &graph.nodes[id];
+        match &node.operation {
+            Operation::Select(conditions) => {
+                open.push(node.inputs[chosen(conditions, &node.inputs, known)?])
+            }
+            _ => open.extend(&node.inputs),
+        }
+    }
+    Ok(needed)
+}
+
+/// The input of a `Select` that applies in this section.
+pub fn chosen(conditions: &[Expr], inputs: &[NodeId], known: &Known<'_>) -> Result<usize, Reason> {
+    for (index, condition) in conditions.iter().enumerate() {
+        if flag(condition, known)? {
+            return Ok(index);
+        }
+    }
+    if inputs.len() > conditions.len() {
+        return Ok(inputs.len() - 1);
+    }
+    Err(Reason::NoCaseOfSignal { expression: conditions.first().map_or(String::new(), words) })
 }

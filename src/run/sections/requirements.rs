@@ -1,11 +1,13 @@
 //! Requirements on the data of sections, which need no record.
 
-use super::facts::{Facts, Vehicle, item};
+use indexmap::IndexMap;
+
+use super::facts::{Facts, Known, Vehicle, item};
 use super::unit::Unit;
 use crate::check::evaluate::{flag, number};
-use crate::check::plan::{Expr, Kind, Plan, Zone};
+use crate::check::plan::{Expr, Kind, Plan, SectionRules, Zone};
 use crate::check::possible::{Possible, possible};
-use crate::check::values::Watched;
+use crate::check::values::{Values, Watched};
 use crate::result::{
     CheckResult, DataItem, Datum, Finding, FindingData, Occurrence, Reason, Sections, Subject,
 };
@@ -23,34 +25,17 @@ pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
             let reason = reason.clone();
             unit.refuse(reason, true);
         }
-        let mut checks = Vec::new();
-        if let Some(only) = &plan.sections.only {
-            checks.push(condition(
-                plan,
-                facts,
-                unit,
-                "selection",
-                "Selection of sections",
-                only,
-                &plan.sections.only_words,
-            ));
-        }
-        if let Some(zone) =
-            unit.zone.as_ref().and_then(|name| plan.zones.iter().find(|zone| zone.name == *name))
-        {
-            if let Some(of_zone) = &zone.condition {
-                let title = format!("Zone {}", zone.name);
-                checks.push(condition(
-                    plan,
-                    facts,
-                    unit,
-                    "zone",
-                    &title,
-                    of_zone,
-                    &zone.condition_words,
-                ));
-            }
-            checks.extend(length(plan, facts, unit, zone));
+        let zone = unit.zone.as_ref();
+        let zone = zone.and_then(|name| plan.zones.iter().find(|zone| zone.name == *name));
+        let known = unit.known(facts);
+        let SectionRules { only, only_words, .. } = &plan.sections;
+        let selection = ("selection", "Selection of sections".to_string());
+        let mut checks: Vec<CheckResult> = Vec::new();
+        checks.extend(condition(plan, &known, selection, (only, only_words)));
+        if let Some(zone) = zone {
+            let name = ("zone", format!("Zone {}", zone.name));
+            checks.extend(condition(plan, &known, name, (&zone.condition, &zone.condition_words)));
+            checks.extend(length(plan, &known, zone));
         }
         for check in checks {
             // A datum missing from the vehicle file is not a fault of the section. The section is
@@ -80,30 +65,19 @@ pub fn check_data(plan: &Plan, facts: &Facts, units: &mut [Unit]) {
 /// A condition on the section's data, reported with the data that it uses.
 fn condition(
     plan: &Plan,
-    facts: &Facts,
-    unit: &Unit,
-    name: &str,
-    title: &str,
-    expr: &Expr,
-    words: &str,
-) -> CheckResult {
-    let known = unit.known(facts);
-    let watched = Watched::new(&known);
-    let found = flag(expr, &watched);
-    let read = || {
-        watched
-            .columns()
-            .iter()
-            .map(|&index| item(&plan.columns[index], unit.columns[index].as_ref().ok()))
-            .map(|DataItem { name, value, unit, .. }| Datum {
-                name: name.to_lowercase(),
-                value,
-                unit,
-            })
-            .collect()
+    known: &Known<'_>,
+    (name, title): (&str, String),
+    (condition, words): (&Option<Expr>, &str),
+) -> Option<CheckResult> {
+    let watched = Watched::new(known);
+    let found = flag(condition.as_ref()?, &watched);
+    let read = |index: usize| {
+        let value = known.column(index).ok();
+        let DataItem { name, value, unit, .. } = item(&plan.columns[index], value.as_ref());
+        Datum { name: name.to_lowercase(), value, unit }
     };
-    let (holds, says) = met(found, words, read);
-    CheckResult { name: name.into(), title: title.into(), holds, says }
+    let (holds, says) = met(found, words, || watched.columns().into_iter().map(read).collect());
+    Some(CheckResult { name: name.into(), title, holds, says })
 }
 
 /// Whether a condition holds, and why; `found` are the data that it reads.
@@ -126,20 +100,19 @@ pub fn of_check(check: &CheckResult) -> Reason {
     check.says.clone().about(Subject::Check, check.title.to_lowercase())
 }
 
-fn length(plan: &Plan, facts: &Facts, unit: &Unit, zone: &Zone) -> Option<CheckResult> {
-    let (minimum, (start, end)) = (zone.minimum_length.as_ref()?, unit.extent?);
+fn length(plan: &Plan, known: &Known<'_>, zone: &Zone) -> Option<CheckResult> {
+    let (minimum, (start, end)) = (zone.minimum_length.as_ref()?, known.extent?);
     let axis = &plan.axis.unit;
-    let known = unit.known(facts);
     let (length, unit) = (axis.from_si(end - start), axis.text.clone());
     // A length written with two decimals may be below the minimum by rounding only.
     let reaches = |minimum: f64| end - start >= minimum * (1.0 - ROUNDING);
-    let (holds, says) = match number(minimum, &known) {
+    let (holds, says) = match number(minimum, known) {
         Ok(minimum) => {
             let (holds, minimum) = (reaches(minimum), axis.from_si(minimum));
             (Some(holds), Reason::Length { length, minimum, unit })
         }
         // Long enough or too short for every value of the unknown names, or not decided.
-        Err(reason) => match possible(minimum, &known) {
+        Err(reason) => match possible(minimum, known) {
             Possible::Number(_, most) if reaches(most) => {
                 (Some(true), Reason::LongEnough { length, most: axis.from_si(most), unit })
             }
@@ -167,23 +140,16 @@ pub fn not_stated(expr: &Expr, vehicle: &Vehicle) -> Vec<usize> {
 /// One finding for each vehicle datum that is not stated and each requirement that could not be
 /// checked without it.
 pub fn findings(plan: &Plan, facts: &Facts, units: &[Unit]) -> Vec<Finding> {
-    let mut found: Vec<(usize, &str, Vec<&str>)> = Vec::new();
+    let mut found: IndexMap<(usize, &str), Vec<&str>> = IndexMap::new();
     for unit in units.iter().filter(|unit| unit.fault.is_none()) {
         for check in unit.checks.iter().filter(|check| check.holds.is_none()) {
-            for index in asked(plan, unit, check)
-                .map_or_else(Vec::new, |expr| not_stated(expr, facts.of(unit)))
-            {
-                match found
-                    .iter_mut()
-                    .find(|(known, title, _)| *known == index && *title == check.title)
-                {
-                    Some((_, _, names)) => names.push(&unit.name),
-                    None => found.push((index, &check.title, vec![&unit.name])),
-                }
+            let Some(expr) = asked(plan, unit, check) else { continue };
+            for index in not_stated(expr, facts.of(unit)) {
+                found.entry((index, &check.title)).or_default().push(&unit.name);
             }
         }
     }
-    let finding = |(index, title, names): (usize, &str, Vec<&str>)| {
+    let finding = |((index, title), names): ((usize, &str), Vec<&str>)| {
         let key = &plan.vehicle[index].key;
         let data = FindingData::CheckWithoutVehicleData {
             key: key.clone(),

@@ -80,6 +80,6 @@ fn hash_of(value: f64) -> u64 {
 
 /// Half of the bits: two signals with a thousand marks each agree in one by chance once in 4000
 /// pairs, and copies share several.
-pub(in crate::run) fn shortened(hash: u64) -> u32 {
+pub fn shortened(hash: u64) -> u32 {
     (hash >> 32) as u32
 }

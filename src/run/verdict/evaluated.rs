@@ -4,9 +4,7 @@ use super::judge::{self, Judged, Told};
 use crate::check::plan::{EstimateKind, Plan};
 use crate::problem::Problems;
 use crate::result::study::Reduction;
-use crate::result::{
-    Consequence, DomainResult, FileHash, Finding, Reason, Remark, VehicleValue,
-};
+use crate::result::{Consequence, DomainResult, FileHash, Finding, Reason, Remark, VehicleValue};
 use crate::run::data_rules::{copies, nothing_usable, stop_on_fault, take_over};
 use crate::run::describe::domain;
 use crate::run::estimate::{Group, Rows, used};
@@ -34,7 +32,7 @@ pub fn all_values(
 pub struct Evaluated {
     pub facts: Facts,
     pub units: Vec<Unit>,
-    pub(super) values: Vec<SectionValues>,
+    pub values: Vec<SectionValues>,
     pub findings: Vec<Finding>,
     /// Wanted operation against what the sections used cover.
     pub application: Vec<DomainResult>,
@@ -185,6 +183,11 @@ impl Evaluated {
     /// Names of the sections, and why one is not used.
     pub fn sections(&self) -> impl Iterator<Item = (&str, Option<&Reason>)> {
         self.units.iter().map(|unit| (unit.name.as_str(), unit.fault.as_ref()))
+    }
+
+    /// Names of the sections that are used.
+    pub fn used(&self) -> impl Iterator<Item = &str> {
+        self.sections().filter(|(_, fault)| fault.is_none()).map(|(name, _)| name)
     }
 
     /// The same with some sections only; the others are not used.

@@ -3,6 +3,8 @@
 
 use std::collections::BTreeSet;
 
+use indexmap::IndexMap;
+
 use super::verdicts;
 use crate::check::plan::{Chosen, Evaluation, Pairing, Plan, Quantity, Records, Zone};
 use crate::result::{
@@ -81,18 +83,13 @@ pub fn judge(
 /// One reason for each of several campaigns of which no section is used: the verdict names it, but
 /// nothing of it was assessed.
 fn without_sections(units: &[Unit]) -> Vec<Reason> {
-    let mut used: Vec<(&str, bool)> = Vec::new();
+    let mut used: IndexMap<&str, bool> = IndexMap::new();
     for unit in units {
         let Some(name) = unit.campaign_name.as_deref() else { continue };
-        match used.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, any)) => *any |= unit.fault.is_none(),
-            None => used.push((name, unit.fault.is_none())),
-        }
+        *used.entry(name).or_default() |= unit.fault.is_none();
     }
-    used.iter()
-        .filter(|(_, any)| !any)
-        .map(|(name, _)| Reason::NoSectionOfCampaign { campaign: (*name).into() })
-        .collect()
+    let unused = used.into_iter().filter(|(_, any)| !any);
+    unused.map(|(name, _)| Reason::NoSectionOfCampaign { campaign: name.into() }).collect()
 }
 
 /// Number of different sites of the sections.
@@ -106,18 +103,11 @@ fn not_plausible(plan: &Plan, findings: &[Finding], complete: bool) -> Vec<Reaso
     let mut reasons: Vec<Reason> = Vec::new();
     for rule in &plan.plausibility {
         let sections = |consequence: Consequence| {
-            let mut names: Vec<&str> = Vec::new();
-            for place in findings
+            let own = findings
                 .iter()
-                .filter(|finding| finding.code == rule.name && finding.consequence == consequence)
-                .flat_map(Finding::places)
-            {
-                let name = place.section.as_deref().unwrap_or_default();
-                if !names.contains(&name) {
-                    names.push(name);
-                }
-            }
-            names.len()
+                .filter(|finding| finding.code == rule.name && finding.consequence == consequence);
+            let places = own.flat_map(Finding::places);
+            places.map(|place| place.section.as_deref()).collect::<BTreeSet<_>>().len()
         };
         let (barred, taken) =
             (sections(Consequence::NotAssessable), sections(Consequence::NotUsed));
