@@ -200,7 +200,7 @@ impl Checker<'_> {
                             format!("`{word}` is not a percentile rule"),
                             &field.value.span,
                         )
-                        .suggest(&word, Method::ALL.iter().map(|method| method.name())),
+                        .suggest(&word, Method::NAMES.iter().map(|(_, name)| *name)),
                     );
                 }
             }

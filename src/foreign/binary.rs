@@ -2,7 +2,7 @@
 
 /// Type of the numbers of an array, with the bytes of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Number {
+pub enum Number {
     Signed(usize),
     Unsigned(usize),
     Float(usize),
@@ -43,7 +43,7 @@ impl Number {
 
 /// Bytes that are read from the front.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cursor<'a> {
+pub struct Cursor<'a> {
     /// What is left.
     pub rest: &'a [u8],
     /// Whether the first byte of a number is its highest.

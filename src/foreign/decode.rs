@@ -11,7 +11,7 @@ use crate::source::Source;
 ///
 /// # Errors
 /// `encoding`.
-pub(super) fn text<'a>(
+pub fn text<'a>(
     bytes: &'a [u8],
     said: Option<&str>,
     shown: &str,
@@ -54,7 +54,7 @@ pub(super) fn text<'a>(
 }
 
 /// UTF-16 by its byte order mark, or by zeros in every other byte of Latin text.
-pub(super) fn wide(bytes: &[u8]) -> Option<&'static Encoding> {
+pub fn wide(bytes: &[u8]) -> Option<&'static Encoding> {
     match bytes {
         [0xff, 0xfe, ..] => Some(UTF_16LE),
         [0xfe, 0xff, ..] => Some(UTF_16BE),
@@ -72,7 +72,7 @@ fn printable(byte: u8) -> bool {
 const SHOWN: usize = 120;
 
 /// A part of a line around a place, on boundaries of characters: a line can be as long as the file.
-pub(super) fn around(line: &str, at: usize) -> (usize, usize) {
+pub fn around(line: &str, at: usize) -> (usize, usize) {
     let mut from = at.saturating_sub(SHOWN);
     while !line.is_char_boundary(from) {
         from -= 1;

@@ -121,12 +121,7 @@ const ENDINGS: &[(&str, NotRead)] = &[
 ];
 
 /// The format of a file.
-pub(super) fn of(
-    bytes: &[u8],
-    path: &Path,
-    shown: &str,
-    options: &Options,
-) -> Result<Format, Problem> {
+pub fn of(bytes: &[u8], path: &Path, shown: &str, options: &Options) -> Result<Format, Problem> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or("").to_lowercase();
     let not_read = |(what, help): NotRead| {
         Problem::error("format-not-read", format!("`{shown}` is {what}, which is not read"))
@@ -269,7 +264,7 @@ const LOOKED_AT: usize = 4096;
 
 /// Whether bytes are not a text: control characters, but for UTF-16 and UTF-32, where every other
 /// byte or more is zero.
-pub(super) fn binary(bytes: &[u8]) -> bool {
+pub fn binary(bytes: &[u8]) -> bool {
     let start = &bytes[..bytes.len().min(LOOKED_AT)];
     if super::decode::wide(start).is_some() {
         return false;
@@ -279,7 +274,7 @@ pub(super) fn binary(bytes: &[u8]) -> bool {
 
 /// A format whose reader this program was built without.
 #[cfg(not(feature = "foreign"))]
-pub(super) fn not_built(format: Format, shown: &str) -> Problem {
+pub fn not_built(format: Format, shown: &str) -> Problem {
     Problem::error(
         "format-not-read",
         format!("`{shown}` is {}; this program was built without its reader", format.title()),

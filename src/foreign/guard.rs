@@ -12,7 +12,7 @@ use crate::problem::Problem;
 ///
 /// # Errors
 /// `format-damaged` if it panics: its authors did not expect the content.
-pub(super) fn call(
+pub fn call(
     input: &Input<'_>,
     reader: impl FnOnce(&Input<'_>) -> Result<Read, Vec<Problem>>,
 ) -> Result<Read, Vec<Problem>> {
@@ -20,7 +20,7 @@ pub(super) fn call(
 }
 
 /// Why a part of a file is not read.
-pub(super) enum Failure {
+pub enum Failure {
     /// It is not as its format prescribes.
     Damaged(String),
     /// It unpacks to more than [`most_unpacked`].

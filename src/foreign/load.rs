@@ -10,13 +10,13 @@ const LARGEST: u64 = 1 << 30;
 
 /// Maximum number of values of a file: 2 GB of numbers, a hundred channels at 1 kHz for 45 minutes.
 /// A compressed file can hold more than its size suggests.
-pub(super) const MOST_VALUES: usize = 1 << 28;
+pub const MOST_VALUES: usize = 1 << 28;
 
 /// Maximum number of channels of a file; a large measuring system has some thousands.
-pub(super) const MOST_CHANNELS: usize = 100_000;
+pub const MOST_CHANNELS: usize = 100_000;
 
 /// All bytes of a plain file.
-pub(super) fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
+pub fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
     read_file(path, shown, LARGEST).map_err(|problem| match problem.code {
         "file-too-large" => {
             problem.help("export it in parts, or leave out channels that are not needed")
@@ -32,13 +32,13 @@ const ALWAYS_UNPACKED: usize = 64 << 20;
 const MOST_EXPANSION: usize = 100;
 
 /// Bytes that a file of this size may hold when it is unpacked.
-pub(super) fn most_unpacked(size: usize) -> usize {
+pub fn most_unpacked(size: usize) -> usize {
     size.saturating_mul(MOST_EXPANSION).saturating_add(ALWAYS_UNPACKED).min(8 * MOST_VALUES)
 }
 
 /// Counts the values of a file, which can be many more than its bytes suggest.
 #[derive(Debug)]
-pub(super) struct Budget<'a> {
+pub struct Budget<'a> {
     shown: &'a str,
     most: usize,
     values: usize,

@@ -13,7 +13,8 @@ use crate::problem::Problem;
 const LINKS_AT: usize = 24;
 const SAMPLES_AT: usize = 8;
 
-pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
+/// The channel groups of a file as tables.
+pub fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let most = most_unpacked(input.bytes.len()) as u64;
     // One more than is accepted: what reaches the limit would be cut without a word.
     let options = OpenOptions {

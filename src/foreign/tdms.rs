@@ -60,7 +60,8 @@ struct Reader<'a> {
     place: String,
 }
 
-pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
+/// The groups of a file as tables.
+pub fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let mut reader = Reader {
         objects: IndexMap::new(),
         active: Vec::new(),

@@ -28,7 +28,8 @@ enum Cell {
 /// The filled cells of a row: column and content, from the left.
 type Row = (u32, Vec<(u32, Cell)>);
 
-pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
+/// The sheets of a workbook as tables.
+pub fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     unpacks(input)?;
     let mut book: Xlsx<_> = Xlsx::new(Cursor::new(&input.bytes[..]))
         .map_err(|error| input.damaged("the workbook", error))?;

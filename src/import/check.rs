@@ -9,7 +9,7 @@ use crate::data::record::Format;
 use crate::data::table::Cell;
 use crate::disk;
 use crate::problem::{Problem, Problems, error};
-use crate::source::{Source, Span};
+use crate::source::Source;
 
 /// The campaign that a mapping makes, without its records.
 #[derive(Debug)]
@@ -48,21 +48,12 @@ impl NotWritten {
             );
             let at = runs.table.as_ref().map_or(&mapping.sections.span, |written| &written.span);
             let problem = error("column-missing", says, at);
-            let known: Vec<&str> =
-                table.columns.iter().map(|column| column.name.as_str()).collect();
+            let known = table.columns.iter().map(|column| column.name.as_str());
             let near = problem.suggest(RUN_COLUMN, known);
-            let runs = mapping
-                .sections
-                .names
-                .iter()
-                .map(|name| name.value.as_str())
-                .collect::<Vec<_>>()
-                .join(", ");
-            problems.push(if near.near.is_some() {
-                near
-            } else {
-                near.help(format!("add it, with a run in each row: {runs}"))
-            });
+            let names = mapping.sections.names.iter().map(|name| name.value.as_str());
+            let runs = names.collect::<Vec<_>>().join(", ");
+            let help = format!("add it, with a run in each row: {runs}");
+            problems.push(if near.near.is_some() { near } else { near.help(help) });
         }
         (problems.errors() == before).then_some(Self { campaign, names })
     }
@@ -102,13 +93,11 @@ fn tracks(mapping: &Mapping, problems: &mut Problems) {
 /// A problem of a copied file, with the name that the file has beside the mapping.
 fn placed(mut problem: Problem, names: &[(String, String)]) -> Problem {
     let spans = problem.at.iter_mut().chain(problem.also.iter_mut().map(|(span, _)| span));
-    spans.for_each(|span| rename(span, names));
-    problem
-}
-
-fn rename(span: &mut Span, names: &[(String, String)]) {
-    if let Some((_, shown)) = names.iter().find(|(inside, _)| *inside == span.source.name) {
-        span.source =
-            Source::excerpt(shown.as_str(), span.source.text.as_str(), span.source.first_line);
+    for span in spans {
+        let Source { name, text, first_line, .. } = &*span.source;
+        if let Some((_, shown)) = names.iter().find(|(inside, _)| inside == name) {
+            span.source = Source::excerpt(shown.as_str(), text.as_str(), *first_line);
+        }
     }
+    problem
 }

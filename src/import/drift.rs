@@ -5,7 +5,6 @@ use std::borrow::Cow;
 
 use super::mapping::Drift;
 use super::process::{Column, Made, Values, short};
-use crate::data::RecordKind;
 use crate::metrics::drift::{Curve, Point, Signals, Tracker, Windows, within};
 use crate::metrics::statistics::{Divisor, regression, standard_deviation};
 use crate::problem::{Problem, error};
@@ -31,32 +30,23 @@ const MOST_CLOCK: f64 = 500e-6;
 /// `no-drift`: no window in which the records agree, or no certain drift of the clock;
 /// `axis-not-increasing`: the corrected distance would go back.
 pub fn drift(asked: &Drift, measured: &mut Made, simulated: &Made) -> Result<(), Problem> {
-    let name = measured.section.clone();
-    let fault = |code: &'static str, says: String| {
-        error(code, format!("run `{name}`: {says}"), &asked.span)
+    let run = format!("run `{}`", measured.section);
+    let fault = |code: &'static str, says: &str| error(code, format!("{run}: {says}"), &asked.span);
+    let axis = |made: &Made| {
+        made.columns.iter().position(|column| column.name == "distance").ok_or_else(|| {
+            fault("no-drift", &format!("its {} has no distance", made.kind.key()))
+                .help("state it: `distance`")
+        })
     };
-    let axis = |made: &Made| made.columns.iter().position(|column| column.name == "distance");
-    let (Some(own), Some(other)) = (axis(measured), axis(simulated)) else {
-        let side =
-            if axis(measured).is_none() { RecordKind::Measurement } else { RecordKind::Simulation };
-        return Err(fault("no-drift", format!("its {} has no distance", side.key()))
-            .help("state it: `distance`"));
-    };
+    let (own, other) = (axis(measured)?, axis(simulated)?);
     let names = common(measured, simulated);
     if names.is_empty() {
-        let help = "the channels of both sides are compared that have the same name";
-        return Err(fault(
-            "no-drift",
-            "measurement and simulation have no channel in common".into(),
-        )
-        .help(help));
+        return Err(fault("no-drift", "measurement and simulation have no channel in common")
+            .help("the channels of both sides are compared that have the same name"));
     }
     let windows = Windows::of(asked.window, asked.within);
-    let (points, looked) = tracked(
-        windows,
-        &Record::of(measured, own, &names)?,
-        &Record::of(simulated, other, &names)?,
-    )?;
+    let both = (Record::new(measured, own, &names)?, Record::new(simulated, other, &names)?);
+    let (points, looked) = tracked(windows, &both.0, &both.1)?;
     let Some(curve) = Curve::new(&points) else {
         let says = match points.len() {
             0 => format!(
@@ -65,15 +55,15 @@ pub fn drift(asked: &Drift, measured: &mut Made, simulated: &Made) -> Result<(),
             ),
             _ => "the shifts along the run would let the distance go back".to_string(),
         };
-        let help = format!(
+        return Err(fault("no-drift", &says).help(format!(
             "check signs and channels; a shift of more than {} m needs a larger `within`",
             short(asked.within)
-        );
-        return Err(fault("no-drift", says).help(help));
+        )));
     };
+    drop(both);
     measured.steps.push(told(&points, looked, asked, names.len()));
-    let of_clock = clock(measured, simulated, &points, (own, other))?;
-    told_clock(asked, measured, of_clock, points.len())?;
+    let clock = clock(measured, simulated, &points, (own, other))?;
+    correct_clock(asked, measured, clock, points.len())?;
     if !asked.correct {
         return Ok(());
     }
@@ -83,31 +73,36 @@ pub fn drift(asked: &Drift, measured: &mut Made, simulated: &Made) -> Result<(),
     if let Some(row) = (1..values.len()).find(|&row| values[row] <= values[row - 1]) {
         let says = format!("the corrected distance does not increase at {} m", short(values[row]));
         return Err(
-            fault("axis-not-increasing", says).help("leave the drift as it is: `drift: tell`")
+            fault("axis-not-increasing", &says).help("leave the drift as it is: `drift: tell`")
         );
     }
-    let (first, last) = (values[0], values[values.len() - 1]);
-    measured.columns[own].values = Values::Held(values);
     measured.steps.push(format!(
         "distance of the {} corrected along the run, linear between these points: now {} m to {} m",
         measured.kind.key(),
-        short(first),
-        short(last)
+        short(values[0]),
+        short(values[values.len() - 1])
     ));
+    measured.columns[own].values = Values::Held(values);
     Ok(())
 }
 
 /// Channels of both sides, with the same name and dimension, that are no axis.
 fn common(measured: &Made, simulated: &Made) -> Vec<String> {
-    let axis =
+    let is_axis =
         |column: &Column| [Dimension::TIME, Dimension::LENGTH].contains(&column.unit.dimension);
-    let same = |column: &Column, other: &Column| {
-        column.name == other.name && column.unit.dimension == other.unit.dimension
+    let is_in_both = |column: &&Column| {
+        simulated
+            .columns
+            .iter()
+            .any(|other| column.name == other.name && column.unit.dimension == other.unit.dimension)
     };
-    let both = measured.columns.iter().filter(|column| {
-        !axis(column) && simulated.columns.iter().any(|other| same(column, other))
-    });
+    let both = measured.columns.iter().filter(|column| !is_axis(column)).filter(is_in_both);
     both.map(|column| column.name.clone()).collect()
+}
+
+/// The values of a column.
+fn column<'a>(made: &'a Made, name: &str) -> Option<&'a Values> {
+    made.columns.iter().find(|column| column.name == name).map(|column| &column.values)
 }
 
 /// The axis of a record, and the channels that are compared.
@@ -117,14 +112,13 @@ struct Record<'a> {
 }
 
 impl<'a> Record<'a> {
-    fn of(made: &'a Made, axis: usize, names: &[String]) -> Result<Self, Problem> {
-        let column = |name: &String| {
-            made.columns.iter().find(|column| column.name == *name).map(|column| &column.values)
-        };
-        Ok(Self {
-            axis: made.columns[axis].values.all()?,
-            channels: names.iter().filter_map(column).collect(),
-        })
+    fn new(made: &'a Made, axis: usize, names: &[String]) -> Result<Self, Problem> {
+        let channels = names.iter().filter_map(|name| column(made, name)).collect();
+        Ok(Self { axis: made.columns[axis].values.all()?, channels })
+    }
+
+    fn ends(&self) -> (f64, f64) {
+        self.axis.first().copied().zip(self.axis.last().copied()).unwrap_or((0.0, 0.0))
     }
 
     /// What lies in a range of the axis.
@@ -146,8 +140,7 @@ fn tracked(
     simulated: &Record<'_>,
 ) -> Result<(Vec<Point>, usize), Problem> {
     let mut tracker = Tracker::new(windows);
-    let ends = |axis: &[f64]| axis.first().copied().zip(axis.last().copied()).unwrap_or((0.0, 0.0));
-    let ((m0, m1), (s0, s1)) = (ends(&measured.axis), ends(&simulated.axis));
+    let ((m0, m1), (s0, s1)) = (measured.ends(), simulated.ends());
     let mut start = s0.max(m0 + 1.0);
     loop {
         let end = start + windows.length;
@@ -164,19 +157,17 @@ fn tracked(
 }
 
 fn told(points: &[Point], looked: usize, asked: &Drift, channels: usize) -> String {
-    let shift = |point: &Point| point.estimate.shift;
-    let least = points.iter().map(shift).fold(f64::INFINITY, f64::min);
-    let most = points.iter().map(shift).fold(f64::NEG_INFINITY, f64::max);
-    let widest = points
-        .iter()
-        .map(|point| (point.estimate.high - point.estimate.low) / 2.0)
-        .fold(0.0, f64::max);
+    let shifts = || points.iter().map(|point| point.estimate.shift);
+    let (least, most) =
+        (shifts().fold(f64::INFINITY, f64::min), shifts().fold(f64::NEG_INFINITY, f64::max));
+    let half_widths = points.iter().map(|point| (point.estimate.high - point.estimate.low) / 2.0);
+    let widest = half_widths.fold(0.0, f64::max);
     // A few points along the run show its course; the outer ones are always among them.
     let count = points.len().min(MOST_LISTED);
     let index = |k: usize| if count < 2 { 0 } else { k * (points.len() - 1) / (count - 1) };
     let listed: Vec<String> = (0..count)
         .map(|k| &points[index(k)])
-        .map(|point| format!("{:+.2} m at {:.0} m", shift(point), point.at))
+        .map(|point| format!("{:+.2} m at {:.0} m", point.estimate.shift, point.at))
         .collect();
     format!(
         "drift of the distance by correlation of {channels} channels with the simulation, in {} of {looked} windows of {} m: \
@@ -204,10 +195,8 @@ fn clock(
     (own, other): (usize, usize),
 ) -> Result<Option<Clock>, Problem> {
     let times = |made: &Made, axis: usize, places: Vec<f64>| -> Result<Vec<f64>, Problem> {
-        let Some(column) = made.columns.iter().find(|column| column.name == "time") else {
-            return Ok(Vec::new());
-        };
-        let (times, axis) = (column.values.all()?, made.columns[axis].values.all()?);
+        let Some(times) = column(made, "time") else { return Ok(Vec::new()) };
+        let (times, axis) = (times.all()?, made.columns[axis].values.all()?);
         let at = |place: f64| {
             let after = axis.partition_point(|x| *x < place).clamp(1, axis.len() - 1);
             let share = (place - axis[after - 1]) / (axis[after] - axis[after - 1]);
@@ -216,16 +205,14 @@ fn clock(
         Ok(places.into_iter().map(at).collect())
     };
     let x = times(simulated, other, points.iter().map(|point| point.at).collect())?;
-    let y =
-        times(measured, own, points.iter().map(|point| point.at - point.estimate.shift).collect())?;
+    let moved = points.iter().map(|point| point.at - point.estimate.shift).collect();
+    let y = times(measured, own, moved)?;
     Ok(regression(&x, &y).and_then(|line| {
         let left: Vec<f64> =
             x.iter().zip(&y).map(|(x, y)| y - line.intercept - line.slope * x).collect();
         let spread = standard_deviation(&x, Divisor::Sample)? * (x.len() as f64 - 1.0).sqrt();
-        Some(Clock {
-            drift: line.slope - 1.0,
-            error: standard_deviation(&left, Divisor::Sample)? / spread,
-        })
+        let error = standard_deviation(&left, Divisor::Sample)? / spread;
+        Some(Clock { drift: line.slope - 1.0, error })
     }))
 }
 
@@ -233,51 +220,44 @@ fn clock(
 ///
 /// # Errors
 /// `no-drift`: a drift that is to be corrected is not certain.
-fn told_clock(
+fn correct_clock(
     asked: &Drift,
     measured: &mut Made,
-    found: Option<Clock>,
-    count: usize,
+    clock: Option<Clock>,
+    windows: usize,
 ) -> Result<(), Problem> {
-    let certain = found.as_ref().filter(|clock| {
-        count >= FEWEST_TIMES && clock.error <= UNCERTAIN_CLOCK && clock.drift.abs() <= MOST_CLOCK
-    });
-    if asked.correct_clock && certain.is_none() {
-        let why = match &found {
-            Some(_) if count < FEWEST_TIMES => {
-                format!("{count} windows agree; at least {FEWEST_TIMES} are needed")
-            }
-            Some(clock) => format!(
+    let is_certain =
+        |clock: &Clock| clock.error <= UNCERTAIN_CLOCK && clock.drift.abs() <= MOST_CLOCK;
+    if asked.correct_clock && !(windows >= FEWEST_TIMES && clock.as_ref().is_some_and(is_certain)) {
+        let why = match &clock {
+            Some(clock) if windows >= FEWEST_TIMES => format!(
                 "the times differ by {:+.0} ppm with a standard error of {:.0} ppm; at most {:.0} ppm with {:.0} ppm can be the clock",
                 clock.drift * PARTS,
                 clock.error * PARTS,
                 MOST_CLOCK * PARTS,
                 UNCERTAIN_CLOCK * PARTS
             ),
-            None => format!("{count} windows agree; at least {FEWEST_TIMES} are needed"),
+            _ => format!("{windows} windows agree; at least {FEWEST_TIMES} are needed"),
         };
-        let says = format!(
-            "run `{}`: the drift of the clock cannot be estimated: {why}",
-            measured.section
-        );
+        let section = &measured.section;
+        let says = format!("run `{section}`: the drift of the clock cannot be estimated: {why}");
         let help = "the simulation must be run with the recorded speed; a drift that is known is stated: `time: {drift: 50 ppm}`";
         return Err(error("no-drift", says, &asked.span).help(help));
     }
-    let Some(clock) = found else { return Ok(()) };
+    let Some(Clock { drift, error }) = clock else { return Ok(()) };
     let done = if asked.correct_clock {
         for column in measured.columns.iter_mut().filter(|column| column.name == "time") {
-            let times =
-                column.values.all()?.iter().map(|time| time / (1.0 + clock.drift)).collect();
+            let times = column.values.all()?.iter().map(|time| time / (1.0 + drift)).collect();
             column.values = Values::Held(times);
         }
-        format!("time divided by 1 + {:.8}", clock.drift)
+        format!("time divided by 1 + {drift:.8}")
     } else {
         "nothing was corrected".to_string()
     };
     measured.steps.push(format!(
         "time against that of the simulation at the same places: {:+.0} ppm (standard error {:.0} ppm); {done}",
-        clock.drift * PARTS,
-        clock.error * PARTS
+        drift * PARTS,
+        error * PARTS
     ));
     Ok(())
 }

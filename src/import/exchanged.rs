@@ -4,13 +4,13 @@
 use rayon::prelude::*;
 
 use super::mapping::Mapping;
-use crate::data::record::Wanted;
+use crate::data::record::{Record, Wanted};
 use crate::data::{Campaign, RecordKind};
 use crate::metrics::resample::{interpolate, uniform_grid};
 use crate::metrics::statistics::correlation;
 use crate::problem::{Problem, warning};
-use crate::source::{Span, Spanned};
-use crate::units::{Dimension, Unit};
+use crate::source::Spanned;
+use crate::units::Dimension;
 
 /// Step of the comparison in m: shorter than the waves that simulation and measurement have in
 /// common.
@@ -26,81 +26,68 @@ type Row = Vec<Option<f64>>;
 
 /// A warning for each channel that agrees better with another one in most sections.
 pub fn exchanged(mapping: &Mapping, campaign: &Campaign) -> Vec<Problem> {
+    let maps = |kind: RecordKind| mapping.side(kind).and_then(|side| side.channels.maps());
     let (Some(measured), Some(simulated)) =
-        (mapping.side(RecordKind::Measurement), mapping.side(RecordKind::Simulation))
+        (maps(RecordKind::Measurement), maps(RecordKind::Simulation))
     else {
         return Vec::new();
     };
-    let (Some(measured), Some(simulated)) = (measured.channels.maps(), simulated.channels.maps())
-    else {
-        return Vec::new();
-    };
-    let both: Vec<&Spanned<String>> = measured
-        .iter()
-        .map(|map| &map.name)
-        .filter(|name| simulated.iter().any(|other| other.name.value == name.value))
-        .collect();
+    let names = measured.iter().map(|map| &map.name);
+    let both: Vec<&Spanned<String>> =
+        names.filter(|name| simulated.iter().any(|other| other.name.value == name.value)).collect();
     let sections: Vec<Vec<Row>> = campaign
         .names
         .par_iter()
-        .filter_map(|section| of_section(mapping, campaign, section, &both))
+        .filter_map(|section| correlations(mapping, campaign, section, &both))
         .collect();
-    let mut found = Vec::new();
-    for (own, name) in both.iter().enumerate() {
-        let other = |rows: &Vec<Row>| {
-            let row = &rows[own];
-            let with_own = row[own]?;
-            let (best, with_other) = row
-                .iter()
-                .enumerate()
-                .filter(|(at, _)| *at != own)
-                .filter_map(|(at, value)| Some((at, (*value)?)))
-                .max_by(|a, b| a.1.total_cmp(&b.1))?;
-            (with_other > LEAST && with_other > with_own + MORE)
-                .then_some((best, with_other, with_own))
-        };
-        let told: Vec<(usize, f64, f64)> = sections.iter().filter_map(other).collect();
+    let suspected = |(own, name): (usize, &&Spanned<String>)| {
+        let told: Vec<Better> =
+            sections.iter().filter_map(|rows| better(own, &rows[own])).collect();
         // The channel named most often, in more than half of the sections.
-        let Some(most) =
-            (0..both.len()).max_by_key(|at| told.iter().filter(|(best, ..)| best == at).count())
-        else {
-            continue;
-        };
-        let of_most: Vec<&(usize, f64, f64)> =
-            told.iter().filter(|(best, ..)| *best == most).collect();
-        if 2 * of_most.len() > sections.len() {
-            let mean = |value: &dyn Fn(&(usize, f64, f64)) -> f64| {
-                of_most.iter().map(|one| value(one)).sum::<f64>() / of_most.len() as f64
-            };
-            found.push(problem(
-                name,
-                both[most],
-                (mean(&|one| one.1), mean(&|one| one.2)),
-                (of_most.len(), sections.len()),
-            ));
-        }
-    }
-    found
+        let with = |at: usize| told.iter().filter(move |better| better.other == at);
+        let most = (0..both.len()).max_by_key(|at| with(*at).count())?;
+        let count = with(most).count();
+        let mean = |value: fn(&Better) -> f64| with(most).map(value).sum::<f64>() / count as f64;
+        let other = both[most];
+        let says = format!(
+            "the measured `{}` agrees with the simulated `{}` (correlation {:.2}) better than with its own ({:.2}), in {count} of {} sections",
+            name.value,
+            other.value,
+            mean(|better| better.with_other),
+            mean(|better| better.with_own),
+            sections.len()
+        );
+        (2 * count > sections.len()).then(|| {
+            warning("exchanged", says, &name.span)
+                .also(&other.span, "the other channel")
+                .help("check whether the two channels are exchanged in one of the records")
+        })
+    };
+    both.iter().enumerate().filter_map(suspected).collect()
 }
 
-fn problem(
-    name: &Spanned<String>,
-    other: &Spanned<String>,
-    (with_other, with_own): (f64, f64),
-    (told, all): (usize, usize),
-) -> Problem {
-    let says = format!(
-        "the measured `{}` agrees with the simulated `{}` (correlation {with_other:.2}) better than with its own ({with_own:.2}), in {told} of {all} sections",
-        name.value, other.value
-    );
-    let at: &Span = &name.span;
-    warning("exchanged", says, at)
-        .also(&other.span, "the other channel")
-        .help("check whether the two channels are exchanged in one of the records")
+/// A channel that agrees better with another one than with its own, with both correlations.
+struct Better {
+    other: usize,
+    with_other: f64,
+    with_own: f64,
+}
+
+fn better(own: usize, row: &Row) -> Option<Better> {
+    let with_own = row[own]?;
+    let others = row.iter().enumerate().filter(|(at, _)| *at != own);
+    let (other, with_other) = others
+        .filter_map(|(at, value)| Some((at, (*value)?)))
+        .max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (with_other > LEAST && with_other > with_own + MORE).then_some(Better {
+        other,
+        with_other,
+        with_own,
+    })
 }
 
 /// The correlations of all channels in a section; `None` if its records cannot be compared.
-fn of_section(
+fn correlations(
     mapping: &Mapping,
     campaign: &Campaign,
     section: &Spanned<String>,
@@ -112,33 +99,32 @@ fn of_section(
         dimension: None,
         required: true,
     }));
-    let [measured, simulated] = [RecordKind::Measurement, RecordKind::Simulation]
-        .map(|kind| campaign.read(kind.into(), section, &wanted, None).ok());
-    let (measured, simulated) = (measured?.0, simulated?.0);
-    let ends = |record: &crate::data::Record| {
-        Some((*record.columns[0].values.first()?, *record.columns[0].values.last()?))
+    let read = |kind: RecordKind| -> Option<Record> {
+        Some(campaign.read(kind.into(), section, &wanted, None).ok()?.0)
+    };
+    let (measured, simulated) = (read(RecordKind::Measurement)?, read(RecordKind::Simulation)?);
+    let ends = |record: &Record| {
+        let axis = &record.columns[0].values;
+        axis.first().copied().zip(axis.last().copied())
     };
     let (one, other) = (ends(&measured)?, ends(&simulated)?);
     let (start, end) = mapping.sections.extent(&section.value).unwrap_or((f64::MIN, f64::MAX));
     let grid =
         uniform_grid(start.max(one.0).max(other.0), end.min(one.1).min(other.1), STEP).ok()?;
-    let on_grid = |record: &crate::data::Record| -> Option<Vec<(Unit, Vec<f64>)>> {
-        let axis = &record.columns[0].values;
-        record.columns[1..]
-            .iter()
-            .map(|column| {
-                Some((column.unit.clone(), interpolate(axis, &column.values, &grid).ok()?))
-            })
-            .collect()
+    let on_grid = |record: &Record| -> Option<Vec<(Dimension, Vec<f64>)>> {
+        let (axis, channels) = record.columns.split_first()?;
+        let resampled = channels.iter().map(|column| {
+            let values = interpolate(&axis.values, &column.values, &grid).ok()?;
+            Some((column.unit.dimension, values))
+        });
+        resampled.collect()
     };
     let (measured, simulated) = (on_grid(&measured)?, on_grid(&simulated)?);
-    let row = |(unit, values): &(Unit, Vec<f64>)| {
-        simulated
-            .iter()
-            .map(|(of, other)| {
-                (of.dimension == unit.dimension).then(|| correlation(values, other)).flatten()
-            })
-            .collect()
+    let row = |(dimension, values): &(Dimension, Vec<f64>)| {
+        let alike = |(other, signal): &(Dimension, Vec<f64>)| {
+            if other == dimension { correlation(values, signal) } else { None }
+        };
+        simulated.iter().map(alike).collect()
     };
     Some(measured.iter().map(row).collect())
 }

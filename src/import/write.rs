@@ -100,29 +100,28 @@ pub fn record_bytes(columns: &[Column], format: Format) -> Result<Vec<u8>, Probl
 /// A file that is read, by the path in the mapping.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SourceFile {
-    pub path: String,
-    pub sha256: String,
-    /// What was detected in it.
+    pub file: OriginFile,
+    /// The format and what was detected in it, in a line.
     pub read_as: String,
 }
 
 impl SourceFile {
-    /// The format and what was detected in it stand in a line.
     pub fn new(path: &str, file: &File) -> Self {
         let facts = file.facts.iter().map(|(name, value)| format!("{name} {value}"));
         let all: Vec<String> =
             std::iter::once(file.format.word().to_string()).chain(facts).collect();
-        Self { path: path.to_string(), sha256: file.sha256.clone(), read_as: all.join("; ") }
+        let file = OriginFile { path: path.to_string(), sha256: file.sha256.clone() };
+        Self { file, read_as: all.join("; ") }
     }
 }
 
 /// How a record was made: its side, section and file, and the steps.
-pub fn account(made: &Made, file: &SourceFile) -> ImportedRecord {
+pub fn account(made: &Made, source: &SourceFile) -> ImportedRecord {
     ImportedRecord {
         side: made.kind.key().into(),
         section: made.section.clone(),
-        file: file.path.clone(),
-        read_as: file.read_as.clone(),
+        file: source.file.path.clone(),
+        read_as: source.read_as.clone(),
         steps: made.steps.clone(),
     }
 }
@@ -148,7 +147,8 @@ pub fn small_files(mapping: &Mapping) -> Result<Vec<Copied>, Problem> {
         .filter(|protocol| crate::library::shipped(&protocol.value).is_none());
     let vehicle = mapping.vehicle.as_ref().map(|(written, _)| written);
     let all = own.into_iter().chain(vehicle).chain(table(mapping)).chain(&mapping.copies);
-    all.map(|written| copied(mapping, written, &written.value, file(&written.value))).collect()
+    all.map(|written| copied(mapping, written, &written.value, file(&written.value).to_string()))
+        .collect()
 }
 
 fn copied(
@@ -163,8 +163,8 @@ fn copied(
 }
 
 /// The name of a file without its folders.
-fn file(written: &str) -> String {
-    written.rsplit(['/', '\\']).next().unwrap_or(written).to_string()
+fn file(written: &str) -> &str {
+    written.rsplit(['/', '\\']).next().unwrap_or(written)
 }
 
 /// The table of sections, of whole records or of runs.
@@ -173,49 +173,39 @@ fn table(mapping: &Mapping) -> Option<&Spanned<String>> {
     of_sections.or(mapping.runs.as_ref().and_then(|runs| runs.table.as_ref()))
 }
 
-fn text_node(text: impl Into<String>, at: &Span) -> Node {
+/// A text under a key.
+fn entry(name: &str, text: impl Into<String>, at: &Span) -> (Key, Node) {
     let text = text.into();
-    Node { raw: text.clone(), value: Value::Text(text), span: at.clone(), exact: false }
+    let node = Node { raw: text.clone(), value: Value::Text(text), span: at.clone(), exact: false };
+    (Key { text: name.to_string(), span: at.clone(), exact: false }, node)
 }
 
-fn key(text: &str, at: &Span) -> Key {
-    Key { text: text.to_string(), span: at.clone(), exact: false }
+/// A map under a key.
+fn map(name: &str, entries: Vec<(Key, Node)>, at: &Span) -> (Key, Node) {
+    let (key, node) = entry(name, "", at);
+    (key, Node { value: Value::Map(entries), ..node })
 }
 
 /// `campaign.yaml`, each part with its place in the mapping, without the account of the import.
 pub fn campaign_tree(mapping: &Mapping, format: Format) -> Node {
-    let mut entries: Vec<(Key, Node)> = Vec::new();
-    let mut add = |name: &str, node: Node| entries.push((key(name, &node.span), node));
-    add("name", text_node(mapping.name.value.as_str(), &mapping.name.span));
-    if let Some(named) = &mapping.protocol {
-        let shipped = crate::library::shipped(&named.value).is_some();
-        add(
-            "protocol",
-            text_node(if shipped { named.value.clone() } else { file(&named.value) }, &named.span),
-        );
+    let mut entries = vec![entry("name", mapping.name.value.as_str(), &mapping.name.span)];
+    if let Some(Spanned { value: named, span }) = &mapping.protocol {
+        let shipped = crate::library::shipped(named).is_some();
+        entries.push(entry("protocol", if shipped { named } else { file(named) }, span));
     }
-    if let Some((written, _)) = &mapping.vehicle {
-        add("vehicle", text_node(file(&written.value), &written.span));
-    }
-    if let Some(written) = table(mapping) {
-        add("sections", text_node(file(&written.value), &written.span));
+    let vehicle = mapping.vehicle.as_ref().map(|(written, _)| written);
+    for (name, written) in [("vehicle", vehicle), ("sections", table(mapping))] {
+        entries.extend(written.map(|written| entry(name, file(&written.value), &written.span)));
     }
     if let Some(runs) = &mapping.runs {
-        add(RUNS, of_runs(mapping, runs, format));
+        entries.push(of_runs(mapping, runs, format));
     } else {
-        mapping
-            .sides
-            .iter()
-            .for_each(|side| add(side.kind.key(), text_node(side.kind.key(), &side.span)));
-        mapping.track.iter().for_each(|track| add("track", text_node("track", &track.span)));
+        let sides = mapping.sides.iter().map(|side| (side.kind.key(), &side.span));
+        let track = mapping.track.iter().map(|track| ("track", &track.span));
+        entries.extend(sides.chain(track).map(|(name, at)| entry(name, name, at)));
     }
     entries.extend(mapping.campaign.iter().cloned());
-    Node {
-        value: Value::Map(entries),
-        raw: String::new(),
-        span: mapping.source.whole(),
-        exact: false,
-    }
+    map("", entries, &mapping.source.whole()).1
 }
 
 /// Adds all files but the records.
@@ -249,9 +239,7 @@ pub fn add_campaign(
     let tree = campaign_tree(mapping, format);
     let text = campaign_yaml_with(&tree, &[], &[(ORIGIN_KEY, Entry::Text(ORIGIN_FILE))]);
     outputs.add(CAMPAIGN_FILE, text.as_bytes())?;
-    let sources = sources
-        .iter()
-        .map(|source| OriginFile { path: source.path.clone(), sha256: source.sha256.clone() });
+    let sources = sources.iter().map(|source| source.file.clone());
     let origin = Origin {
         program: Literal(concat!("fishplate ", env!("CARGO_PKG_VERSION")).to_string()),
         command: Literal("import".into()),
@@ -273,48 +261,39 @@ fn track_path(pattern: &Spanned<String>, name: &str) -> String {
 }
 
 /// The block `runs`: the files of each run, and what the mapping says of it.
-fn of_runs(mapping: &Mapping, runs: &Runs, format: Format) -> Node {
-    let of_one =
-        |(name, facts): (&Spanned<String>, &Vec<(Key, Node)>)| {
-            let at = &name.span;
-            let record = |side: &Side| {
-                (
-                    key(side.kind.key(), at),
-                    text_node(record_path(side.kind, &name.value, format.ending()), at),
-                )
-            };
-            let mut entries: Vec<(Key, Node)> = mapping.sides.iter().map(record).collect();
-            entries.extend(mapping.track.iter().map(|pattern| {
-                (key("track", at), text_node(track_path(pattern, &name.value), at))
-            }));
-            entries.extend(facts.iter().cloned());
-            (key(&name.value, at), Node { value: Value::Map(entries), ..text_node("", at) })
-        };
-    let entries = mapping.sections.names.iter().zip(&runs.facts).map(of_one).collect();
-    Node { value: Value::Map(entries), ..text_node("", &mapping.sections.span) }
+fn of_runs(mapping: &Mapping, runs: &Runs, format: Format) -> (Key, Node) {
+    let of_run = |(name, facts): (&Spanned<String>, &Vec<(Key, Node)>)| {
+        let Spanned { value: name, span: at } = name;
+        let records = mapping
+            .sides
+            .iter()
+            .map(|side| entry(side.kind.key(), record_path(side.kind, name, format.ending()), at));
+        let track = mapping.track.iter();
+        let track = track.map(|pattern| entry("track", track_path(pattern, name), at));
+        map(name, records.chain(track).chain(facts.iter().cloned()).collect(), at)
+    };
+    let entries = mapping.sections.names.iter().zip(&runs.facts).map(of_run).collect();
+    map(RUNS, entries, &mapping.sections.span)
 }
 
 /// What the channels of each side were made of.
 fn channels(mapping: &Mapping) -> IndexMap<String, Vec<String>> {
     let of_side = |side: &Side| {
-        let mut lines: Vec<String> = match &side.channels {
-            Channels::AsNamed => vec!["every channel as named in the file".into()],
-            Channels::Maps(maps) => {
-                maps.iter().map(|map| format!("{} = {}", map.name.value, map.in_words())).collect()
-            }
-        };
-        if let Some(Distance::Channel(map)) = &side.distance {
-            lines.insert(0, format!("distance = {}", map.in_words()));
-        }
-        let names = |list: &[Spanned<String>]| {
-            list.iter().map(|name| name.value.as_str()).collect::<Vec<_>>().join(" or ")
-        };
+        let mut lines = Vec::new();
         if !side.time.from.0.is_empty() {
-            lines.insert(0, format!("time = {}", names(&side.time.from.0)));
+            let names = side.time.from.0.iter().map(|name| name.value.as_str());
+            lines.push(format!("time = {}", names.collect::<Vec<_>>().join(" or ")));
         }
-        lines.extend(
-            side.units.iter().map(|(key, unit)| format!("unit `{}` read as {unit}", key.text)),
-        );
+        if let Some(Distance::Channel(map)) = &side.distance {
+            lines.push(format!("distance = {}", map.in_words()));
+        }
+        match &side.channels {
+            Channels::AsNamed => lines.push("every channel as named in the file".into()),
+            Channels::Maps(maps) => lines
+                .extend(maps.iter().map(|map| format!("{} = {}", map.name.value, map.in_words()))),
+        }
+        let units = side.units.iter();
+        lines.extend(units.map(|(key, unit)| format!("unit `{}` read as {unit}", key.text)));
         (side.kind.key().to_string(), lines)
     };
     mapping.sides.iter().map(of_side).collect()

@@ -15,19 +15,12 @@ pub fn derivative(axis: &[f64], signal: &[f64]) -> Option<Vec<f64>> {
         // For equal steps, this is the difference of both neighbours divided by two steps.
         (slope(at - 1) * behind + slope(at) * before) / (before + behind)
     };
-    Some(
-        (0..count)
-            .map(|at| {
-                if at == 0 {
-                    slope(0)
-                } else if at + 1 == count {
-                    slope(count - 2)
-                } else {
-                    inside(at)
-                }
-            })
-            .collect(),
-    )
+    let slope_at = |at: usize| match at {
+        0 => slope(0),
+        at if at + 1 == count => slope(count - 2),
+        at => inside(at),
+    };
+    Some((0..count).map(slope_at).collect())
 }
 
 /// Integral from the first sample on, by the trapezoidal rule.
@@ -38,15 +31,11 @@ pub fn integral(axis: &[f64], signal: &[f64]) -> Option<Vec<f64>> {
     let mut sum = 0.0;
     let parts =
         (1..signal.len()).map(|at| (axis[at] - axis[at - 1]) * (signal[at] + signal[at - 1]) / 2.0);
-    Some(
-        std::iter::once(0.0)
-            .chain(parts)
-            .map(|part| {
-                sum += part;
-                sum
-            })
-            .collect(),
-    )
+    let sums = std::iter::once(0.0).chain(parts).map(|part| {
+        sum += part;
+        sum
+    });
+    Some(sums.collect())
 }
 
 /// The signal moved forward by a distance, at the same points. Beyond the record, its end value is

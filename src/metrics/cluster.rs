@@ -374,8 +374,6 @@ impl fmt::Display for ClusterError {
     }
 }
 
-impl std::error::Error for ClusterError {}
-
 /// Interval of the mean of values that are independent between sites, but not within a site; see
 /// [`Mean`].
 ///

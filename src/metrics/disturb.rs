@@ -6,7 +6,6 @@ use super::random::{GOLDEN, mixed};
 
 /// Standard deviation of samples with the divisor n; `None` where it is zero or there are no
 /// samples.
-#[must_use]
 pub fn deviation(values: &[f64]) -> Option<f64> {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
@@ -19,7 +18,6 @@ pub fn deviation(values: &[f64]) -> Option<f64> {
 /// A standard deviation up to this share of the mean is rounding: the signal is constant.
 const ROUNDING: f64 = 1e-12;
 
-#[must_use]
 pub fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
@@ -29,7 +27,6 @@ pub fn root_mean_square(values: &[f64]) -> f64 {
 ///
 /// Each sample is a function of its number and the stream alone (SplitMix64), a sum of twelve
 /// uniform numbers less six.
-#[must_use]
 pub fn noise(stream: u64, samples: usize, rows: Range<usize>) -> Vec<f64> {
     let start = mixed(stream);
     let mut values: Vec<f64> = (0..samples as u64).map(|sample| one(start, sample)).collect();
@@ -53,7 +50,6 @@ fn one(start: u64, sample: u64) -> f64 {
 }
 
 /// The number of a stream of random numbers, from the names it belongs to (FNV-1a).
-#[must_use]
 pub fn stream<'a>(names: impl IntoIterator<Item = &'a str>) -> u64 {
     let bytes = names.into_iter().flat_map(|name| name.bytes().chain([0]));
     bytes.fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
@@ -63,7 +59,6 @@ pub fn stream<'a>(names: impl IntoIterator<Item = &'a str>) -> u64 {
 
 /// A signal later by a number of samples, which need not be whole: between samples it is a straight
 /// line, before the first it stays.
-#[must_use]
 pub fn delayed(values: &[f64], samples: f64) -> Vec<f64> {
     let whole = samples.floor();
     let part = samples - whole;
@@ -77,7 +72,6 @@ pub fn delayed(values: &[f64], samples: f64) -> Vec<f64> {
 /// is given with this deviation.
 ///
 /// `None` where no delay up to half of the range does.
-#[must_use]
 pub fn delay_of_size(signals: &[(&[f64], f64)], rows: Range<usize>, size: f64) -> Option<f64> {
     let most = rows.len() / 2;
     if signals.is_empty() || size <= 0.0 {

@@ -35,7 +35,6 @@ pub struct Nearest {
 
 impl Nearest {
     /// Whether the point that was looked for lies in the hull. Coordinates have ranges of about 1.
-    #[must_use]
     pub fn is_inside(&self) -> bool {
         self.distance <= INSIDE
     }
@@ -43,7 +42,6 @@ impl Nearest {
 
 /// The point of the hull of some points that is nearest to `wanted`; `None` without points, or if a
 /// number is not finite.
-#[must_use]
 pub fn nearest(points: &[Vec<f64>], wanted: &[f64]) -> Option<Nearest> {
     let finite = points
         .iter()
@@ -142,7 +140,6 @@ fn combined(from: &[DVector<f64>], used: &[usize], weights: &[f64]) -> DVector<f
 }
 
 /// In how many dimensions points extend: 0 if all are the same, 1 on a line, 2 in a plane.
-#[must_use]
 pub fn dimensions(points: &[Vec<f64>]) -> usize {
     let Some(width) = points.first().map(Vec::len).filter(|width| *width > 0) else { return 0 };
     let mean: Vec<f64> = (0..width)
@@ -155,7 +152,6 @@ pub fn dimensions(points: &[Vec<f64>]) -> usize {
 }
 
 /// For each point whether it is a corner of the hull; of several that are the same, the first.
-#[must_use]
 pub fn corners(points: &[Vec<f64>]) -> Vec<bool> {
     let same = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= INSIDE);
     let corner = |at: usize| {

@@ -41,13 +41,12 @@ pub struct Matching {
 /// input that does not rise and fall; a threshold not between 0 and 1; loops without common inputs
 /// in a direction.
 pub fn matching(simulated: Loop, measured: Loop, threshold: f64) -> Result<Matching, Undefined> {
-    let simulated = Sides::of(simulated, threshold, "simulated")?;
-    let measured = Sides::of(measured, threshold, "measured")?;
+    let simulated = sides(simulated, threshold, "simulated")?;
+    let measured = sides(measured, threshold, "measured")?;
     let mut maximum = 0.0_f64;
     let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
     let (mut integral, mut length) = (0.0, 0.0);
-    for direction in [Direction::Rising, Direction::Falling] {
-        let (ours, theirs) = (simulated.side(direction), measured.side(direction));
+    for (direction, (ours, theirs)) in DIRECTIONS.into_iter().zip(simulated.iter().zip(&measured)) {
         let mut errors = Vec::new();
         for x in theirs.inputs() {
             let both = ours.at(x).zip(theirs.at(x));
@@ -57,35 +56,29 @@ pub fn matching(simulated: Loop, measured: Loop, threshold: f64) -> Result<Match
             }
             errors.push((x, both.map(|(s, m)| (s - m).abs())));
         }
-        let part = trapezia(&errors);
-        if part.length <= 0.0 {
-            return Err(Undefined::because(format!(
-                "the loops have no common input while it is {}",
-                direction.word()
-            )));
+        let (part, along) = trapezia(&errors);
+        if along <= 0.0 {
+            let word = direction.word();
+            let reason = format!("the loops have no common input while it is {word}");
+            return Err(Undefined::because(reason));
         }
-        integral += part.integral;
-        length += part.length;
+        integral += part;
+        length += along;
     }
     Ok(Matching { maximum, mean: integral / length, range: highest - lowest })
 }
 
-/// Sums of trapezoids between points.
-struct Trapezia {
-    integral: f64,
-    length: f64,
-}
-
-/// Integral over points in order, without intervals that have a point without a value.
-fn trapezia(points: &[(f64, Option<f64>)]) -> Trapezia {
-    let mut total = Trapezia { integral: 0.0, length: 0.0 };
+/// Integral over points in order and its length, without intervals that have a point without a
+/// value.
+fn trapezia(points: &[(f64, Option<f64>)]) -> (f64, f64) {
+    let (mut integral, mut length) = (0.0, 0.0);
     for [(x, left), (x_next, right)] in points.array_windows() {
         if let (Some(left), Some(right)) = (left, right) {
-            total.integral += 0.5 * (left + right) * (x_next - x);
-            total.length += x_next - x;
+            integral += 0.5 * (left + right) * (x_next - x);
+            length += x_next - x;
         }
     }
-    total
+    (integral, length)
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,6 +86,8 @@ enum Direction {
     Rising,
     Falling,
 }
+
+const DIRECTIONS: [Direction; 2] = [Direction::Rising, Direction::Falling];
 
 impl Direction {
     fn word(self) -> &'static str {
@@ -123,48 +118,30 @@ impl Branch {
     }
 }
 
-/// The two directions of a loop.
-struct Sides {
-    rising: Side,
-    falling: Side,
-}
-
-impl Sides {
-    fn of(of: Loop, threshold: f64, which: &str) -> Result<Self, Undefined> {
-        let undefined = |what: &str| Undefined::because(format!("the {which} loop {what}"));
-        if !(threshold > 0.0 && threshold < 1.0) {
-            return Err(Undefined::because(format!(
-                "the turning threshold must be between 0 and 1 of the range, this is {threshold}"
-            )));
-        }
-        if of.x.len() != of.y.len() {
-            return Err(undefined(&format!(
-                "has {} inputs and {} outputs",
-                of.x.len(),
-                of.y.len()
-            )));
-        }
-        if of.x.iter().chain(of.y).any(|value| !value.is_finite()) {
-            return Err(undefined("has a value that is not finite"));
-        }
-        let (low, high) = of
-            .x
-            .iter()
+/// The two directions of a loop, rising and falling.
+fn sides(of: Loop, threshold: f64, which: &str) -> Result<[Side; 2], Undefined> {
+    let undefined = |what: &str| Undefined::because(format!("the {which} loop {what}"));
+    if !(threshold > 0.0 && threshold < 1.0) {
+        return Err(Undefined::because(format!(
+            "the turning threshold must be between 0 and 1 of the range, this is {threshold}"
+        )));
+    }
+    let (inputs, outputs) = (of.x.len(), of.y.len());
+    if inputs != outputs {
+        return Err(undefined(&format!("has {inputs} inputs and {outputs} outputs")));
+    }
+    if of.x.iter().chain(of.y).any(|value| !value.is_finite()) {
+        return Err(undefined("has a value that is not finite"));
+    }
+    let (low, high) =
+        of.x.iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
-        let branches = branches(of.x, threshold * (high - low));
-        let side = |direction: Direction| {
-            Side::of(of, &branches, direction)
-                .ok_or_else(|| undefined(&format!("has no {} branch", direction.word())))
-        };
-        Ok(Self { rising: side(Direction::Rising)?, falling: side(Direction::Falling)? })
-    }
-
-    fn side(&self, direction: Direction) -> &Side {
-        match direction {
-            Direction::Rising => &self.rising,
-            Direction::Falling => &self.falling,
-        }
-    }
+    let branches = branches(of.x, threshold * (high - low));
+    let side = |direction: Direction| {
+        Side::of(of, &branches, direction)
+            .ok_or_else(|| undefined(&format!("has no {} branch", direction.word())))
+    };
+    Ok([side(Direction::Rising)?, side(Direction::Falling)?])
 }
 
 /// All branches of one direction as one function of the input.

@@ -10,7 +10,7 @@ use statrs::function::gamma::ln_gamma;
 /// Continued fraction by Lentz's method (Numerical Recipes, 3rd ed., 6.4). It needs of the order of
 /// sqrt(max(a, b)) terms; libraries limit the number of terms, which is not sufficient for long
 /// records.
-pub(super) fn incomplete_beta(a: f64, b: f64, x: f64, complement: f64) -> f64 {
+pub fn incomplete_beta(a: f64, b: f64, x: f64, complement: f64) -> f64 {
     if x <= 0.0 {
         0.0
     } else if complement <= 0.0 {

@@ -9,7 +9,6 @@ pub struct Interval {
 }
 
 /// 95 % interval of a share `good` of `all` (Wilson 1927); 0 to 1 if `all` is zero.
-#[must_use]
 pub fn wilson(good: u64, all: u64) -> (f64, f64) {
     /// 97.5 % quantile of the normal distribution.
     const NORMAL: f64 = 1.959_963_984_540_054;

@@ -21,19 +21,16 @@ impl Moments {
     }
 
     /// Of both sets.
-    #[must_use]
     pub fn plus(self, other: Self) -> Self {
         Self { n: self.n + other.n, x: self.x + other.x, xx: self.xx + other.xx }
     }
 
     /// Of this set without a part of it.
-    #[must_use]
     pub fn minus(self, other: Self) -> Self {
         Self { n: self.n - other.n, x: self.x - other.x, xx: self.xx - other.xx }
     }
 
     /// Sum of squares about the mean.
-    #[must_use]
     pub fn squares(&self) -> f64 {
         (self.xx - self.x * self.x / self.n).max(0.0)
     }

@@ -35,44 +35,31 @@ pub enum Method {
 }
 
 impl Method {
-    pub const ALL: [Self; 13] = [
-        Self::InvertedCdf,
-        Self::AveragedInvertedCdf,
-        Self::ClosestObservation,
-        Self::InterpolatedInvertedCdf,
-        Self::Hazen,
-        Self::Weibull,
-        Self::Linear,
-        Self::MedianUnbiased,
-        Self::NormalUnbiased,
-        Self::Lower,
-        Self::Higher,
-        Self::Midpoint,
-        Self::Nearest,
+    /// Every method with NumPy's name.
+    pub const NAMES: [(Self, &'static str); 13] = [
+        (Self::InvertedCdf, "inverted_cdf"),
+        (Self::AveragedInvertedCdf, "averaged_inverted_cdf"),
+        (Self::ClosestObservation, "closest_observation"),
+        (Self::InterpolatedInvertedCdf, "interpolated_inverted_cdf"),
+        (Self::Hazen, "hazen"),
+        (Self::Weibull, "weibull"),
+        (Self::Linear, "linear"),
+        (Self::MedianUnbiased, "median_unbiased"),
+        (Self::NormalUnbiased, "normal_unbiased"),
+        (Self::Lower, "lower"),
+        (Self::Higher, "higher"),
+        (Self::Midpoint, "midpoint"),
+        (Self::Nearest, "nearest"),
     ];
 
     /// NumPy's name.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::InvertedCdf => "inverted_cdf",
-            Self::AveragedInvertedCdf => "averaged_inverted_cdf",
-            Self::ClosestObservation => "closest_observation",
-            Self::InterpolatedInvertedCdf => "interpolated_inverted_cdf",
-            Self::Hazen => "hazen",
-            Self::Weibull => "weibull",
-            Self::Linear => "linear",
-            Self::MedianUnbiased => "median_unbiased",
-            Self::NormalUnbiased => "normal_unbiased",
-            Self::Lower => "lower",
-            Self::Higher => "higher",
-            Self::Midpoint => "midpoint",
-            Self::Nearest => "nearest",
-        }
+        Self::NAMES.iter().find(|(method, _)| *method == self).map_or("", |(_, name)| name)
     }
 
     /// The method with this name of NumPy.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|method| method.name() == name)
+        Self::NAMES.iter().find(|(_, known)| *known == name).map(|(method, _)| *method)
     }
 
     /// Position of the quantile among the order statistics of `count` values: index of the one
@@ -151,10 +138,11 @@ pub fn percentiles(
         values.sort_unstable_by(f64::total_cmp);
     }
     let mut of_copy = |percent: f64| {
-        if !sorted {
-            return select(&mut values, percent, method);
+        if sorted {
+            of_sorted(&values, percent, method)
+        } else {
+            select(&mut values, percent, method)
         }
-        of_sorted(&values, percent, method)
     };
     Ok(found
         .into_iter()
@@ -290,5 +278,3 @@ impl fmt::Display for PercentileError {
         }
     }
 }
-
-impl std::error::Error for PercentileError {}

@@ -102,11 +102,8 @@ impl Regression {
             fit.residual_standard_deviation =
                 (sum_of(&residuals, |left| left * left) / fit.degrees_of_freedom() as f64).sqrt();
         }
-        if fit.residual_standard_deviation.is_finite() {
-            Ok(fit)
-        } else {
-            Err(RegressionError::OutOfRange)
-        }
+        in_range(fit.residual_standard_deviation)?;
+        Ok(fit)
     }
 
     /// By singular values of the centred columns, each scaled to length 1.
@@ -248,12 +245,10 @@ fn check(values: &[f64], regressors: &[Vec<f64>]) -> Result<(), RegressionError>
     if count <= coefficients {
         return Err(RegressionError::TooFew { values: count, coefficients });
     }
-    if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-        return Err(RegressionError::NotFinite { regressor: 0, value: at + 1 });
-    }
-    for (of, column) in regressors.iter().enumerate() {
+    let columns = std::iter::once(values).chain(regressors.iter().map(Vec::as_slice));
+    for (regressor, column) in columns.enumerate() {
         if let Some(at) = column.iter().position(|value| !value.is_finite()) {
-            return Err(RegressionError::NotFinite { regressor: of + 1, value: at + 1 });
+            return Err(RegressionError::NotFinite { regressor, value: at + 1 });
         }
     }
     match regressors.iter().position(|column| is_constant(column)) {
@@ -372,5 +367,3 @@ impl fmt::Display for RegressionError {
         }
     }
 }
-
-impl std::error::Error for RegressionError {}

@@ -195,5 +195,3 @@ impl fmt::Display for ResampleError {
         }
     }
 }
-
-impl std::error::Error for ResampleError {}

@@ -162,6 +162,6 @@ fn count(values: &[f64]) -> Option<f64> {
     if values.is_empty() { None } else { Some(values.len() as f64) }
 }
 
-fn finite(value: f64) -> Option<f64> {
+pub(super) fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }

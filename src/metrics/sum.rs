@@ -4,21 +4,17 @@
 const BLOCK: usize = 128;
 
 /// Pairwise sum; its error is of the order of log(n) rounding units.
-pub(super) fn sum(values: &[f64]) -> f64 {
+pub fn sum(values: &[f64]) -> f64 {
     sum_of(values, |value| value)
 }
 
 /// Pairwise sum of `term` over values.
-pub(super) fn sum_of(values: &[f64], term: impl Fn(f64) -> f64 + Copy) -> f64 {
+pub fn sum_of(values: &[f64], term: impl Fn(f64) -> f64 + Copy) -> f64 {
     sum_of_pairs(values, values, |value, _| term(value))
 }
 
 /// Pairwise sum of `term` over two signals, up to the end of the shorter one.
-pub(super) fn sum_of_pairs(
-    left: &[f64],
-    right: &[f64],
-    term: impl Fn(f64, f64) -> f64 + Copy,
-) -> f64 {
+pub fn sum_of_pairs(left: &[f64], right: &[f64], term: impl Fn(f64, f64) -> f64 + Copy) -> f64 {
     let length = left.len().min(right.len());
     let (left, right) = (&left[..length], &right[..length]);
     if length > BLOCK {
@@ -46,10 +42,10 @@ pub(super) fn sum_of_pairs(
 /// Cumulative sums in twice the precision, so that the difference of two of them is as accurate as
 /// the sum between them.
 #[derive(Debug)]
-pub(super) struct RunningSums(Vec<(f64, f64)>);
+pub struct RunningSums(Vec<(f64, f64)>);
 
 impl RunningSums {
-    pub(super) fn new(terms: impl ExactSizeIterator<Item = f64>) -> Self {
+    pub fn new(terms: impl ExactSizeIterator<Item = f64>) -> Self {
         let mut sums = Vec::with_capacity(terms.len() + 1);
         let (mut high, mut low) = (0.0_f64, 0.0_f64);
         sums.push((high, low));
@@ -65,7 +61,7 @@ impl RunningSums {
     }
 
     /// Sum of the terms `from..to`.
-    pub(super) fn between(&self, from: usize, to: usize) -> f64 {
+    pub fn between(&self, from: usize, to: usize) -> f64 {
         let ((high_from, low_from), (high_to, low_to)) = (self.0[from], self.0[to]);
         (high_to - high_from) + (low_to - low_from)
     }

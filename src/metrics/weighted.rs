@@ -4,7 +4,10 @@
 //! `None` where the number is not defined: no weight above zero, fewer such values than the divisor
 //! needs, numbers that are not finite.
 
-use super::sum::{sum_of, sum_of_pairs};
+use super::{
+    statistics::finite,
+    sum::{sum_of, sum_of_pairs},
+};
 
 /// How many values of equal weight say as much of the mean: squared sum of the weights over the sum
 /// of their squares (Kish, "Survey Sampling", 1965).
@@ -75,8 +78,4 @@ fn counting(values: &[f64], weights: &[f64]) -> Vec<(f64, f64)> {
 
 fn total(weights: &[f64]) -> Option<f64> {
     Some(sum_of(weights, |weight| weight)).filter(|total| *total > 0.0 && total.is_finite())
-}
-
-fn finite(value: f64) -> Option<f64> {
-    value.is_finite().then_some(value)
 }

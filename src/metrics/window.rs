@@ -322,5 +322,3 @@ impl fmt::Display for SlidingError {
         f.write_str(&self.in_words(""))
     }
 }
-
-impl std::error::Error for SlidingError {}

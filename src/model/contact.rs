@@ -77,7 +77,6 @@ pub struct Forces {
 }
 
 impl Contact {
-    #[must_use]
     pub fn new(vehicle: &Vehicle) -> Self {
         let stiffness = vehicle.kalker_scale * vehicle.shear_modulus;
         let ab = vehicle.ellipse_ab;
@@ -101,7 +100,6 @@ impl Contact {
     }
 
     /// Creep force at reference load per creepage, longitudinal and lateral, in N.
-    #[must_use]
     pub fn creep_coefficients(&self) -> (f64, f64) {
         (self.f11, self.f22)
     }
@@ -118,7 +116,6 @@ impl Contact {
     /// Longitudinal and lateral creep force in N of one wheel at a normal force in N, after Shen,
     /// Hedrick and Elkins.
     #[inline(always)]
-    #[must_use]
     pub fn creep(&self, normal: f64, xi: f64, eta: f64, zeta: f64) -> (f64, f64) {
         let (lx, lt) = self.linear(normal, xi, eta, zeta);
         let linear = (lx * lx + lt * lt).sqrt();
@@ -133,7 +130,6 @@ impl Contact {
 
     /// Forces on all wheels.
     #[inline(always)]
-    #[must_use]
     pub fn forces(&self, motion: &Motion) -> Forces {
         // Separate loops, so that the default law has no branches.
         match self.law {

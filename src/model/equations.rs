@@ -28,18 +28,6 @@ pub struct Equations<'a> {
     /// Reciprocal mass or inertia of each displacement.
     mobility: [f64; State::BODIES],
     bending_omega: f64,
-    has: Has,
-}
-
-/// Components that the vehicle has; others are skipped.
-#[derive(Clone, Copy, Debug)]
-struct Has {
-    yaw_damper: bool,
-    hysteresis: bool,
-    centre_friction: bool,
-    friction_z: bool,
-    friction_y: bool,
-    bending: bool,
 }
 
 /// The track frame of one body relative to that of another.
@@ -101,19 +89,9 @@ pub(super) struct OnRails {
 }
 
 impl<'a> Equations<'a> {
-    #[must_use]
     pub fn new(vehicle: &'a Vehicle, profile: &'a Profile, speed: f64) -> Self {
         let v = vehicle;
         let car_mass = v.car_mass + v.payload_mass;
-        let has = Has {
-            yaw_damper: v.yaw_damper_stiffness * v.yaw_damper_damping * v.yaw_damper_remaining
-                > 0.0,
-            hysteresis: v.secondary_hysteresis > 0.0,
-            centre_friction: v.centre_friction_torque > 0.0,
-            friction_z: v.primary_friction_z > 0.0,
-            friction_y: v.primary_friction_y > 0.0,
-            bending: v.bending_frequency > 0.0,
-        };
         Self {
             vehicle,
             profile,
@@ -123,26 +101,22 @@ impl<'a> Equations<'a> {
             car_mass,
             mobility: mobility(v, car_mass),
             bending_omega: std::f64::consts::TAU * v.bending_frequency,
-            has,
         }
     }
 
     /// Position of wheelset `j` (0 to 3) when the car body's centre is at `s`.
-    #[must_use]
     pub fn wheelset_position(&self, s: f64, j: usize) -> f64 {
         s + [1.0, 1.0, -1.0, -1.0][j] * self.vehicle.half_bogie_spacing
             + lever(j) * self.vehicle.half_wheelbase
     }
 
     /// Range of displacements of the contact table, in m.
-    #[must_use]
     pub fn table(&self) -> (f64, f64) {
         self.profile.range()
     }
 
     /// Fastest rate in 1/s, which limits the step of an explicit integrator: the spin of a wheelset
     /// against creep.
-    #[must_use]
     pub fn fastest_rate(&self) -> f64 {
         let v = self.vehicle;
         let (f11, f22) = self.contact.creep_coefficients();
@@ -193,7 +167,6 @@ impl<'a> Equations<'a> {
     }
 
     /// At rest under the payload, on straight level track; all in m.
-    #[must_use]
     pub fn at_rest(&self) -> State {
         let v = self.vehicle;
         let weight = v.payload_mass * G;
@@ -272,6 +245,9 @@ impl<'a> Equations<'a> {
             v.yaw_damper_stiffness * v.yaw_damper_remaining,
             v.yaw_damper_damping * v.yaw_damper_remaining,
         );
+        // Components that the vehicle does not have are skipped.
+        let has_yaw_dampers =
+            v.yaw_damper_stiffness * v.yaw_damper_damping * v.yaw_damper_remaining > 0.0;
         let p = self.car_mass * G / 2.0;
         let mut bending = 0.0;
         for i in 0..2 {
@@ -284,7 +260,7 @@ impl<'a> Equations<'a> {
                 (u[CAR] + lever * u[CAR + PSI] - hcs * u[CAR + PHI]) - (u[b] + hbs * u[b + PHI]);
             let stop = v.bumpstop_stiffness * d.signum() * (d.abs() - v.bumpstop_gap).max(0.0);
             let mut fy = -2.0 * v.secondary_ky * d - cy * d_rate - stop;
-            if self.has.hysteresis {
+            if v.secondary_hysteresis > 0.0 {
                 // A spring and a dashpot in series, beside the spring.
                 let f = state.hysteresis[i];
                 rates.hysteresis[i] = 2.0 * v.secondary_hysteresis * v.secondary_ky * d_rate
@@ -305,12 +281,12 @@ impl<'a> Equations<'a> {
             let dpsi_rate =
                 u[CAR + PSI] - u[b + PSI] + self.speed * (input.car.kappa - input.bogie[i].kappa);
             let mut mz = -roll_lever * v.secondary_kx * dpsi;
-            if self.has.yaw_damper {
+            if has_yaw_dampers {
                 let f = state.yaw_damper[i];
                 rates.yaw_damper[i] = yaw_ks * (v.yaw_damper_half_spacing * dpsi_rate - f / yaw_c);
                 mz -= 2.0 * v.yaw_damper_half_spacing * f;
             }
-            if self.has.centre_friction {
+            if v.centre_friction_torque > 0.0 {
                 let t = state.centre_friction[i];
                 rates.centre_friction[i] =
                     slip_element(t, dpsi_rate, v.centre_friction_torque, v.centre_friction_angle);
@@ -327,7 +303,7 @@ impl<'a> Equations<'a> {
             load[b + PHI] += p * (hbs * x[b + PHI] + 0.5 * d) - hbs * fy - mr;
             load[b + PSI] -= mz;
         }
-        if self.has.bending {
+        if v.bending_frequency > 0.0 {
             let (q, q_rate, omega) = (state.bending[0], state.bending[1], self.bending_omega);
             rates.bending[0] = q_rate;
             rates.bending[1] = v.bending_shape * bending / v.bending_mass
@@ -359,7 +335,7 @@ impl<'a> Equations<'a> {
                 - (x[b] + lever * x[b + PSI] - hbw * x[b + PHI]);
             let l_rate = u[y] - (u[b] + lever * u[b + PSI] - hbw * u[b + PHI]);
             let mut fl = -2.0 * (v.primary_ky * l + v.primary_cy * l_rate);
-            if self.has.friction_y {
+            if v.primary_friction_y > 0.0 {
                 let f = state.friction_y[j];
                 rates.friction_y[j] =
                     slip_element(f, l_rate, v.primary_friction_y, v.primary_friction_displacement);
@@ -377,7 +353,7 @@ impl<'a> Equations<'a> {
                 let n_rate =
                     (u[z] + k * b1 * u[phi]) - (u[b + Z] - lever * u[b + 3] + k * b1 * u[b + PHI]);
                 let mut f = -v.primary_kz * n - v.primary_cz * n_rate;
-                if self.has.friction_z {
+                if v.primary_friction_z > 0.0 {
                     let dry = state.friction_z[2 * j + side];
                     rates.friction_z[2 * j + side] = slip_element(
                         dry,

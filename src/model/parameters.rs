@@ -18,7 +18,6 @@ pub enum Admissible {
 
 impl Admissible {
     /// Whether a finite number is admissible.
-    #[must_use]
     pub fn holds(self, value: f64) -> bool {
         value.is_finite()
             && match self {
@@ -31,7 +30,6 @@ impl Admissible {
             }
     }
 
-    #[must_use]
     pub fn in_words(self) -> &'static str {
         match self {
             Self::Any => "a number",
@@ -210,20 +208,17 @@ impl Vehicle {
     }
 
     /// The value of a parameter by its key.
-    #[must_use]
     pub fn get(&self, key: &str) -> Option<f64> {
         parameter(key).map(|parameter| *(parameter.field)(&mut self.clone()))
     }
 
     /// Static vertical wheel force of the tare vehicle in N.
-    #[must_use]
     pub fn static_wheel_load(&self) -> f64 {
         (self.car_mass + 2.0 * self.bogie_mass + 4.0 * self.wheelset_mass) * super::G / 8.0
     }
 }
 
 /// The parameter with this key.
-#[must_use]
 pub fn parameter(key: &str) -> Option<&'static Parameter> {
     PARAMETERS.iter().find(|parameter| parameter.key == key)
 }

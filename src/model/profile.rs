@@ -31,7 +31,6 @@ pub struct Profile {
 impl Profile {
     /// The profile with the vehicle's wear and conicity; `None` if it is worn and there is no worn
     /// table, or if the two tables have different displacements.
-    #[must_use]
     pub fn new(new: &ProfileTable, worn: Option<&ProfileTable>, vehicle: &Vehicle) -> Option<Self> {
         let share = vehicle.worn_share;
         let worn = if share == 0.0 { new } else { worn? };
@@ -57,14 +56,12 @@ impl Profile {
     }
 
     /// Range of displacements of the table, in m.
-    #[must_use]
     pub fn range(&self) -> (f64, f64) {
         (self.displacement[0], self.displacement[self.displacement.len() - 1])
     }
 
     /// Interpolates linearly; constant beyond the ends. `side`: 0 right, 1 left; `delta` in m.
     #[inline(always)]
-    #[must_use]
     pub fn at(&self, side: usize, delta: f64) -> Geometry {
         let last = self.displacement.len() - 2;
         let (i, share) = match self.density {

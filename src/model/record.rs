@@ -66,7 +66,6 @@ pub struct Window {
 
 impl Window {
     /// The window of a section with the margins for the filters.
-    #[must_use]
     pub fn around(start: f64, end: f64) -> Self {
         Self { from: start - BEFORE, to: end + BEHIND }
     }
@@ -175,7 +174,6 @@ fn recorded(
 }
 
 /// Start of the run: the trailing wheelset reaches the first point of the track after the run-in.
-#[must_use]
 pub fn start(equations: &Equations<'_>, track: &Track) -> f64 {
     track.start() + equations.vehicle.half_bogie_spacing + equations.vehicle.half_wheelbase
         - RUN_IN * equations.speed

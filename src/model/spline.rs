@@ -10,7 +10,6 @@ pub struct Spline {
 
 impl Spline {
     /// Two or more points; `at` strictly increasing, of the length of `values`.
-    #[must_use]
     pub fn new(at: &[f64], values: Vec<f64>) -> Self {
         let n = at.len();
         let mut bends = vec![0.0; n];
@@ -35,7 +34,6 @@ impl Spline {
 
     /// Coefficients of the powers 0 to 3 of the distance from point `i`, in the interval of length
     /// `width` after it.
-    #[must_use]
     pub fn cubic(&self, i: usize, width: f64) -> [f64; 4] {
         let (low, high) = (self.values[i], self.values[i + 1]);
         let (low_bend, high_bend) = (self.bends[i], self.bends[i + 1]);

@@ -52,20 +52,8 @@ impl State {
     /// Sets `self` to `start` plus `step` times `rates`.
     #[inline(always)]
     pub fn follow(&mut self, start: &Self, step: f64, rates: &Self) {
-        fn each<const N: usize>(to: &mut [f64; N], start: &[f64; N], step: f64, rates: &[f64; N]) {
-            for i in 0..N {
-                to[i] = start[i] + step * rates[i];
-            }
-        }
-        each(&mut self.x, &start.x, step, &rates.x);
-        each(&mut self.v, &start.v, step, &rates.v);
-        each(&mut self.spin, &start.spin, step, &rates.spin);
-        each(&mut self.yaw_damper, &start.yaw_damper, step, &rates.yaw_damper);
-        each(&mut self.hysteresis, &start.hysteresis, step, &rates.hysteresis);
-        each(&mut self.centre_friction, &start.centre_friction, step, &rates.centre_friction);
-        each(&mut self.friction_z, &start.friction_z, step, &rates.friction_z);
-        each(&mut self.friction_y, &start.friction_y, step, &rates.friction_y);
-        each(&mut self.bending, &start.bending, step, &rates.bending);
+        *self = *start;
+        self.add(step, rates);
     }
 
     /// Adds `step` times `rates`.
@@ -103,7 +91,6 @@ impl State {
     }
 
     /// The states as a vector of length [`State::ALL`].
-    #[must_use]
     pub fn to_vec(&self) -> Vec<f64> {
         self.parts().concat()
     }
@@ -119,7 +106,6 @@ impl State {
     }
 
     /// The inverse of [`State::to_vec`]; `values` has length [`State::ALL`].
-    #[must_use]
     pub fn from_slice(values: &[f64]) -> Self {
         fn take<const N: usize>(values: &mut &[f64]) -> [f64; N] {
             let (part, rest) = values.split_at(N);
@@ -143,7 +129,6 @@ impl State {
     }
 
     /// Whether all displacements, rates and spins are finite.
-    #[must_use]
     pub fn is_finite(&self) -> bool {
         // 0 times infinity or NaN is NaN.
         let mut sum = 0.0;
@@ -157,7 +142,6 @@ impl State {
     }
 
     /// The largest magnitude of all states.
-    #[must_use]
     pub fn largest(&self) -> f64 {
         self.to_vec().into_iter().fold(0.0, |most, value| value.abs().max(most))
     }

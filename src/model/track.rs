@@ -69,7 +69,6 @@ pub type Hint = usize;
 
 impl Track {
     /// A track of two or more points for `vehicle`.
-    #[must_use]
     pub fn new(table: &TrackTable, vehicle: &Vehicle) -> Self {
         let distance = table.distance.clone();
         let curvature: Vec<f64> =
@@ -121,13 +120,11 @@ impl Track {
     }
 
     /// Distance of the first point in m.
-    #[must_use]
     pub fn start(&self) -> f64 {
         self.distance[0]
     }
 
     /// Distance of the last point in m.
-    #[must_use]
     pub fn end(&self) -> f64 {
         self.distance[self.distance.len() - 1]
     }

@@ -64,25 +64,21 @@ impl Plan {
                 if parameter.neutral == Some(value) && effect.action != Action::Simulator {
                     continue;
                 }
-                match (&effect.action, simulator) {
-                    (Action::Formulas(_), _) => {}
-                    (Action::Signals(operator, _), _) => {
-                        plan.operators.push((*operator, value, applied.channels.clone()))
-                    }
-                    (Action::Simulator, None) => {
-                        let (key, factor) = parameter.model.as_ref().ok_or_else(|| {
-                            unsaid(&effect.name, &parameter.name, "the built-in model")
-                        })?;
-                        plan.set(key, value * factor);
-                    }
-                    (Action::Simulator, Some(simulator)) => {
-                        let found =
-                            parameter.simulators.iter().find(|(name, ..)| name == simulator);
-                        let (_, key, factor) = found
-                            .ok_or_else(|| unsaid(&effect.name, &parameter.name, simulator))?;
-                        plan.set(key, value * factor);
-                    }
+                if let Action::Signals(operator, _) = &effect.action {
+                    plan.operators.push((*operator, value, applied.channels.clone()));
+                    continue;
                 }
+                let of_simulator =
+                    |name: &str| parameter.simulators.iter().find(|(known, ..)| known == name);
+                let found = match simulator {
+                    None => parameter.model.as_ref().map(|(key, factor)| (key, factor)),
+                    Some(name) => of_simulator(name).map(|(_, key, factor)| (key, factor)),
+                };
+                let (key, factor) = found.ok_or_else(|| {
+                    let simulator = simulator.unwrap_or("the built-in model");
+                    unsaid(&effect.name, &parameter.name, simulator)
+                })?;
+                plan.set(key, value * factor);
             }
         }
         plan.operators.sort_by_key(|(operator, ..)| *operator);
@@ -95,7 +91,6 @@ impl Plan {
     }
 
     /// Recorded minus true position, in the unit of the axis.
-    #[must_use]
     pub fn shift(&self) -> f64 {
         self.operators
             .iter()
@@ -112,23 +107,17 @@ impl Plan {
         let seed = section.name().bytes().fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3)
         });
+        let failed = |says: String| {
+            let says = format!("section `{}`: {says}", section.name());
+            error("operator", says, &section.cell.span)
+        };
         for (formulas, values) in &self.formulas {
-            signals.compute(formulas, values).map_err(|says| {
-                error(
-                    "operator",
-                    format!("section `{}`: {says}", section.name()),
-                    &section.cell.span,
-                )
-            })?;
+            signals.compute(formulas, values).map_err(failed)?;
         }
         for (operator, value, channels) in &self.operators {
-            signals.apply(*operator, *value, channels, seed).map_err(|says| {
-                error(
-                    "operator",
-                    format!("section `{}`: {}: {says}", section.name(), operator.name()),
-                    &section.cell.span,
-                )
-            })?;
+            signals
+                .apply(*operator, *value, channels, seed)
+                .map_err(|says| failed(format!("{}: {says}", operator.name())))?;
         }
         Ok(())
     }
@@ -208,7 +197,6 @@ pub fn simulate(
 
 /// `recorded + (with - without)`, by position; channels that the simulator does not have are
 /// unchanged.
-#[must_use]
 pub fn incremented(recorded: &Signals, with: &Signals, without: &Signals) -> Signals {
     let mut sum = recorded.clone();
     for channel in &mut sum.channels {
@@ -228,7 +216,6 @@ pub fn incremented(recorded: &Signals, with: &Signals, without: &Signals) -> Sig
 }
 
 /// Linear interpolation, constant beyond the ends; `at` is the interval of the last call.
-#[must_use]
 pub fn interpolated(axis: &[f64], values: &[f64], x: f64, at: &mut usize) -> f64 {
     let last = axis.len().min(values.len()).saturating_sub(1);
     while *at + 1 < last && axis[*at + 1] <= x {

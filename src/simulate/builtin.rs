@@ -24,7 +24,6 @@ use crate::yaml::Node;
 const SIDES: [(&str, f64); 3] = [("both", 0.0), ("R", 1.0), ("L", -1.0)];
 
 /// Keys and units of the parameters of the model, for catalogues.
-#[must_use]
 pub fn model_parameters() -> Vec<(&'static str, &'static str)> {
     PARAMETERS.iter().map(|parameter| (parameter.key, parameter.unit)).collect()
 }
@@ -52,7 +51,6 @@ const MODEL: &str = "reference vehicle model";
 impl<'a> Builtin<'a> {
     /// Whether a campaign is of a vehicle that the model can describe: its vehicle file has a
     /// parameter of the model.
-    #[must_use]
     pub fn is_for(campaign: &Campaign) -> bool {
         PARAMETERS.iter().any(|parameter| campaign.vehicle.lookup(parameter.key).is_some())
     }
@@ -95,7 +93,6 @@ impl<'a> Builtin<'a> {
     }
 
     /// The same with another method or step, which its name then says.
-    #[must_use]
     pub fn integrated(self, steps: Steps) -> Self {
         let step = 1.0 / steps.per_sample as f64;
         Self {
@@ -192,19 +189,14 @@ pub fn vehicle(tree: &Node, problems: &mut Problems) -> Option<Vehicle> {
     for parameter in PARAMETERS {
         let Some(node) = tree.lookup(parameter.key) else { continue };
         let Some(text) = node.scalar_text() else { continue };
-        if let Some((_, side)) = SIDES.iter().find(|(word, _)| *word == text) {
-            values.push((parameter.key, *side));
-        } else if let Some(number) = number_of(node, parameter.key) {
-            values.push((parameter.key, number));
-        } else {
-            match stated(parameter, text) {
-                Ok(number) => values.push((parameter.key, number)),
-                Err(refused) => {
-                    let says =
-                        format!("`{}` ({}): {}", parameter.key, parameter.meaning, refused.says);
-                    let problem = error("wrong-kind", says, &node.span);
-                    problems.push(problem.help_if(refused.help));
-                }
+        let side = SIDES.iter().find(|(word, _)| *word == text).map(|(_, side)| *side);
+        let number = side.or_else(|| node.number());
+        match number.map_or_else(|| stated(parameter, text), Ok) {
+            Ok(number) => values.push((parameter.key, number)),
+            Err(refused) => {
+                let says = format!("`{}` ({}): {}", parameter.key, parameter.meaning, refused.says);
+                let problem = error("wrong-kind", says, &node.span);
+                problems.push(problem.help_if(refused.help));
             }
         }
     }
@@ -242,7 +234,6 @@ pub fn vehicle(tree: &Node, problems: &mut Problems) -> Option<Vehicle> {
 
 /// A number of a vehicle file in the unit of the parameter with this key; for an unknown key,
 /// without unit.
-#[must_use]
 pub fn number_of(node: &Node, key: &str) -> Option<f64> {
     node.number().or_else(|| stated(model::parameter(key)?, node.scalar_text()?).ok())
 }
@@ -343,86 +334,56 @@ fn read_track(
     read: impl FnOnce(&[Wanted]) -> Result<Record, Vec<Problem>>,
 ) -> Result<TrackTable, Problem> {
     let length = Dimension::LENGTH;
-    let wanted = [
-        Wanted::new("distance", length),
-        Wanted::new("curvature", Dimension::ONE / length),
-        Wanted::new("cant", length),
-        Wanted::new("alignment", length),
-        Wanted::new("level", length),
-        Wanted::new("cross level", length),
-        Wanted::new("gauge", length),
+    let columns = [
+        ("distance", length, 1.0),
+        ("curvature", Dimension::ONE / length, 1.0),
+        ("cant", length, 1e3),
+        ("alignment", length, 1e3),
+        ("level", length, 1e3),
+        ("cross level", length, 1e3),
+        ("gauge", length, 1e3),
     ];
-    let record = read(&wanted).map_err(first)?;
-    let column = |name: &str, factor: f64| numbers(&record, name, factor);
-    let distance = column("distance", 1.0);
-    increasing(&record, "distance", &distance)?;
-    Ok(TrackTable {
-        curvature: column("curvature", 1.0),
-        cant: column("cant", 1e3),
-        alignment: column("alignment", 1e3),
-        level: column("level", 1e3),
-        cross_level: column("cross level", 1e3),
-        gauge: column("gauge", 1e3),
-        distance,
-    })
+    let [distance, curvature, cant, alignment, level, cross_level, gauge] =
+        read_table(columns, read).map_err(first)?;
+    Ok(TrackTable { distance, curvature, cant, alignment, level, cross_level, gauge })
 }
 
 fn profile(path: &Path, shown: &str, problems: &mut Problems) -> Option<ProfileTable> {
-    let length = Dimension::LENGTH;
-    let wanted = [
-        Wanted::new("displacement", length),
-        Wanted::new("radius deviation right", length),
-        Wanted::new("radius deviation left", length),
-        Wanted::new("contact angle right", Dimension::ONE),
-        Wanted::new("contact angle left", Dimension::ONE),
+    let columns = [
+        ("displacement", Dimension::LENGTH, 1e3),
+        ("radius deviation right", Dimension::LENGTH, 1e3),
+        ("radius deviation left", Dimension::LENGTH, 1e3),
+        ("contact angle right", Dimension::ONE, 1.0),
+        ("contact angle left", Dimension::ONE, 1.0),
     ];
-    let record = match read_record(path, shown, &wanted) {
-        Ok(record) => record,
-        Err(found) => {
-            problems.add(found);
-            return None;
-        }
-    };
-    let column = |name: &str, factor: f64| numbers(&record, name, factor);
-    let displacement = column("displacement", 1e3);
-    if let Err(problem) = increasing(&record, "displacement", &displacement) {
-        problems.push(problem);
-        return None;
-    }
-    Some(ProfileTable {
-        displacement,
-        radius_deviation: [
-            column("radius deviation right", 1e3),
-            column("radius deviation left", 1e3),
-        ],
-        contact_angle: [column("contact angle right", 1.0), column("contact angle left", 1.0)],
-    })
+    let table = read_table(columns, |wanted| read_record(path, shown, wanted));
+    let [displacement, right, left, angle_right, angle_left] =
+        table.map_err(|found| problems.add(found)).ok()?;
+    let (radius_deviation, contact_angle) = ([right, left], [angle_right, angle_left]);
+    Some(ProfileTable { displacement, radius_deviation, contact_angle })
 }
 
-fn numbers(record: &Record, name: &str, factor: f64) -> Vec<f64> {
-    record
-        .column(name)
-        .map(|column| column.values.iter().map(|value| value * factor).collect())
-        .unwrap_or_default()
-}
-
-/// A table needs at least two points in increasing order.
-fn increasing(record: &Record, name: &str, values: &[f64]) -> Result<(), Problem> {
-    let at = |row: usize| {
-        record
-            .place(row, record.column(name))
-            .unwrap_or_else(|| Source::new(record.shown.as_str(), "").whole())
-    };
-    if values.len() < 2 {
-        return Err(Problem::error(
-            "too-short",
-            format!("{} has {} rows; at least two are needed", record.shown, values.len()),
-        ));
+/// The columns of a table, each with its name, its dimension, and the factor from SI to the unit of
+/// the model. A table has at least two points, in increasing order of the first column.
+fn read_table<const N: usize>(
+    columns: [(&str, Dimension, f64); N],
+    read: impl FnOnce(&[Wanted]) -> Result<Record, Vec<Problem>>,
+) -> Result<[Vec<f64>; N], Vec<Problem>> {
+    let record = read(&columns.map(|(name, dimension, _)| Wanted::new(name, dimension)))?;
+    let numbers = columns.map(|(name, _, factor)| -> Vec<f64> {
+        let values = record.column(name).map_or(&[][..], |column| &column.values);
+        values.iter().map(|value| value * factor).collect()
+    });
+    let (name, points) = (columns[0].0, &numbers[0]);
+    if points.len() < 2 {
+        let says = format!("{} has {} rows; at least two are needed", record.shown, points.len());
+        return Err(Problem::error("too-short", says).into());
     }
-    match values.windows(2).position(|pair| pair[1] <= pair[0]) {
-        Some(row) => {
-            Err(error("not-increasing", format!("`{name}` does not increase here"), &at(row + 1)))
-        }
-        None => Ok(()),
+    if let Some(row) = points.windows(2).position(|pair| pair[1] <= pair[0]) {
+        let at = record
+            .place(row + 1, record.column(name))
+            .unwrap_or_else(|| Source::new(record.shown.as_str(), "").whole());
+        return Err(error("not-increasing", format!("`{name}` does not increase here"), &at).into());
     }
+    Ok(numbers)
 }

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use arrow_array::{ArrayRef, Float64Array, RecordBatch};
-use arrow_schema::{DataType, Field, Schema};
 
 use super::section::Section;
 use crate::data::campaign::ReadFile;
@@ -13,7 +12,7 @@ use crate::data::write::{Digits, OutColumn, record};
 use crate::data::{Campaign, RecordKind};
 use crate::effects::{Channel, Signals};
 use crate::problem::Problem;
-use crate::units::Unit;
+use crate::units::{Dimension, Unit};
 
 /// Units of channels, by name.
 pub type Units = Vec<(String, Unit)>;
@@ -143,6 +142,16 @@ pub fn in_units(
     Ok(())
 }
 
+/// The columns with the axes of a record: time and distance, or the time alone if it is the axis.
+fn axes(signals: &Signals) -> Vec<(&'static str, Unit, Vec<f64>)> {
+    let (second, metre) = (Unit::si(Dimension::TIME), Unit::si(Dimension::LENGTH));
+    if signals.over_time {
+        return vec![(TIME, second, signals.axis.clone())];
+    }
+    let time = (0..signals.axis.len()).map(|n| n as f64 / signals.rate).collect();
+    vec![(TIME, second, time), (AXIS, metre, signals.axis.clone())]
+}
+
 /// A record in memory, with the columns that [`record_file`] writes. Nothing is rounded.
 ///
 /// # Errors
@@ -152,16 +161,12 @@ pub fn frame(
     signals: &Signals,
     units: &dyn Fn(&str) -> Unit,
 ) -> Result<Frame, Problem> {
-    let time = || (0..signals.axis.len()).map(|n| n as f64 / signals.rate).collect::<Vec<f64>>();
-    let mut columns = match signals.over_time {
-        true => vec![(format!("{TIME} [s]"), signals.axis.clone())],
-        false => {
-            vec![(format!("{TIME} [s]"), time()), (format!("{AXIS} [m]"), signals.axis.clone())]
-        }
-    };
-    columns.extend(signals.channels.iter().map(|channel| {
-        (format!("{} [{}]", channel.name, units(&channel.name)), channel.values.clone())
-    }));
+    let heading = |name: &str, unit: &Unit| format!("{name} [{unit}]");
+    let axes = axes(signals).into_iter().map(|(name, unit, values)| (heading(name, &unit), values));
+    let channels = signals.channels.iter();
+    let channels =
+        channels.map(|Channel { name, values }| (heading(name, &units(name)), values.clone()));
+    let columns: Vec<(String, Vec<f64>)> = axes.chain(channels).collect();
     if let Some((column, _)) =
         columns.iter().find(|(_, values)| values.iter().any(|value| !value.is_finite()))
     {
@@ -170,18 +175,12 @@ pub fn frame(
             format!("`{column}` of `{name}` has a value that is not finite"),
         ));
     }
-    let schema = Schema::new(
-        columns
-            .iter()
-            .map(|(name, _)| Field::new(name, DataType::Float64, false))
-            .collect::<Vec<_>>(),
-    );
-    let arrays: Vec<ArrayRef> = columns
+    let arrays = columns
         .into_iter()
-        .map(|(_, values)| Arc::new(Float64Array::from(values)) as ArrayRef)
-        .collect();
-    let batch = RecordBatch::try_new(Arc::new(schema.clone()), arrays)
+        .map(|(name, values)| (name, Arc::new(Float64Array::from(values)) as ArrayRef));
+    let batch = RecordBatch::try_from_iter(arrays)
         .map_err(|error| Problem::error("record-invalid", format!("`{name}`: {error}")))?;
+    let schema = batch.schema();
     Frame::new(name, &schema, vec![batch])
 }
 
@@ -216,11 +215,6 @@ pub fn record_file(
     signals: &Signals,
     units: &dyn Fn(&str) -> Unit,
 ) -> Result<Vec<u8>, Problem> {
-    let time: Vec<f64> = (0..signals.axis.len()).map(|n| n as f64 / signals.rate).collect();
-    let (seconds, metres) = (
-        Unit::parse("s").unwrap_or_else(|_| Unit::one()),
-        Unit::parse("m").unwrap_or_else(|_| Unit::one()),
-    );
     let units: Vec<Unit> = signals.channels.iter().map(|channel| units(&channel.name)).collect();
     let values: Vec<Vec<f64>> = signals
         .channels
@@ -228,23 +222,14 @@ pub fn record_file(
         .zip(&units)
         .map(|(channel, unit)| channel.values.iter().map(|value| unit.to_si(*value)).collect())
         .collect();
-    let mut columns = match signals.over_time {
-        true => vec![OutColumn {
-            name: TIME,
-            unit: &seconds,
-            values: &signals.axis,
-            decimals: 6.max(decimals_of(signals.rate)),
-        }],
-        false => vec![
-            OutColumn {
-                name: TIME,
-                unit: &seconds,
-                values: &time,
-                decimals: decimals_of(signals.rate),
-            },
-            OutColumn { name: AXIS, unit: &metres, values: &signals.axis, decimals: 3 },
-        ],
-    };
+    let of_time = decimals_of(signals.rate);
+    let decimals = if signals.over_time { [6.max(of_time), 0] } else { [of_time, 3] };
+    let axes = axes(signals);
+    let mut columns: Vec<OutColumn<'_>> = axes
+        .iter()
+        .zip(decimals)
+        .map(|((name, unit, values), decimals)| OutColumn { name, unit, values, decimals })
+        .collect();
     for ((channel, unit), values) in signals.channels.iter().zip(&units).zip(&values) {
         let decimals = match unit.text.as_str() {
             "kN" => 2,

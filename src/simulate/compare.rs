@@ -18,7 +18,6 @@ pub struct Deviation {
 
 impl Deviation {
     /// The deviation as a share of the channel's rms; 0 if both are zero.
-    #[must_use]
     pub fn share(&self) -> f64 {
         if self.rms == 0.0 { 0.0 } else { self.rms / self.of }
     }
@@ -72,7 +71,6 @@ pub fn deviations(
 
 /// A warning if a simulator without effects deviates from the campaign's simulation by more than
 /// the tolerance in any channel.
-#[must_use]
 pub fn baseline_warning(
     simulator: &dyn Simulator,
     tolerance: f64,

@@ -27,7 +27,6 @@ impl fmt::Debug for Function<'_> {
 }
 
 impl<'a> Function<'a> {
-    #[must_use]
     pub fn new(campaign: &'a Campaign, name: impl Into<String>, call: Call<'a>) -> Self {
         Self { campaign, name: name.into(), call }
     }

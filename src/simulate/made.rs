@@ -20,12 +20,7 @@ pub fn read_made(
 ) -> Result<(Signals, Units), Problem> {
     let shown = made.inside();
     let headings = made.headings().map_err(first)?;
-    let needed = channels.iter().map(String::as_str);
-    let wanted: Vec<&str> = if channels.is_empty() {
-        known.iter().map(|one| one.name.as_str()).collect()
-    } else {
-        needed.collect()
-    };
+    let wanted = wanted(known, channels);
     for &name in &wanted {
         let names: Vec<&str> = headings.iter().map(|one| one.name.as_str()).collect();
         let Some(heading) = headings.iter().find(|one| one.name == name) else {
@@ -44,6 +39,16 @@ pub fn read_made(
     Ok((signals, units))
 }
 
+/// The channels that a record must have; without any that are asked for, those of the campaign's
+/// simulation.
+pub fn wanted<'a>(known: &'a [Heading], asked: &'a [String]) -> Vec<&'a str> {
+    if asked.is_empty() {
+        known.iter().map(|heading| heading.name.as_str()).collect()
+    } else {
+        asked.iter().map(String::as_str).collect()
+    }
+}
+
 /// A record without a column that is wanted, with the nearest of the columns that nobody wants.
 pub fn lacks(shown: &str, name: &str, made: &[&str], wanted: &[&str]) -> Problem {
     let strangers = made.iter().copied().filter(|one| !wanted.contains(one));
@@ -56,6 +61,7 @@ pub fn unit_in(headings: &[Heading], name: &str) -> Option<Unit> {
     headings.iter().find(|heading| heading.name == name)?.unit(None).ok()
 }
 
+/// The first of some problems, where one is told.
 pub fn first(problems: Vec<Problem>) -> Problem {
     problems
         .into_iter()

@@ -88,7 +88,6 @@ impl Made<'_> {
 }
 
 /// Effects for an origin, with the units of the catalogue.
-#[must_use]
 pub fn effects_of_origin(effects: &[Applied], catalogue: &Catalogue) -> Vec<OriginEffect> {
     effects.iter().map(|applied| effect(applied, catalogue)).collect()
 }

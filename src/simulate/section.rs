@@ -32,19 +32,20 @@ pub struct Fact {
 
 impl Section {
     /// A section without a campaign.
-    #[must_use]
     pub fn nowhere() -> Self {
-        let cell = Cell::new("record".to_string(), Source::new("", "").whole());
+        Self::whole(Cell::new("record".to_string(), Source::new("", "").whole()))
+    }
+
+    /// A whole record.
+    fn whole(cell: Cell) -> Self {
         Self { cell, start: f64::NEG_INFINITY, end: f64::INFINITY, speed: None, facts: Vec::new() }
     }
 
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.cell.value
     }
 
     /// The text of a column; the section's name for `section`.
-    #[must_use]
     pub fn fact(&self, column: &str) -> Option<&str> {
         if column == "section" {
             return Some(self.name());
@@ -53,7 +54,6 @@ impl Section {
     }
 
     /// The number in a column in SI units; unchanged if the column has no unit.
-    #[must_use]
     pub fn number(&self, column: &str) -> Option<f64> {
         let fact = self.facts.iter().find(|fact| fact.name == column)?;
         let number = fact.text.trim().parse().ok().filter(|number: &f64| number.is_finite())?;
@@ -61,7 +61,6 @@ impl Section {
     }
 
     /// A column in words, `radius 280 m`; nothing if its cell is empty.
-    #[must_use]
     pub fn says(&self, column: &str) -> Option<String> {
         let fact = self.facts.iter().find(|fact| fact.name == column)?;
         let unit = fact.unit.as_ref().map(Unit::suffix).unwrap_or_default();
@@ -69,7 +68,6 @@ impl Section {
     }
 
     /// The same without the unit, `radius 280`.
-    #[must_use]
     pub fn says_without_unit(&self, column: &str) -> Option<String> {
         let text = self.fact(column).filter(|text| !text.is_empty())?;
         Some(format!("{column} {text}"))
@@ -80,14 +78,7 @@ impl Section {
 /// of` is wrong.
 pub fn sections(campaign: &Campaign, problems: &mut Problems) -> Option<Vec<Section>> {
     let Some(table) = &campaign.sections else {
-        let whole = |cell: &Cell| Section {
-            cell: cell.clone(),
-            start: f64::NEG_INFINITY,
-            end: f64::INFINITY,
-            speed: None,
-            facts: Vec::new(),
-        };
-        return Some(campaign.names.iter().map(whole).collect());
+        return Some(campaign.names.iter().cloned().map(Section::whole).collect());
     };
     let mut faults = Problems::default();
     let start = column(table, "start", None, &mut faults);

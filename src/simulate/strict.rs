@@ -20,13 +20,11 @@ impl std::fmt::Debug for Strict<'_> {
 }
 
 impl<'a> Strict<'a> {
-    #[must_use]
     pub fn new(inner: &'a dyn Simulator) -> Self {
         Self { inner, failed: Mutex::new(None) }
     }
 
     /// The first failure, if there was one.
-    #[must_use]
     pub fn failed(&self) -> Option<Problem> {
         self.failed.lock().ok()?.clone()
     }

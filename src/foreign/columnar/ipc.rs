@@ -13,7 +13,7 @@ const MARK: &[u8] = b"ARROW1";
 const END: usize = 4 + MARK.len();
 
 /// Checks a file; returns the number of its rows.
-pub(super) fn check(input: &Input<'_>) -> Result<usize, Problem> {
+pub fn check(input: &Input<'_>) -> Result<usize, Problem> {
     let bytes = &input.bytes[..];
     let footer = footer(bytes).map_err(|why| input.damaged("the footer", why))?;
     let footer =

@@ -35,7 +35,8 @@ const NOT_FACTS: &[&str] = &["ARROW:schema", "pandas", "geo"];
 /// Longest fact that is kept.
 const LONGEST_FACT: usize = 200;
 
-pub(super) fn parquet(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
+/// A Parquet file as a table.
+pub fn parquet(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let bad = |why: &dyn Display| input.damaged("the footer", why);
     guard::footer(footer(input.bytes).map_err(|why| bad(&why))?).map_err(|why| bad(&why))?;
     let bytes = input.bytes.clone();
@@ -110,7 +111,8 @@ fn pages(
     Ok(())
 }
 
-pub(super) fn arrow(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
+/// An Arrow file as a table.
+pub fn arrow(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let rows = ipc::check(input)?;
     let reader = |columns: Option<Vec<usize>>| {
         FileReader::try_new(Cursor::new(&input.bytes[..]), columns)

@@ -7,7 +7,7 @@ use arrow_schema::{ArrowError, DataType, TimeUnit};
 use crate::data::record::numbers;
 
 /// Whether a type is read as numbers, or why not.
-pub(super) fn readable(kind: &DataType) -> Result<(), String> {
+pub fn readable(kind: &DataType) -> Result<(), String> {
     match kind {
         DataType::Boolean | DataType::Timestamp(..) | DataType::Duration(_) => Ok(()),
         kind if kind.is_integer() || kind.is_floating() => Ok(()),
@@ -19,17 +19,13 @@ pub(super) fn readable(kind: &DataType) -> Result<(), String> {
 }
 
 /// Times and durations are seconds.
-pub(super) fn is_time(kind: &DataType) -> bool {
+pub fn is_time(kind: &DataType) -> bool {
     matches!(kind, DataType::Timestamp(..) | DataType::Duration(_))
 }
 
 /// Adds the values of a column; NaN where it has none. Times are counted from the first of the
 /// file, which `origin` keeps: as nanoseconds since 1970 they have more digits than a double.
-pub(super) fn add(
-    to: &mut Vec<f64>,
-    column: &dyn Array,
-    origin: &mut Option<i64>,
-) -> Result<(), String> {
+pub fn add(to: &mut Vec<f64>, column: &dyn Array, origin: &mut Option<i64>) -> Result<(), String> {
     let kind = column.data_type();
     let first = |counts: &Int64Array, origin: &mut Option<i64>| {
         *origin = origin.or_else(|| counts.iter().flatten().next());

@@ -39,7 +39,8 @@ const DEEPEST: usize = 16;
 
 const OBJECT: &str = "an object of MATLAB (table, timeseries, string); save it as a struct, for example with `table2struct(T, 'ToScalar', true)`";
 
-pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
+/// The structs and vectors of a file as tables.
+pub fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let mut budget = input.budget();
     let old = input.bytes.get(..8) != Some(b"\x89HDF\r\n\x1a\n")
         && matches!(input.bytes.get(124..128), Some([_, 1, b'I', b'M'] | [1, _, b'M', b'I']));

@@ -31,7 +31,7 @@ const LONGEST_FACT: usize = 200;
 const MOST_NUMBERS: usize = 4;
 
 /// The tables of a file.
-pub(super) fn of(variables: Fields, shown: &str) -> Result<Read, Vec<Problem>> {
+pub fn of(variables: Fields, shown: &str) -> Result<Read, Vec<Problem>> {
     let mut read = Read::default();
     let mut loose: Fields = Vec::new();
     for (name, value) in variables {

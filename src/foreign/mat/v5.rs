@@ -47,7 +47,7 @@ struct Reader<'a, 'b> {
 }
 
 /// The variables of a file in their order.
-pub(super) fn variables(input: &Input<'_>, budget: &mut Budget<'_>) -> Result<Fields, Problem> {
+pub fn variables(input: &Input<'_>, budget: &mut Budget<'_>) -> Result<Fields, Problem> {
     let big = input.bytes.get(126..128) == Some(b"MI");
     let mut rest = Cursor::new(input.bytes.get(HEADER..).unwrap_or(&[]), big);
     let mut reader = Reader { budget, place: String::new(), names: String::new() };

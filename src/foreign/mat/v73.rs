@@ -31,7 +31,7 @@ struct Reader<'a, 'b> {
 }
 
 /// The variables of a file.
-pub(super) fn variables(input: &Input<'_>, budget: &mut Budget<'_>) -> Result<Fields, Problem> {
+pub fn variables(input: &Input<'_>, budget: &mut Budget<'_>) -> Result<Fields, Problem> {
     let most = most_unpacked(input.bytes.len());
     let options = OpenOptions::default()
         .with_max_chunk_bytes(LARGEST_CHUNK.min(most))

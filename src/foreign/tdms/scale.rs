@@ -12,10 +12,7 @@ const MOST: usize = 16;
 ///
 /// # Errors
 /// A kind of scale that is not known: the values would be wrong.
-pub(super) fn apply(
-    properties: &IndexMap<String, Property>,
-    values: &mut [f64],
-) -> Result<(), String> {
+pub fn apply(properties: &IndexMap<String, Property>, values: &mut [f64]) -> Result<(), String> {
     let number = |name: String| properties.get(&name).and_then(Property::number);
     let text = |name: String| match properties.get(&name) {
         Some(Property::Text(text)) => Some(text.as_str()),

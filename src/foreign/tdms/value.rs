@@ -4,8 +4,8 @@ use super::super::binary::{Cursor, Number};
 use super::EPOCH;
 
 // Types of values that are not plain numbers, by their numbers in the format.
-pub(super) const TEXT: u32 = 0x20;
-pub(super) const TIME: u32 = 0x44;
+pub const TEXT: u32 = 0x20;
+pub const TIME: u32 = 0x44;
 const COMPLEX_SINGLE: u32 = 0x08_000c;
 const COMPLEX_DOUBLE: u32 = 0x10_000d;
 
@@ -23,7 +23,7 @@ fn number(kind: u32) -> Option<Number> {
 }
 
 /// Bytes of a value; `None` for texts and unknown types.
-pub(super) fn size_of(kind: u32) -> Option<usize> {
+pub fn size_of(kind: u32) -> Option<usize> {
     match kind {
         COMPLEX_SINGLE => Some(8),
         TIME | COMPLEX_DOUBLE => Some(16),
@@ -32,7 +32,7 @@ pub(super) fn size_of(kind: u32) -> Option<usize> {
 }
 
 /// A type that is not numbers, in words.
-pub(super) fn what(kind: u32) -> &'static str {
+pub fn what(kind: u32) -> &'static str {
     match kind {
         TEXT => "its values are texts",
         COMPLEX_SINGLE | COMPLEX_DOUBLE => "its values are complex numbers",
@@ -41,7 +41,7 @@ pub(super) fn what(kind: u32) -> &'static str {
 }
 
 /// Values as numbers; `None` if they are not numbers. Times are seconds since 1970.
-pub(super) fn numbers(kind: u32, data: &[u8], big: bool) -> Option<Vec<f64>> {
+pub fn numbers(kind: u32, data: &[u8], big: bool) -> Option<Vec<f64>> {
     if kind != TIME {
         return number(kind)?.read(data, big);
     }
@@ -54,7 +54,7 @@ pub(super) fn numbers(kind: u32, data: &[u8], big: bool) -> Option<Vec<f64>> {
 
 /// A property of an object.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Property {
+pub enum Property {
     Number(f64),
     Text(String),
     /// Seconds since 1970 and a part of a second.
@@ -84,7 +84,7 @@ impl Property {
 ///
 /// # Errors
 /// It is longer than what is left.
-pub(super) fn text(bytes: &mut Cursor<'_>) -> Result<String, String> {
+pub fn text(bytes: &mut Cursor<'_>) -> Result<String, String> {
     let length = bytes.u32()? as usize;
     Ok(String::from_utf8_lossy(bytes.take(length)?).into_owned())
 }
@@ -100,7 +100,7 @@ fn time(bytes: &mut Cursor<'_>) -> Result<(i64, f64), String> {
 ///
 /// # Errors
 /// An unknown type; it is longer than what is left.
-pub(super) fn property(bytes: &mut Cursor<'_>) -> Result<Property, String> {
+pub fn property(bytes: &mut Cursor<'_>) -> Result<Property, String> {
     let kind = bytes.u32()?;
     if kind == TEXT {
         return text(bytes).map(Property::Text);

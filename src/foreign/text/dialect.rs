@@ -63,14 +63,14 @@ impl Separator {
 
 /// A line without its line break.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Line<'a> {
+pub struct Line<'a> {
     /// From 1.
     pub number: usize,
     pub text: &'a str,
 }
 
 /// The lines of a text with LF, CR LF or CR.
-pub(super) fn lines(text: &str) -> Vec<Line<'_>> {
+pub fn lines(text: &str) -> Vec<Line<'_>> {
     let old = !text.contains('\n');
     let split = text.split(if old { '\r' } else { '\n' });
     split
@@ -80,7 +80,7 @@ pub(super) fn lines(text: &str) -> Vec<Line<'_>> {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Dialect {
+pub struct Dialect {
     pub separator: Separator,
     pub decimal: char,
     /// Number of cells of a row.
@@ -88,7 +88,7 @@ pub(super) struct Dialect {
 }
 
 /// Cells of a line: bytes of the line without quotes and surrounding blanks.
-pub(super) fn split(line: &str, separator: Separator) -> Vec<Range<usize>> {
+pub fn split(line: &str, separator: Separator) -> Vec<Range<usize>> {
     let mut cells = Vec::new();
     let mut from = 0;
     match separator {
@@ -158,7 +158,7 @@ fn trim(line: &str, place: Range<usize>) -> Range<usize> {
 const COMMENTS: [&str; 5] = ["#", "%", "!", "//", "*"];
 
 /// The text after the mark of a comment.
-pub(super) fn comment<'a>(line: &'a str, options: &Options) -> Option<&'a str> {
+pub fn comment<'a>(line: &'a str, options: &Options) -> Option<&'a str> {
     let start = line.trim_start();
     match &options.comment {
         Some(mark) => (!mark.is_empty()).then(|| start.strip_prefix(mark.as_str())).flatten(),
@@ -167,7 +167,7 @@ pub(super) fn comment<'a>(line: &'a str, options: &Options) -> Option<&'a str> {
 }
 
 /// Whether a line can be a row: neither blank nor a comment.
-pub(super) fn is_row(line: Line<'_>, options: &Options) -> bool {
+pub fn is_row(line: Line<'_>, options: &Options) -> bool {
     !line.text.trim().is_empty() && comment(line.text, options).is_none()
 }
 
@@ -177,7 +177,7 @@ const SAMPLE: usize = 300;
 const SAMPLE_BYTES: usize = 1 << 20;
 
 /// Detects what was not said, from lines in the middle of the file, where there is no header.
-pub(super) fn detect(lines: &[Line<'_>], options: &Options) -> Option<Dialect> {
+pub fn detect(lines: &[Line<'_>], options: &Options) -> Option<Dialect> {
     let from = options.header_lines.map_or_else(
         || (lines.len() / 2).min(lines.len().saturating_sub(SAMPLE)),
         |count| count.min(lines.len()),
@@ -238,7 +238,7 @@ fn weigh(line: &str, separator: Separator, decimal: char) -> Option<(usize, f64)
 
 /// Number of cells that are numbers, time stamps or empty, if a row can be one of numbers: at least
 /// one number or time, and half of the cells.
-pub(super) fn numbers_among(line: &str, cells: &[Range<usize>], decimal: char) -> Option<usize> {
+pub fn numbers_among(line: &str, cells: &[Range<usize>], decimal: char) -> Option<usize> {
     let (mut numbers, mut empty) = (0, 0);
     for cell in cells {
         let text = &line[cell.clone()];

@@ -9,7 +9,7 @@ use crate::units::Unit;
 
 /// The heading of a column.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Heading {
+pub struct Heading {
     pub name: String,
     pub unit: Option<String>,
     pub comment: Option<String>,
@@ -17,7 +17,7 @@ pub(super) struct Heading {
 }
 
 #[derive(Debug, Default)]
-pub(super) struct Header {
+pub struct Header {
     pub columns: Vec<Heading>,
     pub facts: Vec<(String, String)>,
 }
@@ -26,7 +26,7 @@ pub(super) struct Header {
 ///
 /// # Errors
 /// `header-line`.
-pub(super) fn read(text: &Text<'_>, before: &[Line<'_>]) -> Result<Header, Problem> {
+pub fn read(text: &Text<'_>, before: &[Line<'_>]) -> Result<Header, Problem> {
     let Text { options, dialect, .. } = text;
     let mut header = Header::default();
     let (comments, others): (Vec<Line<'_>>, Vec<Line<'_>>) =
@@ -153,7 +153,7 @@ fn line_of_units<'a>(text: &Text<'_>, rows: &[Line<'a>]) -> Result<Option<Line<'
 }
 
 /// Whether at least half of the cells that are filled are units.
-pub(in crate::foreign) fn most_are_units<'a>(cells: impl Iterator<Item = &'a str>) -> bool {
+pub fn most_are_units<'a>(cells: impl Iterator<Item = &'a str>) -> bool {
     let filled: Vec<&str> = cells.filter(|cell| !cell.trim().is_empty()).collect();
     let known = filled
         .iter()
@@ -165,14 +165,14 @@ pub(in crate::foreign) fn most_are_units<'a>(cells: impl Iterator<Item = &'a str
 }
 
 /// `kN`, `[kN]`, `(kN)`, as the unit inside; none if it is empty.
-pub(in crate::foreign) fn unbracketed(text: &str) -> Option<String> {
+pub fn unbracketed(text: &str) -> Option<String> {
     let text = text.trim();
     let within = |open: char, close: char| text.strip_prefix(open)?.strip_suffix(close);
     filled(within('[', ']').or_else(|| within('(', ')')).unwrap_or(text))
 }
 
 /// `Y_1R [kN]`, or `Y_1R (kN)` and `Y_1R / kN` if the part is a unit.
-pub(in crate::foreign) fn name_and_unit(text: &str) -> (String, Option<String>) {
+pub fn name_and_unit(text: &str) -> (String, Option<String>) {
     let text = text.trim();
     if let Some((name, rest)) = text.rsplit_once('[')
         && let Some(unit) = rest.strip_suffix(']')

@@ -18,12 +18,12 @@ use std::ops::Range;
 
 pub use dialect::{DecimalMark, Separator};
 use dialect::{Dialect, Line, is_row};
-pub(in crate::foreign) use header::name_and_unit;
+pub use header::name_and_unit;
 #[cfg(feature = "foreign")]
-pub(in crate::foreign) use header::{most_are_units, unbracketed};
+pub use header::{most_are_units, unbracketed};
 pub use stamps::DateOrder;
 #[cfg(feature = "foreign")]
-pub(in crate::foreign) use values::stamps_from_first;
+pub use values::stamps_from_first;
 
 use super::{Input, Options, Read, Table, decode};
 use crate::problem::{Problem, error};
@@ -42,7 +42,7 @@ struct Text<'a> {
 }
 
 /// Reads a text table.
-pub(super) fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
+pub fn read(input: &Input<'_>) -> Result<Read, Vec<Problem>> {
     let (shown, options) = (input.shown, input.options);
     if let (Some(separator), Some(mark)) = (options.separator, options.decimal)
         && separator == Separator::Mark(mark.letter())

@@ -2,7 +2,7 @@
 
 /// What a cell is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Cell {
+pub enum Cell {
     /// NaN where the cell says so.
     Number(f64),
     Empty,
@@ -16,7 +16,7 @@ pub(super) enum Cell {
 const LONGEST: usize = 64;
 
 /// Reads a trimmed cell.
-pub(super) fn read(text: &str, decimal: char) -> Cell {
+pub fn read(text: &str, decimal: char) -> Cell {
     if text.is_empty() {
         return Cell::Empty;
     }

@@ -18,14 +18,14 @@ impl Words for DateOrder {
 
 /// A stamp as written.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Stamp {
+pub struct Stamp {
     pub date: Option<Date>,
     /// Time of the day in nanoseconds, less the offset from UTC if one is written.
     pub clock: Option<i64>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Date {
+pub struct Date {
     parts: [i64; 3],
     mark: char,
     /// The year is written first.
@@ -36,11 +36,11 @@ pub(super) struct Date {
 const LONGEST: usize = 40;
 /// Years of measurements; also a bound for nanoseconds in 64 bits.
 const YEARS: std::ops::RangeInclusive<i64> = 1900..=2200;
-pub(super) const NANOSECONDS: i64 = 1_000_000_000;
-pub(super) const DAY: i64 = 86_400 * NANOSECONDS;
+pub const NANOSECONDS: i64 = 1_000_000_000;
+pub const DAY: i64 = 86_400 * NANOSECONDS;
 
 /// Reads a trimmed cell.
-pub(super) fn read(text: &str) -> Option<Stamp> {
+pub fn read(text: &str) -> Option<Stamp> {
     if text.len() > LONGEST || !text.starts_with(|c: char| c.is_ascii_digit()) {
         return None;
     }
@@ -64,9 +64,7 @@ fn date(text: &str) -> Option<Date> {
     for (at, part) in parts.iter_mut().enumerate() {
         let word = words.next()?;
         let is_year = word.len() == 4 && (at == 0 || at == 2 && !year_first);
-        if !word.bytes().all(|byte| byte.is_ascii_digit())
-            || !(is_year || matches!(word.len(), 1 | 2))
-        {
+        if !are_digits(word) || !(is_year || matches!(word.len(), 1 | 2)) {
             return None;
         }
         year_first |= at == 0 && is_year;
@@ -91,8 +89,7 @@ fn clock(text: &str) -> Option<i64> {
     let (text, offset) = zone(text)?;
     let mut parts = text.split(':');
     let two = |word: &str| -> Option<i64> {
-        let fits = matches!(word.len(), 1 | 2) && word.bytes().all(|byte| byte.is_ascii_digit());
-        fits.then(|| word.parse().ok()).flatten()
+        if are_digits(word) && word.len() <= 2 { word.parse().ok() } else { None }
     };
     let hour = two(parts.next()?)?;
     let minute = two(parts.next()?)?;
@@ -114,6 +111,10 @@ fn clock(text: &str) -> Option<i64> {
     Some(((hour * 60 + minute) * 60 + second) * NANOSECONDS + fraction - offset)
 }
 
+fn are_digits(word: &str) -> bool {
+    !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_digit())
+}
+
 /// Splits off `Z` or an offset from UTC.
 fn zone(text: &str) -> Option<(&str, i64)> {
     if let Some(rest) = text.strip_suffix('z') {
@@ -132,18 +133,15 @@ fn zone(text: &str) -> Option<(&str, i64)> {
 }
 
 fn nanoseconds(digits: &str) -> Option<i64> {
-    if digits.is_empty() || !digits.bytes().all(|byte| byte.is_ascii_digit()) {
-        return None;
-    }
     let nine: String = digits.chars().chain(std::iter::repeat('0')).take(9).collect();
-    nine.parse().ok()
+    if are_digits(digits) { nine.parse().ok() } else { None }
 }
 
 /// The order of the dates of a column: said, or the only one that its dates allow.
 ///
 /// # Errors
 /// Both day and month could be first, and the dates differ.
-pub(super) fn order(dates: &[Date], options: &Options) -> Result<DateOrder, ()> {
+pub fn order(dates: &[Date], options: &Options) -> Result<DateOrder, ()> {
     let Some(first) = dates.first() else { return Ok(DateOrder::YearMonthDay) };
     if dates.iter().all(|date| date.year_first) {
         return Ok(DateOrder::YearMonthDay);
@@ -164,7 +162,7 @@ pub(super) fn order(dates: &[Date], options: &Options) -> Result<DateOrder, ()> 
 }
 
 /// Days since 1970-01-01; `None` if there is no such day.
-pub(super) fn days(date: &Date, order: DateOrder) -> Option<i64> {
+pub fn days(date: &Date, order: DateOrder) -> Option<i64> {
     let [a, b, c] = date.parts;
     let (year, month, day) = match order {
         _ if date.year_first => (a, b, c),

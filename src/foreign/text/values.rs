@@ -84,7 +84,7 @@ fn unfit(cell: numbers::Cell, word: &str) -> Unfit {
 }
 
 /// Reads the rows into the table.
-pub(super) fn read(
+pub fn read(
     text: &Text<'_>,
     rows: &[Line<'_>],
     headings: Vec<Heading>,
@@ -271,7 +271,7 @@ fn seconds(options: &Options, stamps: &[Option<Stamp>]) -> Option<Vec<f64>> {
 
 /// Texts as seconds from the first of them, if all that are filled are time stamps.
 #[cfg(feature = "foreign")]
-pub(in crate::foreign) fn stamps_from_first(cells: &[&str], options: &Options) -> Option<Vec<f64>> {
+pub fn stamps_from_first(cells: &[&str], options: &Options) -> Option<Vec<f64>> {
     let read = |cell: &&str| {
         if cell.trim().is_empty() { Some(None) } else { stamps::read(cell.trim()).map(Some) }
     };

@@ -1,7 +1,7 @@
 //! Which channel of the protocol a channel of a file may be: by name, and by what is in it.
 
 use super::look::{Look, short};
-use crate::import::mapping::Convention;
+use crate::import::mapping::{Common, Convention};
 use crate::run::needs::ChannelNeed;
 use crate::units::{Dimension, Unit};
 
@@ -90,13 +90,8 @@ pub fn speed<'a>(looks: &'a [Look], convention: &Convention) -> (Option<&'a Look
             .iter()
             .find(|look| look.unit_text.is_empty() && is_name_of(convention, &look.name, "speed"))
     };
-    match (
-        all.iter()
-            .copied()
-            .find(|look| is_name_of(convention, &look.name, "speed"))
-            .or_else(without),
-        &all[..],
-    ) {
+    let by_name = all.iter().copied().find(|look| is_name_of(convention, &look.name, "speed"));
+    match (by_name.or_else(without), &all[..]) {
         (Some(one), _) => (Some(one), "by name".into()),
         (None, [one]) => (Some(one), "by content: the only speed".into()),
         _ => (None, String::new()),
@@ -107,22 +102,33 @@ fn words(dimension: Dimension) -> String {
     dimension.in_words().split_once(' ').map_or_else(String::new, |(_, word)| word.to_string())
 }
 
-/// Median of the means of steady channels of a dimension in SI, with their number.
-fn common_mean(looks: &[Look], dimension: Dimension, within: f64) -> Option<(f64, usize)> {
-    let steady = |look: &&Look| {
-        look.mean.abs() > STEADY * look.deviation
-            && look.unit.as_ref().is_some_and(|unit| unit.dimension == dimension)
-    };
-    let mut means: Vec<f64> = looks
-        .iter()
-        .filter(steady)
-        .filter_map(|look| Some(look.unit.as_ref()?.to_si(look.mean)))
-        .collect();
-    means.sort_by(f64::total_cmp);
-    let median = *means.get(means.len() / 2)?;
-    let near =
-        means.iter().filter(|mean| (1.0 / within..=within).contains(&(*mean / median))).count();
-    Some((median, near))
+/// The mean that steady channels of a group have in common.
+struct CommonMean {
+    /// Median of the means in SI.
+    median: f64,
+    /// Number of channels near it.
+    near: usize,
+}
+
+impl CommonMean {
+    /// `None` if fewer channels than the group has are near the median.
+    fn new(looks: &[Look], dimension: Dimension, group: &Common) -> Option<Self> {
+        let mean = |look: &Look| {
+            let unit = look.unit.as_ref().filter(|unit| unit.dimension == dimension)?;
+            (look.mean.abs() > STEADY * look.deviation).then(|| unit.to_si(look.mean))
+        };
+        let mut means: Vec<f64> = looks.iter().filter_map(mean).collect();
+        means.sort_by(f64::total_cmp);
+        let median = *means.get(means.len() / 2)?;
+        let near = means.iter().filter(|mean| is_near(*mean / median, group)).count();
+        (near >= group.channels.0.len()).then_some(Self { median, near })
+    }
+}
+
+/// Whether a mean with this ratio to the common one is common as well.
+fn is_near(ratio: f64, group: &Common) -> bool {
+    let within = group.within.value;
+    (1.0 / within..=within).contains(&ratio)
 }
 
 /// One guess for each channel that is needed, and for each other one of the convention that a file
@@ -188,41 +194,31 @@ pub fn guesses(looks: &[Look], needs: &[&ChannelNeed], convention: &Convention) 
 
 fn one(looks: &[Look], need: &ChannelNeed, convention: &Convention) -> Guess {
     let found = named(looks, convention, &need.column);
-    let names = found.iter().map(|look| look.name.clone()).collect::<Vec<_>>();
-    let open = |reasons: Vec<String>| Guess {
+    let names: Vec<String> = found.iter().map(|look| look.name.clone()).collect();
+    let guess = |from: Option<&Look>, reasons: Vec<String>| Guess {
         channel: need.column.clone(),
-        from: None,
-        candidates: names.clone(),
-        reasons,
-    };
-    let taken = |look: &Look, reasons| Guess {
-        channel: need.column.clone(),
-        from: Some(look.name.clone()),
-        candidates: Vec::new(),
+        from: from.map(|look| look.name.clone()),
+        candidates: if from.is_some() { Vec::new() } else { names.clone() },
         reasons,
     };
     let wanted = Unit::parse(&need.unit).ok();
     let [look] = found[..] else {
-        let mut reasons = Vec::new();
-        if found.is_empty() {
-            reasons.push(format!("{}; no channel has a known name of it", need.unit));
+        let why = if found.is_empty() {
+            format!("{}; no channel has a known name of it", need.unit)
         } else {
-            reasons.push(format!(
-                "several channels have a name of it: {}",
-                found.iter().map(|look| look.name.as_str()).collect::<Vec<_>>().join(", ")
-            ));
-        }
-        reasons.extend(by_content(looks, need, convention));
-        return open(reasons);
+            format!("several channels have a name of it: {}", names.join(", "))
+        };
+        let content = by_content(looks, need, convention);
+        return guess(None, std::iter::once(why).chain(content).collect());
     };
     let mut reasons = vec!["by name".to_string(), look.in_words()];
     if look.missing == look.rows || look.deviation == 0.0 {
         reasons.insert(0, look.name.clone());
         reasons.push("BUT it has no signal".into());
-        return open(reasons);
+        return guess(None, reasons);
     }
     let (Some(wanted), Some(unit)) = (&wanted, &look.unit) else {
-        return taken(look, reasons);
+        return guess(Some(look), reasons);
     };
     if unit.dimension != wanted.dimension {
         reasons.push(format!(
@@ -230,17 +226,15 @@ fn one(looks: &[Look], need: &ChannelNeed, convention: &Convention) -> Guess {
             unit.dimension.in_words(),
             wanted.dimension.in_words()
         ));
-        return taken(look, reasons);
+        return guess(Some(look), reasons);
     }
     for group in convention.common.iter().filter(|group| group.channels.0.contains(&need.column)) {
-        let Some((median, near)) = common_mean(looks, wanted.dimension, group.within.value) else {
+        let Some(CommonMean { median, near }) = CommonMean::new(looks, wanted.dimension, group)
+        else {
             continue;
         };
         let ratio = unit.to_si(look.mean) / median;
-        if near < group.channels.0.len() {
-            continue;
-        }
-        if (1.0 / group.within.value..=group.within.value).contains(&ratio) {
+        if is_near(ratio, group) {
             reasons.push(format!(
                 "by content: its mean is common to {near} channels, {}",
                 group.title
@@ -258,25 +252,20 @@ fn one(looks: &[Look], need: &ChannelNeed, convention: &Convention) -> Guess {
                 "BUT its mean is {:.2} times that of the {near} channels with a common mean ({})",
                 ratio, group.title
             ));
-            return open(reasons);
+            return guess(None, reasons);
         }
     }
-    taken(look, reasons)
+    guess(Some(look), reasons)
 }
 
 /// Candidates by content for a channel of a group with a common mean.
 fn by_content(looks: &[Look], need: &ChannelNeed, convention: &Convention) -> Option<String> {
     let wanted = Unit::parse(&need.unit).ok()?;
     let group = convention.common.iter().find(|group| group.channels.0.contains(&need.column))?;
-    let (median, near) = common_mean(looks, wanted.dimension, group.within.value)?;
-    if near < group.channels.0.len() {
-        return None;
-    }
+    let CommonMean { median, .. } = CommonMean::new(looks, wanted.dimension, group)?;
     let alike = looks.iter().filter(|look| {
         look.unit.as_ref().is_some_and(|unit| {
-            unit.dimension == wanted.dimension
-                && (1.0 / group.within.value..=group.within.value)
-                    .contains(&(unit.to_si(look.mean) / median))
+            unit.dimension == wanted.dimension && is_near(unit.to_si(look.mean) / median, group)
         })
     });
     let names: Vec<&str> = alike.map(|look| look.name.as_str()).collect();
@@ -298,7 +287,6 @@ mod tests {
 
     fn look(name: &str, unit: &str, mean: f64) -> Look {
         Look {
-            table: 0,
             name: name.into(),
             unit_text: unit.into(),
             unit: Unit::parse(unit).ok(),

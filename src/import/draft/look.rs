@@ -1,13 +1,12 @@
 //! What is in a channel.
 
-use crate::foreign::Table;
+use crate::foreign::{Table, even_step};
 use crate::units::Unit;
 use crate::units::number::significant;
 
 /// A channel of a file with its figures, in the unit of the file.
 #[derive(Clone, Debug)]
 pub struct Look {
-    pub table: usize,
     pub name: String,
     /// As the file has it; empty if it has none.
     pub unit_text: String,
@@ -25,10 +24,8 @@ pub struct Look {
     pub even: bool,
 }
 
-/// Largest deviation from even steps, as a share of a step.
-const EVEN: f64 = 0.2;
-
-pub fn look(number: usize, table: &Table) -> Vec<Look> {
+/// What is in the channels of a table.
+pub fn look(table: &Table) -> Vec<Look> {
     table
         .channels
         .iter()
@@ -42,17 +39,8 @@ pub fn look(number: usize, table: &Table) -> Vec<Look> {
             let increases = there.len() > 1
                 && there.len() == channel.values.len()
                 && there.windows(2).all(|pair| pair[1] > pair[0]);
-            let (first, last) =
-                (there.first().copied().unwrap_or(0.0), there.last().copied().unwrap_or(0.0));
-            let step = (last - first) / (n - 1.0).max(1.0);
-            let even = increases
-                && there
-                    .iter()
-                    .enumerate()
-                    .all(|(at, value)| (value - (first + step * at as f64)).abs() <= EVEN * step);
             let unit_text = channel.unit.as_deref().unwrap_or("").trim().to_string();
             Look {
-                table: number,
                 name: channel.name.clone(),
                 unit: Unit::parse(&unit_text).ok(),
                 unit_text,
@@ -65,7 +53,7 @@ pub fn look(number: usize, table: &Table) -> Vec<Look> {
                 mean,
                 deviation,
                 increases,
-                even,
+                even: increases && even_step(&there).is_some(),
             }
         })
         .collect()
@@ -74,29 +62,23 @@ pub fn look(number: usize, table: &Table) -> Vec<Look> {
 impl Look {
     /// `N; 200 Hz, 1794 rows; -3200 to 5100, mean 1130`
     pub fn in_words(&self) -> String {
-        let unit =
-            if self.unit_text.is_empty() { "no unit".to_string() } else { self.unit_text.clone() };
-        let rate = self
-            .rate
-            .map_or_else(|| "rate not known".to_string(), |rate| format!("{} Hz", short(rate)));
-        let missing = if self.missing == 0 {
-            String::new()
-        } else {
-            format!(", {} without a value", self.missing)
+        let unit = if self.unit_text.is_empty() { "no unit" } else { &self.unit_text };
+        let rate = self.rate.map_or("rate not known".into(), |rate| format!("{} Hz", short(rate)));
+        let values = match self.missing {
+            missing if missing == self.rows => ", no values".to_string(),
+            missing => {
+                let without = match missing {
+                    0 => String::new(),
+                    missing => format!(", {missing} without a value"),
+                };
+                let [low, high, mean] = [self.low, self.high, self.mean].map(short);
+                format!("{without}; {low} to {high}, mean {mean}")
+            }
         };
         let comment = self.comment.as_ref().map_or_else(String::new, |comment| {
             format!("; \"{}\"", comment.trim().replace(['\n', '\r'], " "))
         });
-        if self.missing == self.rows {
-            return format!("{unit}; {rate}, {} rows, no values{comment}", self.rows);
-        }
-        format!(
-            "{unit}; {rate}, {} rows{missing}; {} to {}, mean {}{comment}",
-            self.rows,
-            short(self.low),
-            short(self.high),
-            short(self.mean)
-        )
+        format!("{unit}; {rate}, {} rows{values}{comment}", self.rows)
     }
 }
 

@@ -38,7 +38,6 @@ pub struct Group {
     pub sections: Vec<String>,
     /// The first of them.
     pub first: File,
-    pub first_path: String,
     /// Number of its tables that belong to the first section.
     pub tables: usize,
     pub looks: Vec<Look>,
@@ -85,15 +84,10 @@ fn from_folder(path: &str, folder: &Path) -> String {
     }
     let parts = |path: &Path| -> Option<Vec<String>> {
         let parts = path.components().filter(|part| *part != Component::CurDir);
-        parts
-            .map(|part| {
-                if part == Component::ParentDir {
-                    None
-                } else {
-                    Some(part.as_os_str().to_string_lossy().into_owned())
-                }
-            })
-            .collect()
+        let name = |part: Component<'_>| {
+            (part != Component::ParentDir).then(|| part.as_os_str().to_string_lossy().into_owned())
+        };
+        parts.map(name).collect()
     };
     // A path that leads upwards is made absolute first; without a working folder it stays as it is.
     let absolute = |path: &Path| std::path::absolute(path).ok();
@@ -137,57 +131,34 @@ fn group(paths: &[&Path]) -> Result<Group, Vec<Problem>> {
     let used: Vec<&Table> =
         first.tables.iter().filter(|table| !table.channels.is_empty() && table.rows > 1).collect();
     let alike = used.len() > 1 && used.iter().all(|table| names(table) == names(used[0]));
-    let (files, table, sections, tables) = match (&shown[..], alike) {
-        ([one], true) => (
-            one.clone(),
-            Some("{section}".to_string()),
-            used.iter().map(|table| table.name.clone()).collect(),
-            1,
-        ),
+    let (mut table, mut tables) = (None, used.len());
+    let (files, sections) = match (&shown[..], alike) {
+        ([one], true) => {
+            (table, tables) = (Some("{section}".to_string()), 1);
+            (one.clone(), used.iter().map(|table| table.name.clone()).collect())
+        }
         ([one], false) => {
-            let stem = paths[0]
-                .file_stem()
-                .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-            (one.clone(), None, vec![stem], used.len())
+            let stem = paths[0].file_stem().unwrap_or_default();
+            (one.clone(), vec![stem.to_string_lossy().into_owned()])
         }
-        _ => {
-            let (pattern, sections) = pattern(&shown);
-            (pattern, None, sections, used.len())
-        }
+        _ => pattern(&shown),
     };
-    let looks = used
-        .iter()
-        .take(tables)
-        .enumerate()
-        .flat_map(|(number, table)| look(number, table))
-        .collect();
-    Ok(Group {
-        kind: side(&shown[0]),
-        files,
-        table,
-        sections,
-        first_path: shown[0].clone(),
-        tables,
-        looks,
-        first,
-    })
+    let looks = used.iter().take(tables).flat_map(|table| look(table)).collect();
+    Ok(Group { kind: side(&shown[0]), files, table, sections, tables, looks, first })
 }
 
 /// Words in a path that say which side it is.
-const SIDES: [(&str, RecordKind); 6] = [
-    ("mess", RecordKind::Measurement),
-    ("meas", RecordKind::Measurement),
-    ("test", RecordKind::Measurement),
-    ("fahrt", RecordKind::Measurement),
-    ("sim", RecordKind::Simulation),
-    ("mks", RecordKind::Simulation),
-];
+const MEASUREMENT: [&str; 4] = ["mess", "meas", "test", "fahrt"];
+const SIMULATION: [&str; 2] = ["sim", "mks"];
 
 fn side(path: &str) -> Option<RecordKind> {
     let lower = path.to_lowercase();
-    let found: Vec<RecordKind> =
-        SIDES.iter().filter(|(word, _)| lower.contains(word)).map(|(_, kind)| *kind).collect();
-    found.first().copied().filter(|first| found.iter().all(|kind| kind == first))
+    let has = |words: &[&str]| words.iter().any(|word| lower.contains(word));
+    match (has(&MEASUREMENT), has(&SIMULATION)) {
+        (true, false) => Some(RecordKind::Measurement),
+        (false, true) => Some(RecordKind::Simulation),
+        _ => None,
+    }
 }
 
 /// What differs between the paths is `{section}`, as whole words.

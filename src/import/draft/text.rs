@@ -5,7 +5,7 @@ use super::look::{Look, short};
 use super::{Group, With};
 use crate::data::RecordKind;
 use crate::data::write::yaml_text;
-use crate::import::mapping::agree::record_of;
+use crate::import::mapping::agree::{is_gravity, record_of};
 use crate::run::needs::ChannelNeed;
 use crate::units::{Dimension, Unit};
 use crate::yaml::Words;
@@ -22,28 +22,20 @@ pub fn draft(groups: &[Group], with: &With<'_>) -> (String, usize) {
         &[],
     );
     out.open(0, "name", "the name of the campaign");
-    out.line(0, &format!("protocol: {}", yaml_text(with.protocol)), &[]);
-    let sections: Vec<&str> = groups
-        .first()
-        .map_or_else(Vec::new, |group| group.sections.iter().map(String::as_str).collect());
-    out.open(
-        0,
-        "sections",
-        &format!("the table of sections; the files have {}", listed(&sections)),
-    );
-    if with.needs.vehicle.iter().any(|need| need.required) {
-        let needed: Vec<&str> = with
-            .needs
-            .vehicle
-            .iter()
-            .filter(|need| need.required)
-            .map(|need| need.key.as_str())
-            .collect();
-        out.open(
-            0,
-            "vehicle",
-            &format!("the vehicle file; the protocol needs {}", needed.join(", ")),
-        );
+    out.entry(0, "protocol", with.protocol, &[]);
+    let sections = groups.first().map_or(&[][..], |group| &group.sections);
+    let why = format!("the table of sections; the files have {}", listed(sections));
+    out.open(0, "sections", &why);
+    let needed: Vec<&str> = with
+        .needs
+        .vehicle
+        .iter()
+        .filter(|need| need.required)
+        .map(|need| need.key.as_str())
+        .collect();
+    if !needed.is_empty() {
+        let why = format!("the vehicle file; the protocol needs {}", needed.join(", "));
+        out.open(0, "vehicle", &why);
     }
     let mut left: Vec<RecordKind> = vec![RecordKind::Measurement, RecordKind::Simulation];
     for group in groups {
@@ -55,14 +47,9 @@ pub fn draft(groups: &[Group], with: &With<'_>) -> (String, usize) {
         left.retain(|other| *other != kind);
         side(&mut out, group, kind, stated.is_some(), with);
         if group.sections != groups[0].sections {
-            out.line(
-                0,
-                &format!(
-                    "# its sections are {}: they must be the names of the table",
-                    listed(&group.sections.iter().map(String::as_str).collect::<Vec<_>>())
-                ),
-                &[],
-            );
+            let names = listed(&group.sections);
+            let line = format!("# its sections are {names}: they must be the names of the table");
+            out.line(0, &line, &[]);
         }
     }
     (out.text, out.open)
@@ -78,22 +65,19 @@ fn side(out: &mut Text, group: &Group, kind: RecordKind, stated: bool, with: &Wi
             "is this the measurement or the simulation? Correct the key above and remove this line",
         );
     }
-    let facts: Vec<String> =
-        group.first.facts.iter().map(|(name, value)| format!("{name} {value}")).collect();
-    let detected = if facts.is_empty() { String::new() } else { format!(": {}", facts.join("; ")) };
-    out.line(
-        2,
-        &format!("files: {}", yaml_text(&group.files)),
-        &[format!("{}{detected}", group.first.format.word())],
-    );
+    let facts = group.first.facts.iter().map(|(name, value)| format!("{name} {value}"));
+    let facts = facts.collect::<Vec<_>>().join("; ");
+    let format = group.first.format.word();
+    let detected = if facts.is_empty() { format.into() } else { format!("{format}: {facts}") };
+    out.entry(2, "files", &group.files, &[detected]);
     if let Some(table) = &group.table {
-        out.line(2, &format!("table: {}", yaml_text(table)), &[]);
+        out.entry(2, "table", table, &[]);
     }
-    let needs: Vec<&ChannelNeed> =
-        with.needs.channels.iter().filter(|need| need.record == record_of(kind)).collect();
-    let used: Vec<&ChannelNeed> = needs
+    let used: Vec<&ChannelNeed> = with
+        .needs
+        .channels
         .iter()
-        .copied()
+        .filter(|need| need.record == record_of(kind))
         .filter(|need| !["time", "distance"].contains(&need.column.as_str()))
         .collect();
     let guesses = guess::guesses(&group.looks, &used, with.convention);
@@ -101,70 +85,55 @@ fn side(out: &mut Text, group: &Group, kind: RecordKind, stated: bool, with: &Wi
     let looks = &group.looks;
     let mut taken: Vec<&str> = Vec::new();
     let (time, why) = guess::axis(looks, with.convention, "time", Dimension::TIME);
-    match time {
-        Some(look) => {
+    match (time, looks.first().and_then(|look| look.rate)) {
+        (Some(look), _) => {
             out.channel(2, "time", look, "s, ms or another unit of time", &[why, look.in_words()]);
             taken.push(&look.name);
         }
-        None => match looks.first().and_then(|look| look.rate) {
-            Some(rate) => out.line(
-                2,
-                &format!("# no channel of time; the file states {} Hz", short(rate)),
-                &[],
-            ),
-            None => {
-                out.open(2, "time", "no channel of time was found: its name, or {rate: ... Hz}")
-            }
-        },
+        (None, Some(rate)) => {
+            let line = format!("# no channel of time; the file states {} Hz", short(rate));
+            out.line(2, &line, &[]);
+        }
+        (None, None) => {
+            out.open(2, "time", "no channel of time was found: its name, or {rate: ... Hz}")
+        }
     }
     distance(out, group, with, &mut taken);
     out.line(2, "channels:", &[]);
     for guess in &guesses {
-        let needed = used.iter().any(|need| need.column == guess.channel && need.required);
-        taken.extend(guess.candidates.iter().map(String::as_str));
-        match &guess.from {
-            Some(from) => {
-                taken.push(from);
-                let need = used.iter().find(|need| need.column == guess.channel);
-                match looks.iter().find(|look| look.name == *from) {
-                    Some(look) if need.is_none_or(|need| need.unit != "-") => {
-                        let hint = need.map_or_else(
-                            || "that of the sensor".to_string(),
-                            |need| format!("{} in the protocol", need.unit),
-                        );
-                        out.channel(4, &guess.channel, look, &hint, &guess.reasons);
-                    }
-                    _ => out.line(
-                        4,
-                        &format!("{}: {}", yaml_text(&guess.channel), yaml_text(from)),
-                        &guess.reasons,
-                    ),
-                }
-            }
-            // What rules look at only where it is recorded may be absent.
-            None if !needed && guess.candidates.is_empty() => out.line(
-                4,
-                &format!("# {} is not needed: {}", guess.channel, guess.reasons.join("; ")),
-                &[],
-            ),
-            None => {
-                let without = |look: &&Look| {
-                    guess.candidates.contains(&look.name) && look.unit_text.is_empty()
-                };
-                let unit = looks
-                    .iter()
-                    .find(without)
-                    .map(|look| format!("with its unit: {{from: {}, unit: ...}}", look.name));
-                out.open(
-                    4,
-                    &guess.channel,
-                    &guess.reasons.iter().cloned().chain(unit).collect::<Vec<_>>().join("; "),
-                );
-            }
-        }
+        taken.extend(guess.candidates.iter().chain(&guess.from).map(String::as_str));
+        channel(out, looks, guess, used.iter().find(|need| need.column == guess.channel));
     }
     for look in looks.iter().filter(|look| !taken.contains(&look.name.as_str())) {
         out.line(4, &format!("# not mapped: {} ({})", look.name, look.in_words()), &[]);
+    }
+}
+
+/// What was guessed for a channel.
+fn channel(out: &mut Text, looks: &[Look], guess: &Guess, need: Option<&&ChannelNeed>) {
+    let Guess { channel, from, candidates, reasons } = guess;
+    let Some(from) = from else {
+        // What rules look at only where it is recorded may be absent.
+        if candidates.is_empty() && need.is_none_or(|need| !need.required) {
+            let line = format!("# {channel} is not needed: {}", reasons.join("; "));
+            return out.line(4, &line, &[]);
+        }
+        let mut without = looks
+            .iter()
+            .filter(|look| candidates.contains(&look.name) && look.unit_text.is_empty());
+        let unit =
+            without.next().map(|look| format!("with its unit: {{from: {}, unit: ...}}", look.name));
+        let why = reasons.iter().cloned().chain(unit).collect::<Vec<_>>().join("; ");
+        return out.open(4, channel, &why);
+    };
+    match looks.iter().find(|look| look.name == *from) {
+        Some(look) if need.is_none_or(|need| need.unit != "-") => {
+            let hint = need.map_or("that of the sensor".into(), |need| {
+                format!("{} in the protocol", need.unit)
+            });
+            out.channel(4, channel, look, &hint, reasons);
+        }
+        _ => out.entry(4, channel, from, reasons),
     }
 }
 
@@ -179,10 +148,11 @@ fn units(out: &mut Text, group: &Group, guesses: &[Guess], needs: &[&ChannelNeed
         let why = match (&look.unit, wanted) {
             (None, _) => format!("not a known unit; of {}", look.name),
             (Some(unit), Some(wanted)) if unit.dimension != wanted.dimension => {
-                let gravity = Unit::parse("gn")
-                    .is_ok_and(|gn| gn.dimension == wanted.dimension && unit.text == "g");
-                let hint =
-                    if gravity { ": gn, if accelerations are in units of gravity" } else { "" };
+                let hint = if is_gravity(&unit.text, &wanted) {
+                    ": gn, if accelerations are in units of gravity"
+                } else {
+                    ""
+                };
                 format!(
                     "{} for {}, which is {}{hint}",
                     unit.dimension.in_words(),
@@ -207,45 +177,32 @@ fn units(out: &mut Text, group: &Group, guesses: &[Guess], needs: &[&ChannelNeed
 fn distance<'a>(out: &mut Text, group: &'a Group, with: &With<'_>, taken: &mut Vec<&'a str>) {
     let (found, why) = guess::axis(&group.looks, with.convention, "distance", Dimension::LENGTH);
     if let Some(look) = found {
-        out.channel(
-            2,
-            "distance",
-            look,
-            "m, km or another unit of length",
-            &[why, look.in_words()],
-        );
-        taken.push(&look.name);
-        return;
+        let unit = "m, km or another unit of length";
+        out.channel(2, "distance", look, unit, &[why, look.in_words()]);
+        return taken.push(&look.name);
     }
     let (speed, why) = guess::speed(&group.looks, with.convention);
-    match speed {
-        Some(look) => {
-            out.line(2, "distance:", &[]);
-            out.line(4, &format!("from speed: {}", yaml_text(&look.name)), &[why, look.in_words()]);
-            if look.unit_text.is_empty() {
-                out.open(4, "unit", "the file states none: m/s, km/h or another unit of speed");
-            }
-            let facts: Vec<String> = group
-                .first
-                .tables
-                .iter()
-                .take(group.tables.max(1))
-                .flat_map(|table| &table.facts)
-                .map(|(name, value)| format!("{name} = {value}"))
-                .collect();
-            let facts = if facts.is_empty() {
-                String::new()
-            } else {
-                format!("; the file states {}: {{fact: NAME, unit: m}}", facts.join(", "))
-            };
-            out.open(4, "start", &format!("the distance at the first sample{facts}"));
-            taken.push(&look.name);
-        }
-        None => out.open(2, "distance", "neither a distance that increases nor a speed was found"),
+    let Some(look) = speed else {
+        let why = "neither a distance that increases nor a speed was found";
+        return out.open(2, "distance", why);
+    };
+    out.line(2, "distance:", &[]);
+    out.entry(4, "from speed", &look.name, &[why, look.in_words()]);
+    if look.unit_text.is_empty() {
+        out.open(4, "unit", "the file states none: m/s, km/h or another unit of speed");
     }
+    let tables = group.first.tables.iter().take(group.tables.max(1));
+    let facts = tables.flat_map(|table| &table.facts);
+    let facts: Vec<String> = facts.map(|(name, value)| format!("{name} = {value}")).collect();
+    let facts = match facts.is_empty() {
+        true => String::new(),
+        false => format!("; the file states {}: {{fact: NAME, unit: m}}", facts.join(", ")),
+    };
+    out.open(4, "start", &format!("the distance at the first sample{facts}"));
+    taken.push(&look.name);
 }
 
-fn listed(names: &[&str]) -> String {
+fn listed(names: &[String]) -> String {
     /// Names that are printed.
     const SHOWN: usize = 12;
     let more = names.len().saturating_sub(SHOWN);
@@ -260,29 +217,28 @@ struct Text {
 }
 
 impl Text {
-    /// A line with comments beside it; further ones below.
+    /// A line with comments beside it.
     fn line(&mut self, indent: usize, line: &str, comments: &[String]) {
-        let comments: Vec<String> = comments
-            .iter()
-            .map(|comment| comment.replace(['\n', '\r'], " "))
-            .filter(|comment| !comment.is_empty())
-            .collect();
-        let line = format!("{:indent$}{}", "", line.replace(['\n', '\r'], " "));
-        if comments.is_empty() {
-            self.text += &format!("{line}\n");
+        let plain = |text: &str| text.replace(['\n', '\r'], " ");
+        let comments: Vec<String> =
+            comments.iter().filter(|comment| !comment.is_empty()).map(|text| plain(text)).collect();
+        let line = format!("{:indent$}{}", "", plain(line));
+        self.text += &if comments.is_empty() {
+            format!("{line}\n")
         } else {
-            self.text += &format!("{line:COMMENTS$}  # {}\n", comments.join("; "));
-        }
+            format!("{line:COMMENTS$}  # {}\n", comments.join("; "))
+        };
+    }
+
+    /// A key with its value.
+    fn entry(&mut self, indent: usize, key: &str, value: &str, comments: &[String]) {
+        self.line(indent, &format!("{}: {}", yaml_text(key), yaml_text(value)), comments);
     }
 
     /// A channel of the file; its unit is open if the file states none.
     fn channel(&mut self, indent: usize, key: &str, look: &Look, unit: &str, comments: &[String]) {
         if !look.unit_text.is_empty() {
-            return self.line(
-                indent,
-                &format!("{}: {}", yaml_text(key), yaml_text(&look.name)),
-                comments,
-            );
+            return self.entry(indent, key, &look.name, comments);
         }
         self.open += 1;
         // Within braces, a comma or a brace ends a word.

@@ -101,27 +101,24 @@ fn agree_runs(mapping: &Mapping, runs: &Runs, needs: &Needs, problems: &mut Prob
 }
 
 fn agree_sections(mapping: &Mapping, needs: &Needs, problems: &mut Problems) {
-    for need in
-        needs.sections.iter().filter(|need| need.required && mapping.sections.table.is_some())
-    {
-        if !mapping.sections.has_column(&need.key) {
-            let says = format!(
-                "the table of sections has no column `{}`, which the protocol needs: {}",
-                need.key, need.title
-            );
+    let mut required = needs.sections.iter().filter(|need| need.required);
+    if mapping.sections.table.is_none() {
+        if required.next().is_some() {
+            let says = "the protocol evaluates sections, and the mapping lists only names";
             problems.push(
                 error("column-missing", says, &mapping.sections.span)
-                    .suggest(&need.key, mapping.sections.columns()),
+                    .help("name the table of sections: `sections: sections.csv`"),
             );
         }
+        return;
     }
-    if needs.sections.iter().any(|need| need.required) && mapping.sections.table.is_none() {
-        let problem = error(
-            "column-missing",
-            "the protocol evaluates sections, and the mapping lists only names",
-            &mapping.sections.span,
+    for need in required.filter(|need| !mapping.sections.has_column(&need.key)) {
+        let says = format!(
+            "the table of sections has no column `{}`, which the protocol needs: {}",
+            need.key, need.title
         );
-        problems.push(problem.help("name the table of sections: `sections: sections.csv`"));
+        let problem = error("column-missing", says, &mapping.sections.span);
+        problems.push(problem.suggest(&need.key, mapping.sections.columns()));
     }
 }
 
@@ -237,15 +234,12 @@ pub fn as_named(
 /// Channels without which an axis, a check or a quantity cannot be evaluated.
 fn not_there(side: &Side, missing: &[&ChannelNeed], is: &str) -> Option<Problem> {
     let first = missing.first()?;
-    let list: Vec<String> = missing.iter().map(|need| format!("`{}`", need.column)).collect();
-    let says = match &list[..] {
-        [one] => format!("the protocol needs {one} of the {}, and it is {is}", side.kind.key()),
-        _ => format!(
-            "the protocol needs {} channels of the {} that are {is}: {}",
-            list.len(),
-            side.kind.key(),
-            list.join(", ")
-        ),
+    let (list, kind) = (listed(missing), side.kind.key());
+    let says = match missing.len() {
+        1 => format!("the protocol needs {list} of the {kind}, and it is {is}"),
+        count => {
+            format!("the protocol needs {count} channels of the {kind} that are {is}: {list}")
+        }
     };
     let problem = error("channel-missing", says, &side.span);
     let user = first.users.quantities.iter().chain(&first.users.rules).next();
@@ -261,21 +255,21 @@ fn not_there(side: &Side, missing: &[&ChannelNeed], is: &str) -> Option<Problem>
     })
 }
 
+fn listed(channels: &[&ChannelNeed]) -> String {
+    let names: Vec<String> = channels.iter().map(|need| format!("`{}`", need.column)).collect();
+    names.join(", ")
+}
+
 /// Channels without which only positions are left out.
 fn left_out_of(side: &Side, missing: &[&ChannelNeed], is: &str) -> Option<Problem> {
     let mut users: Vec<&str> =
         missing.iter().flat_map(|need| &need.users.quantities).map(String::as_str).collect();
     users.sort_unstable();
     users.dedup();
-    let list =
-        missing.iter().map(|need| format!("`{}`", need.column)).collect::<Vec<_>>().join(", ");
+    let (list, kind) = (listed(missing), side.kind.key());
     let (are, their) =
         if missing.len() > 1 { ("are", "their positions are") } else { ("is", "its position is") };
-    let says = format!(
-        "{list} of the {} {are} {is}; {their} left out of {}",
-        side.kind.key(),
-        users.join(", ")
-    );
+    let says = format!("{list} of the {kind} {are} {is}; {their} left out of {}", users.join(", "));
     (!missing.is_empty()).then(|| warning("position-left-out", says, &side.span))
 }
 

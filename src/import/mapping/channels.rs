@@ -77,12 +77,11 @@ impl<C> FromNode<C> for Channels {
         // slip.
         let single = |map: &ChannelMap| map.terms.len() == 1;
         for (number, map) in maps.iter().enumerate().filter(|(_, map)| single(map)) {
-            let table = |map: &ChannelMap| map.table.as_ref().map(|table| table.value.clone());
-            let same = |first: &&ChannelMap| {
-                single(first)
-                    && first.terms[0].name.value == map.terms[0].name.value
-                    && table(first) == table(map)
+            let source = |map: &ChannelMap| {
+                let table = map.table.as_ref().map(|table| table.value.clone());
+                (map.terms[0].name.value.clone(), table)
             };
+            let same = |first: &&ChannelMap| single(first) && source(first) == source(map);
             if let Some(first) = maps[..number].iter().find(same) {
                 let says = format!(
                     "`{}` is mapped twice: to `{}` and to `{}`",

@@ -119,7 +119,7 @@ fn shipped(name: &str) -> Result<Arc<Source>, Problem> {
 }
 
 /// `turning: bogie-vehicle`, or the block itself.
-pub(super) fn turning(reader: &mut Reader<'_>, map: &Node, folder: &Path) -> Option<Turning> {
+pub fn turning(reader: &mut Reader<'_>, map: &Node, folder: &Path) -> Option<Turning> {
     let (key, node) = map.entry("turning")?;
     if matches!(node.value, Value::Map(_)) {
         return Turning::from_node(reader, key, node);

@@ -80,7 +80,7 @@ impl Time {
 
 /// `time: NAME`, a list of names, or a map with more.
 #[derive(Clone, Debug)]
-pub(super) struct SideTime(pub Time);
+pub struct SideTime(pub Time);
 
 impl FromNode<&Sections> for SideTime {
     fn from_node(reader: &mut Reader<'_, &Sections>, key: &Key, node: &Node) -> Option<Self> {
@@ -136,7 +136,7 @@ const OF_CHANNEL: [&str; 4] = ["unit", "factor", "offset", "table"];
 
 /// The distance, and its match with the track file.
 #[derive(Clone, Debug)]
-pub(super) struct SideDistance(pub Option<Distance>, pub Option<Match>);
+pub struct SideDistance(pub Option<Distance>, pub Option<Match>);
 
 impl FromNode<&Sections> for SideDistance {
     fn from_node(reader: &mut Reader<'_, &Sections>, key: &Key, node: &Node) -> Option<Self> {

@@ -52,7 +52,7 @@ fields! {
 }
 
 /// `runs: [R1, R2]`, or `runs: {R1: {country: DE}, R2: {country: CH}}`.
-pub(super) fn read(reader: &mut Reader<'_>, tree: &Node) -> Option<(Runs, Sections)> {
+pub fn read(reader: &mut Reader<'_>, tree: &Node) -> Option<(Runs, Sections)> {
     const EXAMPLE: &str =
         "write `runs: [R1, R2]`, or with what holds for each run `runs: {R1: {country: DE}}`";
     let before = reader.problems.errors();

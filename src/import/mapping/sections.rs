@@ -12,7 +12,7 @@ use crate::units::Dimension;
 use crate::yaml::{FromNode, Node, Reader, Value};
 
 /// The column that names the sections.
-pub(super) const NAME: &str = "section";
+pub const NAME: &str = "section";
 
 #[derive(Clone, Debug)]
 pub struct Sections {
@@ -92,7 +92,7 @@ impl Sections {
 }
 
 /// The table of sections, or a list of their names.
-pub(super) fn read(reader: &mut Reader<'_>, tree: &Node, folder: &Path) -> Option<Sections> {
+pub fn read(reader: &mut Reader<'_>, tree: &Node, folder: &Path) -> Option<Sections> {
     let Some((key, node)) = tree.entry("sections") else {
         let says = "`sections` is missing: the table of sections, or their names";
         let problem = error("key-missing", says, &tree.span.part(0..0));
@@ -119,7 +119,7 @@ pub(super) fn read(reader: &mut Reader<'_>, tree: &Node, folder: &Path) -> Optio
 }
 
 /// Names are different, and become names of files.
-pub(super) fn check_names(problems: &mut Problems, names: &[Cell], word: &str) {
+pub fn check_names(problems: &mut Problems, names: &[Cell], word: &str) {
     for (number, name) in names.iter().enumerate() {
         if let Some(first) = names[..number].iter().find(|first| first.value == name.value) {
             let says = format!("two {word}s are called `{}`", name.value);
@@ -134,7 +134,7 @@ pub(super) fn check_names(problems: &mut Problems, names: &[Cell], word: &str) {
 
 /// Placeholders of a path must be known: `{section}`, of runs `{run}`, or a column of the table of
 /// sections.
-pub(super) fn check_placeholders(reader: &mut Reader<'_, &Sections>, written: &Spanned<String>) {
+pub fn check_placeholders(reader: &mut Reader<'_, &Sections>, written: &Spanned<String>) {
     let sections = reader.with;
     let word = sections.word;
     let names = written.value.split('{').skip(1).filter_map(|rest| rest.split_once('}'));
@@ -152,7 +152,7 @@ pub(super) fn check_placeholders(reader: &mut Reader<'_, &Sections>, written: &S
 }
 
 /// A column that the mapping names must exist.
-pub(super) fn check_column(reader: &mut Reader<'_, &Sections>, name: &str, span: &Span) {
+pub fn check_column(reader: &mut Reader<'_, &Sections>, name: &str, span: &Span) {
     if !reader.with.has_column(name) {
         let says = format!("the table of sections has no column `{name}`");
         let problem = error("unknown-column", says, span);
@@ -161,7 +161,7 @@ pub(super) fn check_column(reader: &mut Reader<'_, &Sections>, name: &str, span:
 }
 
 /// A section that the mapping names must exist.
-pub(super) fn known(reader: &mut Reader<'_, &Sections>, name: &str, span: &Span) {
+pub fn known(reader: &mut Reader<'_, &Sections>, name: &str, span: &Span) {
     let Sections { names, word, .. } = reader.with;
     if !names.is_empty() && !names.iter().any(|known| known.value == name) {
         let problem = error("unknown-section", format!("there is no {word} `{name}`"), span);

@@ -89,11 +89,7 @@ impl Turned {
 }
 
 /// A side of the mapping, if it is there.
-pub(super) fn read(
-    reader: &mut Reader<'_, &Sections>,
-    kind: RecordKind,
-    mapping: &Node,
-) -> Option<Side> {
+pub fn read(reader: &mut Reader<'_, &Sections>, kind: RecordKind, mapping: &Node) -> Option<Side> {
     let (key, node) = mapping.entry(kind.key())?;
     let written = Written::from_node(reader, key, node)?;
     let sections = reader.with;
@@ -144,13 +140,11 @@ pub(super) fn read(
         reader.tell(error("key-missing", says, &key.span).help(help));
     }
     let channels = written.channels?;
-    for Spanned { value: name, span } in channels.maps().iter().flat_map(|maps| {
-        maps.iter().map(|map| &map.name).filter(|name| AXES.contains(&name.value.as_str()))
-    }) {
-        let problem =
-            Problem::error("axis-among-channels", format!("`{name}` stands among the channels"));
+    let names = channels.maps().unwrap_or_default().iter().map(|map| &map.name);
+    for Spanned { value: name, span } in names.filter(|name| AXES.contains(&name.value.as_str())) {
+        let says = format!("`{name}` stands among the channels");
         let help = format!("write `{name}:` beside `channels:`");
-        reader.tell(problem.at(span).help(help));
+        reader.tell(error("axis-among-channels", says, span).help(help));
     }
     Some(Side {
         kind,

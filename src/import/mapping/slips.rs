@@ -6,7 +6,7 @@ use crate::yaml::{Key, Node, Value, quoted};
 
 /// `{offset: 0,3 kN}` is a map with a key `3 kN` for YAML. The comma is told, and the number is
 /// read as it was meant, so that nothing else is said of it.
-pub(super) fn decimal_commas(node: Node, problems: &mut Problems) -> Node {
+pub fn decimal_commas(node: Node, problems: &mut Problems) -> Node {
     let value = match node.value {
         Value::List(items) => {
             Value::List(items.into_iter().map(|item| decimal_commas(item, problems)).collect())
@@ -56,7 +56,7 @@ fn is_whole(node: &Node) -> bool {
 }
 
 /// Help for a line such as `files: {section}.csv`, at which YAML stops.
-pub(super) fn unquoted(source: &Source, at: &Span) -> Option<String> {
+pub fn unquoted(source: &Source, at: &Span) -> Option<String> {
     if at.source.name != source.name {
         return None;
     }

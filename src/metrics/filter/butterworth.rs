@@ -6,15 +6,17 @@
 
 use std::f64::consts::PI;
 
+use realfft::num_complex::Complex;
+
 use super::{
     Band, DesignError,
-    poles::{Complex, Poles},
+    poles::{Poles, root},
     section::Section,
 };
 
-pub(super) const HIGHEST_ORDER: usize = 20;
+pub const HIGHEST_ORDER: usize = 20;
 
-pub(super) struct Design {
+pub struct Design {
     pub gain: f64,
     pub sections: Vec<Section>,
     /// Of the slowest pole, in samples.
@@ -31,7 +33,8 @@ enum Target {
     BandStop { width: f64, centre: f64 },
 }
 
-pub(super) fn design(
+/// One pass of a Butterworth filter.
+pub fn design(
     band: Band,
     order: usize,
     sampling_rate: f64,
@@ -107,19 +110,19 @@ fn poles(target: Target, order: usize) -> (f64, Vec<Poles>) {
     // conjugate.
     for k in 0..order / 2 {
         let (sine, cosine) = (PI * (2 * k + 1) as f64 / (2 * order) as f64).sin_cos();
-        let pole = Complex { re: -sine, im: cosine };
+        let pole = Complex::new(-sine, cosine);
         // The pole is on the unit circle: its inverse is its conjugate.
-        let inverse = Complex { re: pole.re, im: -pole.im };
+        let inverse = pole.conj();
         match target {
-            Target::LowPass { edge } => place(Poles::Conjugate(pole.times(edge)), edge * edge),
-            Target::HighPass { edge } => place(Poles::Conjugate(inverse.times(edge)), 1.0),
+            Target::LowPass { edge } => place(Poles::Conjugate(pole * edge), edge * edge),
+            Target::HighPass { edge } => place(Poles::Conjugate(inverse * edge), 1.0),
             Target::BandPass { width, centre } => {
-                for s in around(pole.times(width / 2.0), centre) {
+                for s in around(pole * (width / 2.0), centre) {
                     place(Poles::Conjugate(s), width);
                 }
             }
             Target::BandStop { width, centre } => {
-                for s in around(inverse.times(width / 2.0), centre) {
+                for s in around(inverse * (width / 2.0), centre) {
                     place(Poles::Conjugate(s), 1.0 + centre * centre);
                 }
             }
@@ -140,19 +143,11 @@ fn poles(target: Target, order: usize) -> (f64, Vec<Poles>) {
 
 /// Roots of s^2 - 2 half s + centre^2: the poles that the band transformation makes of a pole. The
 /// smaller root follows from the product, as the difference loses digits in a wide band.
-fn around(half: Complex, centre: f64) -> [Complex; 2] {
-    let square = Complex {
-        re: half.re * half.re - half.im * half.im - centre * centre,
-        im: 2.0 * half.re * half.im,
-    };
-    let root = square.sqrt();
-    let (plus, minus) = (
-        Complex { re: half.re + root.re, im: half.im + root.im },
-        Complex { re: half.re - root.re, im: half.im - root.im },
-    );
-    let large = if plus.square() > minus.square() { plus } else { minus };
-    let scale = centre * centre / large.square();
-    [large, Complex { re: large.re * scale, im: -large.im * scale }]
+fn around(half: Complex<f64>, centre: f64) -> [Complex<f64>; 2] {
+    let root = root(half * half - centre * centre);
+    let (plus, minus) = (half + root, half - root);
+    let large = if plus.norm_sqr() > minus.norm_sqr() { plus } else { minus };
+    [large, large.conj() * (centre * centre / large.norm_sqr())]
 }
 
 /// The same for the real prototype pole -1.
@@ -160,7 +155,7 @@ fn around_real(width: f64, centre: f64) -> Poles {
     let half = -width / 2.0;
     let square = half * half - centre * centre;
     if square < 0.0 {
-        Poles::Conjugate(Complex { re: half, im: (-square).sqrt() })
+        Poles::Conjugate(Complex::new(half, (-square).sqrt()))
     } else {
         let large = half - square.sqrt();
         Poles::Real(large, centre * centre / large)

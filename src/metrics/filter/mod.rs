@@ -257,8 +257,6 @@ impl fmt::Display for DesignError {
     }
 }
 
-impl std::error::Error for DesignError {}
-
 /// A signal too short to be filtered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooShort {
@@ -271,5 +269,3 @@ impl fmt::Display for TooShort {
         write!(f, "the signal has {} samples, the filter needs {}", self.samples, self.needed)
     }
 }
-
-impl std::error::Error for TooShort {}

@@ -2,7 +2,7 @@
 
 /// `(1 + b1 z^-1 + b2 z^-2) / (1 + a1 z^-1 + a2 z^-2)`; the gain is stored once for all sections.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Section {
+pub struct Section {
     pub b1: f64,
     pub b2: f64,
     pub a1: f64,
@@ -15,19 +15,19 @@ const LARGEST_ERROR: f64 = 1e-4;
 
 /// The steady state of a section for a constant input of 1, and its output.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Steady {
+pub struct Steady {
     pub state: [f64; 2],
     pub output: f64,
 }
 
 impl Section {
-    pub(super) fn steady(&self) -> Steady {
+    pub fn steady(&self) -> Steady {
         let output = (1.0 + self.b1 + self.b2) / (1.0 + self.a1 + self.a2);
         Steady { state: [output - 1.0, self.b2 - self.a2 * output], output }
     }
 
     /// Amplitude ratio at an angle in rad per sample.
-    pub(super) fn magnitude(&self, angle: f64) -> f64 {
+    pub fn magnitude(&self, angle: f64) -> f64 {
         let (sine, cosine) = angle.sin_cos();
         let (sine_2, cosine_2) = (2.0 * angle).sin_cos();
         let along =
@@ -38,7 +38,7 @@ impl Section {
     /// Whether both poles are inside the unit circle (Jury criterion), and far enough from it: near
     /// it, `1 + a1 + a2` is the difference of nearly equal numbers, and the gain has its relative
     /// rounding error.
-    pub(super) fn is_stable(&self) -> bool {
+    pub fn is_stable(&self) -> bool {
         const LEAST: f64 = f64::EPSILON / LARGEST_ERROR;
         self.a2.abs() < 1.0 && 1.0 + self.a1 + self.a2 > LEAST && 1.0 - self.a1 + self.a2 > 0.0
     }

@@ -14,7 +14,7 @@ const ROWS: usize = 64;
 
 impl Filter {
     /// Signals of equal length, longer than the padding. `samples` is working memory.
-    pub(super) fn run<const LANES: usize>(
+    pub fn run<const LANES: usize>(
         &self,
         signals: [&[f64]; LANES],
         samples: &mut Vec<[f64; LANES]>,

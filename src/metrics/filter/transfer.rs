@@ -5,12 +5,9 @@
 
 use std::f64::consts::PI;
 
-use super::{
-    DesignError,
-    butterworth::Design,
-    poles::{Complex, Poles},
-    section::Section,
-};
+use realfft::num_complex::Complex;
+
+use super::{DesignError, butterworth::Design, poles::Poles, section::Section};
 
 /// Roots of a polynomial in s, given by frequencies in Hz.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +59,7 @@ impl Roots {
                 let half = 0.5 / quality;
                 let square = 1.0 - half * half;
                 if square >= 0.0 {
-                    Poles::Conjugate(Complex { re: -at * half, im: at * square.sqrt() })
+                    Poles::Conjugate(Complex::new(-at * half, at * square.sqrt()))
                 } else {
                     // The smaller root follows from the product; the difference loses digits.
                     let large = half + (-square).sqrt();
@@ -73,7 +70,8 @@ impl Roots {
     }
 }
 
-pub(super) fn design(
+/// One pass of a filter by poles and zeros.
+pub fn design(
     function: &TransferFunction,
     sampling_rate: f64,
     warping: Warping,

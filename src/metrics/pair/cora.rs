@@ -5,7 +5,7 @@
 //! hand: no number here is checked against it.
 
 use super::lag::{Agreement, best_shift, overlap};
-use super::{Energies, Undefined, check, iso18571_corridor};
+use super::{Energies, Undefined, check, iso18571_corridor, weighted};
 use crate::metrics::sum::sum_of_pairs;
 
 /// The largest shift, as a share of the samples: the signals overlap by 80 % at least.
@@ -57,11 +57,7 @@ pub fn cora_phase(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined>
 /// As [`cora_progression`].
 pub fn cora_total(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
     let Ratings { progression, size, phase } = Ratings::of(simulated, measured)?;
-    let by_correlation: f64 = [progression, size, phase]
-        .iter()
-        .zip(WEIGHTS)
-        .map(|(rating, weight)| rating * weight)
-        .sum();
+    let by_correlation = weighted([progression, size, phase], WEIGHTS);
     Ok((cora_corridor(simulated, measured)? + by_correlation) / 2.0)
 }
 

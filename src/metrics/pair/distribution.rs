@@ -145,18 +145,9 @@ pub fn f_two_sided(ratio: f64, numerator_degrees: f64, denominator_degrees: f64)
     let whole = numerator_degrees * ratio + denominator_degrees;
     let (of_numerator, of_denominator) =
         (numerator_degrees * ratio / whole, denominator_degrees / whole);
-    let lower = incomplete_beta(
-        numerator_degrees / 2.0,
-        denominator_degrees / 2.0,
-        of_numerator,
-        of_denominator,
-    );
-    let upper = incomplete_beta(
-        denominator_degrees / 2.0,
-        numerator_degrees / 2.0,
-        of_denominator,
-        of_numerator,
-    );
+    let (a, b) = (numerator_degrees / 2.0, denominator_degrees / 2.0);
+    let lower = incomplete_beta(a, b, of_numerator, of_denominator);
+    let upper = incomplete_beta(b, a, of_denominator, of_numerator);
     (2.0 * lower.min(upper)).min(1.0)
 }
 

@@ -4,7 +4,7 @@
 //! The standard asks for signals at 10 kHz; here the samples are those of the records.
 
 use super::lag::{Agreement, best_shift, overlap};
-use super::{Undefined, check};
+use super::{Undefined, check, weighted};
 use crate::metrics::{
     statistics::peak_magnitude,
     sum::{sum, sum_of, sum_of_pairs},
@@ -88,7 +88,7 @@ pub fn iso18571_overall(simulated: &[f64], measured: &[f64]) -> Result<f64, Unde
         magnitude_at(simulated, measured, shift)?,
         slope_at(simulated, measured, shift)?,
     ];
-    Ok(ratings.iter().zip(WEIGHTS).map(|(rating, weight)| rating * weight).sum())
+    Ok(weighted(ratings, WEIGHTS))
 }
 
 fn shift(simulated: &[f64], measured: &[f64]) -> Result<isize, Undefined> {

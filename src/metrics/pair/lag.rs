@@ -14,7 +14,7 @@ const CONSTANT: f64 = 1e-12;
 
 /// What is compared at each shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Agreement {
+pub enum Agreement {
     /// Pearson's correlation.
     Correlation,
     /// The cosine of the angle between the signals: the means are not removed.
@@ -26,7 +26,7 @@ pub(super) enum Agreement {
 ///
 /// Only where the signals overlap are they compared. Of equal agreement the smaller shift counts,
 /// then the one to the left.
-pub(super) fn best_shift(
+pub fn best_shift(
     simulated: &[f64],
     measured: &[f64],
     most: usize,
@@ -82,7 +82,7 @@ pub(super) fn best_shift(
 
 /// The parts of both signals that overlap after the simulated one is moved to the left by so many
 /// samples.
-pub(super) fn overlap<'a>(
+pub fn overlap<'a>(
     simulated: &'a [f64],
     measured: &'a [f64],
     shift: isize,

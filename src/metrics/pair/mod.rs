@@ -54,8 +54,6 @@ impl fmt::Display for Undefined {
     }
 }
 
-impl std::error::Error for Undefined {}
-
 /// Checks for equal length, at least one sample, and finite samples.
 fn check(simulated: &[f64], measured: &[f64]) -> Result<(), Undefined> {
     if simulated.len() != measured.len() {
@@ -93,6 +91,11 @@ fn check_finite(signal: &[f64], which: &str) -> Result<(), Undefined> {
     }
 }
 
+/// The sum of some ratings, each with its weight.
+fn weighted<const N: usize>(ratings: [f64; N], weights: [f64; N]) -> f64 {
+    ratings.iter().zip(weights).map(|(rating, weight)| rating * weight).sum()
+}
+
 /// Sums of squares of the simulation, the measurement and their difference.
 #[derive(Clone, Copy)]
 struct Energies {
@@ -109,10 +112,8 @@ impl Energies {
             measured: sum_of(measured, |value| value * value),
             difference: sum_of_pairs(simulated, measured, |s, m| (s - m) * (s - m)),
         };
-        if energies.simulated.is_finite()
-            && energies.measured.is_finite()
-            && energies.difference.is_finite()
-        {
+        let Self { simulated, measured, difference } = energies;
+        if [simulated, measured, difference].iter().all(|sum| sum.is_finite()) {
             Ok(energies)
         } else {
             Err(Undefined::because("the sum of the squares of the samples overflows"))

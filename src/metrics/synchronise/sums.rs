@@ -7,7 +7,7 @@ use crate::metrics::resample::Located;
 
 /// Sums of which a correlation is computed.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Sums {
+pub struct Sums {
     pub n: f64,
     x: f64,
     y: f64,
@@ -66,7 +66,7 @@ const LANES: usize = 4;
 ///
 /// Signals of a record share their axis, on which points are located once for all of them. Shifts
 /// that are multiples of the grid step need one interpolation in total, others one each.
-pub(super) fn of_pairs(
+pub fn of_pairs(
     pairs: &[Pair<'_>],
     grid: &[f64],
     shifts: &[f64],

@@ -37,7 +37,6 @@ impl Cache {
     }
 
     /// A cache that stores nothing.
-    #[must_use]
     pub fn none() -> Self {
         Self::default()
     }
@@ -129,7 +128,7 @@ fn seal(key: &str, bytes: &[u8]) -> String {
 
 /// Hash of all inputs of a record.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Key {
+pub struct Key {
     text: String,
 }
 

@@ -11,7 +11,7 @@ use crate::problem::Problem;
 use crate::source::Spanned;
 
 /// Path of the vehicle file, if the campaign names one.
-pub(super) fn vehicle_file(campaign: &Campaign) -> Result<Option<PathBuf>, Problem> {
+pub fn vehicle_file(campaign: &Campaign) -> Result<Option<PathBuf>, Problem> {
     let Some(node) = campaign.tree.get("vehicle") else { return Ok(None) };
     let written =
         Spanned::new(node.scalar_text().unwrap_or_default().to_string(), node.span.clone());
@@ -20,7 +20,7 @@ pub(super) fn vehicle_file(campaign: &Campaign) -> Result<Option<PathBuf>, Probl
 
 /// Hash of the common inputs of all records of a program: its description, the files named in the
 /// command and the description, the vehicle file and the files that it names.
-pub(super) fn basis(
+pub fn basis(
     campaign: &Campaign,
     program: &Program,
     vehicle: Option<&Path>,
@@ -52,6 +52,6 @@ pub(super) fn basis(
     Ok(key)
 }
 
-pub(super) fn absolute(path: &Path) -> PathBuf {
+pub fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf())
 }

@@ -1,19 +1,16 @@
 //! A Python function as a simulator: what it is given, and what it answers.
 
-use std::fmt::Write;
-
 use serde_json::{Map, Value, json};
 
-use super::super::made::{first, lacks, unit_in};
+use super::super::made::{first, lacks, unit_in, wanted};
 use super::cache::Key;
-use super::python::{Columns, Failed, Workers};
+use super::python::{Columns, Workers};
 use super::{External, covers};
 use crate::data::RecordKind;
 use crate::data::record::{Wanted, listed_headings, read_headings, read_record};
 use crate::effects::{Action, Catalogue, Channel, Signals};
 use crate::problem::{Problem, error};
 use crate::simulate::{Section, Task};
-use crate::source::Source;
 use crate::units::{Dimension, Unit};
 
 const TIME: &str = "time";
@@ -80,18 +77,13 @@ impl External<'_> {
             let problem = self.told(&failed, Some(section));
             let set: Vec<String> =
                 task.settings.iter().map(|(name, value)| format!("{name} = {value}")).collect();
-            if set.is_empty() {
-                problem
-            } else {
-                problem.help(format!("it was called with {}", set.join(", ")))
-            }
+            let called = || format!("it was called with {}", set.join(", "));
+            problem.help_if((!set.is_empty()).then(called))
         })?;
-        let called = |problem: Problem| Problem {
-            says: format!("section `{}`: {}", section.name(), problem.says),
-            ..problem
-        };
-        self.signals(section, &inputs, made)
-            .map_err(|problem| called(problem).at(&section.cell.span))
+        self.signals(section, &inputs, made).map_err(|problem| {
+            let says = format!("section `{}`: {}", section.name(), problem.says);
+            Problem { says, ..problem }.at(&section.cell.span)
+        })
     }
 
     /// The parameters of the function with the values of the vehicle file.
@@ -179,15 +171,13 @@ impl External<'_> {
             columns.push((name, unit, values));
         }
         // Axes that the function does not give are those of its inputs.
-        let second = Unit::si(Dimension::TIME);
-        let metre = Unit::si(Dimension::LENGTH);
-        for (axis, unit) in [(DISTANCE, &metre), (TIME, &second)] {
+        for (axis, dimension) in [(DISTANCE, Dimension::LENGTH), (TIME, Dimension::TIME)] {
             if let (false, Some((_, values))) = (
                 columns.iter().any(|(name, ..)| name == axis),
                 inputs.iter().find(|(name, _)| name == axis),
             ) {
-                let unit =
-                    unit_in(&self.input_headings(section), axis).unwrap_or_else(|| unit.clone());
+                let unit = unit_in(&self.input_headings(section), axis);
+                let unit = unit.unwrap_or_else(|| Unit::si(dimension));
                 columns.insert(0, (axis.into(), unit, values.clone()));
             }
         }
@@ -220,12 +210,7 @@ impl External<'_> {
                 format!("{shown}: the axis does not increase at sample {}", at + 1),
             ));
         }
-        let asked = &self.program.channels;
-        let wanted: Vec<&str> = if asked.is_empty() {
-            known.iter().map(|one| one.name.as_str()).collect()
-        } else {
-            asked.iter().map(String::as_str).collect()
-        };
+        let wanted = wanted(&known, &self.program.channels);
         let names: Vec<&str> = columns.iter().map(|(name, ..)| name.as_str()).collect();
         if let Some(name) = wanted.iter().find(|name| !names.contains(name)) {
             return Err(lacks(&shown, name, &names, &wanted));
@@ -255,46 +240,6 @@ impl External<'_> {
             .and_then(|place| read_headings(&place.path, &place.inside).ok())
             .unwrap_or_default()
     }
-
-    fn told(&self, failed: &Failed, section: Option<&Section>) -> Problem {
-        let of = section.map_or(String::new(), |section| format!("section `{}`: ", section.name()));
-        let name = &self.program.name;
-        let problem = |code: &'static str, how: String| {
-            let problem = Problem::error(code, format!("{of}{name} {how}"));
-            problem.at(section.map_or(&self.program.span, |section| &section.cell.span))
-        };
-        let said = |problem: Problem, said: &str, what: &str| {
-            if said.is_empty() {
-                problem
-            } else {
-                problem.also(&Source::new(name.as_str(), said).whole(), what)
-            }
-        };
-        match failed {
-            Failed::NotStarted(error) => {
-                problem("simulator-failed", self.program.not_started(error))
-            }
-            Failed::TimedOut => {
-                let seconds = self.program.timeout.as_secs_f64();
-                problem(
-                    "simulator-timeout",
-                    format!("was terminated after {seconds} s, its time-out"),
-                )
-            }
-            Failed::Ended(output) => said(
-                problem("simulator-failed", "ended during a call".into()),
-                output,
-                "its last output",
-            ),
-            Failed::Raised(error) => {
-                let last = error.lines().last().unwrap_or_default();
-                said(problem("simulator-failed", format!("failed: {last}")), error, "its error")
-            }
-            Failed::Answer(says) => {
-                problem("simulator-output", format!("gave an answer that cannot be read: {says}"))
-            }
-        }
-    }
 }
 
 /// The SI value of a number with its unit: `54.5 kN`.
@@ -319,17 +264,10 @@ fn row(section: &Section) -> Value {
 
 /// The record as CSV with every digit, so that one from the cache is the same.
 fn text(columns: &[(String, Unit, Vec<f64>)]) -> Vec<u8> {
-    let mut text = columns
-        .iter()
-        .map(|(name, unit, _)| format!("{name} [{unit}]"))
-        .collect::<Vec<_>>()
-        .join(",")
-        + "\n";
+    let line = |cells: Vec<String>| cells.join(",") + "\n";
+    let mut text = line(columns.iter().map(|(name, unit, _)| format!("{name} [{unit}]")).collect());
     for row in 0..columns.first().map_or(0, |(.., values)| values.len()) {
-        for (at, (.., values)) in columns.iter().enumerate() {
-            let _ = write!(text, "{}{}", if at == 0 { "" } else { "," }, values[row]);
-        }
-        text.push('\n');
+        text += &line(columns.iter().map(|(.., values)| values[row].to_string()).collect());
     }
     text.into_bytes()
 }

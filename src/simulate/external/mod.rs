@@ -9,7 +9,6 @@ mod read;
 mod started;
 mod words;
 
-use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -66,12 +65,11 @@ impl<'a> External<'a> {
             );
             error("key-missing", says, &campaign.tree.span.part(0..0)).also(&program.span, "here")
         };
-        let asks = |hole: Hole| program.command.iter().any(|word| word.has(hole));
-        if asks(Hole::Track) && !campaign.has(RecordKind::Track) {
+        if program.asks(Hole::Track) && !campaign.has(RecordKind::Track) {
             return Err(lacks("track"));
         }
         let vehicle = vehicle_file(campaign)?;
-        if asks(Hole::Vehicle) && vehicle.is_none() {
+        if program.asks(Hole::Vehicle) && vehicle.is_none() {
             return Err(lacks("vehicle"));
         }
         let basis = basis(campaign, &program, vehicle.as_deref())?;
@@ -81,20 +79,17 @@ impl<'a> External<'a> {
     }
 
     /// Description of the program.
-    #[must_use]
     pub fn program(&self) -> &Program {
         &self.program
     }
 
     /// Number of calls of the program, and of records from the cache.
-    #[must_use]
     pub fn effort(&self) -> (usize, usize) {
         (self.calls.load(Ordering::Relaxed), self.found.load(Ordering::Relaxed))
     }
 
     /// The unit of a channel of a section's record: that of the campaign's simulation, else that of
     /// the program's last record.
-    #[must_use]
     pub fn unit(&self, section: &Section, channel: &str) -> Unit {
         let own = || {
             let units = self.units.lock().ok()?;
@@ -128,7 +123,7 @@ impl<'a> External<'a> {
     /// The words of a call with all placeholders replaced.
     fn filled(&self, task: &Task<'_>, out: &Path) -> Result<Vec<String>, Problem> {
         let section = task.section;
-        let asks = |hole: Hole| self.program.command.iter().any(|word| word.has(hole));
+        let asks = |hole: Hole| self.program.asks(hole);
         let lacks = |what: &str| {
             let says = format!(
                 "section `{}` has no {what}, which the command of `{}` needs",
@@ -179,8 +174,7 @@ impl<'a> External<'a> {
     /// The cache key of a record. It depends on the contents of files, not on their paths.
     fn key(&self, task: &Task<'_>) -> Result<String, Problem> {
         let mut key = self.basis.clone();
-        let words = self.program.command.iter();
-        let asks = |hole: Hole| words.clone().any(|word| word.has(hole));
+        let asks = |hole: Hole| self.program.asks(hole);
         if asks(Hole::Track) {
             key.add_file("track", &self.track(task.section)?)?;
         }
@@ -224,17 +218,13 @@ impl<'a> External<'a> {
 
     /// Reads a record from the cache.
     fn read_kept(&self, bytes: &[u8], section: &Section) -> Result<Signals, Problem> {
-        let failed = |error: std::io::Error| {
-            Problem::error("write-failed", format!("no temporary folder can be created: {error}"))
-        };
-        let folder = disk::scratch().map_err(failed)?;
+        let folder = disk::scratch().map_err(no_folder)?;
         let file = folder.path().join("record.csv");
         crate::data::write::keep(&file, bytes)?;
         self.read(&file, section)
     }
 
     /// A warning of damaged cache entries.
-    #[must_use]
     pub fn warning(&self) -> Option<Problem> {
         self.cache.warning()
     }
@@ -246,13 +236,10 @@ impl<'a> External<'a> {
             return self.ask(workers, task);
         }
         let section = task.section;
-        let failed = |error: std::io::Error| {
-            Problem::error("write-failed", format!("no temporary folder can be created: {error}"))
-        };
         // A record that another machine writes must lie where both see it.
         let folder =
             if self.program.launch.is_empty() { disk::scratch() } else { self.cache.scratch() };
-        let folder = folder.map_err(failed)?;
+        let folder = folder.map_err(no_folder)?;
         let out = folder.path().join("record.csv");
         let words = self.filled(task, &out)?;
         let executable = self.program.executable();
@@ -265,7 +252,8 @@ impl<'a> External<'a> {
             timeout: self.program.timeout,
         };
         self.calls.fetch_add(1, Ordering::Relaxed);
-        process::run(&call).map_err(|fault| self.failed(&fault, &words, section))?;
+        let command = || format!("the command was: {}", words.join(" "));
+        process::run(&call).map_err(|fault| self.told(&fault, Some(section)).help(command()))?;
         if !disk::may_be_file(&out) {
             let says = format!(
                 "section `{}`: {} ended without an error, but wrote no record",
@@ -273,7 +261,7 @@ impl<'a> External<'a> {
                 self.program.name
             );
             let problem = error("simulator-output", says, &section.cell.span);
-            return Err(problem.help(format!("the command was: {}", words.join(" "))));
+            return Err(problem.help(command()));
         }
         let signals = self.read(&out, section).map_err(|problem| {
             let says = format!(
@@ -282,10 +270,7 @@ impl<'a> External<'a> {
                 self.program.name,
                 problem.says
             );
-            let help = problem
-                .help
-                .clone()
-                .unwrap_or_else(|| format!("the command was: {}", words.join(" ")));
+            let help = problem.help.clone().unwrap_or_else(command);
             Problem { says, ..problem }.help(help)
         })?;
         let bytes = disk::read(&out, LARGEST_RECORD).map_err(|error| {
@@ -294,39 +279,49 @@ impl<'a> External<'a> {
         Ok((signals, bytes))
     }
 
-    fn failed(&self, fault: &Fault, words: &[String], section: &Section) -> Problem {
-        let told = |code: &'static str, how: &dyn Display, said: &str| {
-            let problem = Problem::error(
-                code,
-                format!("section `{}`: {} {how}", section.name(), self.program.name),
-            );
-            let problem = problem
-                .at(&section.cell.span)
-                .help(format!("the command was: {}", words.join(" ")));
-            if said.is_empty() {
-                problem
-            } else {
-                problem
-                    .also(&Source::new(self.program.name.as_str(), said).whole(), "its last output")
-            }
-        };
-        match fault {
+    /// Why a call failed.
+    fn told(&self, fault: &Fault, section: Option<&Section>) -> Problem {
+        let name = &self.program.name;
+        let last_output = "its last output";
+        let (code, how, said, what) = match fault {
             Fault::NotStarted(error) => {
-                told("simulator-failed", &self.program.not_started(error), "")
+                ("simulator-failed", self.program.not_started(error), "", last_output)
             }
             Fault::TimedOut { said } => {
                 let seconds = self.program.timeout.as_secs_f64();
-                told(
-                    "simulator-timeout",
-                    &format!("was terminated after {seconds} s, its time-out"),
-                    said,
-                )
+                let how = format!("was terminated after {seconds} s, its time-out");
+                ("simulator-timeout", how, said.as_str(), last_output)
             }
             Fault::Failed { status, said } => {
-                told("simulator-failed", &format!("failed: {status}"), said)
+                ("simulator-failed", format!("failed: {status}"), said.as_str(), last_output)
             }
+            Fault::Ended { said } => {
+                ("simulator-failed", "ended during a call".into(), said.as_str(), last_output)
+            }
+            Fault::Raised(error) => {
+                let last = error.lines().last().unwrap_or_default();
+                ("simulator-failed", format!("failed: {last}"), error.as_str(), "its error")
+            }
+            Fault::Answer(says) => {
+                let how = format!("gave an answer that cannot be read: {says}");
+                ("simulator-output", how, "", last_output)
+            }
+        };
+        let (of, at) = match section {
+            Some(section) => (format!("section `{}`: ", section.name()), &section.cell.span),
+            None => (String::new(), &self.program.span),
+        };
+        let problem = error(code, format!("{of}{name} {how}"), at);
+        if said.is_empty() {
+            problem
+        } else {
+            problem.also(&Source::new(name.as_str(), said).whole(), what)
         }
     }
+}
+
+fn no_folder(error: std::io::Error) -> Problem {
+    Problem::error("write-failed", format!("no temporary folder can be created: {error}"))
 }
 
 /// The record of a simulator must have the whole section, up to one sample.

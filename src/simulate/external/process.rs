@@ -10,7 +10,7 @@ use super::started::{self, Mark};
 use crate::disk;
 
 /// The file that takes what a program prints. It has no name, and is made by `disk`.
-pub(super) type Printed = File;
+pub type Printed = File;
 
 /// A call of a program.
 #[derive(Clone, Copy, Debug)]
@@ -25,7 +25,7 @@ pub struct Call<'a> {
     pub timeout: Duration,
 }
 
-/// Failure of a call.
+/// Failure of a call, with the last output of the program.
 #[derive(Debug)]
 pub enum Fault {
     /// It could not be started; the system's error.
@@ -34,6 +34,12 @@ pub enum Fault {
     TimedOut { said: String },
     /// It ended with an exit code other than 0, or by a signal.
     Failed { status: ExitStatus, said: String },
+    /// The process of a Python function ended during a call.
+    Ended { said: String },
+    /// The function raised this.
+    Raised(String),
+    /// What the function answered is not understood.
+    Answer(String),
 }
 
 /// Number of lines and bytes of the program's output that are kept.
@@ -44,7 +50,7 @@ const LONGEST_PAUSE: Duration = Duration::from_millis(50);
 
 /// A command that starts a program in a folder, by words before it if there are any. The mark finds
 /// what it starts.
-pub(super) fn launched(
+pub fn launched(
     launch: &[String],
     program: &Path,
     folder: &Path,
@@ -114,7 +120,7 @@ fn wait(child: &mut Child, timeout: Duration, mark: &Mark) -> std::io::Result<Op
 }
 
 /// Terminates a child, its group and processes that left the group, and waits for the child.
-pub(super) fn end(child: &mut Child, mark: &Mark) {
+pub fn end(child: &mut Child, mark: &Mark) {
     #[cfg(unix)]
     if let Some(group) = i32::try_from(child.id()).ok().and_then(rustix::process::Pid::from_raw) {
         let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
@@ -124,7 +130,7 @@ pub(super) fn end(child: &mut Child, mark: &Mark) {
     let _ = child.wait();
 }
 
-pub(super) fn last_lines(file: &mut File) -> String {
+pub fn last_lines(file: &mut File) -> String {
     let length = file.metadata().map_or(0, |meta| meta.len());
     let mut bytes = Vec::new();
     let read = file

@@ -11,26 +11,13 @@ use std::time::Duration;
 
 use serde_json::{Map, Value, json};
 
-use super::process::{Printed, end, last_lines, launched};
+use super::process::{Fault, Printed, end, last_lines, launched};
 use super::read::{Program, Python};
 use super::started::Mark;
 use crate::disk;
 
 /// The script that calls the function.
 const WORKER: &str = include_str!("worker.py");
-
-/// Failure of a call.
-#[derive(Debug)]
-pub enum Failed {
-    NotStarted(std::io::Error),
-    TimedOut,
-    /// The process ended, with its last output.
-    Ended(String),
-    /// The function raised this.
-    Raised(String),
-    /// What it answered is not understood.
-    Answer(String),
-}
 
 /// The processes of one simulator.
 #[derive(Debug)]
@@ -74,7 +61,7 @@ impl Workers {
     }
 
     /// The parameters that the file declares. A process is started to ask for them.
-    pub fn parameters(&self) -> Result<&[String], Failed> {
+    pub fn parameters(&self) -> Result<&[String], Fault> {
         if self.parameters.get().is_none() {
             let worker = self.start()?;
             self.rest(worker);
@@ -89,7 +76,7 @@ impl Workers {
         section: &str,
         parameters: &[(String, f64)],
         inputs: &dyn Fn() -> Value,
-    ) -> Result<Columns, Failed> {
+    ) -> Result<Columns, Fault> {
         let free = self.idle.lock().ok().and_then(|mut idle| idle.pop());
         let mut worker = free.map_or_else(|| self.start(), Ok)?;
         let values: Map<String, Value> =
@@ -109,8 +96,8 @@ impl Workers {
         }
     }
 
-    fn start(&self) -> Result<Worker, Failed> {
-        let errors = disk::scratch_file().map_err(Failed::NotStarted)?;
+    fn start(&self) -> Result<Worker, Fault> {
+        let errors = disk::scratch_file().map_err(Fault::NotStarted)?;
         let (mut command, mark) =
             launched(&self.launch, &self.python.interpreter, &self.folder, &self.environment);
         command
@@ -118,8 +105,8 @@ impl Workers {
             .arg(&self.python.file)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
-            .stderr(errors.try_clone().map_err(Failed::NotStarted)?);
-        let mut child = command.spawn().map_err(Failed::NotStarted)?;
+            .stderr(errors.try_clone().map_err(Fault::NotStarted)?);
+        let mut child = command.spawn().map_err(Fault::NotStarted)?;
         let input = child.stdin.take();
         let (send, lines) = channel();
         if let Some(output) = child.stdout.take() {
@@ -134,14 +121,14 @@ impl Workers {
         let mut worker = Worker { child, input, lines, errors, mark, known: BTreeSet::new() };
         let ready = worker.answer(self.timeout)?;
         if let Some(error) = ready.get("error").and_then(Value::as_str) {
-            return Err(Failed::Raised(error.to_string()));
+            return Err(Fault::Raised(error.to_string()));
         }
         let names = ready
             .get("parameters")
             .and_then(Value::as_array)
             .map(|names| names.iter().filter_map(Value::as_str));
         let Some(names) = names else {
-            return Err(Failed::Answer("its first line has no `parameters`".into()));
+            return Err(Fault::Answer("its first line has no `parameters`".into()));
         };
         let _ = self.parameters.set(names.map(str::to_string).collect());
         Ok(worker)
@@ -149,27 +136,27 @@ impl Workers {
 }
 
 impl Worker {
-    fn ask(&mut self, asked: &Value, timeout: Duration) -> Result<Value, Failed> {
+    fn ask(&mut self, asked: &Value, timeout: Duration) -> Result<Value, Fault> {
         let sent = match &mut self.input {
             Some(input) => writeln!(input, "{asked}").and_then(|()| input.flush()),
             None => Ok(()),
         };
         // A process that has ended says why in what it printed.
         if sent.is_err() {
-            return Err(Failed::Ended(last_lines(&mut self.errors)));
+            return Err(Fault::Ended { said: last_lines(&mut self.errors) });
         }
         self.answer(timeout)
     }
 
-    fn answer(&mut self, timeout: Duration) -> Result<Value, Failed> {
+    fn answer(&mut self, timeout: Duration) -> Result<Value, Fault> {
         match self.lines.recv_timeout(timeout) {
             Ok(line) => {
-                serde_json::from_str(&line).map_err(|error| Failed::Answer(error.to_string()))
+                serde_json::from_str(&line).map_err(|error| Fault::Answer(error.to_string()))
             }
-            Err(RecvTimeoutError::Timeout) => Err(Failed::TimedOut),
+            Err(RecvTimeoutError::Timeout) => Err(Fault::TimedOut { said: String::new() }),
             Err(RecvTimeoutError::Disconnected) => {
                 let _ = self.child.wait();
-                Err(Failed::Ended(last_lines(&mut self.errors)))
+                Err(Fault::Ended { said: last_lines(&mut self.errors) })
             }
         }
     }
@@ -192,12 +179,12 @@ impl Drop for Worker {
     }
 }
 
-fn columns(answer: &Value) -> Result<Columns, Failed> {
+fn columns(answer: &Value) -> Result<Columns, Fault> {
     if let Some(error) = answer.get("error").and_then(Value::as_str) {
-        return Err(Failed::Raised(error.to_string()));
+        return Err(Fault::Raised(error.to_string()));
     }
     let Some(found) = answer.get("channels").and_then(Value::as_object) else {
-        return Err(Failed::Answer("the line has neither `channels` nor `error`".into()));
+        return Err(Fault::Answer("the line has neither `channels` nor `error`".into()));
     };
     let column = |(name, values): (&String, &Value)| {
         let values = values.as_array()?.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>()?;
@@ -207,5 +194,5 @@ fn columns(answer: &Value) -> Result<Columns, Failed> {
         .iter()
         .map(column)
         .collect::<Option<_>>()
-        .ok_or_else(|| Failed::Answer("a channel is no list of numbers".into()))
+        .ok_or_else(|| Fault::Answer("a channel is no list of numbers".into()))
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use super::words::{Hole, Word};
 use crate::disk;
-use crate::problem::{Problem, Problems, error};
+use crate::problem::{Problems, error};
 use crate::source::{Source, Span, Spanned};
 use crate::units::{Dimension, Unit, number};
 use crate::yaml::{self, Entries, Key, Node, Reader, Value, fields};
@@ -100,11 +100,8 @@ pub fn read_program(
     let written = written?;
     let python = written.python.as_ref();
     let python = python.map(|file| reader.python(file, written.interpreter.as_ref()));
-    let words = |reader: &mut Reader<'_, &Path>, node: &Option<Node>, allowed: &[Hole]| {
-        node.as_ref().map(|node| reader.words(node, allowed)).unwrap_or_default()
-    };
-    let command = words(&mut reader, &written.command, &Hole::OF_COMMAND);
-    let set = words(&mut reader, &written.set, &Hole::OF_SET);
+    let command = reader.words(written.command.as_ref(), false);
+    let set = reader.words(written.set.as_ref(), true);
     if let Some(unit) = &written.speed_unit
         && unit.value.dimension != Dimension::SPEED
     {
@@ -169,11 +166,19 @@ impl Program {
 
     /// The file of the program if the command gives its path, else its name, which the system
     /// searches.
-    #[must_use]
     pub fn executable(&self) -> PathBuf {
-        let word = self.command.first().and_then(Word::plain).unwrap_or_default();
-        if word.contains(['/', '\\']) { self.folder.join(word) } else { PathBuf::from(word) }
+        executable(&self.folder, self.command.first().and_then(Word::plain).unwrap_or_default())
     }
+
+    /// Whether the command has a placeholder.
+    pub(super) fn asks(&self, hole: Hole) -> bool {
+        self.command.iter().any(|word| word.has(hole))
+    }
+}
+
+/// A program by its path from a folder, or by its name, which the system searches.
+fn executable(folder: &Path, name: &str) -> PathBuf {
+    if name.contains(['/', '\\']) { folder.join(name) } else { PathBuf::from(name) }
 }
 
 impl Reader<'_, &Path> {
@@ -210,12 +215,11 @@ impl Reader<'_, &Path> {
         let (name, span) = interpreter
             .map_or((INTERPRETER, &file.span), |named| (named.value.as_str(), &named.span));
         self.program(name, span);
-        let interpreter =
-            if name.contains(['/', '\\']) { self.with.join(name) } else { PathBuf::from(name) };
-        Python { interpreter, file: file_path }
+        Python { interpreter: executable(self.with, name), file: file_path }
     }
 
-    fn words(&mut self, node: &Node, allowed: &[Hole]) -> Vec<Word> {
+    fn words(&mut self, node: Option<&Node>, of_set: bool) -> Vec<Word> {
+        let Some(node) = node else { return Vec::new() };
         if node.items().is_empty() {
             let says = match node.value {
                 Value::List(_) => "the list of words is empty".to_string(),
@@ -225,7 +229,7 @@ impl Reader<'_, &Path> {
                 "the command is not split by a shell: write `[program, --option, \"{out}\"]`";
             self.tell(error("wrong-kind", says, &node.span).help(help));
         }
-        node.items().iter().filter_map(|item| Word::read(item, allowed, self.problems)).collect()
+        node.items().iter().filter_map(|item| Word::read(item, of_set, self.problems)).collect()
     }
 
     /// A number in a range, in SI with or without a unit.
@@ -280,23 +284,16 @@ impl Reader<'_, &Path> {
             return;
         }
         let Some((first, place)) = command.first().zip(node.items().first()) else { return };
+        let mut missing = |says: &str, help: &str| {
+            self.tell(error("placeholder-missing", says, &node.span).help(help));
+        };
         if !command.iter().any(|word| word.has(Hole::Out)) {
-            let problem = Problem::error(
-                "placeholder-missing",
-                "the command does not contain the path of the record to be written",
-            );
-            self.tell(problem.at(&node.span).help("add a word with `{out}`"));
+            let says = "the command does not contain the path of the record to be written";
+            missing(says, "add a word with `{out}`");
         }
         if !set.is_empty() && !command.iter().any(|word| word.is(Hole::Set)) {
-            let problem = Problem::error(
-                "placeholder-missing",
-                "the command has no placeholder for the words of `set`",
-            );
-            self.tell(
-                problem
-                    .at(&node.span)
-                    .help("add the word `{set}`, without other text in that word"),
-            );
+            let says = "the command has no placeholder for the words of `set`";
+            missing(says, "add the word `{set}`, without other text in that word");
         }
         let Some(name) = first.plain() else {
             return self.fault(

@@ -8,11 +8,11 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Name of the variable.
-pub(super) const NAME: &str = "FISHPLATE_CALL";
+pub const NAME: &str = "FISHPLATE_CALL";
 
 /// Value of the variable, different for each call of this process.
 #[derive(Debug)]
-pub(super) struct Mark(String);
+pub struct Mark(String);
 
 impl Mark {
     pub fn new() -> Self {
@@ -31,7 +31,7 @@ const ROUNDS: usize = 16;
 
 /// Terminates all processes with a mark.
 #[cfg(target_os = "linux")]
-pub(super) fn end(mark: &Mark) {
+pub fn end(mark: &Mark) {
     use crate::disk::{names, process_variables};
     let wanted = format!("{NAME}={}", mark.value());
     for _ in 0..ROUNDS {
@@ -55,4 +55,4 @@ pub(super) fn end(mark: &Mark) {
 }
 
 #[cfg(not(target_os = "linux"))]
-pub(super) fn end(_: &Mark) {}
+pub fn end(_: &Mark) {}

@@ -1,9 +1,7 @@
 //! The words of a command: text with placeholders in braces.
 
-use std::fmt::Write;
-
-use crate::problem::{Problem, Problems, error};
-use crate::yaml::Node;
+use crate::problem::{Problems, error};
+use crate::yaml::{Node, Words};
 
 /// A placeholder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,35 +26,25 @@ pub enum Hole {
     Value,
 }
 
-impl Hole {
-    /// Placeholders allowed in a command.
-    pub const OF_COMMAND: [Self; 8] = [
-        Self::Vehicle,
-        Self::Track,
-        Self::Speed,
-        Self::Out,
-        Self::Section,
-        Self::Start,
-        Self::End,
-        Self::Set,
+impl Words for Hole {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("vehicle", Self::Vehicle),
+        ("track", Self::Track),
+        ("speed", Self::Speed),
+        ("out", Self::Out),
+        ("section", Self::Section),
+        ("start", Self::Start),
+        ("end", Self::End),
+        ("set", Self::Set),
+        ("name", Self::Name),
+        ("value", Self::Value),
     ];
-    /// Placeholders allowed in the words repeated for each parameter.
-    pub const OF_SET: [Self; 2] = [Self::Name, Self::Value];
+}
 
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Vehicle => "vehicle",
-            Self::Track => "track",
-            Self::Speed => "speed",
-            Self::Out => "out",
-            Self::Section => "section",
-            Self::Start => "start",
-            Self::End => "end",
-            Self::Set => "set",
-            Self::Name => "name",
-            Self::Value => "value",
-        }
+impl Hole {
+    /// Whether it may stand in the words repeated for each parameter; others stand in a command.
+    pub fn is_of_set(self) -> bool {
+        matches!(self, Self::Name | Self::Value)
     }
 }
 
@@ -75,9 +63,10 @@ pub struct Word {
 
 impl Word {
     /// Reads a word; `{{` and `}}` are literal braces.
+    /// `of_set`: one that is repeated for each parameter.
     ///
     /// Problems: `unknown-placeholder` with the nearest, `unclosed-brace`, `wrong-kind`.
-    pub fn read(node: &Node, allowed: &[Hole], problems: &mut Problems) -> Option<Self> {
+    pub fn read(node: &Node, of_set: bool, problems: &mut Problems) -> Option<Self> {
         let Some(text) = node.scalar_text() else {
             problems.push(error(
                 "wrong-kind",
@@ -108,13 +97,13 @@ impl Word {
                 return None;
             };
             let name = &text[found + 1..end];
-            let Some(hole) = allowed.iter().find(|hole| hole.name() == name) else {
-                let problem =
-                    Problem::error("unknown-placeholder", format!("there is no `{{{name}}}` here"));
+            let allowed = Hole::WORDS.iter().filter(|(_, hole)| hole.is_of_set() == of_set);
+            let Some((_, hole)) = allowed.clone().find(|(word, _)| *word == name) else {
+                let says = format!("there is no `{{{name}}}` here");
+                let known = allowed.map(|(word, _)| *word);
                 problems.push(
-                    problem
-                        .at(&node.place(found + 1..end))
-                        .suggest(name, allowed.iter().map(|hole| hole.name())),
+                    error("unknown-placeholder", says, &node.place(found + 1..end))
+                        .suggest(name, known),
                 );
                 return None;
             };
@@ -131,41 +120,32 @@ impl Word {
         Some(Self { parts })
     }
 
-    #[must_use]
     pub fn has(&self, hole: Hole) -> bool {
         self.parts.contains(&Part::Hole(hole))
     }
 
     /// Whether the word is only this placeholder.
-    #[must_use]
     pub fn is(&self, hole: Hole) -> bool {
         self.parts == [Part::Hole(hole)]
     }
 
     /// The text of a word without placeholders.
-    #[must_use]
     pub fn plain(&self) -> Option<&str> {
         if let [Part::Text(text)] = &self.parts[..] { Some(text) } else { None }
     }
 
     /// The word with its placeholders replaced.
-    #[must_use]
     pub fn filled(&self, with: &dyn Fn(Hole) -> String) -> String {
-        self.parts.iter().fold(String::new(), |mut text, part| {
-            match part {
-                Part::Text(plain) => text.push_str(plain),
-                Part::Hole(hole) => {
-                    let _ = write!(text, "{}", with(*hole));
-                }
-            }
-            text
-        })
+        let part = |part: &Part| match part {
+            Part::Text(plain) => plain.clone(),
+            Part::Hole(hole) => with(*hole),
+        };
+        self.parts.iter().map(part).collect()
     }
 }
 
 /// The words of a call. `{set}` is repeated for every parameter, in the form of `set` if given,
 /// else `name=value`.
-#[must_use]
 pub fn fill(
     command: &[Word],
     set: &[Word],

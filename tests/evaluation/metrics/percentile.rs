@@ -31,7 +31,7 @@ fn agrees_with_numpy() {
 fn small_sample() {
     let expected = &json("vectors/expected.json")["percentiles_small"];
     let (values, percents) = (numbers(&expected["x"]), numbers(&expected["q"]));
-    for method in Method::ALL {
+    for (method, _) in Method::NAMES {
         if let Some(theirs) = expected.get(method.name()) {
             for (ours, theirs) in percentiles(&values, &percents, method)
                 .expect("values")
@@ -49,7 +49,7 @@ fn small_sample() {
 
 #[test]
 fn names_lead_back() {
-    for method in Method::ALL {
+    for (method, _) in Method::NAMES {
         assert_eq!(Method::from_name(method.name()), Some(method));
     }
     assert_eq!(Method::from_name("type 7"), None);
