@@ -22,7 +22,7 @@ use std::time::Instant;
 use fishplate::model::equations::{Equations, Hints, Input};
 use fishplate::model::integrate::{Method, SAMPLE, least_steps, run};
 use fishplate::model::state::State;
-use fishplate::model::{Profile, Setup, Track, Vehicle, simulate_with, start};
+use fishplate::model::{Profile, Setup, Track, Vehicle, simulate, start};
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, Dopri5, SVector, System};
 use rayon::prelude::*;
@@ -93,10 +93,10 @@ impl Campaign {
         (section.window().to - from) / section.speed / SAMPLE
     }
 
-    fn all(&self, divided: Option<usize>) {
+    fn all(&self, steps: usize) {
         for section in &self.sections {
             std::hint::black_box(
-                simulate_with(&self.setup(section), section.window(), divided).unwrap(),
+                simulate(&self.setup(section), section.window(), steps.into()).unwrap(),
             );
         }
     }
@@ -122,19 +122,16 @@ fn main() {
 fn throughput(campaign: &Campaign) {
     let samples: f64 = campaign.sections.iter().map(|section| campaign.samples(section)).sum();
     println!("{} sections, {:.0} s of running", campaign.sections.len(), samples * SAMPLE);
-    let steps = |divided: Option<usize>| -> f64 {
+    let steps = |least: usize| -> f64 {
         campaign
             .sections
             .iter()
-            .map(|section| {
-                campaign.samples(section)
-                    * divided.unwrap_or_else(|| campaign.steps(section)) as f64
-            })
+            .map(|section| campaign.samples(section) * campaign.steps(section).max(least) as f64)
             .sum()
     };
-    for (what, divided) in [("default step", None), ("0.5 ms", Some(2))] {
-        let time = best(|| campaign.all(divided));
-        let step = time / steps(divided) * 1e9;
+    for (what, least) in [("default step", 1), ("0.5 ms", 2)] {
+        let time = best(|| campaign.all(least));
+        let step = time / steps(least) * 1e9;
         println!(
             "{what:13} 1 thread  {:6.0} x real time, {step:5.0} ns a step, {:4.0} ns a stage, {:4.1} ns a stage and degree of freedom",
             samples * SAMPLE / time,
@@ -148,7 +145,7 @@ fn throughput(campaign: &Campaign) {
             pool.install(|| {
                 campaign.sections.par_iter().for_each(|section| {
                     std::hint::black_box(
-                        simulate_with(&campaign.setup(section), section.window(), None).unwrap(),
+                        simulate(&campaign.setup(section), section.window(), 1.into()).unwrap(),
                     );
                 });
             });
@@ -328,9 +325,9 @@ fn memory(campaign: &Campaign) {
             status.lines().find(|line| line.starts_with("VmHWM")).unwrap_or("VmHWM: unknown");
         line.trim_start_matches("VmHWM:").trim().to_owned()
     };
-    campaign.all(None);
+    campaign.all(1);
     let once = peak();
-    (0..10).for_each(|_| campaign.all(None));
+    (0..10).for_each(|_| campaign.all(1));
     println!(
         "peak memory after {} sections {once}, after {} {}",
         campaign.sections.len(),

@@ -124,7 +124,7 @@ fn campaign(
         for (side, vehicle, noise) in [("simulation", &vehicle, 0.0), ("measurement", &wet, 1.0)] {
             let setup =
                 Setup { vehicle, profile: &profile, track: &track, speed: kind.speed / 3.6 };
-            let record = simulate(&setup, window)
+            let record = simulate(&setup, window, 1.into())
                 .map_err(|failure| format!("{name}, run {number}: {failure}"))?;
             let bytes = record_of(record, kind.speed, noise, &mut random)?;
             write(&format!("runs/{number:02}-{side}.parquet"), &bytes)?;

@@ -2,8 +2,7 @@
 
 use fishplate::effects::{Channel, Gauss, Signals};
 use fishplate::model::{
-    CHANNELS, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, Window,
-    simulate_with,
+    CHANNELS, Profile, ProfileTable, SAMPLING_RATE, Setup, TrackTable, Vehicle, Window, simulate,
 };
 
 use crate::cases::Outside;
@@ -269,8 +268,7 @@ impl World {
         let around = Window::around(made.stretch.start, made.stretch.end);
         let window = Window { from: around.from - made.shift, to: around.to - made.shift };
         let setup = Setup { vehicle: &vehicle, profile: &profile, track: &track, speed };
-        let record =
-            simulate_with(&setup, window, Some(2)).map_err(|failure| failure.to_string())?;
+        let record = simulate(&setup, window, 2.into()).map_err(|failure| failure.to_string())?;
         let channels = CHANNELS
             .iter()
             .zip(record.channels)

@@ -146,7 +146,7 @@ fn simulated(
 ) -> Result<Signals, String> {
     let profile = Profile::new(table, None, vehicle).ok_or("no profile")?;
     let setup = Setup { vehicle, profile: &profile, track, speed: stretch.speed / 3.6 };
-    let record = simulate(&setup, Window::around(stretch.start, stretch.end))
+    let record = simulate(&setup, Window::around(stretch.start, stretch.end), 1.into())
         .map_err(|failure| failure.to_string())?;
     let channels = CHANNELS
         .iter()

@@ -195,7 +195,7 @@ impl Simulate {
     ) -> Result<Vec<u8>, Problem> {
         if !self.increment {
             let made = simulate(chosen.simulator(), catalogue, effects, section, None)?;
-            return record_file(format, &made.signals, &|channel| chosen.unit(section, channel));
+            return record_file(format, &made, &|channel| chosen.unit(section, channel));
         }
         let (recorded, units) = chosen.recorded(campaign, section)?;
         let made = simulate(chosen.simulator(), catalogue, effects, section, Some(&recorded))?;
@@ -205,7 +205,7 @@ impl Simulate {
                 .find(|(name, _)| name == channel)
                 .map_or_else(Unit::one, |(_, unit)| unit.clone())
         };
-        record_file(format, &made.signals, &unit)
+        record_file(format, &made, &unit)
     }
 
     /// Simulates one vehicle on one track.

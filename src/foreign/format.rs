@@ -64,16 +64,25 @@ impl Format {
 type NotRead = (&'static str, &'static str);
 
 const EXCEL: &str = "save it in Excel or LibreOffice as .xlsx, or as CSV";
-const MDF: &str = "convert it to MDF 4, for example with asammdf: `asammdf.MDF(file).convert('4.10').save('x.mf4')`";
-const DIADEM: &str = "export it in DIAdem as TDMS (.tdms) or as CSV";
+const TDMS: &str = "export it in DIAdem as TDMS (.tdms) or as CSV";
 const FEATHER: &str = "write it as Feather version 2 or as Parquet, for example with pyarrow";
 const MAT: &str = "save it in MATLAB with `save(file, '-v7')` or `'-v7.3'`";
-const NETCDF: &str =
-    "export it as CSV or Parquet, for example with xarray: `to_dataframe().to_parquet(file)`";
+const MDF: &str = "convert it to MDF 4, for example with asammdf: `asammdf.MDF(file).convert('4.10').save('x.mf4')`";
+const NAMED: &str = "write it as Parquet or CSV with the names of the channels";
+const PARQUET: &str = "write it as Parquet";
 const UNPACK: &str = "unpack it, and import the files in it";
 
+const DIADEM: NotRead = ("a DIAdem file", TDMS);
+const DIADEM_HEADER: NotRead = ("a DIAdem header file", TDMS);
+const MDF_3: NotRead = ("an ASAM MDF file of version 3", MDF);
+const NETCDF: NotRead = (
+    "a NetCDF file",
+    "export it as CSV or Parquet, for example with xarray: `to_dataframe().to_parquet(file)`",
+);
 const SIMPACK: NotRead =
     ("a binary result of Simpack", "export the channels in the post-processor as ASCII or MATLAB");
+const SPREADSHEET: NotRead = ("an OpenDocument spreadsheet", EXCEL);
+const XLSB: NotRead = ("a binary Excel workbook (xlsb)", EXCEL);
 
 /// First bytes of formats that are not read.
 const SIGNATURES: &[(&[u8], NotRead)] = &[
@@ -81,13 +90,13 @@ const SIGNATURES: &[(&[u8], NotRead)] = &[
         b"\xd0\xcf\x11\xe0",
         ("an Excel workbook of the old format (xls) or another file of Microsoft Office", EXCEL),
     ),
-    (b"CDF\x01", ("a NetCDF file", NETCDF)),
-    (b"CDF\x02", ("a NetCDF file", NETCDF)),
-    (b"CDF\x05", ("a NetCDF file", NETCDF)),
+    (b"CDF\x01", NETCDF),
+    (b"CDF\x02", NETCDF),
+    (b"CDF\x05", NETCDF),
     (b"FEA1", ("a Feather file of version 1", FEATHER)),
     (b"TDSh", ("the index of a TDMS file", "import the file without `_index` in its name")),
-    (b"DIAEXTENDED", ("a DIAdem header file", DIADEM)),
-    (b"DIAdem", ("a DIAdem header file", DIADEM)),
+    (b"DIAEXTENDED", DIADEM_HEADER),
+    (b"DIAdem", DIADEM_HEADER),
     (b"\x1f\x8b", ("a gzip file", UNPACK)),
     (b"7z\xbc\xaf\x27\x1c", ("a 7-Zip file", UNPACK)),
     (b"Rar!", ("a RAR file", UNPACK)),
@@ -95,23 +104,23 @@ const SIGNATURES: &[(&[u8], NotRead)] = &[
     (b"BZh", ("a bzip2 file", UNPACK)),
     (b"\xfd7zXZ", ("an xz file", UNPACK)),
     (b"%PDF", ("a PDF document", "import the data that it was made from")),
-    (b"\x93NUMPY", ("a NumPy file", "write it as Parquet or CSV with the names of the channels")),
+    (b"\x93NUMPY", ("a NumPy file", NAMED)),
     (b"SQLite format 3", ("an SQLite database", "export its table as CSV")),
-    (b"ORC", ("an ORC file", "write it as Parquet")),
-    (b"Obj\x01", ("an Avro file", "write it as Parquet")),
+    (b"ORC", ("an ORC file", PARQUET)),
+    (b"Obj\x01", ("an Avro file", PARQUET)),
 ];
 
 /// Endings of formats that are not read and have no signature of their own.
 const ENDINGS: &[(&str, NotRead)] = &[
     ("xls", ("an Excel workbook of the old format (xls)", EXCEL)),
-    ("xlsb", ("a binary Excel workbook (xlsb)", EXCEL)),
-    ("ods", ("an OpenDocument spreadsheet", EXCEL)),
-    ("nc", ("a NetCDF file", NETCDF)),
-    ("mdf", ("an ASAM MDF file of version 3", MDF)),
-    ("mf3", ("an ASAM MDF file of version 3", MDF)),
-    ("tdm", ("a DIAdem file", DIADEM)),
-    ("tdx", ("a DIAdem file", DIADEM)),
-    ("r64", ("a DIAdem file", DIADEM)),
+    ("xlsb", XLSB),
+    ("ods", SPREADSHEET),
+    ("nc", NETCDF),
+    ("mdf", MDF_3),
+    ("mf3", MDF_3),
+    ("tdm", DIADEM),
+    ("tdx", DIADEM),
+    ("r64", DIADEM),
     ("sbr", SIMPACK),
     ("spr", SIMPACK),
     ("pxp", ("an Igor file", "export it as CSV")),
@@ -208,7 +217,7 @@ fn content(bytes: &[u8], ending: &str) -> Result<Option<Format>, NotRead> {
     }
     if hdf5(bytes) {
         return match ending {
-            "nc" | "nc4" | "cdf" => Err(("a NetCDF file", NETCDF)),
+            "nc" | "nc4" | "cdf" => Err(NETCDF),
             _ => Ok(Some(Format::Mat)),
         };
     }
@@ -222,7 +231,7 @@ fn content(bytes: &[u8], ending: &str) -> Result<Option<Format>, NotRead> {
         return Err(("a MATLAB file of version 4", MAT));
     }
     if starts(b"<?xml") && contains(&bytes[..bytes.len().min(2048)], b"usi:") {
-        return Err(("a DIAdem file", DIADEM));
+        return Err(DIADEM);
     }
     Ok(None)
 }
@@ -238,19 +247,16 @@ fn hdf5(bytes: &[u8]) -> bool {
 fn zip(bytes: &[u8]) -> Result<Option<Format>, NotRead> {
     let has = |name: &[u8]| contains(bytes, name);
     if has(b"xl/workbook.bin") {
-        return Err(("a binary Excel workbook (xlsb)", EXCEL));
+        return Err(XLSB);
     }
     if has(b"xl/workbook.xml") || has(b"xl/worksheets/") {
         return Ok(Some(Format::Xlsx));
     }
     if has(b"opendocument.spreadsheet") {
-        return Err(("an OpenDocument spreadsheet", EXCEL));
+        return Err(SPREADSHEET);
     }
     if has(b".npy") {
-        return Err((
-            "a NumPy archive",
-            "write it as Parquet or CSV with the names of the channels",
-        ));
+        return Err(("a NumPy archive", NAMED));
     }
     Err(("a zip archive", UNPACK))
 }

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use realfft::num_complex::Complex;
 
-use super::pair::Undefined;
+use super::pair::{Metric, Undefined, undefined};
 
 /// Number of samples of a window. The spectral lines are 1/256 of the sampling rate apart: 0.8 Hz
 /// at 200 samples per second.
@@ -22,26 +22,21 @@ const ADVANCE: usize = WINDOW / 2;
 /// # Errors
 /// Fewer samples than a window; no spectral line in the band; a signal without content at a line of
 /// the band.
-pub fn in_band(
-    simulated: &[f64],
-    measured: &[f64],
-    rate: f64,
-    (low, high): (f64, f64),
-) -> Result<f64, Undefined> {
+pub fn in_band(simulated: &[f64], measured: &[f64], rate: f64, (low, high): (f64, f64)) -> Metric {
     if simulated.len() != measured.len() || simulated.len() < WINDOW {
         let count = simulated.len().min(measured.len());
-        return Err(Undefined::because(format!(
+        return undefined(format!(
             "the signals have {count} samples; a window of the coherence needs {WINDOW}"
-        )));
+        ));
     }
     let lines: Vec<usize> = (0..=WINDOW / 2)
         .filter(|&line| (low..high).contains(&(line as f64 * rate / WINDOW as f64)))
         .collect();
     if lines.is_empty() {
         let apart = super::rounded(rate / WINDOW as f64);
-        return Err(Undefined::because(format!(
+        return undefined(format!(
             "no line of the spectrum lies in the band: the lines are {apart} apart"
-        )));
+        ));
     }
     let hann: Vec<f64> =
         (0..WINDOW).map(|k| 0.5 - 0.5 * (TAU * k as f64 / WINDOW as f64).cos()).collect();
@@ -74,9 +69,7 @@ pub fn in_band(
     for ((s, m), both) in of_s.iter().zip(&of_m).zip(&of_both) {
         let one = both.norm_sqr() / (s * m);
         if !one.is_finite() {
-            return Err(Undefined::because(
-                "one of the signals has no content at a frequency of the band",
-            ));
+            return undefined("one of the signals has no content at a frequency of the band");
         }
         sum += one;
     }

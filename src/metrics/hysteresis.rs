@@ -7,7 +7,7 @@
 //! where there is no long branch. The part of a record after its last turning point is not used if
 //! its range is below the threshold.
 
-use super::pair::Undefined;
+use super::pair::{Undefined, undefined};
 
 /// A branch is long if it covers at least this share of the longest branch of its direction.
 const LONG: f64 = 0.9;
@@ -60,7 +60,7 @@ pub fn matching(simulated: Loop, measured: Loop, threshold: f64) -> Result<Match
         if along <= 0.0 {
             let word = direction.word();
             let reason = format!("the loops have no common input while it is {word}");
-            return Err(Undefined::because(reason));
+            return undefined(reason);
         }
         integral += part;
         length += along;
@@ -120,18 +120,18 @@ impl Branch {
 
 /// The two directions of a loop, rising and falling.
 fn sides(of: Loop, threshold: f64, which: &str) -> Result<[Side; 2], Undefined> {
-    let undefined = |what: &str| Undefined::because(format!("the {which} loop {what}"));
+    let unfit = |what: &str| Undefined::because(format!("the {which} loop {what}"));
     if !(threshold > 0.0 && threshold < 1.0) {
-        return Err(Undefined::because(format!(
+        return undefined(format!(
             "the turning threshold must be between 0 and 1 of the range, this is {threshold}"
-        )));
+        ));
     }
     let (inputs, outputs) = (of.x.len(), of.y.len());
     if inputs != outputs {
-        return Err(undefined(&format!("has {inputs} inputs and {outputs} outputs")));
+        return Err(unfit(&format!("has {inputs} inputs and {outputs} outputs")));
     }
     if of.x.iter().chain(of.y).any(|value| !value.is_finite()) {
-        return Err(undefined("has a value that is not finite"));
+        return Err(unfit("has a value that is not finite"));
     }
     let (low, high) =
         of.x.iter()
@@ -139,7 +139,7 @@ fn sides(of: Loop, threshold: f64, which: &str) -> Result<[Side; 2], Undefined> 
     let branches = branches(of.x, threshold * (high - low));
     let side = |direction: Direction| {
         Side::of(of, &branches, direction)
-            .ok_or_else(|| undefined(&format!("has no {} branch", direction.word())))
+            .ok_or_else(|| unfit(&format!("has no {} branch", direction.word())))
     };
     Ok([side(Direction::Rising)?, side(Direction::Falling)?])
 }

@@ -19,7 +19,6 @@
 //! | [`sampling`] | values | signs of recording faults: held, saturated, quantised |
 //! | [`pair`] | simulated and measured signal | measures of agreement |
 //! | [`hull`] | points | the nearest point of their convex hull, its corners |
-//! | [`random`] | a seed | random numbers that are the same on every machine |
 //! | [`random_effects`] | estimates with variances | the variance between them |
 //! | [`synchronise`] | signals of two records | the shift between them |
 //! | [`drift`] | signals of two long records | the shift along them |

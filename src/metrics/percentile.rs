@@ -126,29 +126,22 @@ pub fn percentiles(
 ) -> Result<Vec<f64>, PercentileError> {
     check(values, percents)?;
     // Selection reads each value about three times, sorting about log2(n) times.
-    let pays = |wanted: usize| wanted > 0 && wanted * 3 >= values.len().ilog2() as usize;
-    let near = |percent: &f64| {
-        if pays(percents.len()) { None } else { near_an_end(values, *percent, method) }
-    };
-    let found: Vec<Option<f64>> = percents.iter().map(near).collect();
-    let inside = found.iter().filter(|value| value.is_none()).count();
-    let sorted = pays(inside);
-    let mut values = if inside > 0 { values.to_vec() } else { Vec::new() };
-    if sorted {
-        values.sort_unstable_by(f64::total_cmp);
+    if percents.len() * 3 >= values.len().ilog2() as usize {
+        let mut sorted = values.to_vec();
+        sorted.sort_unstable_by(f64::total_cmp);
+        return Ok(percents.iter().map(|&percent| of_sorted(&sorted, percent, method)).collect());
     }
-    let mut of_copy = |percent: f64| {
-        if sorted {
-            of_sorted(&values, percent, method)
-        } else {
-            select(&mut values, percent, method)
+    let mut copy = Vec::new();
+    let mut inside = |percent: f64| {
+        if copy.is_empty() {
+            copy = values.to_vec();
         }
+        select(&mut copy, percent, method)
     };
-    Ok(found
-        .into_iter()
-        .zip(percents)
-        .map(|(value, &percent)| value.unwrap_or_else(|| of_copy(percent)))
-        .collect())
+    let found = percents
+        .iter()
+        .map(|&percent| near_an_end(values, percent, method).unwrap_or_else(|| inside(percent)));
+    Ok(found.collect())
 }
 
 /// Several percentiles of values that are sorted already.

@@ -149,13 +149,12 @@ impl Sliding {
         starts: &[f64],
     ) -> Result<Vec<f64>, SlidingError> {
         let sums = RunningSums::new(signal.iter().map(|&value| self.power(value)));
-        let mut from_sample = Cursor::default();
-        let mut to_sample = Cursor::default();
+        let first_at = |point: f64| axis.partition_point(|&at| at < point);
         starts
             .iter()
             .map(|&from| {
-                let first = from_sample.first_at(axis, from - ON_THE_EDGE);
-                let beyond = to_sample.first_at(axis, from + self.width - ON_THE_EDGE);
+                let first = first_at(from - ON_THE_EDGE);
+                let beyond = first_at(from + self.width - ON_THE_EDGE);
                 if beyond == first {
                     return Err(SlidingError::Empty { from, width: self.width });
                 }
@@ -167,11 +166,10 @@ impl Sliding {
     fn of_integral(&self, axis: &[f64], signal: &[f64], starts: &[f64]) -> Vec<f64> {
         let pieces = axis.array_windows().zip(signal.array_windows());
         let sums = RunningSums::new(pieces.map(|([a, b], &[x, y])| self.integral(b - a, x, y)));
-        let mut from_sample = Cursor::default();
-        let mut to_sample = Cursor::default();
         // The sample before a point, and the integral from there to the point.
-        let within = |cursor: &mut Cursor, point: f64| {
-            let piece = cursor.first_beyond(axis, point).saturating_sub(1).min(axis.len() - 2);
+        let within = |point: f64| {
+            let beyond = axis.partition_point(|&at| at <= point);
+            let piece = beyond.saturating_sub(1).min(axis.len() - 2);
             let along = point - axis[piece];
             let slope = (signal[piece + 1] - signal[piece]) / (axis[piece + 1] - axis[piece]);
             (piece, self.integral(along, signal[piece], signal[piece] + slope * along))
@@ -179,8 +177,8 @@ impl Sliding {
         starts
             .iter()
             .map(|&from| {
-                let (first, before) = within(&mut from_sample, from);
-                let (last, after) = within(&mut to_sample, from + self.width);
+                let (first, before) = within(from);
+                let (last, after) = within(from + self.width);
                 self.root((sums.between(first, last) + (after - before)) / self.width)
             })
             .collect()
@@ -207,27 +205,6 @@ impl Sliding {
             // For a window of zeros, rounding may give a small negative number.
             Kind::Rms => average.clamp(0.0, f64::INFINITY).sqrt(),
         }
-    }
-}
-
-/// A place on an axis that only moves forward.
-#[derive(Default)]
-struct Cursor(usize);
-
-impl Cursor {
-    /// The first sample at or beyond a point.
-    fn first_at(&mut self, axis: &[f64], point: f64) -> usize {
-        self.advance(axis, |at| at < point)
-    }
-
-    /// The first sample beyond a point.
-    fn first_beyond(&mut self, axis: &[f64], point: f64) -> usize {
-        self.advance(axis, |at| at <= point)
-    }
-
-    fn advance(&mut self, axis: &[f64], passed: impl Fn(f64) -> bool) -> usize {
-        self.0 += axis[self.0..].iter().take_while(|&&at| passed(at)).count();
-        self.0
     }
 }
 

@@ -27,10 +27,7 @@ pub use contact::Contact;
 pub use integrate::{Failure, FailureKind};
 pub use parameters::{Admissible, PARAMETERS, Parameter, Vehicle, VehicleFault, parameter};
 pub use profile::{Geometry, Profile, ProfileTable};
-pub use record::{
-    BEFORE, BEHIND, CHANNELS, Record, SAMPLING_RATE, Setup, Window, simulate, simulate_by,
-    simulate_with, start,
-};
+pub use record::{BEFORE, BEHIND, CHANNELS, Record, SAMPLING_RATE, Setup, Window, simulate, start};
 pub use track::{Track, TrackTable};
 
 /// Gravity in m/s^2.

@@ -1,7 +1,7 @@
 //! From a run to a record: the recording chain of the reference.
 
 use super::equations::{Equations, Outputs};
-use super::integrate::{Failure, FailureKind, LONGEST, Method, SAMPLE, Steps, least_steps, run};
+use super::integrate::{Failure, FailureKind, LONGEST, SAMPLE, Steps, least_steps, run};
 use super::parameters::Vehicle;
 use super::profile::Profile;
 use super::track::{Track, TrackTable};
@@ -80,52 +80,13 @@ pub struct Setup<'a> {
     pub speed: f64,
 }
 
-/// Simulates a record.
+/// Simulates a record, by a method with at least this number of steps per sample, more if it would
+/// not be stable.
 ///
 /// # Errors
 /// The run diverges, a wheelset leaves the contact table, or the window lies before the start of
 /// the run.
-pub fn simulate(setup: &Setup<'_>, window: Window) -> Result<Record, Failure> {
-    simulate_by(setup, window, 1.into())
-}
-
-/// As [`simulate`], with a step of 1 ms / `divided` instead of the default, even if it is not
-/// stable.
-///
-/// # Errors
-/// As [`simulate`].
-pub fn simulate_with(
-    setup: &Setup<'_>,
-    window: Window,
-    divided: Option<usize>,
-) -> Result<Record, Failure> {
-    recorded(setup, window, |equations| {
-        divided.map_or_else(
-            || least_steps(Method::RungeKutta, equations).map(Steps::from),
-            |n| Ok(n.into()),
-        )
-    })
-}
-
-/// As [`simulate`], by a method with at least this number of steps per sample, more if it would not
-/// be stable.
-///
-/// # Errors
-/// As [`simulate`].
-pub fn simulate_by(setup: &Setup<'_>, window: Window, steps: Steps) -> Result<Record, Failure> {
-    recorded(setup, window, |equations| {
-        Ok(Steps {
-            per_sample: steps.per_sample.max(least_steps(steps.method, equations)?),
-            ..steps
-        })
-    })
-}
-
-fn recorded(
-    setup: &Setup<'_>,
-    window: Window,
-    steps: impl FnOnce(&Equations<'_>) -> Result<Steps, FailureKind>,
-) -> Result<Record, Failure> {
+pub fn simulate(setup: &Setup<'_>, window: Window, steps: Steps) -> Result<Record, Failure> {
     let equations = Equations::new(setup.vehicle, setup.profile, setup.speed);
     let track = Track::new(setup.track, setup.vehicle);
     let s0 = start(&equations, &track);
@@ -147,7 +108,9 @@ fn recorded(
         last += DECIMATION;
     }
     let samples = last + 1 + (RUN_OUT / SAMPLE) as usize;
-    let steps = steps(&equations).map_err(|kind| Failure { time: 0.0, distance: s0, kind })?;
+    let least = least_steps(steps.method, &equations);
+    let least = least.map_err(|kind| Failure { time: 0.0, distance: s0, kind })?;
+    let steps = Steps { per_sample: steps.per_sample.max(least), ..steps };
     let mut raw = vec![vec![0.0; samples]; CHANNELS.len()];
     run(&equations, &track, equations.at_rest(), s0, samples, steps, |n, _, outputs| {
         for (channel, value) in raw.iter_mut().zip(channels(outputs)) {

@@ -16,14 +16,6 @@ pub struct Plan {
     pub operators: Vec<(Operator, f64, Vec<String>)>,
 }
 
-/// A record with effects, and the number of runs.
-#[derive(Clone, Debug)]
-pub struct Simulated {
-    pub signals: Signals,
-    /// Runs of the simulator.
-    pub runs: usize,
-}
-
 impl Plan {
     /// The part of `effects` that acts on `section`, for a simulator.
     ///
@@ -107,10 +99,7 @@ impl Plan {
         let seed = section.name().bytes().fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3)
         });
-        let failed = |says: String| {
-            let says = format!("section `{}`: {says}", section.name());
-            error("operator", says, &section.cell.span)
-        };
+        let failed = |says: String| section.named(error("operator", says, &section.cell.span));
         for (formulas, values) in &self.formulas {
             signals.compute(formulas, values).map_err(failed)?;
         }
@@ -176,23 +165,18 @@ pub fn simulate(
     effects: &[Applied],
     section: &Section,
     recorded: Option<&Signals>,
-) -> Result<Simulated, Problem> {
+) -> Result<Signals, Problem> {
     let plan = Plan::new(catalogue, effects, section, simulator.catalogue_name())?;
     let run = |settings: &[(String, f64)], shift: f64| {
         simulator.run(&Task { section, settings, shift, inside_only: false })
     };
-    let mut made = match recorded {
-        None => Simulated { signals: run(&plan.settings, plan.shift())?, runs: 1 },
-        Some(recorded) if plan.settings.is_empty() => {
-            Simulated { signals: recorded.clone(), runs: 0 }
-        }
-        Some(recorded) => {
-            let (with, without) = (run(&plan.settings, 0.0)?, run(&[], 0.0)?);
-            Simulated { signals: incremented(recorded, &with, &without), runs: 2 }
-        }
+    let mut signals = match recorded {
+        None => run(&plan.settings, plan.shift())?,
+        Some(recorded) if plan.settings.is_empty() => recorded.clone(),
+        Some(recorded) => incremented(recorded, &run(&plan.settings, 0.0)?, &run(&[], 0.0)?),
     };
-    plan.operate(&mut made.signals, section)?;
-    Ok(made)
+    plan.operate(&mut signals, section)?;
+    Ok(signals)
 }
 
 /// `recorded + (with - without)`, by position; channels that the simulator does not have are

@@ -159,15 +159,12 @@ impl Simulator for Builtin<'_> {
         }
         let window = Window { from: around.from - task.shift, to: around.to - task.shift };
         let setup = Setup { vehicle: &vehicle, profile: &profile, track: &track, speed };
-        made(&setup, window, self.steps).map_err(|problem| Problem {
-            says: format!("section `{}`: {}", section.name(), problem.says),
-            ..problem
-        })
+        made(&setup, window, self.steps).map_err(|problem| section.named(problem))
     }
 }
 
 fn made(setup: &Setup<'_>, window: Window, steps: Steps) -> Result<Signals, Problem> {
-    let record = model::simulate_by(setup, window, steps)
+    let record = model::simulate(setup, window, steps)
         .map_err(|failure| Problem::error("simulation-failed", failure.to_string()))?;
     let channels = CHANNELS
         .iter()

@@ -41,11 +41,8 @@ pub fn deviations(
     let inside: Vec<usize> =
         (0..recorded.axis.len()).filter(|at| (from..=to).contains(&recorded.axis[*at])).collect();
     if inside.len() < 2 {
-        let says = format!(
-            "section `{}`: the records of the simulator and of the campaign do not overlap",
-            section.name()
-        );
-        return Err(error("too-short", says, &section.cell.span));
+        let says = "the records of the simulator and of the campaign do not overlap";
+        return Err(section.named(error("too-short", says, &section.cell.span)));
     }
     let mut found = Vec::new();
     for channel in &recorded.channels {

@@ -46,13 +46,8 @@ impl Simulator for Function<'_> {
         let source = self.campaign.record_source(RecordKind::Simulation, &task.section.cell);
         let known = source.ok().and_then(|source| source.headings().ok()).unwrap_or_default();
         read_made(&made, &known, &[]).map(|(signals, _)| signals).map_err(|problem| {
-            let says = format!(
-                "section `{}`: the record of {}: {}",
-                task.section.name(),
-                self.name,
-                problem.says
-            );
-            Problem { says, ..problem }
+            let says = format!("the record of {}: {}", self.name, problem.says);
+            task.section.named(Problem { says, ..problem })
         })
     }
 }

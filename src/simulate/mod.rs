@@ -14,7 +14,7 @@ mod section;
 mod strict;
 mod write;
 
-pub use add::{Plan, Simulated, check_confined, incremented, interpolated, simulate};
+pub use add::{Plan, check_confined, incremented, interpolated, simulate};
 pub use builtin::{Builtin, model_parameters, number_of, single};
 pub use campaign::{Units, in_units, record_file, recorded, recorded_inside, signals_of};
 pub use compare::{Deviation, baseline_warning, deviations};

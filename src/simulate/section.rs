@@ -3,7 +3,7 @@
 use crate::data::sites::sites;
 use crate::data::table::{Cell, Table};
 use crate::data::{Campaign, Heading};
-use crate::problem::{Problems, error};
+use crate::problem::{Problem, Problems, error};
 use crate::source::Source;
 use crate::units::{Dimension, Unit};
 
@@ -43,6 +43,11 @@ impl Section {
 
     pub fn name(&self) -> &str {
         &self.cell.value
+    }
+
+    /// A problem of this section, which its message names.
+    pub fn named(&self, problem: Problem) -> Problem {
+        Problem { says: format!("section `{}`: {}", self.name(), problem.says), ..problem }
     }
 
     /// The text of a column; the section's name for `section`.

@@ -122,14 +122,13 @@ pub fn improved(
         let observed = &sections[at];
         let effects = members(at);
         match simulator {
-            Some(simulator) => Ok(simulate(
+            Some(simulator) => simulate(
                 simulator,
                 catalogue,
                 &effects,
                 &observed.section,
                 Some(&observed.simulated),
-            )?
-            .signals),
+            ),
             None => {
                 let mut signals = observed.simulated.clone();
                 crate::simulate::Plan::new(catalogue, &effects, &observed.section, None)?

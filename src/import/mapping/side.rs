@@ -7,7 +7,7 @@ use super::sections::{self, Sections};
 use super::stated::Stated;
 use crate::data::RecordKind;
 use crate::foreign::Options;
-use crate::problem::{Problem, error, warning};
+use crate::problem::{error, warning};
 use crate::source::{Span, Spanned};
 use crate::units::Unit;
 use crate::yaml::{Entries, FromNode, Hertz, Key, Metres, Node, Reader, Value, fields};

@@ -1,6 +1,6 @@
 //! Alignment of two records along the axis: shift, mirroring, drift.
 
-use super::{Undefined, check};
+use super::{Metric, Undefined, check, undefined};
 use crate::metrics::resample::{interpolate, uniform_grid};
 use crate::metrics::statistics;
 
@@ -21,7 +21,7 @@ const FOLLOWS: f64 = 0.5;
 /// # Errors
 /// The signals are not related at any shift; the best shift is at the end of the search range; an
 /// axis that does not increase.
-pub fn shift(axis: &[f64], simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn shift(axis: &[f64], simulated: &[f64], measured: &[f64]) -> Metric {
     check(simulated, measured)?;
     let no_axis = || Undefined::because("the axis does not increase");
     let (Some(first), Some(last)) = (axis.first(), axis.last()) else { return Err(no_axis()) };
@@ -42,10 +42,10 @@ pub fn shift(axis: &[f64], simulated: &[f64], measured: &[f64]) -> Result<f64, U
         .collect();
     let best = (0..all.len()).fold(0, |best, at| if all[at] > all[best] { at } else { best });
     if all[best] < FOLLOWS {
-        return Err(Undefined::because("the signals are not correlated at any shift"));
+        return undefined("the signals are not correlated at any shift");
     }
     if best == 0 || best + 1 == all.len() {
-        return Err(Undefined::because("the best shift is at the end of the search range"));
+        return undefined("the best shift is at the end of the search range");
     }
     let (before, at, after) = (all[best - 1], all[best], all[best + 1]);
     let curvature = before - 2.0 * at + after;
@@ -58,7 +58,7 @@ pub fn shift(axis: &[f64], simulated: &[f64], measured: &[f64]) -> Result<f64, U
 ///
 /// # Errors
 /// A signal is constant.
-pub fn mirrored_correlation(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn mirrored_correlation(simulated: &[f64], measured: &[f64]) -> Metric {
     let mirrored: Vec<f64> = simulated.iter().rev().copied().collect();
     super::correlation(&mirrored, measured)
 }
@@ -68,7 +68,7 @@ pub fn mirrored_correlation(simulated: &[f64], measured: &[f64]) -> Result<f64, 
 ///
 /// # Errors
 /// Fewer than two samples.
-pub fn drift(axis: &[f64], simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn drift(axis: &[f64], simulated: &[f64], measured: &[f64]) -> Metric {
     check(simulated, measured)?;
     let difference: Vec<f64> = measured.iter().zip(simulated).map(|(m, s)| m - s).collect();
     let line = statistics::regression(axis, &difference)

@@ -5,7 +5,7 @@
 //! hand: no number here is checked against it.
 
 use super::lag::{Agreement, best_shift, overlap};
-use super::{Energies, Undefined, check, iso18571_corridor, weighted};
+use super::{Energies, Metric, Undefined, check, iso18571_corridor, undefined, weighted};
 use crate::metrics::sum::sum_of_pairs;
 
 /// The largest shift, as a share of the samples: the signals overlap by 80 % at least.
@@ -23,7 +23,7 @@ const WEIGHTS: [f64; 3] = [0.5, 0.25, 0.25];
 ///
 /// # Errors
 /// As [`iso18571_corridor`].
-pub fn cora_corridor(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn cora_corridor(simulated: &[f64], measured: &[f64]) -> Metric {
     iso18571_corridor(simulated, measured)
 }
 
@@ -31,7 +31,7 @@ pub fn cora_corridor(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefin
 ///
 /// # Errors
 /// A signal is zero throughout; and as [`iso18571_corridor`].
-pub fn cora_progression(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn cora_progression(simulated: &[f64], measured: &[f64]) -> Metric {
     Ok(Ratings::of(simulated, measured)?.progression)
 }
 
@@ -39,7 +39,7 @@ pub fn cora_progression(simulated: &[f64], measured: &[f64]) -> Result<f64, Unde
 ///
 /// # Errors
 /// As [`cora_progression`].
-pub fn cora_size(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn cora_size(simulated: &[f64], measured: &[f64]) -> Metric {
     Ok(Ratings::of(simulated, measured)?.size)
 }
 
@@ -47,7 +47,7 @@ pub fn cora_size(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> 
 ///
 /// # Errors
 /// As [`cora_progression`].
-pub fn cora_phase(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn cora_phase(simulated: &[f64], measured: &[f64]) -> Metric {
     Ok(Ratings::of(simulated, measured)?.phase)
 }
 
@@ -55,7 +55,7 @@ pub fn cora_phase(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined>
 ///
 /// # Errors
 /// As [`cora_progression`].
-pub fn cora_total(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn cora_total(simulated: &[f64], measured: &[f64]) -> Metric {
     let Ratings { progression, size, phase } = Ratings::of(simulated, measured)?;
     let by_correlation = weighted([progression, size, phase], WEIGHTS);
     Ok((cora_corridor(simulated, measured)? + by_correlation) / 2.0)
@@ -72,7 +72,7 @@ impl Ratings {
     fn of(simulated: &[f64], measured: &[f64]) -> Result<Self, Undefined> {
         check(simulated, measured)?;
         if simulated.len() < 2 {
-            return Err(Undefined::because("one sample has no interval"));
+            return undefined("one sample has no interval");
         }
         let most = (LARGEST_SHIFT * simulated.len() as f64).floor() as usize;
         let shift = best_shift(simulated, measured, most, Agreement::Cosine)

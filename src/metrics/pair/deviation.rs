@@ -1,6 +1,6 @@
 //! Metrics of the difference of the signals, sample by sample.
 
-use super::{Energies, Undefined, check};
+use super::{Energies, Metric, Undefined, check, undefined};
 use crate::metrics::{statistics, sum::sum_of_pairs};
 
 /// Root mean square of simulation minus measurement, in the unit of the signals.
@@ -8,7 +8,7 @@ use crate::metrics::{statistics, sum::sum_of_pairs};
 /// # Errors
 /// Signals of different length, without samples, or with a sample that is not finite. This applies
 /// to every metric of this module.
-pub fn root_mean_square_error(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn root_mean_square_error(simulated: &[f64], measured: &[f64]) -> Metric {
     let energies = Energies::of(simulated, measured)?;
     Ok((energies.difference / simulated.len() as f64).sqrt())
 }
@@ -17,17 +17,13 @@ pub fn root_mean_square_error(simulated: &[f64], measured: &[f64]) -> Result<f64
 ///
 /// # Errors
 /// The measurement is constant.
-pub fn relative_to_range(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn relative_to_range(simulated: &[f64], measured: &[f64]) -> Metric {
     let error = root_mean_square_error(simulated, measured)?;
     let (low, high) =
         measured.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| {
             (low.min(value), high.max(value))
         });
-    if high > low {
-        Ok(error / (high - low))
-    } else {
-        Err(Undefined::because("the measured signal is constant"))
-    }
+    if high > low { Ok(error / (high - low)) } else { undefined("the measured signal is constant") }
 }
 
 /// Root mean square of the simulation over that of the measurement; each may have samples of its
@@ -36,12 +32,12 @@ pub fn relative_to_range(simulated: &[f64], measured: &[f64]) -> Result<f64, Und
 /// # Errors
 /// The measurement is zero throughout; a signal without samples, or with a sample that is not
 /// finite.
-pub fn rms_ratio(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn rms_ratio(simulated: &[f64], measured: &[f64]) -> Metric {
     super::check_values(simulated, measured)?;
     let of = |signal: &[f64]| statistics::rms(signal).ok_or_else(too_large);
     let (of_simulated, of_measured) = (of(simulated)?, of(measured)?);
     if of_measured == 0.0 {
-        return Err(Undefined::because("the measured signal is zero throughout"));
+        return undefined("the measured signal is zero throughout");
     }
     Ok(of_simulated / of_measured)
 }
@@ -50,7 +46,7 @@ pub fn rms_ratio(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> 
 ///
 /// # Errors
 /// A signal is constant.
-pub fn correlation(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn correlation(simulated: &[f64], measured: &[f64]) -> Metric {
     check(simulated, measured)?;
     statistics::correlation(simulated, measured)
         .ok_or_else(|| Undefined::because("one of the signals is constant"))
@@ -62,11 +58,11 @@ pub fn correlation(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined
 ///
 /// # Errors
 /// A signal is zero throughout.
-pub fn kraft_misfit(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn kraft_misfit(simulated: &[f64], measured: &[f64]) -> Metric {
     let energies = Energies::of(simulated, measured)?;
     let lower = energies.simulated.min(energies.measured);
     if lower == 0.0 {
-        return Err(Undefined::because("one of the signals is zero throughout"));
+        return undefined("one of the signals is zero throughout");
     }
     Ok(energies.difference / lower)
 }
@@ -78,12 +74,12 @@ pub fn kraft_misfit(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefine
 ///
 /// # Errors
 /// Both signals are zero throughout.
-pub fn weighted_integrated_factor(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn weighted_integrated_factor(simulated: &[f64], measured: &[f64]) -> Metric {
     check(simulated, measured)?;
     let larger = |s: f64, m: f64| (s * s).max(m * m);
     let whole = sum_of_pairs(simulated, measured, larger);
     if whole == 0.0 {
-        return Err(Undefined::because("both signals are zero throughout"));
+        return undefined("both signals are zero throughout");
     }
     let missing = sum_of_pairs(simulated, measured, |s, m| {
         let larger = larger(s, m);
@@ -93,7 +89,7 @@ pub fn weighted_integrated_factor(simulated: &[f64], measured: &[f64]) -> Result
     if factor.is_finite() {
         Ok(factor)
     } else {
-        Err(Undefined::because("the sum of the squares of the samples overflows"))
+        undefined("the sum of the squares of the samples overflows")
     }
 }
 

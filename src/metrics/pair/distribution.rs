@@ -1,6 +1,6 @@
 //! Metrics of the values of the signals regardless of their order.
 
-use super::{Undefined, check, check_values};
+use super::{Metric, Undefined, check, check_values, undefined};
 use crate::metrics::{
     incomplete_beta::incomplete_beta,
     percentile::{Method, percentiles_of_sorted},
@@ -19,7 +19,7 @@ const ZERO_MEAN: f64 = 1e-12;
 ///
 /// # Errors
 /// Signals of different length, without samples, or with a sample that is not finite.
-pub fn area_metric(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn area_metric(simulated: &[f64], measured: &[f64]) -> Metric {
     check(simulated, measured)?;
     let area = sum_of_pairs(&sorted(simulated), &sorted(measured), |s, m| (s - m).abs())
         / simulated.len() as f64;
@@ -34,7 +34,7 @@ pub fn area_metric(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined
 /// No points, no samples, a sample that is not finite.
 pub fn quantiles_of_sorted(sorted: &[f64], points: usize) -> Result<Vec<f64>, Undefined> {
     if points == 0 {
-        return Err(Undefined::because("a distribution needs at least one point"));
+        return undefined("a distribution needs at least one point");
     }
     let percents: Vec<f64> =
         (0..points).map(|point| 100.0 * (point as f64 + 0.5) / points as f64).collect();
@@ -47,7 +47,7 @@ pub fn quantiles_of_sorted(sorted: &[f64], points: usize) -> Result<Vec<f64>, Un
 ///
 /// # Errors
 /// No values on either side, or a value that is not finite.
-pub fn area_between(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn area_between(simulated: &[f64], measured: &[f64]) -> Metric {
     check_values(simulated, measured)?;
     let (simulated, measured) = (sorted(simulated), sorted(measured));
     let (mut below_s, mut below_m) = (0, 0);
@@ -71,7 +71,7 @@ pub fn area_between(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefine
 ///
 /// # Errors
 /// The measurement is constant, or there is one sample only.
-pub fn bogojevic_variance_ratio(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn bogojevic_variance_ratio(simulated: &[f64], measured: &[f64]) -> Metric {
     check_values(simulated, measured)?;
     let of = |signal: &[f64]| {
         variance(signal, Divisor::Sample)
@@ -79,7 +79,7 @@ pub fn bogojevic_variance_ratio(simulated: &[f64], measured: &[f64]) -> Result<f
     };
     let (of_simulated, of_measured) = (of(simulated)?, of(measured)?);
     if of_measured == 0.0 {
-        return Err(Undefined::because("the measured signal is constant"));
+        return undefined("the measured signal is constant");
     }
     Ok(of_simulated / of_measured)
 }
@@ -92,10 +92,7 @@ pub fn bogojevic_variance_ratio(simulated: &[f64], measured: &[f64]) -> Result<f
 ///
 /// # Errors
 /// As [`bogojevic_variance_ratio`].
-pub fn bogojevic_variance_probability(
-    simulated: &[f64],
-    measured: &[f64],
-) -> Result<f64, Undefined> {
+pub fn bogojevic_variance_probability(simulated: &[f64], measured: &[f64]) -> Metric {
     let degrees = |signal: &[f64]| signal.len() as f64 - 1.0;
     Ok(f_two_sided(
         bogojevic_variance_ratio(simulated, measured)?,
@@ -109,7 +106,7 @@ pub fn bogojevic_variance_probability(
 ///
 /// # Errors
 /// A signal without samples, or with a sample that is not finite.
-pub fn bogojevic_mean_term(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn bogojevic_mean_term(simulated: &[f64], measured: &[f64]) -> Metric {
     check_values(simulated, measured)?;
     let too_large = || Undefined::because("the sum of the samples overflows");
     let (Some(of_simulated), Some(of_measured)) = (mean(simulated), mean(measured)) else {
@@ -131,7 +128,7 @@ pub fn bogojevic_mean_term(simulated: &[f64], measured: &[f64]) -> Result<f64, U
 ///
 /// # Errors
 /// As [`bogojevic_variance_ratio`].
-pub fn bogojevic(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn bogojevic(simulated: &[f64], measured: &[f64]) -> Metric {
     Ok(bogojevic_variance_probability(simulated, measured)?
         * bogojevic_mean_term(simulated, measured)?.max(0.0))
 }
@@ -151,12 +148,8 @@ pub fn f_two_sided(ratio: f64, numerator_degrees: f64, denominator_degrees: f64)
     (2.0 * lower.min(upper)).min(1.0)
 }
 
-fn in_range(area: f64) -> Result<f64, Undefined> {
-    if area.is_finite() {
-        Ok(area)
-    } else {
-        Err(Undefined::because("the sum of the differences overflows"))
-    }
+fn in_range(area: f64) -> Metric {
+    if area.is_finite() { Ok(area) } else { undefined("the sum of the differences overflows") }
 }
 
 fn sorted(values: &[f64]) -> Vec<f64> {

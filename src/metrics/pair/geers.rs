@@ -8,7 +8,7 @@
 
 use std::f64::consts::PI;
 
-use super::{Energies, Undefined};
+use super::{Energies, Metric, Undefined, undefined};
 use crate::metrics::sum::sum_of_pairs;
 
 /// Sprague and Geers magnitude error: `sqrt(sum s^2 / sum m^2) - 1`. Negative if the simulation is
@@ -16,7 +16,7 @@ use crate::metrics::sum::sum_of_pairs;
 ///
 /// # Errors
 /// The measurement is zero throughout.
-pub fn sprague_geers_magnitude(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn sprague_geers_magnitude(simulated: &[f64], measured: &[f64]) -> Metric {
     magnitude(&Energies::of(simulated, measured)?)
 }
 
@@ -25,7 +25,7 @@ pub fn sprague_geers_magnitude(simulated: &[f64], measured: &[f64]) -> Result<f6
 ///
 /// # Errors
 /// A signal is zero throughout.
-pub fn sprague_geers_phase(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn sprague_geers_phase(simulated: &[f64], measured: &[f64]) -> Metric {
     Ok(angle(simulated, measured, &Energies::of(simulated, measured)?)? / PI)
 }
 
@@ -33,7 +33,7 @@ pub fn sprague_geers_phase(simulated: &[f64], measured: &[f64]) -> Result<f64, U
 ///
 /// # Errors
 /// A signal is zero throughout.
-pub fn sprague_geers_comprehensive(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn sprague_geers_comprehensive(simulated: &[f64], measured: &[f64]) -> Metric {
     let energies = Energies::of(simulated, measured)?;
     Ok(magnitude(&energies)?.hypot(angle(simulated, measured, &energies)? / PI))
 }
@@ -43,7 +43,7 @@ pub fn sprague_geers_comprehensive(simulated: &[f64], measured: &[f64]) -> Resul
 ///
 /// # Errors
 /// A signal is zero throughout.
-pub fn russell_magnitude(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn russell_magnitude(simulated: &[f64], measured: &[f64]) -> Metric {
     russell(&Energies::of(simulated, measured)?)
 }
 
@@ -51,7 +51,7 @@ pub fn russell_magnitude(simulated: &[f64], measured: &[f64]) -> Result<f64, Und
 ///
 /// # Errors
 /// A signal is zero throughout.
-pub fn russell_phase(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn russell_phase(simulated: &[f64], measured: &[f64]) -> Metric {
     sprague_geers_phase(simulated, measured)
 }
 
@@ -59,20 +59,20 @@ pub fn russell_phase(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefin
 ///
 /// # Errors
 /// A signal is zero throughout.
-pub fn russell_comprehensive(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn russell_comprehensive(simulated: &[f64], measured: &[f64]) -> Metric {
     let energies = Energies::of(simulated, measured)?;
     let phase = angle(simulated, measured, &energies)? / PI;
     Ok((PI / 4.0).sqrt() * russell(&energies)?.hypot(phase))
 }
 
-fn magnitude(energies: &Energies) -> Result<f64, Undefined> {
+fn magnitude(energies: &Energies) -> Metric {
     if energies.measured == 0.0 {
-        return Err(Undefined::because("the measured signal is zero throughout"));
+        return undefined("the measured signal is zero throughout");
     }
     Ok(energies.simulated.sqrt() / energies.measured.sqrt() - 1.0)
 }
 
-fn russell(energies: &Energies) -> Result<f64, Undefined> {
+fn russell(energies: &Energies) -> Metric {
     both_move(energies)?;
     // (S - M) / sqrt(S M), without overflow of the product or the difference of the energies.
     let ratio = energies.simulated.sqrt() / energies.measured.sqrt();
@@ -84,7 +84,7 @@ fn russell(energies: &Energies) -> Result<f64, Undefined> {
 ///
 /// The cosine of a small angle has half the digits only, and rounding can make it larger than 1.
 /// Kahan's formula, from the sides of the triangle of the two unit signals, has neither problem.
-fn angle(simulated: &[f64], measured: &[f64], energies: &Energies) -> Result<f64, Undefined> {
+fn angle(simulated: &[f64], measured: &[f64], energies: &Energies) -> Metric {
     both_move(energies)?;
     let (s_length, m_length) = (energies.simulated.sqrt(), energies.measured.sqrt());
     let side = |sign: f64| {
@@ -96,9 +96,9 @@ fn angle(simulated: &[f64], measured: &[f64], energies: &Energies) -> Result<f64
 
 fn both_move(energies: &Energies) -> Result<(), Undefined> {
     if energies.measured == 0.0 {
-        Err(Undefined::because("the measured signal is zero throughout"))
+        undefined("the measured signal is zero throughout")
     } else if energies.simulated == 0.0 {
-        Err(Undefined::because("the simulated signal is zero throughout"))
+        undefined("the simulated signal is zero throughout")
     } else {
         Ok(())
     }

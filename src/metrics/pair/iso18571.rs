@@ -4,7 +4,7 @@
 //! The standard asks for signals at 10 kHz; here the samples are those of the records.
 
 use super::lag::{Agreement, best_shift, overlap};
-use super::{Undefined, check, weighted};
+use super::{Metric, Undefined, check, undefined, weighted};
 use crate::metrics::{
     statistics::peak_magnitude,
     sum::{sum, sum_of, sum_of_pairs},
@@ -36,7 +36,7 @@ const MOST_CELLS: usize = 400_000_000;
 /// # Errors
 /// The measurement is zero throughout; signals of different length, without samples, or with a
 /// sample that is not finite.
-pub fn iso18571_corridor(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn iso18571_corridor(simulated: &[f64], measured: &[f64]) -> Metric {
     check(simulated, measured)?;
     let largest = peak_magnitude(measured).filter(|largest| *largest > 0.0);
     let largest =
@@ -54,7 +54,7 @@ pub fn iso18571_corridor(simulated: &[f64], measured: &[f64]) -> Result<f64, Und
 ///
 /// # Errors
 /// A signal is constant; and as [`iso18571_corridor`].
-pub fn iso18571_phase(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn iso18571_phase(simulated: &[f64], measured: &[f64]) -> Metric {
     Ok(phase_of(shift(simulated, measured)?, simulated.len()))
 }
 
@@ -62,7 +62,7 @@ pub fn iso18571_phase(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefi
 ///
 /// # Errors
 /// As [`iso18571_phase`]; more samples than can be warped.
-pub fn iso18571_magnitude(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn iso18571_magnitude(simulated: &[f64], measured: &[f64]) -> Metric {
     magnitude_at(simulated, measured, shift(simulated, measured)?)
 }
 
@@ -70,7 +70,7 @@ pub fn iso18571_magnitude(simulated: &[f64], measured: &[f64]) -> Result<f64, Un
 ///
 /// # Errors
 /// As [`iso18571_phase`]; fewer than nine samples after the shift.
-pub fn iso18571_slope(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn iso18571_slope(simulated: &[f64], measured: &[f64]) -> Metric {
     slope_at(simulated, measured, shift(simulated, measured)?)
 }
 
@@ -78,7 +78,7 @@ pub fn iso18571_slope(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefi
 ///
 /// # Errors
 /// As these.
-pub fn iso18571_overall(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn iso18571_overall(simulated: &[f64], measured: &[f64]) -> Metric {
     let corridor = iso18571_corridor(simulated, measured)?;
     let shift = shift(simulated, measured)?;
     let phase = phase_of(shift, simulated.len());
@@ -106,7 +106,7 @@ fn phase_of(shift: isize, count: usize) -> f64 {
     ((largest - shift.unsigned_abs() as f64) / largest).max(0.0)
 }
 
-fn magnitude_at(simulated: &[f64], measured: &[f64], shift: isize) -> Result<f64, Undefined> {
+fn magnitude_at(simulated: &[f64], measured: &[f64], shift: isize) -> Metric {
     let (s, m) = overlap(simulated, measured, shift);
     let path = warp(s, m)?;
     let apart: Vec<f64> = path.iter().map(|&(i, j)| (s[i] - m[j]).abs()).collect();
@@ -114,22 +114,22 @@ fn magnitude_at(simulated: &[f64], measured: &[f64], shift: isize) -> Result<f64
     rated(sum(&apart), sum(&whole), WORST_MAGNITUDE)
 }
 
-fn slope_at(simulated: &[f64], measured: &[f64], shift: isize) -> Result<f64, Undefined> {
+fn slope_at(simulated: &[f64], measured: &[f64], shift: isize) -> Metric {
     let (s, m) = overlap(simulated, measured, shift);
     if s.len() < SMOOTHED {
-        return Err(Undefined::because(format!(
+        return undefined(format!(
             "{} samples overlap after the shift, and the slopes need {SMOOTHED}",
             s.len()
-        )));
+        ));
     }
     let (s, m) = (smoothed_slopes(s), smoothed_slopes(m));
     rated(sum_of_pairs(&s, &m, |s, m| (s - m).abs()), sum_of(&m, f64::abs), WORST_SLOPE)
 }
 
 /// 1 without an error, 0 from the worst relative error on.
-fn rated(error: f64, whole: f64, worst: f64) -> Result<f64, Undefined> {
+fn rated(error: f64, whole: f64, worst: f64) -> Metric {
     if whole == 0.0 {
-        return Err(Undefined::because("the measured signal is constant"));
+        return undefined("the measured signal is constant");
     }
     Ok(((worst - error / whole) / worst).max(0.0))
 }
@@ -163,9 +163,9 @@ fn warp(simulated: &[f64], measured: &[f64]) -> Result<Vec<(usize, usize)>, Unde
     let band = ((WARPING * count as f64).ceil() as usize).saturating_sub(1);
     let width = band + 1;
     if count.saturating_mul(2 * width) > MOST_CELLS {
-        return Err(Undefined::because(format!(
+        return undefined(format!(
             "{count} samples are too many to be warped onto each other; resample the signals"
-        )));
+        ));
     }
     let last = count - 1;
     let range = |d: usize| {

@@ -2,7 +2,7 @@
 
 use realfft::num_complex::Complex;
 
-use super::Undefined;
+use super::{Undefined, undefined};
 use crate::metrics::fourier;
 use crate::metrics::sum::{RunningSums, sum_of};
 
@@ -67,7 +67,7 @@ pub fn best_shift(
         (energy_s > least.0 && energy_m > least.1).then(|| product / (energy_s * energy_m).sqrt())
     };
     let Some(mut best) = agreement(0) else {
-        return Err(Undefined::because("one of the signals is constant"));
+        return undefined("one of the signals is constant");
     };
     let mut found = 0;
     for by_samples in 1..=most as isize {

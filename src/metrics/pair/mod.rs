@@ -1,7 +1,7 @@
 //! Measures of agreement of a simulated and a measured signal with equal length and common points.
 //! The measurement is the reference.
 //!
-//! Every metric is `fn(simulated, measured) -> Result<f64, Undefined>`. The mean is not removed.
+//! Every metric is `fn(simulated, measured) -> Metric`. The mean is not removed.
 //! Sums replace integrals over a uniform grid, as the sampling distance cancels.
 
 mod alignment;
@@ -54,17 +54,24 @@ impl fmt::Display for Undefined {
     }
 }
 
+/// A number, or the reason why there is none.
+pub type Metric = Result<f64, Undefined>;
+
+pub(super) fn undefined<T>(reason: impl Into<String>) -> Result<T, Undefined> {
+    Err(Undefined::because(reason))
+}
+
 /// Checks for equal length, at least one sample, and finite samples.
 fn check(simulated: &[f64], measured: &[f64]) -> Result<(), Undefined> {
     if simulated.len() != measured.len() {
-        return Err(Undefined::because(format!(
+        return undefined(format!(
             "the simulated signal has {} samples, the measured {}",
             simulated.len(),
             measured.len()
-        )));
+        ));
     }
     if simulated.is_empty() {
-        return Err(Undefined::because("the signals have no samples"));
+        return undefined("the signals have no samples");
     }
     check_finite(simulated, "simulated")?;
     check_finite(measured, "measured")
@@ -74,7 +81,7 @@ fn check(simulated: &[f64], measured: &[f64]) -> Result<(), Undefined> {
 fn check_values(simulated: &[f64], measured: &[f64]) -> Result<(), Undefined> {
     for (signal, which) in [(simulated, "simulated"), (measured, "measured")] {
         if signal.is_empty() {
-            return Err(Undefined::because(format!("the {which} signal has no samples")));
+            return undefined(format!("the {which} signal has no samples"));
         }
         check_finite(signal, which)?;
     }
@@ -83,10 +90,7 @@ fn check_values(simulated: &[f64], measured: &[f64]) -> Result<(), Undefined> {
 
 fn check_finite(signal: &[f64], which: &str) -> Result<(), Undefined> {
     match signal.iter().position(|value| !value.is_finite()) {
-        Some(at) => Err(Undefined::because(format!(
-            "sample {} of the {which} signal is not finite",
-            at + 1
-        ))),
+        Some(at) => undefined(format!("sample {} of the {which} signal is not finite", at + 1)),
         None => Ok(()),
     }
 }
@@ -116,7 +120,7 @@ impl Energies {
         if [simulated, measured, difference].iter().all(|sum| sum.is_finite()) {
             Ok(energies)
         } else {
-            Err(Undefined::because("the sum of the squares of the samples overflows"))
+            undefined("the sum of the squares of the samples overflows")
         }
     }
 }

@@ -3,7 +3,7 @@
 //! Source: Theil, "Economic forecasts and policy" (1961) for U1 and the proportions, "Applied
 //! economic forecasting" (1966) for U2.
 
-use super::{Energies, Undefined};
+use super::{Energies, Metric, Undefined, undefined};
 use crate::metrics::{
     statistics::{Divisor, mean, standard_deviation},
     sum::sum_of_pairs,
@@ -13,11 +13,11 @@ use crate::metrics::{
 ///
 /// # Errors
 /// Both signals are zero throughout.
-pub fn theil_u1(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn theil_u1(simulated: &[f64], measured: &[f64]) -> Metric {
     let energies = Energies::of(simulated, measured)?;
     let sum = energies.simulated.sqrt() + energies.measured.sqrt();
     if sum == 0.0 {
-        return Err(Undefined::because("both signals are zero throughout"));
+        return undefined("both signals are zero throughout");
     }
     Ok(energies.difference.sqrt() / sum)
 }
@@ -26,10 +26,10 @@ pub fn theil_u1(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
 ///
 /// # Errors
 /// The measurement is zero throughout.
-pub fn theil_u2(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn theil_u2(simulated: &[f64], measured: &[f64]) -> Metric {
     let energies = Energies::of(simulated, measured)?;
     if energies.measured == 0.0 {
-        return Err(Undefined::because("the measured signal is zero throughout"));
+        return undefined("the measured signal is zero throughout");
     }
     Ok(energies.difference.sqrt() / energies.measured.sqrt())
 }
@@ -38,7 +38,7 @@ pub fn theil_u2(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
 ///
 /// # Errors
 /// The signals are equal, so that there is no error.
-pub fn theil_bias(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn theil_bias(simulated: &[f64], measured: &[f64]) -> Metric {
     Proportions::of(simulated, measured).map(|proportions| proportions.bias)
 }
 
@@ -46,7 +46,7 @@ pub fn theil_bias(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined>
 ///
 /// # Errors
 /// The signals are equal, so that there is no error.
-pub fn theil_variance(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn theil_variance(simulated: &[f64], measured: &[f64]) -> Metric {
     Proportions::of(simulated, measured).map(|proportions| proportions.variance)
 }
 
@@ -54,7 +54,7 @@ pub fn theil_variance(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefi
 ///
 /// # Errors
 /// The signals are equal, so that there is no error.
-pub fn theil_covariance(simulated: &[f64], measured: &[f64]) -> Result<f64, Undefined> {
+pub fn theil_covariance(simulated: &[f64], measured: &[f64]) -> Metric {
     Proportions::of(simulated, measured).map(|proportions| proportions.covariance)
 }
 
@@ -70,7 +70,7 @@ impl Proportions {
         let n = simulated.len() as f64;
         let mean_square_error = energies.difference / n;
         if mean_square_error == 0.0 {
-            return Err(Undefined::because("the signals are equal"));
+            return undefined("the signals are equal");
         }
         let moments = |signal: &[f64]| {
             Some((mean(signal)?, standard_deviation(signal, Divisor::Population)?))
@@ -78,7 +78,7 @@ impl Proportions {
         let (Some((mean_s, deviation_s)), Some((mean_m, deviation_m))) =
             (moments(simulated), moments(measured))
         else {
-            return Err(Undefined::because("the sum of the samples overflows"));
+            return undefined("the sum of the samples overflows");
         };
         let covariance = if deviation_s > 0.0 && deviation_m > 0.0 {
             // 2 (sigma_s sigma_m - cov) as a sum of squares; the difference loses digits for well

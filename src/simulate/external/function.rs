@@ -80,10 +80,8 @@ impl External<'_> {
             let called = || format!("it was called with {}", set.join(", "));
             problem.help_if((!set.is_empty()).then(called))
         })?;
-        self.signals(section, &inputs, made).map_err(|problem| {
-            let says = format!("section `{}`: {}", section.name(), problem.says);
-            Problem { says, ..problem }.at(&section.cell.span)
-        })
+        self.signals(section, &inputs, made)
+            .map_err(|problem| section.named(problem).at(&section.cell.span))
     }
 
     /// The parameters of the function with the values of the vehicle file.

@@ -255,23 +255,15 @@ impl<'a> External<'a> {
         let command = || format!("the command was: {}", words.join(" "));
         process::run(&call).map_err(|fault| self.told(&fault, Some(section)).help(command()))?;
         if !disk::may_be_file(&out) {
-            let says = format!(
-                "section `{}`: {} ended without an error, but wrote no record",
-                section.name(),
-                self.program.name
-            );
+            let says = format!("{} ended without an error, but wrote no record", self.program.name);
             let problem = error("simulator-output", says, &section.cell.span);
+            let problem = section.named(problem);
             return Err(problem.help(command()));
         }
         let signals = self.read(&out, section).map_err(|problem| {
-            let says = format!(
-                "section `{}`: the record of {}: {}",
-                section.name(),
-                self.program.name,
-                problem.says
-            );
+            let says = format!("the record of {}: {}", self.program.name, problem.says);
             let help = problem.help.clone().unwrap_or_else(command);
-            Problem { says, ..problem }.help(help)
+            section.named(Problem { says, ..problem }).help(help)
         })?;
         let bytes = disk::read(&out, LARGEST_RECORD).map_err(|error| {
             Problem::error("file-unreadable", format!("the record cannot be read: {error}"))
@@ -307,11 +299,12 @@ impl<'a> External<'a> {
                 ("simulator-output", how, "", last_output)
             }
         };
-        let (of, at) = match section {
-            Some(section) => (format!("section `{}`: ", section.name()), &section.cell.span),
-            None => (String::new(), &self.program.span),
+        let at = section.map_or(&self.program.span, |section| &section.cell.span);
+        let problem = error(code, format!("{name} {how}"), at);
+        let problem = match section {
+            Some(section) => section.named(problem),
+            None => problem,
         };
-        let problem = error(code, format!("{of}{name} {how}"), at);
         if said.is_empty() {
             problem
         } else {

@@ -181,16 +181,17 @@ mod tests {
     use crate::source::Source;
     use crate::yaml;
 
-    fn words(text: &str, allowed: &[Hole]) -> Result<Vec<Word>, Vec<(&'static str, String)>> {
+    fn words(text: &str, of_set: bool) -> Result<Vec<Word>, Vec<(&'static str, String)>> {
         let mut problems = Problems::default();
         let tree = yaml::load(&Source::new("sim.yaml", text), &mut problems).expect("YAML");
         let words: Vec<Word> = tree
             .items()
             .iter()
-            .filter_map(|node| Word::read(node, allowed, &mut problems))
+            .filter_map(|node| Word::read(node, of_set, &mut problems))
             .collect();
-        let place =
-            |problem: &Problem| problem.at.as_ref().map_or("", |span| span.text()).to_string();
+        let place = |problem: &crate::problem::Problem| {
+            problem.at.as_ref().map_or("", |span| span.text()).to_string()
+        };
         if problems.0.is_empty() {
             Ok(words)
         } else {
@@ -200,38 +201,31 @@ mod tests {
 
     #[test]
     fn parameters_repeat_their_words() {
-        let command =
-            words("[run, '--to={out}', '{set}', '{{x}}']", &Hole::OF_COMMAND).expect("right");
-        let set = words("[-p, '{name}={value}']", &Hole::OF_SET).expect("right");
+        let command = words("[run, '--to={out}', '{set}', '{{x}}']", false).expect("right");
+        let set = words("[-p, '{name}={value}']", true).expect("right");
         let settings = [("mu".to_string(), 0.5), ("m".to_string(), -3e4)];
-        let with = |hole: Hole| hole.name().to_uppercase();
+        let with = |hole: Hole| hole.word().to_uppercase();
         assert_eq!(
             fill(&command, &set, &settings, &with),
             ["run", "--to=OUT", "-p", "mu=0.5", "-p", "m=-30000", "{x}"]
         );
         assert_eq!(fill(&command, &set, &[], &with), ["run", "--to=OUT", "{x}"]);
-        let command = words("[run, '-D{set}']", &Hole::OF_COMMAND).expect("right");
+        let command = words("[run, '-D{set}']", false).expect("right");
         assert_eq!(fill(&command, &[], &settings, &with), ["run", "-Dmu=0.5", "-Dm=-30000"]);
     }
 
     #[test]
     fn faults_are_placed() {
         assert_eq!(
-            words("['{trak}']", &Hole::OF_COMMAND),
+            words("['{trak}']", false),
             Err(vec![("unknown-placeholder", "trak".to_string())])
         );
+        assert_eq!(words("['a{out']", false), Err(vec![("unclosed-brace", "{".to_string())]));
+        assert_eq!(words("['a}']", false), Err(vec![("unclosed-brace", "}".to_string())]));
         assert_eq!(
-            words("['a{out']", &Hole::OF_COMMAND),
-            Err(vec![("unclosed-brace", "{".to_string())])
-        );
-        assert_eq!(
-            words("['a}']", &Hole::OF_COMMAND),
-            Err(vec![("unclosed-brace", "}".to_string())])
-        );
-        assert_eq!(
-            words("['{name}']", &Hole::OF_COMMAND),
+            words("['{name}']", false),
             Err(vec![("unknown-placeholder", "name".to_string())])
         );
-        assert_eq!(words("[[a]]", &Hole::OF_COMMAND), Err(vec![("wrong-kind", "[a]".to_string())]));
+        assert_eq!(words("[[a]]", false), Err(vec![("wrong-kind", "[a]".to_string())]));
     }
 }

@@ -26,7 +26,7 @@ fn peak(values: &[f64]) -> f64 {
 
 proptest! {
     #[test]
-    fn percentile_is_monotone_in_percent(values in vec(-1e6..1e6, 1..200), a in 0.0..=100.0, b in 0.0..=100.0, method in select(Method::ALL.to_vec())) {
+    fn percentile_is_monotone_in_percent(values in vec(-1e6..1e6, 1..200), a in 0.0..=100.0, b in 0.0..=100.0, method in select(Method::NAMES.map(|(method, _)| method).to_vec())) {
         let (low, high) = if a <= b { (a, b) } else { (b, a) };
         let found = percentiles(&values, &[low, high], method).expect("values");
         prop_assert!(found[0] <= found[1]);

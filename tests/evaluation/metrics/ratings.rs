@@ -7,9 +7,9 @@ use fishplate::metrics::pair::*;
 
 use crate::metrics::{close, json, number, vectors::Pair};
 
-type Metric = fn(&[f64], &[f64]) -> Result<f64, Undefined>;
+type Function = fn(&[f64], &[f64]) -> Metric;
 
-const RATINGS: [(Metric, &str); 10] = [
+const RATINGS: [(Function, &str); 10] = [
     (iso18571_corridor, "/iso/corridor"),
     (iso18571_phase, "/iso/phase"),
     (iso18571_magnitude, "/iso/magnitude"),

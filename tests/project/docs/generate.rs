@@ -189,7 +189,7 @@ fn units() -> String {
 }
 
 fn percentile_rules() -> String {
-    let names: Vec<String> = Method::ALL.iter().map(|method| code(method.name())).collect();
+    let names: Vec<String> = Method::NAMES.iter().map(|(_, name)| code(name)).collect();
     format!("\n{}\n\n", names.join(", "))
 }
 

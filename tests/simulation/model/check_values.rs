@@ -75,7 +75,7 @@ pub fn medians(campaign: &str, radius: f64, cant: f64, speed: f64) -> Vec<f64> {
     let profile = profile(campaign, &vehicle);
     let track = curve(radius, cant);
     let setup = Setup { vehicle: &vehicle, profile: &profile, track: &track, speed };
-    let record = simulate(&setup, Window::around(EVALUATED.0, EVALUATED.1)).unwrap();
+    let record = simulate(&setup, Window::around(EVALUATED.0, EVALUATED.1), 1.into()).unwrap();
     let inside = |signal: &Vec<f64>| {
         let pairs = record.distance.iter().zip(signal);
         pairs

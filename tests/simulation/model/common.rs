@@ -137,7 +137,8 @@ impl Section {
     }
 
     pub fn simulate(&self, vehicle: &Vehicle, profile: &Profile) -> Result<Record, Failure> {
-        simulate(&Setup { vehicle, profile, track: &self.track, speed: self.speed }, self.window())
+        let setup = Setup { vehicle, profile, track: &self.track, speed: self.speed };
+        simulate(&setup, self.window(), 1.into())
     }
 
     /// The samples of a signal of `record` inside the section.

@@ -1,15 +1,15 @@
 //! Runs that come to no result say what happened, when and where.
 
-use fishplate::model::{Failure, FailureKind, Profile, Setup, Window, simulate, simulate_with};
+use fishplate::model::{Failure, FailureKind, Profile, Setup, Window, simulate};
 
 use crate::model::common::{COACH, curve, even, profile, profile_table, vehicle};
 
-fn fails(set: &[(&str, f64)], radius: f64, speed: f64, divided: Option<usize>) -> Failure {
+fn fails(set: &[(&str, f64)], radius: f64, speed: f64) -> Failure {
     let vehicle = vehicle(COACH, set);
     let profile = profile(COACH, &vehicle);
     let track = curve(radius, 0.0);
     let setup = Setup { vehicle: &vehicle, profile: &profile, track: &track, speed };
-    let Err(failure) = simulate_with(&setup, Window::around(210.0, 310.0), divided) else {
+    let Err(failure) = simulate(&setup, Window::around(210.0, 310.0), 1.into()) else {
         panic!("a record")
     };
     let words = failure.to_string();
@@ -29,7 +29,7 @@ fn fails(set: &[(&str, f64)], radius: f64, speed: f64, divided: Option<usize>) -
 /// before it.
 #[test]
 fn derailment_in_a_curve() {
-    let failure = fails(&[], 200.0, 45.0, None);
+    let failure = fails(&[], 200.0, 45.0);
     let FailureKind::Derailed { wheelset, displacement } = failure.kind else {
         panic!("{failure}")
     };
@@ -41,7 +41,7 @@ fn derailment_in_a_curve() {
 /// written.
 #[test]
 fn divergence() {
-    let failure = fails(&[("primary.cz", 1e8)], 300.0, 20.0, None);
+    let failure = fails(&[("primary.cz", 1e8)], 300.0, 20.0);
     assert!(
         matches!(failure.kind, FailureKind::Diverged | FailureKind::Derailed { .. }),
         "{failure}"
@@ -64,7 +64,9 @@ fn hunting_beyond_the_table() {
         even(&[(0.0, 0.0, 0.0), (20.0, 0.0, 0.0), (40.0, 0.0, 0.0), (2000.0, 0.0, 0.0)]);
     track.alignment[1] = 5.0;
     let setup = Setup { vehicle: &vehicle, profile: &profile, track: &track, speed: 240.0 / 3.6 };
-    let Err(failure) = simulate(&setup, Window::around(1000.0, 1500.0)) else { panic!("a record") };
+    let Err(failure) = simulate(&setup, Window::around(1000.0, 1500.0), 1.into()) else {
+        panic!("a record")
+    };
     let FailureKind::Derailed { displacement, .. } = failure.kind else { panic!("{failure}") };
     assert!(displacement.is_finite() && failure.distance > 0.0 && failure.time > 0.0, "{failure}");
 }
@@ -76,7 +78,9 @@ fn too_early() {
     let profile = profile(COACH, &vehicle);
     let track = curve(300.0, 100.0);
     let setup = Setup { vehicle: &vehicle, profile: &profile, track: &track, speed: 20.0 };
-    let Err(failure) = simulate(&setup, Window::around(-100.0, 50.0)) else { panic!("a record") };
+    let Err(failure) = simulate(&setup, Window::around(-100.0, 50.0), 1.into()) else {
+        panic!("a record")
+    };
     // The run starts at 9.5 + 1.28 - 2.5 * 20 m.
     assert!(
         matches!(failure.kind, FailureKind::TooEarly { by } if (by - (136.0 - 39.22)).abs() < 1e-9),

@@ -6,7 +6,7 @@ use fishplate::metrics::filter::{Band, Cutoff, Filter, Phase};
 use fishplate::model::equations::{Equations, Hints};
 use fishplate::model::integrate::{Method, Steps, least_steps, run};
 use fishplate::model::state::{CAR, State, WHEELSET, Z};
-use fishplate::model::{CHANNELS, SAMPLING_RATE, Setup, Track, simulate_with, start};
+use fishplate::model::{CHANNELS, SAMPLING_RATE, Setup, Track, simulate, start};
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{DVector, Dop853, System};
 
@@ -92,7 +92,7 @@ fn halving_the_step_changes_nothing_that_matters() {
             least_steps(Method::RungeKutta, &Equations::new(&vehicle, &profile, section.speed))
                 .expect("few steps");
         let records = [steps, 2 * steps]
-            .map(|steps| simulate_with(&setup, section.window(), Some(steps)).unwrap());
+            .map(|steps| simulate(&setup, section.window(), steps.into()).unwrap());
         for (i, (channel, _)) in CHANNELS.iter().enumerate() {
             let [coarse, fine] = records.each_ref().map(|record| {
                 let smooth = filter.apply(&record.channels[i]).unwrap();

@@ -25,7 +25,7 @@ fn mirrored_track_gives_the_mirrored_record() {
     };
     let run = |track: &TrackTable| {
         let setup = Setup { vehicle: &vehicle, profile: &profile, track, speed: section.speed };
-        simulate(&setup, section.window()).unwrap()
+        simulate(&setup, section.window(), 1.into()).unwrap()
     };
     let (there, here) = (run(&section.track), run(&mirrored));
     for (i, (name, _)) in CHANNELS.iter().enumerate() {
