@@ -354,6 +354,11 @@ impl Problems {
         self.0.extend(left);
     }
 
+    /// The value of a result; if there is none, its problems are added.
+    pub fn value<T>(&mut self, found: Result<T, impl Into<Vec<Problem>>>) -> Option<T> {
+        found.map_err(|problems| self.add(problems.into())).ok()
+    }
+
     pub fn any_error(&self) -> bool {
         self.0.iter().any(|problem| problem.severity == Severity::Error)
     }

@@ -67,18 +67,14 @@ impl Blinded {
         }
         let mut problems = Problems::default();
         // A fault of the catalogue is reported once, not for every campaign.
-        let usable = |catalogue: &Catalogue, problems: &mut Problems| {
-            Settings::read(catalogue, problems).is_some()
-        };
-        let catalogue = load_catalogue(&self.catalogue, &mut problems);
-        let catalogue = catalogue.filter(|catalogue| usable(catalogue, &mut problems));
+        let catalogue = load_catalogue(&self.catalogue, &mut problems)
+            .filter(|catalogue| Settings::read(catalogue, &mut problems).is_some());
         // So is one of the protocol.
         if let Some(named) = &self.protocol {
             load(named, &mut problems);
         }
-        let catalogue = match catalogue.filter(|_| !problems.any_error()) {
-            Some(catalogue) => catalogue,
-            None => return Err(problems.into()),
+        let Some(catalogue) = catalogue.filter(|_| !problems.any_error()) else {
+            return Err(problems.into());
         };
         let diagnosed = AtomicUsize::new(0);
         let out = Mutex::new(Outputs::new(&self.out));
@@ -94,13 +90,11 @@ impl Blinded {
             let says = "none of the campaigns could be diagnosed";
             return Err(Problem::error("no-diagnosis", says).into());
         }
-        let text = text(&scored);
         let document = report::document("Diagnoses against withheld truths", &scored);
         let page = html::html(&document, &[]).map_err(Ended::unfinished)?;
         let mut outputs = out.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let added = outputs
-            .add("blind.json", text.as_bytes())
-            .and_then(|()| outputs.add("blind.html", page.as_bytes()));
+        let files = [("blind.json", text(&scored)), ("blind.html", page)];
+        let added = files.iter().try_for_each(|(name, text)| outputs.add(name, text.as_bytes()));
         console.commit(added.map(|()| outputs))?;
         for score in &scored.scores {
             let value = score.value.map_or("-".to_string(), |value| format!("{value:.3}"));
@@ -139,21 +133,16 @@ impl Blinded {
         let found = super::diagnose::diagnosed(&asked, &places, &|_| {}, &mut problems);
         console.problems(&problems);
         let Some((files, outcome)) = found else {
-            let fault = problems
-                .0
-                .first()
-                .map_or("no diagnosis".to_string(), |problem| problem.says.clone());
-            return Ok(without(&name, fault));
+            let first = problems.0.into_iter().next();
+            return Ok(without(&name, first.map_or("no diagnosis".into(), |first| first.says)));
         };
         diagnosed.fetch_add(1, Ordering::Relaxed);
-        let diagnosis = text(&outcome.diagnosis);
-        let mut outputs = out.lock().unwrap_or_else(PoisonError::into_inner);
-        outputs.add(&format!("{name}/diagnosis.json"), diagnosis.as_bytes())?;
-        drop(outputs);
+        out.lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .add(&format!("{name}/diagnosis.json"), text(&outcome.diagnosis).as_bytes())?;
         let text = disk::read(&folder.join("truth.json"), LARGEST_TRUTH)
-            .map_err(|error| error.to_string());
-        let text =
-            text.and_then(|bytes| String::from_utf8(bytes).map_err(|error| error.to_string()));
+            .map_err(|error| error.to_string())
+            .and_then(|bytes| String::from_utf8(bytes).map_err(|error| error.to_string()));
         let truth = match text.and_then(|text| Truth::read(&text)) {
             Ok(truth) => truth,
             Err(fault) => return Ok(without(&name, format!("truth.json: {fault}"))),

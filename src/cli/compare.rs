@@ -18,7 +18,7 @@ use crate::disk::SetKind;
 use crate::prepare::set_by_hand;
 use crate::problem::{Problem, Problems};
 use crate::report::comparison as report;
-use crate::result::comparison::Comparison;
+use crate::result::comparison::{Cell, Comparison};
 
 #[derive(Debug, Args)]
 pub struct Compare {
@@ -94,22 +94,13 @@ impl Compare {
         let reports = if self.no_report { Reports::NONE } else { Reports::ALL };
         let files = deliver::comparison(found, reports).map_err(Ended::unfinished)?;
         console.write_all(SetKind::Report, &self.out, &files)?;
-        if !console.quiet {
-            let cells: Vec<String> = found
-                .verdicts
-                .iter()
-                .map(|cell| {
-                    let why = cell
-                        .decided_by
-                        .clone()
-                        .or_else(|| Some(cell.reasons.first()?.text().to_string()))
-                        .unwrap_or_default();
-                    format!("  {}, {}: {} ({why})\n", cell.campaign, cell.protocol, cell.verdict)
-                })
-                .collect();
-            told(report::TITLE, &report::opening(found), &cells.concat(), console);
-            console.say(&format!("written: {}", self.out.display()));
-        }
+        let cell = |cell: &Cell| {
+            let reason = || Some(cell.reasons.first()?.text().to_string());
+            let why = cell.decided_by.clone().or_else(reason).unwrap_or_default();
+            format!("  {}, {}: {} ({why})\n", cell.campaign, cell.protocol, cell.verdict)
+        };
+        let cells: String = found.verdicts.iter().map(cell).collect();
+        console.written(&told(report::TITLE, &report::opening(found), &cells), &self.out);
         Ok(Exit::Done)
     }
 }

@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::ProgressBar;
 
 use super::convert_records::Records;
 use super::inputs::{prepare, start_jobs};
@@ -99,13 +99,7 @@ impl Diagnose {
 
     pub fn run(self, console: &Console) -> Done {
         start_jobs(self.jobs)?;
-        let bar = ProgressBar::new_spinner();
-        if console.quiet {
-            bar.set_draw_target(ProgressDrawTarget::hidden());
-        }
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {msg}") {
-            bar.set_style(style);
-        }
+        let bar = console.bar(ProgressBar::new_spinner(), "{spinner} {elapsed} {msg}");
         let trying = |what: &str| {
             bar.set_message(what.to_string());
             bar.tick();
@@ -127,10 +121,7 @@ impl Diagnose {
         console.problems(&problems);
         let Some((files, outcome)) = outcome else { return Ok(stopped(&problems)) };
         self.write(&out, &files.campaign, &outcome, console).map_err(Ended::unfinished)?;
-        if !console.quiet {
-            console.show(&summary(&outcome.diagnosis));
-            console.say(&format!("written: {}", out.display()));
-        }
+        console.written(&summary(&outcome.diagnosis), &out);
         Ok(exit(&outcome.diagnosis))
     }
 
@@ -163,10 +154,9 @@ impl Diagnose {
         self.resume.as_ref().map_or(Ok(()), |folder| check_folder(folder, &[], campaign))?;
         let Some(improved) = &self.write_improved else { return Ok(()) };
         if same(improved, out) {
-            let says = format!(
-                "the report and the improved simulation cannot both go to `{}`",
-                improved.display()
-            );
+            let improved = improved.display();
+            let says =
+                format!("the report and the improved simulation cannot both go to `{improved}`");
             return Err(Problem::error("output-is-input", says).help("give different folders"));
         }
         check_folder(improved, CAMPAIGN, campaign)
@@ -207,7 +197,7 @@ fn opened(
     problems: &mut Problems,
 ) -> Option<Opened> {
     let (compiled, campaign) = prepare(asked.folder, asked.protocol, &[], problems)?;
-    places(&campaign).map_err(|problem| problems.push(problem)).ok()?;
+    problems.value(places(&campaign))?;
     let files = WithFiles::of(campaign, problems)?;
     let (catalogue, settings, sections) =
         for_diagnosis(&files.campaign, asked.catalogue, problems)?;
@@ -240,19 +230,13 @@ pub fn diagnosed(
     let Opened { compiled, files, catalogue, settings, sections } =
         opened(asked, places, problems)?;
     let campaign = &files.campaign;
-    let opened = asked
-        .references
-        .iter()
-        .map(|folder| WithFiles::open(folder, asked.protocol, &|_| Ok(()), problems));
-    let references: Vec<WithFiles> = opened.collect::<Option<_>>()?;
+    let mut open = |folder| WithFiles::open(folder, asked.protocol, &|_| Ok(()), problems);
+    let references = asked.references.iter().map(|folder| open(folder));
+    let references: Vec<WithFiles> = references.collect::<Option<_>>()?;
     let references: Vec<&Campaign> =
         references.iter().map(|reference| &reference.campaign).collect();
     for reference in &references {
-        reference
-            .one_of_each()
-            .and_then(|()| reference.one_vehicle())
-            .map_err(|problem| problems.push(problem))
-            .ok()?;
+        problems.value(reference.one_of_each().and_then(|()| reference.one_vehicle()))?;
     }
     // A campaign as its own reference would remove the gap itself.
     if let Some(same) = asked.references.iter().find(|folder| same(folder, asked.folder)) {
@@ -260,10 +244,8 @@ pub fn diagnosed(
             "`{}` is the campaign itself: its gap would be treated as a standing discrepancy",
             same.display()
         );
-        problems.push(
-            Problem::error("reference", says)
-                .help("give a campaign of the same vehicle in a known state"),
-        );
+        let problem = Problem::error("reference", says);
+        problems.push(problem.help("give a campaign of the same vehicle in a known state"));
         return None;
     }
     // A campaign, its simulator, and the cache of its simulations.
@@ -272,7 +254,7 @@ pub fn diagnosed(
         // Another simulator keeps its records itself, by the content of its program.
         let own = chosen.as_ref().is_none_or(|chosen| !chosen.is_external());
         let cache = asked.resume.filter(|_| own).map(|folder| kept(folder, campaign)).transpose();
-        Some((chosen, cache.map_err(|problem| problems.push(problem)).ok()?))
+        Some((chosen, problems.value(cache)?))
     };
     let (chosen, cache) = with_all(campaign)?;
     let of_references: Vec<_> =
@@ -307,29 +289,17 @@ pub fn diagnosed(
         trying,
     };
     let found = diagnose(&inputs, &compiled, sections);
-    let kept = of_references
-        .iter()
-        .map(|(chosen, _)| chosen)
-        .chain([&chosen])
-        .flatten()
-        .filter_map(Chosen::warning);
-    let resumed =
-        inputs.references.iter().map(|reference| &reference.cache).chain([&inputs.cache]).flatten();
-    kept.chain(resumed.filter_map(Cache::warning)).for_each(|problem| problems.push(problem));
+    let simulators = of_references.iter().map(|(chosen, _)| chosen).chain([&chosen]).flatten();
+    problems.add(simulators.filter_map(Chosen::warning));
+    let caches = inputs.references.iter().map(|of| &of.cache).chain([&inputs.cache]).flatten();
+    problems.add(caches.filter_map(Cache::warning));
     if let Some(problem) = strict.as_ref().and_then(Strict::failed) {
         problems.push(problem);
         return None;
     }
-    match found {
-        Ok(outcome) => {
-            problems.0.extend(outcome.warnings.0.iter().cloned());
-            Some((files, outcome))
-        }
-        Err(found) => {
-            problems.add(found.0);
-            None
-        }
-    }
+    let outcome = problems.value(found.map_err(|found| found.0))?;
+    problems.0.extend(outcome.warnings.0.iter().cloned());
+    Some((files, outcome))
 }
 
 /// The simulator of a campaign. `Some(None)` if there is no model that can run: only effects of the
@@ -349,10 +319,8 @@ fn simulating<'a>(
         }
         _ if !Builtin::is_for(campaign) => {
             let says = "no simulator is given, and the vehicle file has no parameter of the built-in model of a rail vehicle";
-            let problem = Problem::warning(
-                "no-simulator",
-                format!("{says}: only effects of the measuring chain are tested"),
-            );
+            let says = format!("{says}: only effects of the measuring chain are tested");
+            let problem = Problem::warning("no-simulator", says);
             problems.push(problem.help("name the simulator of the machine with `--simulator`"));
             None
         }
@@ -378,31 +346,23 @@ fn kept(folder: &Path, campaign: &Campaign) -> Result<Cache, Problem> {
 }
 
 fn summary(diagnosis: &Diagnosis) -> String {
-    use std::fmt::Write;
     let mut out = format!("{}\n\nVerdict: {}\n", diagnosis.campaign, diagnosis.verdict);
-    for line in &diagnosis.says {
-        let _ = writeln!(out, "  {line}");
-    }
-    if let Some(remark) = remark(&diagnosis.fit) {
-        let _ = writeln!(out, "  Remark: {}", remark.text());
-    }
+    out.extend(diagnosis.says.iter().map(|line| format!("  {line}\n")));
+    out.extend(remark(&diagnosis.fit).map(|remark| format!("  Remark: {}\n", remark.text())));
     out += "\nLocation of the gap:\n";
-    for place in diagnosis.r#where.iter().take(6) {
+    out.extend(diagnosis.r#where.iter().take(6).map(|place| {
         let mark = if place.significant { "" } else { "  (not significant)" };
-        let _ = writeln!(out, "  {:4.0} %  {}{mark}", 100.0 * place.share_of_gap, place.says);
-    }
+        format!("  {:4.0} %  {}{mark}\n", 100.0 * place.share_of_gap, place.says)
+    }));
     if diagnosis.causes.len() > 1 {
         out += "\nOther candidates:\n";
-        for cause in diagnosis.causes.iter().skip(1) {
-            let mark = if cause.in_ambiguity_set { "  not distinguishable" } else { "" };
-            let _ = writeln!(out, "  {:5.1} %  {}{mark}", 100.0 * cause.probability, cause.says);
-        }
     }
-    for vetoed in &diagnosis.vetoed {
-        let _ = writeln!(out, "\nRejected: {}", vetoed.says);
-    }
-    if let Some(measure) = &diagnosis.discriminating_measurement {
-        let _ = writeln!(out, "\nThe causes can be distinguished by: {measure}");
-    }
+    out.extend(diagnosis.causes.iter().skip(1).map(|cause| {
+        let mark = if cause.in_ambiguity_set { "  not distinguishable" } else { "" };
+        format!("  {:5.1} %  {}{mark}\n", 100.0 * cause.probability, cause.says)
+    }));
+    out.extend(diagnosis.vetoed.iter().map(|vetoed| format!("\nRejected: {}\n", vetoed.says)));
+    let measure = diagnosis.discriminating_measurement.iter();
+    out.extend(measure.map(|it| format!("\nThe causes can be distinguished by: {it}\n")));
     out
 }

@@ -72,16 +72,15 @@ impl Import {
         let checked = checked(path, out, &mut problems);
         let (mapping, compiled) = console.sound(checked, &problems)?;
         let needs = compiled.as_ref().map(|compiled| needs(&compiled.plan, &compiled.graph));
-        let steps = mapping.sections.names.len() * mapping.sides.len();
+        let (count, word) = (mapping.sections.names.len(), mapping.sections.word);
+        let records = count * mapping.sides.len();
         let mut outputs = Outputs::of(SetKind::Campaign, out);
-        let done = console.with_progress(steps, |progress| {
+        let done = console.with_progress(records, |progress| {
             let format = Format::from(self.records);
             crate::import::import(&mapping, needs.as_ref(), format, &mut outputs, progress)
         });
         console.problems(&done.map_err(Ended::wrong_or_unwritten)?);
         console.commit(Ok(outputs))?;
-        let records = mapping.sections.names.len() * mapping.sides.len();
-        let (count, word) = (mapping.sections.names.len(), mapping.sections.word);
         let ending = if word == "run" && count == 1 { "" } else { "s" };
         console.say(&format!(
             "written: {records} records of {count} {word}{ending} to {}",
@@ -109,15 +108,11 @@ impl Import {
         let paths: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
         self.out.as_ref().map_or(Ok(()), |out| check_file(out, &paths))?;
         let mut groups = groups(&paths).map_err(Problems)?;
-        relative_to(
-            &mut groups,
-            self.out.as_deref().and_then(Path::parent).unwrap_or(Path::new("")),
-        );
+        let folder = self.out.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
+        relative_to(&mut groups, folder);
         let needs = needs(&compiled.plan, &compiled.graph);
-        let (text, open) = draft(
-            &groups,
-            &With { needs: &needs, protocol: &self.protocol, convention: &convention },
-        );
+        let with = With { needs: &needs, protocol: &self.protocol, convention: &convention };
+        let (text, open) = draft(&groups, &with);
         let exit = match &self.out {
             Some(out) => console.write(out, text.as_bytes()),
             None => console.print_file(&text),
@@ -133,18 +128,14 @@ fn checked(
     out: &Path,
     problems: &mut Problems,
 ) -> Option<(Mapping, Option<Compiled>)> {
-    let (source, _) = read_text(path, &path.display().to_string())
-        .map_err(|problem| problems.push(problem))
-        .ok()?;
+    let (source, _) = problems.value(read_text(path, &path.display().to_string()))?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mapping = mapping::read(&source, folder, problems);
     if same(out, if folder.as_os_str().is_empty() { Path::new(".") } else { folder }) {
         let says =
             format!("the campaign cannot go to `{}`, the folder of the mapping", out.display());
-        problems.push(
-            Problem::error("output-is-input", says)
-                .help("give another folder; it is created if it does not exist"),
-        );
+        let problem = Problem::error("output-is-input", says);
+        problems.push(problem.help("give another folder; it is created if it does not exist"));
     }
     let mapping = mapping?;
     for side in &mapping.sides {
@@ -155,16 +146,11 @@ fn checked(
                 .is_some_and(|parent| same(parent, &out.join(side.kind.key())) || same(parent, out))
         });
         if inside {
-            let says = format!(
-                "the campaign cannot go to `{}`: it contains files of the {}",
-                out.display(),
-                side.kind.key()
-            );
-            problems.push(
-                Problem::error("output-is-input", says)
-                    .at(&pattern.span)
-                    .help("give another folder"),
-            );
+            let (out, kind) = (out.display(), side.kind.key());
+            let says =
+                format!("the campaign cannot go to `{out}`: it contains files of the {kind}");
+            let problem = Problem::error("output-is-input", says).at(&pattern.span);
+            problems.push(problem.help("give another folder"));
         }
     }
     let compiled = for_import(&mapping, problems)?;
@@ -195,11 +181,8 @@ fn look(mapping: &Mapping, compiled: Option<&Compiled>, out: &Path, console: &Co
     match certify(&compiled.only_telling(), &campaign, Settings { traces: 0 }, &|_| {}) {
         Ok(found) => {
             for section in found.sections.iter().filter(|section| !section.used) {
-                console.say(&format!(
-                    "section {} is not used: {}",
-                    section.section,
-                    words::or_nothing(section.reason.as_ref())
-                ));
+                let reason = words::or_nothing(section.reason.as_ref());
+                console.say(&format!("section {} is not used: {reason}", section.section));
             }
             let found = as_stated(&compiled.plan, found.findings);
             for finding in &found {
@@ -219,17 +202,10 @@ fn look(mapping: &Mapping, compiled: Option<&Compiled>, out: &Path, console: &Co
 /// Findings with the consequence that `certify` gives them. They were sought with rules that only
 /// tell, so that none hides another.
 fn as_stated(plan: &Plan, findings: Vec<Finding>) -> Vec<Finding> {
-    let of = |finding: &Finding| {
-        plan.plausibility
-            .iter()
-            .find(|rule| rule.name == finding.code)
-            .map(|rule| consequence(rule.otherwise))
+    let stated = |mut finding: Finding| {
+        let rule = plan.plausibility.iter().find(|rule| rule.name == finding.code);
+        finding.consequence = rule.map_or(finding.consequence, |rule| consequence(rule.otherwise));
+        finding
     };
-    findings
-        .into_iter()
-        .map(|finding| Finding {
-            consequence: of(&finding).unwrap_or(finding.consequence),
-            ..finding
-        })
-        .collect()
+    findings.into_iter().map(stated).collect()
 }

@@ -53,36 +53,25 @@ impl Init {
             (None, Some(path)) => read_headings(path, &path.display().to_string()),
             (None, None) => return None,
         };
-        let headings = match headings {
-            Ok(headings) => headings,
-            Err(found) => {
-                found.into_iter().for_each(|problem| problems.push(problem));
-                return None;
-            }
-        };
+        let headings = problems.value(headings)?;
         let found = channels(&headings, problems);
         if problems.any_error() {
             return None;
         }
-        let listed = match listed(found, self.channels_from.is_some()) {
-            Ok(listed) => listed,
-            Err(problem) => {
-                problems.push(match headings.first() {
-                    Some(first) => problem.at(&first.span),
-                    None => *problem,
-                });
-                return None;
-            }
-        };
+        let (first, last) = (headings.first(), headings.last());
+        let listed = listed(found, self.channels_from.is_some()).map_err(|problem| match first {
+            Some(first) => problem.at(&first.span),
+            None => *problem,
+        });
+        let listed = problems.value(listed)?;
         if listed.groups.is_empty() && self.extends.is_none() {
-            let at = headings
-                .first()
-                .zip(headings.last())
-                .map(|(first, last)| first.span.to(&last.span));
             let problem =
                 Problem::error("no-channels", "there is no channel besides axis and time")
                     .help("add those that are to be compared");
-            problems.push(at.map_or(problem.clone(), |at| problem.at(&at)));
+            problems.push(match first.zip(last) {
+                Some((first, last)) => problem.at(&first.span.to(&last.span)),
+                None => problem,
+            });
             return None;
         }
         Some(listed)
@@ -90,22 +79,18 @@ impl Init {
 
     fn files(&self, name: &str, problems: &mut Problems) -> Option<Vec<File>> {
         let mut listed = self.listed(problems);
-        let family = match &self.extends {
-            Some(name) => Some(load(name, problems)?),
-            None => None,
-        };
+        let family = self.extends.as_ref().map(|name| load(name, problems));
         if problems.any_error() {
             return None;
         }
+        let family = family.flatten();
         let copies = family.as_ref().map(|family| copies(family, problems)).unwrap_or_default();
         if let (Some(family), Some(listed)) = (&family, &mut listed) {
             without_known(family, listed, problems)?;
         }
         let parent = family.as_ref().map(parent);
-        let text = protocol::text(name, listed.as_ref(), parent.as_ref())
-            .map_err(|problem| problems.push(*problem))
-            .ok()?;
-        let source = Source::new(PROTOCOL, text);
+        let text = protocol::text(name, listed.as_ref(), parent.as_ref());
+        let source = Source::new(PROTOCOL, problems.value(text.map_err(|problem| *problem))?);
         let find = |name: &str, from: &Source| match copies.iter().find(|(path, _)| path == name) {
             Some((_, source)) => Ok(Arc::clone(source)),
             None => library::parent(name, from),
@@ -115,29 +100,22 @@ impl Init {
         let needs = needs::needs(&plan, &graph::from_plan(&plan));
         let mut files = vec![(PROTOCOL.to_string(), source.text.clone())];
         files.extend(copies.into_iter().map(|(path, source)| (path, source.text.clone())));
-        files
-            .extend(campaign::files(name, &needs).map_err(|problem| problems.push(*problem)).ok()?);
+        let campaign = campaign::files(name, &needs).map_err(|problem| *problem);
+        files.extend(problems.value(campaign)?);
         Some(files)
     }
 }
 
 /// What a protocol in the draft says of its parent.
 fn parent(family: &Family) -> Parent<'_> {
-    let document = &family.merged;
-    let named = document
-        .blocks
-        .iter()
-        .filter(|block| block.kind.text != "protocol")
-        .map(|block| block.name_text().to_string());
-    let name = document
-        .blocks
-        .iter()
-        .find(|block| block.kind.text == "protocol")
-        .map_or("", |block| block.name_text());
+    let (protocol, others): (Vec<_>, Vec<_>) =
+        family.merged.blocks.iter().partition(|block| block.kind.text == "protocol");
+    let name = protocol.first().map_or("", |block| block.name_text());
     let own = &family.sources[0];
     let extends =
         if is_shipped(own) { name.to_string() } else { format!("\"{}\"", file_name(own)) };
-    Parent { name, extends, names: named.collect() }
+    let names = others.into_iter().map(|block| block.name_text().to_string()).collect();
+    Parent { name, extends, names }
 }
 
 fn is_shipped(source: &Source) -> bool {
@@ -148,10 +126,8 @@ fn is_shipped(source: &Source) -> bool {
 }
 
 fn file_name(source: &Source) -> String {
-    Path::new(&source.name)
-        .file_name()
-        .map(|name| name.to_string_lossy().into_owned())
-        .unwrap_or_default()
+    let name = Path::new(&source.name).file_name().unwrap_or_default();
+    name.to_string_lossy().into_owned()
 }
 
 /// The protocols of the chain that are not shipped. They go into the campaign, which can extend
@@ -179,11 +155,12 @@ fn without_known(family: &Family, listed: &mut Listed, problems: &mut Problems) 
     let known = needs::needs(&plan, &graph::from_plan(&plan)).channels;
     let is_known = |column: &str| known.iter().any(|need| need.column == column);
     listed.groups.retain_mut(|group| {
-        let single = group.positions.is_empty();
-        group
-            .positions
-            .retain(|position| !is_known(&format!("{}{}{position}", group.stem, group.separator)));
-        if single { !is_known(&group.stem) } else { !group.positions.is_empty() }
+        if group.positions.is_empty() {
+            return !is_known(&group.stem);
+        }
+        let column = |position: &String| format!("{}{}{position}", group.stem, group.separator);
+        group.positions.retain(|position| !is_known(&column(position)));
+        !group.positions.is_empty()
     });
     listed.time = listed.time.take().filter(|_| plan.time.is_some());
     Some(())

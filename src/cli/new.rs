@@ -54,25 +54,17 @@ impl New {
 
     fn made(&self, name: &str, problems: &mut Problems) -> Option<Made> {
         let mut told = Vec::new();
-        let pairs: Vec<Option<Pair>> = self
-            .from
-            .chunks_exact(2)
-            .enumerate()
-            .map(|(at, pair)| {
-                Pair::read(format!("R{}", at + 1), &pair[0], &pair[1], &mut told, problems)
-            })
-            .collect();
+        let read = |(at, pair): (usize, &[PathBuf])| {
+            Pair::read(format!("R{}", at + 1), &pair[0], &pair[1], &mut told, problems)
+        };
+        // Problems of all records are told.
+        let pairs: Vec<Option<Pair>> = self.from.chunks_exact(2).enumerate().map(read).collect();
         let pairs: Vec<Pair> = pairs.into_iter().collect::<Option<_>>()?;
-        let made = files(name, DOMAINS[self.domain as usize], &pairs)
-            .map_err(|problem| problems.push(problem))
-            .ok()?;
+        let made = problems.value(files(name, DOMAINS[self.domain as usize], &pairs))?;
         // What is written must be sound, whatever the columns are called.
-        let text = made
-            .files
-            .iter()
-            .find(|(path, _)| path == PROTOCOL_FILE)
-            .map(|(_, text)| text.clone())?;
-        let family = family::read(&Source::new(PROTOCOL_FILE, text), &library::parent, problems);
+        let (_, text) = made.files.iter().find(|(path, _)| path == PROTOCOL_FILE)?;
+        let source = Source::new(PROTOCOL_FILE, text.clone());
+        let family = family::read(&source, &library::parent, problems);
         check::check(&family, &Overrides::new(), problems)?;
         problems.0.retain(|problem| problem.severity == crate::problem::Severity::Error);
         Some(Made { told: [told, made.told].concat(), ..made })

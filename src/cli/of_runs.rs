@@ -29,15 +29,14 @@ impl WithFiles {
         if problems.any_error() {
             return None;
         }
-        let failed = |error: std::io::Error| {
+        let folder = problems.value(disk::scratch().map_err(|error| {
             Problem::error("write-failed", format!("no temporary folder can be made: {error}"))
-        };
-        let folder = disk::scratch().map_err(|error| problems.push(failed(error))).ok()?;
+        }))?;
         let mut outputs = Outputs::of(SetKind::Campaign, folder.path()).for_this_run();
         cut(&campaign, Format::Parquet, &mut outputs)
             .map_err(|found| problems.0.extend(found))
             .ok()?;
-        outputs.commit().map_err(|problem| problems.push(problem)).ok()?;
+        problems.value(outputs.commit())?;
         Some(Self {
             campaign: with_protocols(Campaign::open(folder.path(), problems)?),
             _copy: Some(folder),
@@ -53,7 +52,7 @@ impl WithFiles {
         problems: &mut Problems,
     ) -> Option<Self> {
         let campaign = Campaign::open(folder, problems)?;
-        places(&campaign).map_err(|problem| problems.push(problem)).ok()?;
+        problems.value(places(&campaign))?;
         if campaign.runs().is_empty() {
             return Self::of(campaign, problems);
         }

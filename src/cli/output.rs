@@ -127,11 +127,10 @@ impl Console {
     }
 
     /// Text in the colour of a positive or a negative result.
-    pub fn paint(&self, text: &str, holds: bool) -> String {
-        if self.color {
-            format!("{}{text}{PLAIN}", if holds { GOOD } else { BAD })
-        } else {
-            text.to_string()
+    pub fn paint(&self, text: String, holds: Option<bool>) -> String {
+        match holds.filter(|_| self.color) {
+            Some(holds) => format!("{}{text}{PLAIN}", if holds { GOOD } else { BAD }),
+            None => text,
         }
     }
 
@@ -159,19 +158,32 @@ impl Console {
     /// Does work of so many steps beside a progress bar on a terminal; nothing is shown if the
     /// output is redirected.
     pub fn with_progress<T>(&self, steps: usize, work: impl FnOnce(Progress<'_>) -> T) -> T {
-        let bar = ProgressBar::new(steps as u64);
-        if self.quiet {
-            bar.set_draw_target(ProgressDrawTarget::hidden());
-        }
-        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
-            bar.set_style(style);
-        }
+        let bar = self.bar(ProgressBar::new(steps as u64), "{bar:30} {pos}/{len} {msg}");
         let done = work(&|step| {
             bar.set_message(plain(step));
             bar.inc(1);
         });
         bar.finish_and_clear();
         done
+    }
+
+    /// A progress bar, which is not shown if quiet.
+    pub fn bar(&self, bar: ProgressBar, template: &str) -> ProgressBar {
+        if self.quiet {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        match ProgressStyle::with_template(template) {
+            Ok(style) => bar.with_style(style),
+            Err(_) => bar,
+        }
+    }
+
+    /// Tells what was found, and where it was written.
+    pub fn written(&self, summary: &str, out: &Path) {
+        if !self.quiet {
+            self.show(summary);
+            self.say(&format!("written: {}", out.display()));
+        }
     }
 
     /// Writes a set of files, all or none.
@@ -245,6 +257,9 @@ mod tests {
         assert!(!text.chars().any(acts), "{text}");
         assert_eq!(serde_json::from_str::<String>(&text).expect("JSON"), nasty);
         let console = Console { quiet: false, color: true, color_errors: true };
-        assert_eq!(painted(&readable(&console.paint("x", true))), "\u{1b}[32mx\u{1b}[0m");
+        assert_eq!(
+            painted(&readable(&console.paint("x".into(), Some(true)))),
+            "\u{1b}[32mx\u{1b}[0m"
+        );
     }
 }

@@ -14,7 +14,7 @@ use super::values::from_one;
 use crate::disk;
 use crate::problem::{Problem, Problems};
 use crate::run::{SectionValues, Shard};
-use crate::values::{self, File, Joined, Part, Values};
+use crate::values::{self, Joined, Part, Values};
 
 #[derive(Debug, Args)]
 pub struct Reduce {
@@ -76,10 +76,7 @@ impl Reduce {
             console.with_progress(steps, |progress| values::reduce(&opened, part, progress))?;
         let bytes = values::write(&opened.compiled.plan, &values).map_err(Ended::unfinished)?;
         console.write(&self.out, &bytes)?;
-        if !console.quiet {
-            console.show(&told(&values));
-            console.say(&format!("written: {}", self.out.display()));
-        }
+        console.written(&told(&values), &self.out);
         Ok(Exit::Done)
     }
 }
@@ -136,16 +133,8 @@ pub fn joined(paths: &[PathBuf], problems: &mut Problems) -> Option<Joined> {
         }
         _ => problem,
     };
-    let opened: Vec<Result<File, Problem>> = paths
-        .iter()
-        .map(|path| values::open(path).map_err(|problem| in_folder(path, problem)))
-        .collect();
-    let mut files = Vec::new();
-    for file in opened {
-        match file {
-            Ok(file) => files.push(file),
-            Err(problem) => problems.push(problem),
-        }
-    }
+    let opened =
+        paths.iter().map(|path| values::open(path).map_err(|problem| in_folder(path, problem)));
+    let files = opened.filter_map(|file| problems.value(file)).collect();
     if problems.any_error() { None } else { values::join(files, problems) }
 }

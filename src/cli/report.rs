@@ -70,10 +70,7 @@ impl Report {
     pub fn write(&self, found: &Certification, key: Option<&SecretKey>, console: &Console) -> Done {
         let files = self.files(found, key).map_err(Ended::unfinished)?;
         console.write_all(SetKind::Report, &self.out, &files)?;
-        if !console.quiet {
-            console.show(&summary(found, console));
-            console.say(&format!("written: {}", self.out.display()));
-        }
+        console.written(&summary(found, console), &self.out);
         Ok(if found.verdict == Verdict::Validated { Exit::Done } else { Exit::DoesNotHold })
     }
 
@@ -101,9 +98,6 @@ impl Report {
 
 /// The table of verdicts for the terminal.
 fn summary(found: &Certification, console: &Console) -> String {
-    let paint = |text: String, holds: Option<bool>| {
-        holds.map_or(text.clone(), |holds| console.paint(&text, holds))
-    };
     let mut out = format!("{}\n{}\n\n", found.campaign.name, found.protocol.title);
     let table = statistics(found, console);
     let further = estimated(found, console);
@@ -113,11 +107,8 @@ fn summary(found: &Certification, console: &Console) -> String {
     let used = found.sections.iter().filter(|section| section.used).count();
     out += &format!("{used} of {} sections used\n", found.sections.len());
     for section in found.sections.iter().filter(|section| !section.used) {
-        out += &format!(
-            "  {} not used: {}\n",
-            section.section,
-            words::or_nothing(section.reason.as_ref())
-        );
+        let reason = words::or_nothing(section.reason.as_ref());
+        out += &format!("  {} not used: {reason}\n", section.section);
     }
     for finding in &found.findings {
         out += &format!("finding: {}\n", findings::line(finding));
@@ -126,24 +117,16 @@ fn summary(found: &Certification, console: &Console) -> String {
         out += &format!("note: {}\n", note.text());
     }
     let holds = found.verdict == Verdict::Validated;
-    let title = found
-        .verdicts
-        .iter()
-        .find(|verdict| verdict.overall)
-        .map_or(String::new(), |verdict| format!(", {}", verdict.title));
-    out += &format!(
-        "\n{}\n",
-        paint(format!("Verdict{title}: {}", found.verdict_in_words()), Some(holds))
-    );
+    let overall = found.verdicts.iter().find(|verdict| verdict.overall);
+    let title = overall.map_or(String::new(), |verdict| format!(", {}", verdict.title));
+    let words = format!("Verdict{title}: {}", found.verdict_in_words());
+    out += &format!("\n{}\n", console.paint(words, Some(holds)));
     for reason in &found.reasons {
         out += &format!("  {}\n", reason.text());
     }
     for verdict in found.verdicts.iter().filter(|verdict| !verdict.overall) {
-        out += &format!(
-            "{}: {}\n",
-            verdict.title,
-            paint(verdict.word.clone(), verdict.outcome.holds())
-        );
+        let word = console.paint(verdict.word.clone(), verdict.outcome.holds());
+        out += &format!("{}: {word}\n", verdict.title);
         for reason in &verdict.reasons {
             out += &format!("  {}\n", reason.text());
         }
@@ -157,8 +140,7 @@ fn verdict(holds: Option<bool>, marginal: bool, console: &Console) -> String {
         Some(false) => "NOT MET",
         None => "not assessable",
     };
-    let word = format!("{word}{}", if marginal { ", marginal" } else { "" });
-    holds.map_or(word.clone(), |holds| console.paint(&word, holds))
+    console.paint(format!("{word}{}", if marginal { ", marginal" } else { "" }), holds)
 }
 
 fn shown(value: Option<f64>) -> String {
@@ -193,8 +175,7 @@ fn statistics(found: &Certification, console: &Console) -> String {
         // With too few pairs, statistics that are within their limits do not meet them.
         let open = quantity.holds.is_none() && quantity.reason.is_some();
         for (index, statistic) in estimates::single(quantity).into_iter().enumerate() {
-            let name = if index == 0 { quantity.id.as_str() } else { "" };
-            let unit = if index == 0 { quantity.unit.as_str() } else { "" };
+            let (name, unit) = if index == 0 { (&*quantity.id, &*quantity.unit) } else { ("", "") };
             out += &format!(
                 "{name:width$}  {unit:>8}  {:<26} {:>5}  {:>4}  {:>12}  {:>12}  {:>8}  {}\n",
                 format!("{}{}", statistic.title, statistic.scope.suffix()),

@@ -11,7 +11,7 @@ use super::inputs::start_jobs;
 use super::of_runs::WithFiles;
 use super::output::{Console, Done, Ended, Exit};
 use super::places::{CAMPAIGN, check_file, check_folder};
-use super::simulator::{Chosen, SimulatorChoice};
+use super::simulator::{Chosen, SimulatorChoice, all};
 use super::values::from_one;
 use crate::data::record::Format;
 use crate::data::text::read_text;
@@ -127,43 +127,36 @@ impl Simulate {
         let files = WithFiles::open(folder, self.protocol.as_deref(), &places, &mut problems);
         let prepared = files.as_ref().map(|files| &files.campaign).and_then(|campaign| {
             if self.increment || self.baseline {
-                campaign
-                    .only_one(RecordKind::Simulation)
-                    .map_err(|problem| problems.push(problem))
-                    .ok()?;
+                problems.value(campaign.only_one(RecordKind::Simulation))?;
             }
-            campaign.one_vehicle().map_err(|problem| problems.push(problem)).ok()?;
+            problems.value(campaign.one_vehicle())?;
             let sections = sections(campaign, &mut problems)?;
             let chosen = self.simulator.open(campaign, &mut problems)?.integrated(steps);
-            chosen.check(catalogue).map_err(|found| problems.add(found)).ok()?;
+            problems.value(chosen.check(catalogue))?;
             problems.add(unusable(catalogue, effects, &sections, &chosen));
             Some((campaign, chosen, sections))
         });
         let (campaign, chosen, sections) = console.sound(prepared, &problems)?;
         let Some(out) = &self.out else { return Ok(Exit::Wrong) };
         if self.baseline {
-            let found = chosen.baseline(campaign, &sections);
-            let (deviations, warning) =
-                found.map_err(|failed| Ended::unfinished(Problems(failed)))?;
-            say_baseline(console, &chosen, &deviations, warning);
+            let (deviations, warning) = chosen
+                .baseline(campaign, &sections)
+                .map_err(|failed| Ended::unfinished(Problems(failed)))?;
+            say_baseline(console, &chosen, &deviations);
+            console.problems(&Problems(warning.into_iter().collect()));
         }
         let format = Format::from(self.records);
         let of = (catalogue, effects);
-        let made: Vec<Result<Vec<u8>, Problem>> =
-            console.with_progress(sections.len(), |progress| {
-                let one = |section: &Section| {
-                    let file = self.record(format, &chosen, campaign, of, section);
-                    progress(section.name());
-                    file
-                };
-                sections.par_iter().map(one).collect()
-            });
-        let failed: Vec<Problem> =
-            made.iter().filter_map(|made| made.as_ref().err().cloned()).collect();
-        if !failed.is_empty() {
-            return Err(Ended::unfinished(Problems(failed)));
-        }
-        let records = sections.iter().map(Section::name).zip(made.into_iter().flatten());
+        let made = console.with_progress(sections.len(), |progress| {
+            let one = |section: &Section| {
+                let file = self.record(format, &chosen, campaign, of, section);
+                progress(section.name());
+                file
+            };
+            all(sections.par_iter().map(one).collect())
+        });
+        let made = made.map_err(|failed| Ended::unfinished(Problems(failed)))?;
+        let records = sections.iter().map(Section::name).zip(made);
         let made = Made {
             command: "simulate",
             simulator: Some(chosen.simulator().name()),
@@ -200,10 +193,8 @@ impl Simulate {
         let (recorded, units) = chosen.recorded(campaign, section)?;
         let made = simulate(chosen.simulator(), catalogue, effects, section, Some(&recorded))?;
         let unit = |channel: &str| {
-            units
-                .iter()
-                .find(|(name, _)| name == channel)
-                .map_or_else(Unit::one, |(_, unit)| unit.clone())
+            let known = units.iter().find(|(name, _)| name == channel);
+            known.map_or_else(Unit::one, |(_, unit)| unit.clone())
         };
         record_file(format, &made, &unit)
     }
@@ -221,13 +212,12 @@ impl Simulate {
         };
         check_file(output, &[vehicle, track])?;
         let mut problems = Problems::default();
-        let tree = read_text(vehicle, &vehicle.display().to_string())
-            .map_err(|problem| problems.push(problem))
-            .ok()
+        let tree = problems
+            .value(read_text(vehicle, &vehicle.display().to_string()))
             .and_then(|(source, _)| yaml::load(&source, &mut problems));
-        let speed = speed(self.speed.as_deref()).map_err(|problem| problems.push(problem));
+        let speed = problems.value(speed(self.speed.as_deref()));
         console.problems(&problems);
-        let (Some(tree), Ok(speed)) = (tree, speed) else { return Ok(Exit::Wrong) };
+        let Some((tree, speed)) = tree.zip(speed) else { return Ok(Exit::Wrong) };
         let nowhere = Section::nowhere();
         if let Some(confined) = effects.iter().find(|applied| applied.confined.is_some()) {
             let says = format!(
@@ -279,12 +269,7 @@ fn unusable(
     problems
 }
 
-fn say_baseline(
-    console: &Console,
-    chosen: &Chosen<'_>,
-    deviations: &[Deviation],
-    warning: Option<Problem>,
-) {
+fn say_baseline(console: &Console, chosen: &Chosen<'_>, deviations: &[Deviation]) {
     let largest = deviations.iter().max_by(|a, b| a.share().total_cmp(&b.share()));
     if let Some(worst) = largest {
         console.say(&format!(
@@ -295,16 +280,12 @@ fn say_baseline(
             worst.section
         ));
     }
-    console.problems(&Problems(warning.into_iter().collect()));
 }
 
 /// The unit of a channel of the model.
 fn unit(name: &str) -> Unit {
-    let unit = CHANNELS
-        .iter()
-        .find(|(known, _)| *known == name)
-        .and_then(|(_, unit)| Unit::parse(unit).ok());
-    unit.unwrap_or_else(Unit::one)
+    let known = CHANNELS.iter().find(|(known, _)| *known == name);
+    known.and_then(|(_, unit)| Unit::parse(unit).ok()).unwrap_or_else(Unit::one)
 }
 
 /// The steps of a method. A sample is a whole number of them.
@@ -331,20 +312,17 @@ fn steps(integrator: Integrator, written: &str) -> Result<Steps, Problem> {
 }
 
 fn speed(written: Option<&str>) -> Result<f64, Problem> {
-    let Some(written) = written else {
-        return Err(Problem::error("speed-missing", "no speed is given")
-            .help("write `--speed 30` for m/s, or `--speed '108 km/h'`"));
+    let wrong = |code, says: &str| {
+        Problem::error(code, says).help("write `--speed 30` for m/s, or `--speed '108 km/h'`")
     };
-    let wrong = |says: String| {
-        Problem::error("speed", says).help("write `--speed 30` for m/s, or `--speed '108 km/h'`")
-    };
+    let written = written.ok_or_else(|| wrong("speed-missing", "no speed is given"))?;
     let unit =
         Unit { text: "m/s".into(), factor: 1.0, dimension: Dimension::LENGTH / Dimension::TIME };
-    let speed = number::read(written, &unit).map_err(|refused| wrong(refused.says))?.si;
+    let speed = number::read(written, &unit).map_err(|refused| wrong("speed", &refused.says))?.si;
     if !(1.0..=150.0).contains(&speed) {
-        return Err(wrong(format!(
-            "a speed of {speed:.1} m/s is outside the range of the model, 1 to 150 m/s"
-        )));
+        let says =
+            format!("a speed of {speed:.1} m/s is outside the range of the model, 1 to 150 m/s");
+        return Err(wrong("speed", &says));
     }
     Ok(speed)
 }

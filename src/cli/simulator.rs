@@ -44,6 +44,18 @@ pub enum Chosen<'a> {
     External(Box<External<'a>>),
 }
 
+/// All values, or all problems.
+pub fn all<T>(found: Vec<Result<T, Problem>>) -> Result<Vec<T>, Vec<Problem>> {
+    let (mut values, mut failed) = (Vec::new(), Vec::new());
+    for one in found {
+        match one {
+            Ok(value) => values.push(value),
+            Err(problem) => failed.push(problem),
+        }
+    }
+    if failed.is_empty() { Ok(values) } else { Err(failed) }
+}
+
 /// Largest deviation of the reference vehicle model from the campaign's simulation without a
 /// warning, as a share.
 const TOLERANCE: f64 = 0.05;
@@ -59,20 +71,14 @@ impl SimulatorChoice {
         let Some(file) = &self.simulator else {
             return Some(Chosen::Builtin(Box::new(Builtin::new(campaign, problems)?)));
         };
-        let (source, _) = read_text(file, &file.display().to_string())
-            .map_err(|problem| problems.push(problem))
-            .ok()?;
+        let (source, _) = problems.value(read_text(file, &file.display().to_string()))?;
         let folder =
             file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let mut program = read_program(&source, folder, problems)?;
-        program.launch = self
-            .launch
-            .iter()
-            .flat_map(|words| words.split_whitespace())
-            .map(str::to_string)
-            .collect();
+        let words = self.launch.iter().flat_map(|words| words.split_whitespace());
+        program.launch = words.map(str::to_string).collect();
         if let Some(folder) = &self.cache {
-            check_folder(folder, &[], campaign).map_err(|problem| problems.push(problem)).ok()?;
+            problems.value(check_folder(folder, &[], campaign))?;
         }
         let cache = match (&self.cache, self.no_cache) {
             (_, true) => Ok(Cache::none()),
@@ -80,9 +86,7 @@ impl SimulatorChoice {
             (None, _) => Cache::temporary(),
         };
         let made = cache.and_then(|cache| External::new(campaign, program, cache));
-        made.map_err(|problem| problems.push(problem))
-            .ok()
-            .map(|external| Chosen::External(Box::new(external)))
+        Some(Chosen::External(Box::new(problems.value(made)?)))
     }
 }
 
@@ -155,17 +159,10 @@ impl Chosen<'_> {
                 )
             }
         };
-        let all: Vec<Result<Vec<Deviation>, Problem>> = sections.par_iter().map(one).collect();
-        let failed: Vec<Problem> =
-            all.iter().filter_map(|one| one.as_ref().err().cloned()).collect();
-        if !failed.is_empty() {
-            return Err(failed);
-        }
-        let all: Vec<Deviation> = all.into_iter().flatten().flatten().collect();
-        let tolerance = if let Self::External(program) = self {
-            program.program().tolerance
-        } else {
-            TOLERANCE
+        let all = all(sections.par_iter().map(one).collect())?.concat();
+        let tolerance = match self {
+            Self::External(program) => program.program().tolerance,
+            Self::Builtin(_) => TOLERANCE,
         };
         let warning = baseline_warning(self.simulator(), tolerance, &all);
         Ok((all, warning))

@@ -18,7 +18,6 @@ use crate::report::study as report;
 use crate::report::view::Opening;
 use crate::result::study as found;
 use crate::robustness::{self, Asked, Settings, Synchronisation, Vary};
-use crate::run::Row;
 use crate::study;
 use crate::values::Joined;
 
@@ -135,25 +134,21 @@ impl Study {
     fn of_values(&self, common: &Common, mut problems: Problems, console: &Console) -> Done {
         if !matches!(self, Self::Sections { .. }) {
             let says = "this study evaluates records again, and files of values contain none";
-            problems.push(
-                Problem::error("values-unsuitable", says)
-                    .help("give the campaign, or use `study sections`"),
-            );
+            let problem = Problem::error("values-unsuitable", says);
+            problems.push(problem.help("give the campaign, or use `study sections`"));
         }
         if common.protocol.is_some() || !common.set.is_empty() {
             let says = "values are of a protocol and its parameters already: `--protocol` and `--set` have no effect on them";
-            problems.push(
-                Problem::error("values-unsuitable", says).help("give them to `fishplate reduce`"),
-            );
+            let problem = Problem::error("values-unsuitable", says);
+            problems.push(problem.help("give them to `fishplate reduce`"));
         }
         let joined =
             if problems.any_error() { None } else { joined(&common.campaigns, &mut problems) };
+        // A row names its record where there are several of a side.
         let several = |joined: &Joined| {
-            joined
-                .sections()
-                .iter()
-                .flat_map(|(_, values)| values.rows.iter().flatten())
-                .any(is_of_record)
+            let mut rows =
+                joined.sections().iter().flat_map(|(_, values)| values.rows.iter().flatten());
+            rows.any(|row| row.record.is_some())
         };
         if joined.as_ref().is_some_and(several) {
             let says = "a selection takes one value of each section and signal, and the values are of several records";
@@ -177,52 +172,34 @@ impl Study {
         match self {
             Self::Sections { .. } => Some(Asked::Sections),
             Self::Sync { offsets, correct, farthest, .. } => {
-                if !(*farthest > 0.0 && farthest.is_finite()) {
-                    problems.push(Problem::error(
-                        "farthest",
-                        format!("`--farthest {farthest}` must be above zero"),
-                    ));
+                let (farthest, correct) = (*farthest, *correct);
+                if !(farthest > 0.0 && farthest.is_finite()) {
+                    let says = format!("`--farthest {farthest}` must be above zero");
+                    problems.push(Problem::error("farthest", says));
                     return None;
                 }
-                let wrong =
-                    |says| Problem::error("offsets", format!("`--offsets {offsets}`: {says}"));
                 let help = "offsets are in the unit of the protocol's axis: `--offsets=-5,5`, or `--offsets=-5..5 step 1`";
-                let offsets =
-                    numbers(offsets).map_err(|says| problems.push(wrong(says).help(help))).ok()?;
-                Some(Asked::Sync(Synchronisation {
-                    offsets,
-                    farthest: *farthest,
-                    correct: *correct,
-                }))
+                let found = numbers(offsets).map_err(|says| {
+                    Problem::error("offsets", format!("`--offsets {offsets}`: {says}")).help(help)
+                });
+                let offsets = problems.value(found)?;
+                Some(Asked::Sync(Synchronisation { offsets, farthest, correct }))
             }
             Self::Parameters { vary, .. } => {
-                let mut all = Vec::new();
-                for vary in vary {
-                    let Some((name, text)) = vary.split_once('=') else {
-                        problems.push(
-                            Problem::error("vary", format!("`--vary {vary}` has no `=`"))
-                                .help("write `--vary name=values`"),
-                        );
-                        return None;
-                    };
-                    match values(text) {
-                        Ok(values) => all.push(Vary { name: name.trim().to_owned(), values }),
-                        Err(says) => {
-                            problems
-                                .push(Problem::error("vary", format!("`--vary {vary}`: {says}")));
-                            return None;
-                        }
-                    }
-                }
-                Some(Asked::Parameters(all))
+                let one = |vary: &String| {
+                    let wrong =
+                        |says: &str| Problem::error("vary", format!("`--vary {vary}`{says}"));
+                    let (name, text) = vary
+                        .split_once('=')
+                        .ok_or_else(|| wrong(" has no `=`").help("write `--vary name=values`"))?;
+                    let values = values(text).map_err(|says| wrong(&format!(": {says}")))?;
+                    Ok(Vary { name: name.trim().to_owned(), values })
+                };
+                let all: Result<_, Problem> = vary.iter().map(one).collect();
+                problems.value(all).map(Asked::Parameters)
             }
         }
     }
-}
-
-/// Whether a row names its record, as it does where there are several of a side.
-fn is_of_record(row: &Row) -> bool {
-    row.record.is_some()
 }
 
 impl Common {
@@ -239,18 +216,15 @@ impl Common {
     }
 
     fn wrong(&self) -> Problems {
+        let Self { width, enumerate, .. } = self;
         let mut problems = Problems::default();
-        if !(self.width > 0.0 && self.width < 1.0) {
-            problems.push(Problem::error(
-                "width",
-                format!("`--width {}` must be between 0 and 1", self.width),
-            ));
+        if !(*width > 0.0 && *width < 1.0) {
+            let says = format!("`--width {width}` must be between 0 and 1");
+            problems.push(Problem::error("width", says));
         }
-        if self.enumerate.is_nan() || self.enumerate < 0.0 {
-            problems.push(Problem::error(
-                "enumerate",
-                format!("`--enumerate {}` is not a valid number of selections", self.enumerate),
-            ));
+        if enumerate.is_nan() || *enumerate < 0.0 {
+            let says = format!("`--enumerate {enumerate}` is not a valid number of selections");
+            problems.push(Problem::error("enumerate", says));
         }
         problems
     }
@@ -260,18 +234,14 @@ impl Common {
 fn write(common: &Common, study: &found::Study, console: &Console) -> Done {
     let files = deliver::study(study, Reports::ALL).map_err(Ended::unfinished)?;
     console.write_all(SetKind::Report, &common.out, &files)?;
-    if !console.quiet {
-        let opening = report::opening(study);
-        let fact = |fact: &Fact| format!("  {}: {}\n", fact.name, fact.value.letters());
-        let facts: String = opening.facts.iter().map(fact).collect();
-        told(&report::title(study), &opening, &facts, console);
-        console.say(&format!("written: {}", common.out.display()));
-    }
+    let opening = report::opening(study);
+    let fact = |fact: &Fact| format!("  {}: {}\n", fact.name, fact.value.letters());
+    let facts: String = opening.facts.iter().map(fact).collect();
+    console.written(&told(&report::title(study), &opening, &facts), &common.out);
     Ok(Exit::Done)
 }
 
 /// What a document says at its beginning, and some facts.
-pub fn told(title: &str, opening: &Opening, facts: &str, console: &Console) {
-    let Opening { headline, sentence, .. } = opening;
-    console.show(&format!("{title}\n\n{}\n{sentence}\n{facts}", headline.word));
+pub fn told(title: &str, Opening { headline, sentence, .. }: &Opening, facts: &str) -> String {
+    format!("{title}\n\n{}\n{sentence}\n{facts}", headline.word)
 }
