@@ -1,28 +1,18 @@
 //! `blind`: diagnoses every campaign first, then reads the truths and scores the answers.
 
-use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use clap::Args;
 use rayon::prelude::*;
 
 use super::diagnose::Asked;
-use super::inputs::prepare;
-use super::output::{Console, Done, Ended, Exit};
-use super::places::{REPORT, check_folder, same};
-use super::protocols::load;
+use super::kit::*;
 use super::simulate::load_catalogue;
-use crate::data::Campaign;
 use crate::data::campaign::CAMPAIGN_FILE;
-use crate::data::write::Outputs;
 use crate::diagnose::score::{Truth, blind, case};
 use crate::diagnose::settings::Settings;
 use crate::diagnose::{Outcome, Really, effect_of_truth};
-use crate::disk;
 use crate::effects::Catalogue;
-use crate::library;
-use crate::problem::{Problem, Problems};
 use crate::report::blind as report;
 use crate::report::html;
 use crate::result::blind::Case;

@@ -1,16 +1,7 @@
 //! `certify`: evaluates a protocol on a campaign and writes the report.
 
-use std::num::NonZeroUsize;
-use std::path::PathBuf;
-
-use clap::Args;
-
-use super::inputs::{check_outputs, prepare_all, start_jobs};
-use super::output::{Console, Done};
-use super::places::REPORT;
+use super::kit::*;
 use super::report::Report;
-use super::values::from_one;
-use crate::problem::Problems;
 
 #[derive(Debug, Args)]
 pub struct Certify {

@@ -1,22 +1,11 @@
 //! `compare`: protocols side by side over campaigns.
 
-use std::num::NonZeroUsize;
-use std::path::PathBuf;
-
-use clap::Args;
-
-use super::inputs::start_jobs;
-use super::output::{Console, Done, Ended, Exit};
-use super::places::{REPORT, check_folder};
-use super::protocols::load;
+use super::kit::*;
 use super::study::told;
-use super::values::{from_one, numbers};
+use super::values::numbers;
 use crate::compare::{Prepared, SIZES, Settings};
-use crate::data::Campaign;
 use crate::deliver::{self, Reports};
-use crate::disk::SetKind;
 use crate::prepare::set_by_hand;
-use crate::problem::{Problem, Problems};
 use crate::report::comparison as report;
 use crate::result::comparison::{Cell, Comparison};
 

@@ -1,34 +1,22 @@
 //! `diagnose`: locates the gap, identifies the effects that cause it, and computes how far they
 //! reduce it.
 
-use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
-
-use clap::Args;
 use indicatif::ProgressBar;
 
-use super::convert_records::Records;
-use super::inputs::{prepare, start_jobs};
+use super::kit::*;
 use super::of_runs::WithFiles;
-use super::output::{Console, Done, Ended, Exit};
-use super::places::{CAMPAIGN, REPORT, check_folder, same};
 use super::simulator::{Chosen, SimulatorChoice};
-use super::values::from_one;
 use crate::certify::Compiled;
 use crate::data::hash::sha256;
-use crate::data::write::Outputs;
-use crate::data::{Campaign, RecordKind};
 use crate::deliver::{self, Reports};
 use crate::diagnose::answer::verdict::remark;
 use crate::diagnose::inputs::{Inputs, Reference};
 use crate::diagnose::preflight::{Preflight, preflight};
 use crate::diagnose::settings::Settings;
 use crate::diagnose::{Cache, Outcome, diagnose, write_improved};
-use crate::disk::SetKind;
 use crate::effects::Catalogue;
-use crate::library;
 use crate::prepare::for_diagnosis;
-use crate::problem::{Problem, Problems, Severity};
+use crate::problem::Severity;
 use crate::result::diagnosis::Diagnosis;
 use crate::simulate::{Builtin, Section, Simulator, Strict};
 

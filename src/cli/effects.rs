@@ -2,13 +2,9 @@
 
 use std::fmt::Write;
 
-use clap::Args;
-
-use super::output::{Console, Done, Exit};
+use super::kit::*;
 use super::simulate::load_catalogue;
 use crate::effects::{Action, Catalogue};
-use crate::library;
-use crate::problem::Problems;
 
 #[derive(Debug, Args)]
 pub struct Effects {

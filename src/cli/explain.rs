@@ -1,21 +1,16 @@
 //! `explain`: a protocol at any stage of its processing, or the functions of the language.
 
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
-use super::output::{Console, Done, Ended};
-use super::places::check_file;
-use super::protocols::load;
+use super::kit::*;
 use crate::catalog::entries;
 use crate::check::{
     self, Overrides,
     plan::{Plan, Report},
 };
 use crate::graph;
-use crate::problem::{Problem, Problems};
 use crate::run::needs;
 use crate::syntax::document::Document;
 use crate::units::SYMBOLS;

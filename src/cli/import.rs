@@ -1,30 +1,13 @@
 //! `import`: records of other systems to a campaign, by a mapping; `--draft` proposes one.
 
-use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
-
-use clap::Args;
-
-use super::convert_records::Records;
-use super::inputs::start_jobs;
-use super::output::{Console, Done, Ended, Exit};
-use super::places::{check_file, same};
-use super::protocols::load;
-use super::values::from_one;
+use super::kit::*;
 use crate::certify::{Compiled, certify, compile};
 use crate::check::Overrides;
 use crate::check::plan::{Plan, Side};
-use crate::data::record::Format;
-use crate::data::text::read_text;
-use crate::data::write::Outputs;
-use crate::data::{Campaign, RecordKind};
-use crate::disk::SetKind;
 use crate::import::draft::{With, draft, groups, relative_to};
 use crate::import::exchanged::exchanged;
 use crate::import::mapping::{self, Mapping};
-use crate::library;
 use crate::prepare::for_import;
-use crate::problem::{Problem, Problems};
 use crate::report::findings;
 use crate::result::Finding;
 use crate::run::needs::needs;

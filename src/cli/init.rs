@@ -1,12 +1,8 @@
 //! `init`: the draft of a protocol and an empty campaign.
 
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use clap::Args;
-
-use super::output::{Console, Done};
-use super::protocols::load;
+use super::kit::*;
 use super::scaffold::{Scaffold, scaffold};
 use crate::check::{self, Overrides, family, family::Family};
 use crate::data::record::{listed_headings, read_headings};
@@ -14,8 +10,6 @@ use crate::graph;
 use crate::init::channels::{Listed, channels, listed};
 use crate::init::protocol::Parent;
 use crate::init::{File, campaign, protocol};
-use crate::library;
-use crate::problem::{Problem, Problems};
 use crate::run::needs;
 use crate::source::Source;
 

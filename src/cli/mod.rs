@@ -10,6 +10,7 @@ mod explain;
 mod import;
 mod init;
 mod inputs;
+mod kit;
 mod needs;
 mod new;
 mod of_runs;

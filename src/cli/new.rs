@@ -1,16 +1,10 @@
 //! `new`: a campaign of any machine from simulated and measured records.
 
-use std::path::PathBuf;
-
-use clap::{Args, ValueEnum};
-
-use super::output::{Console, Done};
+use super::kit::*;
 use super::scaffold::{Scaffold, scaffold};
 use crate::check::{self, Overrides, family};
-use crate::library;
 use crate::new::records::Pair;
 use crate::new::{DOMAINS, Made, PROTOCOL_FILE, files};
-use crate::problem::Problems;
 use crate::source::Source;
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

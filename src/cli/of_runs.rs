@@ -1,15 +1,9 @@
 //! Campaigns of which each section must have records of its own, also where sections are parts of
 //! runs.
 
-use std::path::Path;
-
-use super::inputs::{prepare, with_protocols};
-use crate::data::Campaign;
+use super::kit::*;
 use crate::data::cut::cut;
-use crate::data::record::Format;
-use crate::data::write::Outputs;
-use crate::disk::{self, Scratch, SetKind};
-use crate::problem::{Problem, Problems};
+use crate::disk::{self, Scratch};
 
 /// A campaign with a file for each section and kind of record.
 #[derive(Debug)]

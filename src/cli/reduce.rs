@@ -1,18 +1,8 @@
 //! `reduce`: evaluates a part of the sections of a campaign to a file of values; `judge`: the
 //! report from such files.
 
-use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
-
-use clap::Args;
-
-use super::inputs::{prepare_all, start_jobs};
-use super::output::{Console, Done, Ended, Exit};
-use super::places::{check_file, check_folder, check_not_input, check_out};
+use super::kit::*;
 use super::report::Report;
-use super::values::from_one;
-use crate::disk;
-use crate::problem::{Problem, Problems};
 use crate::run::{SectionValues, Shard};
 use crate::values::{self, Joined, Part, Values};
 

@@ -1,14 +1,9 @@
 //! The files of a report and its summary, of `certify` and of `judge`.
 
-use std::path::PathBuf;
-
-use clap::{Args, ValueEnum};
-
-use super::output::{Console, Done, Ended, Exit};
+use super::kit::*;
 use super::sign;
 use crate::deliver::{self, Reports};
-use crate::disk::{SIGNATURE, SetKind};
-use crate::problem::{Problem, Problems};
+use crate::disk::SIGNATURE;
 use crate::provenance::carried::REPORT_PDF;
 use crate::provenance::signature::{self, SecretKey, secret_key};
 use crate::provenance::statement;

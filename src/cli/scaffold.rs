@@ -1,11 +1,7 @@
 //! What `init` and `new` have in common: a new folder with files, and what is told of it.
 
-use std::path::{Path, PathBuf};
-
-use super::output::{Console, Done, Ended, Exit};
-use crate::disk;
+use super::kit::*;
 use crate::init::File;
-use crate::problem::{Problem, Problems};
 
 /// The files of a new folder.
 pub struct Scaffold {

@@ -1,22 +1,11 @@
 //! `sections`: writes the sections that a protocol finds in the runs of a campaign.
 
 use std::fmt::Write;
-use std::num::NonZeroUsize;
-use std::path::PathBuf;
 
-use clap::Args;
-
-use super::convert_records::Records;
-use super::inputs::{compiled_for, start_jobs, with_protocols};
-use super::output::{Console, Done, Ended, Exit};
-use super::places::{CAMPAIGN, check_file, check_folder};
-use super::values::from_one;
+use super::inputs::compiled_for;
+use super::kit::*;
 use crate::certify::Opened;
 use crate::data::cut::cut;
-use crate::data::record::Format;
-use crate::data::write::Outputs;
-use crate::disk::SetKind;
-use crate::problem::Problems;
 use crate::report::found::{drift_in_words, in_words};
 use crate::report::number::count;
 use crate::result::found::FoundSections;

@@ -1,12 +1,6 @@
 //! `fishplate keygen` and `fishplate sign`.
 
-use std::path::{Path, PathBuf};
-
-use clap::Args;
-
-use super::output::{Console, Done, Ended, Exit};
-use crate::disk;
-use crate::problem::Problem;
+use super::kit::*;
 use crate::provenance::signature::{PASSWORD, beside, content, new_keys, secret_key, sign};
 
 #[derive(Debug, Args)]

@@ -1,29 +1,14 @@
 //! `simulate`: runs the reference vehicle model or another simulator, with effects added.
 
-use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
-
-use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 
-use super::convert_records::Records;
-use super::inputs::start_jobs;
+use super::kit::*;
 use super::of_runs::WithFiles;
-use super::output::{Console, Done, Ended, Exit};
-use super::places::{CAMPAIGN, check_file, check_folder};
 use super::simulator::{Chosen, SimulatorChoice, all};
-use super::values::from_one;
-use crate::data::record::Format;
-use crate::data::text::read_text;
-use crate::data::write::Outputs;
-use crate::data::{Campaign, RecordKind};
-use crate::disk::SetKind;
 use crate::effects::{self, Applied, Catalogue};
-use crate::library;
 use crate::model::CHANNELS;
 use crate::model::integrate::{MOST_STEPS, Method, SAMPLE, Steps};
 pub use crate::prepare::load_catalogue;
-use crate::problem::{Problem, Problems};
 use crate::simulate::{
     Deviation, Made, Plan, Section, check_confined, effects_of_origin, record_file, sections,
     simulate, single, write_campaign,

@@ -1,16 +1,10 @@
 //! Choice of the simulator: the reference vehicle model, or a program described by a file.
 
-use std::path::{Path, PathBuf};
-
-use clap::Args;
 use rayon::prelude::*;
 
-use super::places::check_folder;
-use crate::data::text::read_text;
-use crate::data::{Campaign, RecordKind};
+use super::kit::*;
 use crate::effects::{Catalogue, Signals};
 use crate::model::integrate::Steps;
-use crate::problem::{Problem, Problems};
 use crate::simulate::{
     Builtin, Cache, Deviation, External, Section, Simulator, Task, baseline_warning, deviations,
     in_units, read_program, recorded,

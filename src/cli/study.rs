@@ -1,18 +1,11 @@
 //! `study`: dependence of the verdict on sections, synchronisation and parameters.
 
-use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use clap::Subcommand;
 
-use clap::{Args, Subcommand};
-
-use super::inputs::{check_outputs, prepare_all, start_jobs};
-use super::output::{Console, Done, Ended, Exit};
-use super::places::REPORT;
+use super::kit::*;
 use super::reduce::joined;
-use super::values::{from_one, numbers, values};
+use super::values::{numbers, values};
 use crate::deliver::{self, Reports};
-use crate::disk::SetKind;
-use crate::problem::{Problem, Problems};
 use crate::report::document::Fact;
 use crate::report::study as report;
 use crate::report::view::Opening;

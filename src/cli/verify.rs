@@ -1,16 +1,7 @@
 //! `fishplate verify` and `fishplate trace`.
 
-use std::num::NonZeroUsize;
-use std::path::PathBuf;
-
-use clap::Args;
-
-use super::output::{Console, Done, Exit};
-use super::protocols::load;
-use super::values::from_one;
+use super::kit::*;
 use crate::check::family::Family;
-use crate::disk;
-use crate::problem::{Problem, Problems};
 use crate::provenance::carried::{self, Carried};
 use crate::provenance::signature;
 use crate::provenance::trace::{Asked, trace};

@@ -1,6 +1,6 @@
 //! Scores of blind diagnoses as a page.
 
-use crate::report::document::{Cell, Chapter, Column, Document, Format, PROGRAM, Table, cells};
+use crate::report::document::*;
 use crate::report::number;
 use crate::result::blind::{Blind, Case};
 

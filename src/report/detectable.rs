@@ -1,6 +1,6 @@
 //! What a campaign can show: drawn campaigns, detectable sizes, effects closest to being named.
 
-use crate::report::document::{Block, Cell, Column, Format, Table, cells};
+use crate::report::document::*;
 use crate::report::number;
 use crate::result::diagnosis::{Detectable, Diagnosis, Share};
 

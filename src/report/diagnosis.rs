@@ -2,9 +2,7 @@
 //! effects.
 
 use crate::report::detectable::detectable;
-use crate::report::document::{
-    Block, Cell, Chapter, Column, Document, Fact, Figure, Finding, Format, Table, cells,
-};
+use crate::report::document::*;
 use crate::report::figure;
 use crate::report::number;
 use crate::report::view::{self, Opening};

@@ -1,7 +1,7 @@
 //! Agreement of protocols and of metrics.
 
 use super::three;
-use crate::report::document::{Block, Cell, Chapter, Column, Table};
+use crate::report::document::*;
 use crate::result::comparison::{Agreement, Comparison};
 
 pub fn chapter(found: &Comparison) -> Option<Chapter> {

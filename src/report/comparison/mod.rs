@@ -5,7 +5,7 @@ mod agreement;
 mod sensitivity;
 mod verdicts;
 
-use crate::report::document::{Cell, Document, Fact, Finding, Format};
+use crate::report::document::*;
 use crate::report::figure;
 use crate::report::view::{self, Opening};
 use crate::result::comparison::{Comparison, Sensitivity};

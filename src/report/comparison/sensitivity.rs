@@ -1,7 +1,7 @@
 //! Sensitivity of metrics to disturbances.
 
 use super::{metric, three};
-use crate::report::document::{Block, Cell, Chapter, Column, Figure, Table, cells};
+use crate::report::document::*;
 use crate::result::comparison::{Comparison, Sensitivity};
 
 /// A curve: its name, and its values by size.

@@ -1,7 +1,7 @@
 //! Verdicts, applicability, ratios and differences of protocols.
 
 use super::three;
-use crate::report::document::{Block, Cell, Chapter, Column, Medium, Table, cells};
+use crate::report::document::*;
 use crate::result::comparison::{
     Applicability, Cell as OnProtocol, Compared, Comparison, Difference, OnCampaign, Tried,
 };

@@ -1,12 +1,7 @@
 //! Sections as points with the outline of their hull, and wanted operation inside and outside; two
 //! coordinates in each diagram.
 
-use super::axis;
-use super::canvas::{Canvas, Font, Group, Point};
-use super::frame::Frame;
-use super::legend::{Entry, Legend};
-use super::style::{BLUE, Color, INK, MUTED, Mark, Pen, SMALL, TEXT, VERMILION, WIDTH, cut};
-use crate::report::number;
+use super::kit::*;
 use crate::result::{CoordinateRange, DomainResult};
 
 /// Most pairs of coordinates drawn: those of the first four.

@@ -1,12 +1,8 @@
 //! Box plots of normalised statistics over all selections of sections, as in Götz and Polach,
 //! Figures 5, 6 and 8.
 
-use super::canvas::{Canvas, Font, Group};
-use super::frame::Frame;
-use super::legend::{Entry, Legend};
+use super::kit::*;
 use super::ratios::Ratios;
-use super::style::{BLUE, Color, INK, LIMIT, MUTED, Mark, Pen, SHADE, VERMILION, WIDTH};
-use crate::report::number;
 use crate::result::StatisticName;
 use crate::result::study::{QuantitySpread, Spread, StatisticSpread};
 

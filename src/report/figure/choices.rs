@@ -1,14 +1,7 @@
 //! Influence of parameters on the verdict: the largest normalised statistic for every value of
 //! every parameter.
 
-use super::canvas::{Canvas, Font, Group};
-use super::frame::Frame;
-use super::legend::{Entry, Legend};
-use super::style::{
-    BEYOND, BLUE, Color, GRID, INK, LIMIT, MUTED, Mark, SMALL, TEXT, VERMILION, WHITE, WIDTH, cut,
-    text_width,
-};
-use crate::report::number;
+use super::kit::*;
 use crate::result::study::{AtValue, Largest, ParameterStudy};
 use crate::result::{Verdict, VerdictWords};
 

@@ -2,14 +2,10 @@
 
 use indexmap::IndexMap;
 
-use super::axis::{self, Range};
-use super::canvas::{Canvas, Font, Group};
-use super::frame::Frame;
+use super::kit::*;
 use super::levels::Levels;
 use super::pair_mark::Pairs;
-use super::style::{GRID, MUTED, SHADE, SMALL, TEXT, TICK, WIDTH, cut, text_width};
 use super::zones::Marks;
-use crate::report::number;
 use crate::result::{QuantityResult, Scope};
 
 /// Maximum number of ticks of the y axis.

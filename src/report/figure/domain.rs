@@ -2,13 +2,8 @@
 
 use indexmap::IndexSet;
 
-use super::axis::{self, Range};
-use super::canvas::{Canvas, Font, Group, Point};
-use super::frame::Frame;
-use super::legend::{Entry, Legend};
-use super::style::{Color, INK, MEASURED, MUTED, Mark, TEXT, TICK, WIDTH, cut, text_width};
+use super::kit::*;
 use super::zones::Zones;
-use crate::report::number;
 use crate::result::{DomainRange, SectionResult};
 
 /// Height of one range, in points.

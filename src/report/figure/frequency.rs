@@ -3,14 +3,10 @@
 
 use indexmap::IndexMap;
 
-use super::axis;
-use super::canvas::{Canvas, Font};
-use super::frame::Frame;
-use super::legend::{Entry, Legend};
+use super::kit::*;
 use super::pair_mark::Pairs;
-use super::style::{self, Color, LIMIT, MUTED, Mark, Pen, TICK, WIDTH};
+use super::style;
 use super::zones::Zones;
-use crate::report::number;
 use crate::result::{PairValue, QuantityResult, StatisticName, StatisticResult};
 
 const HEIGHT: f64 = 140.0;

@@ -1,8 +1,7 @@
 //! Reference levels of a diagram of differences: mean, standard deviation and their limits.
 
-use super::legend::Entry;
-use super::style::{BLUE, DASH_DOT, DASHED, DOTTED, LIMIT, LIMITS, Pen, SHADE, VERMILION, color};
-use crate::report::{estimates, number};
+use super::kit::*;
+use crate::report::estimates;
 use crate::result::{QuantityResult, Scope, StatisticName, StatisticResult};
 
 /// Most limits that are told apart by their dashes, each with an entry of the legend.

@@ -1,8 +1,6 @@
 //! Map of the gap: quantity and position by zone and band; the shade is the share of the gap.
 
-use super::canvas::{Canvas, Font, Group};
-use super::style::{Color, GRID, INK, MUTED, Mark, SMALL, TEXT, WHITE, WIDTH, cut};
-use crate::report::number;
+use super::kit::*;
 use crate::result::diagnosis::Where;
 
 const ROW: f64 = 11.0;

@@ -13,6 +13,7 @@ mod differences;
 mod domain;
 pub mod frame;
 mod frequency;
+mod kit;
 pub mod legend;
 mod levels;
 mod map;

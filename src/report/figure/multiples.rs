@@ -3,15 +3,10 @@
 
 use indexmap::IndexSet;
 
-use super::axis;
-use super::canvas::{Canvas, Font};
-use super::frame::Frame;
-use super::legend::{Entry, Legend};
+use super::kit::*;
 use super::pair_mark::Pairs;
-use super::style::{GRID, LIMIT, MUTED, Pen, SMALL, TEXT, WIDTH, cut, text_width};
 use super::zones::{Marks, Zones};
 use crate::report::brief::{Line, Matrix, Numbered};
-use crate::report::number;
 use crate::result::{QuantityResult, StatisticName};
 
 /// Lines of diagrams that fit a page.

@@ -1,13 +1,8 @@
 //! Study of offsets: normalised statistics of one selection (as Götz and Polach, Figure 7) and the
 //! share validated.
 
-use super::axis;
-use super::canvas::{Canvas, Group};
-use super::frame::Frame;
-use super::legend::{Entry, Legend};
+use super::kit::*;
 use super::ratios::Ratios;
-use super::style::{BLUE, Mark, WIDTH, look};
-use crate::report::number;
 use crate::result::study::{AtOffset, SyncStudy};
 use crate::result::{StatisticName, VerdictWords};
 

@@ -2,15 +2,9 @@
 
 use indexmap::IndexSet;
 
-use super::axis::Range;
-use super::canvas::{Canvas, Font, Group, Point};
-use super::frame::Frame;
-use super::legend::{Entry, Legend};
-use super::style::{
-    BEYOND, Color, GRID, INK, MUTED, Mark, SHADE, SMALL, TEXT, WIDTH, look, text_width,
-};
+use super::kit::*;
 use super::symbol::symbol;
-use crate::report::{estimates, number};
+use crate::report::estimates;
 use crate::result::{QuantityResult, StatisticName, StatisticResult};
 
 /// Maximum number of statistics of a quantity on separate lines; more share one line.

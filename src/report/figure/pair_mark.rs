@@ -1,14 +1,12 @@
 //! The mark of one pair, with its tooltip.
 
-use super::canvas::{Canvas, Group, Point};
-use super::style::{Color, Mark};
-use crate::report::number;
+use super::kit::*;
 use crate::report::sides::Sides;
 use crate::result::{PairValue, QuantityResult};
 
 /// The pairs of a quantity, and the decimals of their values.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pairs<'a> {
+pub struct Pairs<'a> {
     quantity: &'a QuantityResult,
     decimals: usize,
 }

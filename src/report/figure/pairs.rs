@@ -1,13 +1,9 @@
 //! The values of one quantity: simulated over measured, and the differences by section.
 
-use super::axis;
-use super::canvas::{Canvas, Font};
 use super::differences;
-use super::frame::Frame;
-use super::legend::Legend;
+use super::kit::*;
 use super::levels::Levels;
 use super::pair_mark::Pairs;
-use super::style::{MUTED, TICK, WIDTH};
 use super::zones::{Marks, Zones};
 use crate::report::sides::Sides;
 use crate::result::{PairValue, QuantityResult};

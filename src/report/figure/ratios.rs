@@ -1,9 +1,6 @@
 //! A diagram of statistics divided by their limits, with a labelled slot for each of them.
 
-use super::axis::{self, Range};
-use super::canvas::{Canvas, Font};
-use super::frame::Frame;
-use super::style::{SMALL, TEXT, WIDTH, text_width};
+use super::kit::*;
 use super::symbol::symbol;
 
 /// Maximum number of ticks of the y axis.

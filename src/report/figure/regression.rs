@@ -1,17 +1,9 @@
 //! Regressions of the values of groups: one small diagram for each group, in a row on the same
 //! scale.
 
-use super::axis::{self, Range};
-use super::canvas::{Canvas, Font, Group};
-use super::frame::Frame;
-use super::legend::{Entry, Legend};
-use super::style::{
-    BLUE, Color, DASH_DOT, DOTTED, INK, LIMIT, MUTED, Mark, Pen, SMALL, TEXT, TICK, VERMILION,
-    WIDTH, cut_apart, text_width,
-};
+use super::kit::*;
 use super::zones::Zones;
 use crate::report::estimates::OfLimit;
-use crate::report::number;
 use crate::result::{QuantityResult, RegressionFigure, StatisticResult};
 
 /// Most diagrams side by side, and most in a figure: those of the largest ratio, so that they stay

@@ -1,11 +1,6 @@
 //! Sensitivity of metrics: rms change of value / limit over the size of a disturbance.
 
-use super::axis;
-use super::canvas::{Canvas, Group};
-use super::frame::Frame;
-use super::legend::{Entry, Legend};
-use super::style::{TEXT, WIDTH, color, cut_apart, look};
-use crate::report::number;
+use super::kit::*;
 
 /// Height of the drawing area, in points.
 const PANEL: f64 = 130.0;

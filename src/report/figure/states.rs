@@ -1,14 +1,7 @@
 //! Figures of a diagnosis: normalised statistics before and after, and signals of the sections with
 //! the largest gap.
 
-use super::axis;
-use super::canvas::{Canvas, Font, Group};
-use super::frame::Frame;
-use super::legend::{Entry, Legend};
-use super::style::{
-    BLUE, Color, GRID, INK, MEASURED, Mark, Pen, SHADE, SMALL, TEXT, VERMILION, WIDTH, cut_apart,
-};
-use crate::report::number;
+use super::kit::*;
 use crate::result::diagnosis::{Panel, Picture, Shrink};
 
 const ROW: f64 = 19.0;

@@ -1,10 +1,6 @@
 //! Simulated and measured signal over distance or time.
 
-use super::axis;
-use super::canvas::{Canvas, Font, Group};
-use super::frame::Frame;
-use super::legend::{Entry, Legend};
-use super::style::{BLUE, DASH_DOT, DASHED, DOTTED, INK, MEASURED, Pen, SHADE, TEXT, WIDTH, color};
+use super::kit::*;
 use crate::result::{Curve, Trace};
 
 const HEIGHT: f64 = 128.0;

@@ -2,8 +2,7 @@
 
 use indexmap::IndexSet;
 
-use super::legend::Entry;
-use super::style::{Color, Mark, look};
+use super::kit::*;
 use crate::result::{Certification, PairValue, RecordName};
 
 /// The zones of a campaign in the order of the protocol.

@@ -7,7 +7,7 @@ mod sync;
 
 use std::fmt::Display;
 
-use crate::report::document::{Block, Cell, Chapter, Column, Document, Finding, Table, cells};
+use crate::report::document::*;
 use crate::report::figure;
 use crate::report::number;
 use crate::report::view::{self, Opening};

@@ -1,9 +1,7 @@
 //! Text of the study of selections.
 
 use super::{BOXES, percent, scoped, share};
-use crate::report::document::{
-    Block, Cell, Chapter, Column, Fact, Figure, Finding, Format, Table, cells,
-};
+use crate::report::document::*;
 use crate::report::figure;
 use crate::report::number;
 use crate::report::sides::capital;

@@ -1,7 +1,7 @@
 //! Text of the study of the synchronisation.
 
 use super::{BOXES, percent, scoped, sections, share};
-use crate::report::document::{Block, Cell, Chapter, Column, Fact, Figure, Format, Table, cells};
+use crate::report::document::*;
 use crate::report::number;
 use crate::report::sides::capital;
 use crate::report::view::Opening;

@@ -4,7 +4,7 @@ use typst::foundations::Datetime;
 use typst_pdf::Timestamp;
 
 /// The date of issue, `2026-03-31`, at 00:00. `None` if the text is not a date.
-pub(super) fn issued(text: &str) -> Option<Timestamp> {
+pub fn issued(text: &str) -> Option<Timestamp> {
     let mut parts = text.split('-');
     let (year, month, day) =
         (parts.next()?.parse().ok()?, parts.next()?.parse().ok()?, parts.next()?.parse().ok()?);
@@ -15,7 +15,7 @@ pub(super) fn issued(text: &str) -> Option<Timestamp> {
 }
 
 /// The PDF writer requires a date if files are attached. This one is removed afterwards.
-pub(super) fn placeholder() -> Option<Timestamp> {
+pub fn placeholder() -> Option<Timestamp> {
     Datetime::from_ymd_hms(1, 1, 1, 0, 0, 0).map(Timestamp::new_utc)
 }
 
@@ -31,7 +31,7 @@ const PLACEHOLDERS: [&[u8]; 5] = [
 
 /// Overwrites the entries with blanks, which are allowed there, so that all offsets in the file
 /// remain valid.
-pub(super) fn remove_placeholder(bytes: &mut [u8]) {
+pub fn remove_placeholder(bytes: &mut [u8]) {
     for entry in PLACEHOLDERS {
         let mut at = 0;
         while let Some(found) = bytes[at..].windows(entry.len()).position(|window| window == entry)

@@ -19,17 +19,17 @@ const LONGEST_NAME: usize = 160;
 const BREAK: char = '\u{200b}';
 
 /// The characters that the embedded fonts contain.
-pub(super) struct Printable<'a> {
+pub struct Printable<'a> {
     fonts: Vec<&'a Coverage>,
 }
 
 impl<'a> Printable<'a> {
-    pub(super) fn of(fonts: &'a [Font]) -> Self {
+    pub fn of(fonts: &'a [Font]) -> Self {
         Self { fonts: fonts.iter().map(|font| &font.info().coverage).collect() }
     }
 
     /// Makes all texts of a value printable, except object keys, which belong to the program.
-    pub(super) fn clean(&self, value: &mut Value) {
+    pub fn clean(&self, value: &mut Value) {
         match value {
             Value::String(text) => *text = self.wrappable(&self.visible(text)),
             Value::Array(items) => items.iter_mut().for_each(|item| self.clean(item)),
@@ -43,7 +43,7 @@ impl<'a> Printable<'a> {
     /// Makes the texts of an SVG printable; its markup is ASCII and unchanged. Characters without a
     /// glyph are replaced by a box, since a drawing has space for one letter only; the tables spell
     /// them out.
-    pub(super) fn svg(&self, svg: &str) -> String {
+    pub fn svg(&self, svg: &str) -> String {
         svg.chars()
             .map(|c| if matches!(c, '\n' | '\r' | '\t') || self.has(c) { c } else { '□' })
             .collect()

@@ -30,12 +30,12 @@ static EMBEDDED_FONTS: LazyLock<Vec<Font>> =
     LazyLock::new(|| FONTS.iter().flat_map(|data| Font::iter(Bytes::new(*data))).collect());
 
 /// The embedded fonts.
-pub(super) fn fonts() -> &'static [Font] {
+pub fn fonts() -> &'static [Font] {
     &EMBEDDED_FONTS
 }
 
 /// The files of one report.
-pub(super) struct Files {
+pub struct Files {
     standard: LazyHash<Library>,
     book: LazyHash<FontBook>,
     main: Source,
@@ -44,7 +44,7 @@ pub(super) struct Files {
 }
 
 impl Files {
-    pub(super) fn new() -> Self {
+    pub fn new() -> Self {
         let source = |(path, text): &(&str, &str)| Some(Source::new(id(path)?, (*text).to_owned()));
         let templates =
             TEMPLATES.iter().filter_map(source).map(|source| (source.id(), source)).collect();
@@ -59,7 +59,7 @@ impl Files {
     }
 
     /// Adds a file that templates can read under `path`.
-    pub(super) fn add(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), Problems> {
+    pub fn add(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), Problems> {
         let id = id(path).ok_or_else(|| {
             Problems(vec![Problem::error("report-attachment", format!("`{path}` is not a path"))])
         })?;
@@ -68,7 +68,7 @@ impl Files {
     }
 
     /// `templates/theme.typ:12`, if the span is in a template.
-    pub(super) fn place(&self, span: DiagSpan) -> Option<String> {
+    pub fn place(&self, span: DiagSpan) -> Option<String> {
         let id = span.id()?;
         let source = self.source(id).ok()?;
         let line = source.lines().byte_to_line(self.range(span)?.start)?;

@@ -1,6 +1,6 @@
 //! Wanted operation inside and outside what the sections cover.
 
-use crate::report::document::{Block, Cell, Column, Figure, Finding, Format, Table, cells};
+use crate::report::document::*;
 use crate::report::{figure, number};
 use crate::result::{CoordinateRange, DomainResult, WantedPoint};
 
@@ -10,7 +10,7 @@ const DISTANCE: usize = 3;
 const VALUE: usize = 4;
 
 /// One domain and group of sections.
-pub(super) fn blocks((at, result): (usize, &DomainResult)) -> Vec<Block> {
+pub fn blocks((at, result): (usize, &DomainResult)) -> Vec<Block> {
     let title = if result.scope == "all" {
         result.title.clone()
     } else {

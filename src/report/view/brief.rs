@@ -2,15 +2,13 @@
 
 use super::View;
 use crate::report::brief::{self, Line, Matrix};
-use crate::report::document::{
-    Block, Cell, Column, Figure, Finding, Medium, Run, Table, Text, cells,
-};
+use crate::report::document::*;
 use crate::report::{figure, number};
 use crate::result::QuantityResult;
 use crate::words;
 
 /// In place of a chapter for each of many quantities: what is printed of which, tables, diagrams.
-pub(super) fn blocks(view: &View<'_>) -> Vec<Block> {
+pub fn blocks(view: &View<'_>) -> Vec<Block> {
     let quantities = &view.found.quantities;
     if !brief::is_brief(quantities) {
         return Vec::new();

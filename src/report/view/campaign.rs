@@ -2,7 +2,7 @@
 
 use indexmap::IndexSet;
 
-use crate::report::document::{Block, Cell, Chapter, Column, Fact, Medium, Table, cells};
+use crate::report::document::*;
 use crate::report::number;
 use crate::result::{CampaignInfo, CampaignMember, DataItem};
 
@@ -13,7 +13,7 @@ const SHORT: usize = 60;
 const ON_COVER: usize = 8;
 
 /// The campaign, and its vehicles with the data that a rule uses first.
-pub(super) fn chapter(campaign: &CampaignInfo) -> Chapter {
+pub fn chapter(campaign: &CampaignInfo) -> Chapter {
     let tables = [
         ("Campaign", facts(campaign)),
         ("Vehicle data used by the protocol", vehicle(campaign, true)),
@@ -30,7 +30,7 @@ pub(super) fn chapter(campaign: &CampaignInfo) -> Chapter {
 
 /// A named value as printed.
 #[derive(Clone, Debug)]
-pub(super) struct Item {
+pub struct Item {
     name: String,
     value: String,
     unit: String,
@@ -46,7 +46,7 @@ impl Item {
 }
 
 /// The first of some items, for the cover.
-pub(super) fn on_cover(items: &[Item]) -> Vec<Fact> {
+pub fn on_cover(items: &[Item]) -> Vec<Fact> {
     items.iter().take(ON_COVER).map(|item| Fact::new(&item.name, item.with_unit())).collect()
 }
 
@@ -68,13 +68,13 @@ fn table(caption: &str, items: &[Item]) -> Table {
 }
 
 /// Facts of the campaign; of several, first what they are.
-pub(super) fn facts(campaign: &CampaignInfo) -> Vec<Item> {
+pub fn facts(campaign: &CampaignInfo) -> Vec<Item> {
     campaign.members.iter().map(member).chain(campaign.facts.iter().map(item)).collect()
 }
 
 /// Data of the vehicle, those that a rule uses or all others. What several vehicles have alike is
 /// one item, what differs an item for each, together.
-pub(super) fn vehicle(campaign: &CampaignInfo, used: bool) -> Vec<Item> {
+pub fn vehicle(campaign: &CampaignInfo, used: bool) -> Vec<Item> {
     let items: Vec<&DataItem> = campaign.vehicle.iter().filter(|item| item.used == used).collect();
     let vehicles: IndexSet<&str> =
         campaign.vehicle.iter().filter_map(|item| item.of.as_deref()).collect();

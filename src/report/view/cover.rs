@@ -1,7 +1,7 @@
 //! The cover: verdict, reasons, key facts.
 
 use super::{View, campaign, identity, verdicts, wording};
-use crate::report::document::{Block, Cover, Fact, Finding, ResultBox, Run, facts};
+use crate::report::document::*;
 use crate::report::number;
 use crate::result::{CampaignInfo, Kind, ProtocolInfo, QuantityResult, Verdict};
 
@@ -9,13 +9,13 @@ use crate::result::{CampaignInfo, Kind, ProtocolInfo, QuantityResult, Verdict};
 const REASONS: usize = 8;
 const REASONS_BESIDE_VERDICTS: usize = 3;
 /// Verdicts with a name that the cover has room for.
-pub(super) const VERDICTS: usize = 6;
+pub const VERDICTS: usize = 6;
 /// Letters of a hash in the margin of each page.
 const HASH: usize = 16;
 
 /// What the covers of all documents have in common; `over` is the kind of document, `result` what
 /// it came to.
-pub(super) fn margins(
+pub fn margins(
     campaign: &CampaignInfo,
     protocol: &ProtocolInfo,
     over: &str,
@@ -36,7 +36,7 @@ pub(super) fn margins(
     }
 }
 
-pub(super) fn cover(view: &View<'_>) -> Cover {
+pub fn cover(view: &View<'_>) -> Cover {
     let found = view.found;
     let title = found.verdicts.iter().find(|verdict| verdict.overall).map(|one| &one.title);
     let origin = found.campaign.origin.as_ref().map(|origin| format!(" {}.", origin.says));
@@ -59,7 +59,7 @@ pub(super) fn cover(view: &View<'_>) -> Cover {
 }
 
 /// What the overall verdict came to.
-pub(super) fn finding(view: &View<'_>) -> Finding {
+pub fn finding(view: &View<'_>) -> Finding {
     let (found, word) = (view.found, view.found.verdict_word());
     let holds = match found.verdict {
         Verdict::Validated => Some(true),

@@ -3,9 +3,7 @@
 use indexmap::IndexSet;
 
 use super::{View, application};
-use crate::report::document::{
-    Block, Cell, Chapter, Column, Figure, Format, Medium, Run, Table, Text, cells,
-};
+use crate::report::document::*;
 use crate::report::number;
 use crate::result::{Certification, DomainRange};
 
@@ -16,7 +14,7 @@ const ABREAST: usize = 6;
 const DIGITS: usize = 6;
 
 /// Ranges of the test conditions, and wanted operation against the hull of the sections.
-pub(super) fn chapter(view: &View<'_>) -> Option<Chapter> {
+pub fn chapter(view: &View<'_>) -> Option<Chapter> {
     let (found, title) = (view.found, view.words.domain);
     if found.domain.is_empty() && found.application.is_empty() {
         return None;

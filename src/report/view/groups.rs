@@ -2,7 +2,7 @@
 //! groups.
 
 use super::{View, caption, name, statistic};
-use crate::report::document::{Cell, Column, Finding, Format, Medium, Row, Table, cells};
+use crate::report::document::*;
 use crate::report::estimates::{self, OfLimit};
 use crate::report::number;
 use crate::report::sides::capital;
@@ -10,7 +10,7 @@ use crate::result::{QuantityResult, StatisticResult};
 
 /// The condensed limits of all quantities, each with the group that is nearest to it or farthest
 /// beyond.
-pub(super) fn summary(view: &View<'_>) -> Table {
+pub fn summary(view: &View<'_>) -> Table {
     let columns = vec![
         Column::short("Quantity"),
         Column::text("Estimate").wide(1.5),
@@ -53,7 +53,7 @@ fn row(quantity: &QuantityResult, limit: &OfLimit<'_>) -> Row {
 }
 
 /// A table for each condensed limit that has several groups; `rows` is what the values are called.
-pub(super) fn tables(quantity: &QuantityResult, rows: &str) -> Vec<Table> {
+pub fn tables(quantity: &QuantityResult, rows: &str) -> Vec<Table> {
     let limits = estimates::condensed(quantity);
     limits.iter().filter(|limit| limit.by_group()).map(|one| table(quantity, one, rows)).collect()
 }

@@ -2,7 +2,7 @@
 //! stated.
 
 use super::View;
-use crate::report::document::{Block, Cell, Chapter, Column, Fact, Run, Table, cells};
+use crate::report::document::*;
 use crate::result::report::stated;
 use crate::result::{Certification, ReportItem};
 
@@ -21,7 +21,7 @@ const COVER: [&[&str]; 7] = [
 ];
 
 /// `Report R-17, revision B`; empty if no number is stated.
-pub(super) fn line(items: &[ReportItem]) -> String {
+pub fn line(items: &[ReportItem]) -> String {
     match (stated(items, &["number"]), stated(items, &["revision"])) {
         (Some(number), Some(revision)) => format!("Report {number}, revision {revision}"),
         (Some(number), None) => format!("Report {number}"),
@@ -31,12 +31,12 @@ pub(super) fn line(items: &[ReportItem]) -> String {
 }
 
 /// The date of issue, if it is stated.
-pub(super) fn issued(items: &[ReportItem]) -> Option<String> {
+pub fn issued(items: &[ReportItem]) -> Option<String> {
     stated(items, &["dates", "issue"]).map(str::to_owned)
 }
 
 /// Items on the cover.
-pub(super) fn on_cover(items: &[ReportItem]) -> Vec<Fact> {
+pub fn on_cover(items: &[ReportItem]) -> Vec<Fact> {
     let item = |path: &&[&str]| {
         let found = items.iter().find(|item| item.path == *path)?;
         Some(Fact::new(&found.title, found.value.as_deref().unwrap_or(NOT_STATED)))
@@ -45,7 +45,7 @@ pub(super) fn on_cover(items: &[ReportItem]) -> Vec<Fact> {
 }
 
 /// The checklist: items stated by the campaign, and items known to the program.
-pub(super) fn chapter(view: &View<'_>) -> Chapter {
+pub fn chapter(view: &View<'_>) -> Chapter {
     let found = view.found;
     let row = |clause: &str, title: &str, value: &str| {
         cells![Cell::or_missing(unbroken(clause)), Cell::text(title).strong(), Cell::text(value)]

@@ -23,9 +23,7 @@ mod values;
 mod verdicts;
 mod wording;
 
-use crate::report::document::{
-    Block, Chapter, Cover, Document, Fact, Figure, Finding, PROGRAM, ResultBox, Symbols, Text,
-};
+use crate::report::document::*;
 use crate::report::number;
 use crate::report::sides::{self, capital};
 use crate::result::{CampaignInfo, Certification, ProtocolInfo, QuantityResult, Trace};

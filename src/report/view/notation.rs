@@ -2,7 +2,7 @@
 
 use super::{View, verdicts};
 use crate::report::brief::in_full;
-use crate::report::document::{Block, Cell, Chapter, Column, Finding, Table, cells};
+use crate::report::document::*;
 use crate::report::number;
 use crate::result::{Certification, ChannelInfo, Outcome, QuantityResult};
 
@@ -177,7 +177,7 @@ fn terms(found: &Certification) -> Vec<(&'static str, &'static str)> {
     all
 }
 
-pub(super) fn chapter(view: &View<'_>) -> Chapter {
+pub fn chapter(view: &View<'_>) -> Chapter {
     let found = view.found;
     let known = |table: Table| (!table.rows.is_empty()).then_some(table);
     let meanings = |caption: &str, head: &str, rows: Vec<Vec<Cell>>| {

@@ -1,13 +1,11 @@
 //! The protocol: identification, text, parameters, and deviations from its parent.
 
-use crate::report::document::{
-    Block, Cell, Chapter, Column, Figure, Run, Table, Text, cells, facts,
-};
+use crate::report::document::*;
 use crate::report::number;
 use crate::result::{Deviation, FilterInfo, ParameterInfo, ProtocolFile, ProtocolInfo};
 
 /// The complete protocol.
-pub(super) fn chapter(protocol: &ProtocolInfo) -> Chapter {
+pub fn chapter(protocol: &ProtocolInfo) -> Chapter {
     let hash = Run::Hash(protocol.sha256.clone());
     let mut blocks = vec![Block::Facts(vec![facts([
         ("Name", (&protocol.name).into()),

@@ -1,15 +1,13 @@
 //! Inputs that are required to repeat an evaluation, and how imported records were made.
 
-use crate::report::document::{
-    Block, Cell, Chapter, Column, PROGRAM, Run, Table, Text, cells, facts,
-};
+use crate::report::document::*;
 use crate::report::number;
 use crate::report::sides::capital;
 use crate::result::{CampaignInfo, FileHash, ImportedOne, ImportedSide, ProtocolInfo};
 
 /// What a document is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub enum Kind {
     /// One evaluation, which can be verified and traced.
     Certification,
     /// A study, a comparison or a diagnosis.
@@ -17,7 +15,7 @@ pub(super) enum Kind {
 }
 
 /// The last chapter of every document with an evaluation.
-pub(super) fn provenance(campaign: &CampaignInfo, protocol: &ProtocolInfo, kind: Kind) -> Chapter {
+pub fn provenance(campaign: &CampaignInfo, protocol: &ProtocolInfo, kind: Kind) -> Chapter {
     let same = "The same inputs give an identical document, byte for byte. It therefore contains no date of creation";
     let issued = super::identity::issued(&campaign.report)
         .unwrap_or_else(|| "which the campaign does not state".to_owned());

@@ -2,9 +2,7 @@
 
 use super::{View, brief, caption, groups, in_unit, reports, spread, statistic, values};
 use crate::report::brief::in_full;
-use crate::report::document::{
-    Block, Cell, Chapter, Column, Fact, Figure, Finding, Medium, Part, Row, Run, Table, Text, facts,
-};
+use crate::report::document::*;
 use crate::report::sides::Sides;
 use crate::report::{estimates, figure, number};
 use crate::result::{PairValue, QuantityResult, StatisticResult};
@@ -13,7 +11,7 @@ use crate::result::{PairValue, QuantityResult, StatisticResult};
 const KEPT: usize = 10;
 
 /// All quantities, or of many those that do not meet their limits; none without quantities.
-pub(super) fn chapter(view: &View<'_>) -> Option<Chapter> {
+pub fn chapter(view: &View<'_>) -> Option<Chapter> {
     let all = &view.found.quantities;
     let mut blocks = brief::blocks(view);
     blocks.extend(in_full(all).into_iter().map(|at| Block::Part(part(at, &all[at], view))));

@@ -3,7 +3,7 @@
 use indexmap::{IndexMap, IndexSet};
 
 use super::name;
-use crate::report::document::{Block, Cell, Column, Format, Table, Text};
+use crate::report::document::*;
 use crate::report::number;
 use crate::report::sides::capital;
 use crate::result::Reported;
@@ -14,7 +14,7 @@ const ABREAST: usize = 6;
 const GROUP: &str = "group";
 
 /// Tables of all estimates, and why numbers are missing; `counted` is what they are of.
-pub(super) fn tables(reported: &[Reported], caption: &Text, counted: &str) -> Vec<Block> {
+pub fn tables(reported: &[Reported], caption: &Text, counted: &str) -> Vec<Block> {
     let mut by_keys: IndexMap<Vec<&str>, Vec<&Reported>> = IndexMap::new();
     for one in reported {
         by_keys.entry(keys(one)).or_default().push(one);

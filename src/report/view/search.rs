@@ -1,7 +1,7 @@
 //! How the sections were found in runs, and which were kept.
 
 use super::name;
-use crate::report::document::{Block, Cell, Column, Format, Table, cells};
+use crate::report::document::*;
 use crate::report::found::{drift_in_words, in_words};
 use crate::report::number;
 use crate::report::sides::capital;
@@ -9,7 +9,7 @@ use crate::result::found::{FoundInRun, FoundSections, Rejected};
 use crate::result::study::Reduction;
 
 /// The search in the runs of a campaign.
-pub(super) fn search(found: &FoundSections) -> Vec<Block> {
+pub fn search(found: &FoundSections) -> Vec<Block> {
     let title = "search for sections in runs";
     let title = match &found.campaign {
         Some(campaign) => format!("{campaign}: {title}"),
@@ -66,7 +66,7 @@ fn rejected(all: &[Rejected], tried: usize) -> Table {
 }
 
 /// The sections that were kept, and the scatter of all and of these.
-pub(super) fn reduction(reduction: &Reduction) -> Vec<Block> {
+pub fn reduction(reduction: &Reduction) -> Vec<Block> {
     let highest =
         |of: fn(&(String, f64, f64)) -> f64| reduction.scatter.iter().map(of).fold(0.0, f64::max);
     let used: usize = reduction.kept.iter().map(|(_, kept)| kept.len()).sum();

@@ -3,9 +3,7 @@
 use indexmap::IndexSet;
 
 use super::{View, name, reports, search};
-use crate::report::document::{
-    Block, Cell, Chapter, Column, Finding, Format, Row, Run, Table, Text, cells,
-};
+use crate::report::document::*;
 use crate::report::number;
 use crate::result::{CheckResult, SectionResult, ZoneResult};
 
@@ -13,7 +11,7 @@ use crate::result::{CheckResult, SectionResult, ZoneResult};
 const CHECKS_ABREAST: usize = 4;
 
 /// Sections, their use, and the requirements on them; none without sections and zones.
-pub(super) fn chapter(view: &View<'_>) -> Option<Chapter> {
+pub fn chapter(view: &View<'_>) -> Option<Chapter> {
     let found = view.found;
     let mut blocks: Vec<Block> = found.found.iter().flat_map(search::search).collect();
     blocks.extend(found.reduction.iter().flat_map(search::reduction));

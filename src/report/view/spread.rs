@@ -2,7 +2,7 @@
 //! rows for each class of sections.
 
 use super::{caption, in_unit, name};
-use crate::report::document::{Cell, Column, Format, Row, Table};
+use crate::report::document::*;
 use crate::report::number;
 use crate::result::{ClassSpread, Furthest, OfRecord, QuantityResult, Spread};
 
@@ -10,7 +10,7 @@ use crate::result::{ClassSpread, Furthest, OfRecord, QuantityResult, Spread};
 const RECORDS: usize = 6;
 
 /// A table; several where there are more records than fit a page.
-pub(super) fn tables(quantity: &QuantityResult) -> Vec<Table> {
+pub fn tables(quantity: &QuantityResult) -> Vec<Table> {
     let Some(spread) = &quantity.spread else { return Vec::new() };
     let between = between(quantity);
     let most = spread.classes.iter().map(|class| class.records.len()).max().unwrap_or(0);
@@ -36,7 +36,7 @@ pub(super) fn tables(quantity: &QuantityResult) -> Vec<Table> {
 const UNBROKEN: usize = 10;
 
 /// What the records of a side are called where there are several.
-pub(super) fn between(quantity: &QuantityResult) -> &'static str {
+pub fn between(quantity: &QuantityResult) -> &'static str {
     if quantity.among.as_deref() == Some("simulated") { "codes" } else { "runs" }
 }
 

@@ -1,12 +1,12 @@
 //! Statements for signature.
 
 use super::{View, cover, wording};
-use crate::report::document::{Block, Chapter, Run, Text};
+use crate::report::document::*;
 use crate::result::VerdictResult;
 
 /// A statement for each judgement that a person gives, and for those who answer for simulation,
 /// measurement and assessment. They stay together, so that none is signed on a page of its own.
-pub(super) fn chapter(view: &View<'_>) -> Chapter {
+pub fn chapter(view: &View<'_>) -> Chapter {
     let statement = |title: &str, text: Text| Block::Statement {
         title: title.to_owned(),
         text,

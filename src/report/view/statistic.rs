@@ -1,32 +1,32 @@
 //! Cells of statistics and their limits, the same in all tables.
 
-use crate::report::document::{Cell, Column, Finding, Format, Medium};
+use crate::report::document::*;
 use crate::report::number;
 use crate::result::{QuantityResult, StatisticResult};
 
 /// The symbol of a quantity as the head of a row.
-pub(super) fn symbol(quantity: &QuantityResult) -> Cell {
+pub fn symbol(quantity: &QuantityResult) -> Cell {
     Cell::symbol(&super::symbol(&quantity.symbol), &quantity.title).strong()
 }
 
 /// Number of pairs and of sites: `48 / 12`.
-pub(super) fn pairs_and_n(pairs: usize, n: usize) -> Cell {
+pub fn pairs_and_n(pairs: usize, n: usize) -> Cell {
     format!("{} / {}", number::count(pairs as u64), number::count(n as u64)).into()
 }
 
 /// The limit, with the decimals of the value.
-pub(super) fn limit(statistic: Option<&StatisticResult>) -> Cell {
+pub fn limit(statistic: Option<&StatisticResult>) -> Cell {
     statistic.map_or(Cell::MISSING, |one| Cell::number(one.limit, Format::Fixed(decimals(one))))
 }
 
 /// Decimals of a statistic: those of its unit, or more if the limit (or else the value) needs them
 /// to show two digits.
-pub(super) fn decimals(statistic: &StatisticResult) -> usize {
+pub fn decimals(statistic: &StatisticResult) -> usize {
     number::decimals(&statistic.unit, statistic.limit.or(statistic.value))
 }
 
 /// The value with the decimals of its unit, or more if the comparison with the limit needs them.
-pub(super) fn value(statistic: Option<&StatisticResult>) -> Cell {
+pub fn value(statistic: Option<&StatisticResult>) -> Cell {
     statistic.map_or(Cell::MISSING, |one| {
         let decimals = decimals(one);
         let format =
@@ -36,13 +36,13 @@ pub(super) fn value(statistic: Option<&StatisticResult>) -> Cell {
 }
 
 /// |value| / limit with two decimals, or more close to 1, in the colour of what it came to.
-pub(super) fn normalised(statistic: Option<&StatisticResult>) -> Cell {
+pub fn normalised(statistic: Option<&StatisticResult>) -> Cell {
     let ratio = statistic.and_then(|statistic| statistic.normalised);
     Cell::number(ratio, Format::Ratio).toned(Finding::of_statistic(statistic).tone)
 }
 
 /// Columns of a confidence interval: together on paper, each end on a screen.
-pub(super) fn intervals() -> [Column; 3] {
+pub fn intervals() -> [Column; 3] {
     [
         Column::number("95 % interval").only(Medium::Paper),
         Column::number("95 % interval, low").only(Medium::Screen),
@@ -51,7 +51,7 @@ pub(super) fn intervals() -> [Column; 3] {
 }
 
 /// The cells of [`intervals`].
-pub(super) fn interval(one: &StatisticResult) -> [Cell; 3] {
+pub fn interval(one: &StatisticResult) -> [Cell; 3] {
     let format = Format::Fixed(decimals(one));
     let ends =
         one.interval.map(|(low, high)| format!("{} to {}", format.print(low), format.print(high)));

@@ -2,13 +2,11 @@
 //! statistic.
 
 use super::{View, cover, groups, statistic, verdicts, wording};
-use crate::report::document::{
-    Block, Cell, Chapter, Column, Figure, Finding, Medium, Row, Run, Table, Text, cells,
-};
+use crate::report::document::*;
 use crate::report::{estimates, findings, number};
 use crate::result::{Certification, QuantityResult, StatisticName, StatisticResult};
 
-pub(super) fn chapter(view: &View<'_>) -> Chapter {
+pub fn chapter(view: &View<'_>) -> Chapter {
     let found = view.found;
     let finding = cover::finding(view);
     let tone = finding.tone;

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use indexmap::IndexMap;
 
 use super::{caption, in_unit, name};
-use crate::report::document::{Block, Cell, Column, Format, Row, Table};
+use crate::report::document::*;
 use crate::report::number;
 use crate::report::sides::Sides;
 use crate::result::{PairValue, QuantityResult, RecordName, StatisticName, StatisticResult};
@@ -33,7 +33,7 @@ fn format(quantity: &QuantityResult) -> Format {
 }
 
 /// The pairs with the largest |difference|; equal ones in the order of the campaign.
-pub(super) fn worst(quantity: &QuantityResult) -> Option<Table> {
+pub fn worst(quantity: &QuantityResult) -> Option<Table> {
     // The limits of an assessed quantity differ from zone to zone.
     let stated: &[StatisticResult] =
         if quantity.from.is_some() { &[] } else { &quantity.statistics };
@@ -87,7 +87,7 @@ pub(super) fn worst(quantity: &QuantityResult) -> Option<Table> {
 }
 
 /// All values, as a block that a screen folds.
-pub(super) fn all(quantity: &QuantityResult) -> Block {
+pub fn all(quantity: &QuantityResult) -> Block {
     if quantity.values.is_empty() {
         return Block::text("No values could be formed.");
     }

@@ -1,12 +1,12 @@
 //! The verdicts with a name: a table, and a box for each that a person decides.
 
 use super::View;
-use crate::report::document::{Cell, Column, Finding, Row, Run, Table, Text, Tone, cells};
+use crate::report::document::*;
 use crate::report::number;
 use crate::result::{Certification, Outcome, Reason, ShortZone, Verdict, VerdictResult};
 
 /// All verdicts with a name; a short table has not all of their reasons.
-pub(super) fn table(view: &View<'_>, short: bool) -> Table {
+pub fn table(view: &View<'_>, short: bool) -> Table {
     let found = view.found;
     let above = lacks(found).filter(|lack| merged(&found.reasons, found).contains(lack));
     let reason = |reason: Reason| {
@@ -53,7 +53,7 @@ fn first_of(mut lines: Vec<Text>, short: bool) -> Text {
 }
 
 /// What a verdict came to: one that a person still has to give is no lack of data.
-pub(super) fn finding(outcome: Outcome, word: &str) -> Finding {
+pub fn finding(outcome: Outcome, word: &str) -> Finding {
     match outcome {
         Outcome::Open => {
             Finding { tone: Tone::Open, sign: TO_BE_JUDGED.0, word: TO_BE_JUDGED.1.into() }
@@ -67,7 +67,7 @@ const TO_BE_JUDGED: (&str, &str) = ("\u{25cb}", "to be judged");
 
 /// What the overall verdict came to. One that is not assessable only since a judgement is open, its
 /// own or one that it is about, is open.
-pub(super) fn overall(found: &Certification) -> Option<Outcome> {
+pub fn overall(found: &Certification) -> Option<Outcome> {
     let open = found.verdict == Verdict::NotAssessable
         && found.verdicts.iter().any(|verdict| verdict.outcome == Outcome::Open);
     if open && !lacks_data(found) {
@@ -86,7 +86,7 @@ fn lacks_data(found: &Certification) -> bool {
 }
 
 /// The reasons of the overall verdict.
-pub(super) fn reasons(view: &View<'_>) -> Vec<Text> {
+pub fn reasons(view: &View<'_>) -> Vec<Text> {
     let reasons = merged(&view.found.reasons, view.found);
     reasons.iter().map(|reason| view.symbols.text(&told(reason))).collect()
 }
@@ -132,7 +132,7 @@ fn told(reason: &Reason) -> String {
 }
 
 /// What is said of an overall verdict with words of its own: the protocol says what it means.
-pub(super) fn sentence(found: &Certification) -> &'static str {
+pub fn sentence(found: &Certification) -> &'static str {
     match found.verdict {
         _ if overall(found) == Some(Outcome::Open) => {
             "The verdict is open: a person has yet to judge. The numbers are in this report."

@@ -5,7 +5,7 @@ use crate::result::{Certification, Kind, Verdict};
 
 /// Words of a report.
 #[derive(Clone, Debug)]
-pub(super) struct Wording {
+pub struct Wording {
     /// Above the name of the campaign on the cover.
     pub over: String,
     /// `Validation report`
@@ -20,7 +20,7 @@ pub(super) struct Wording {
     pub comparison: &'static str,
 }
 
-pub(super) fn wording(found: &Certification) -> Wording {
+pub fn wording(found: &Certification) -> Wording {
     let (report, domain, outside, rows) = match found.kind() {
         Kind::Validation if found.own_word.is_some() => {
             ("Comparison report", "Validity domain", NOT_DEMONSTRATED, "Pairs")
@@ -77,7 +77,7 @@ fn over(found: &Certification) -> String {
 }
 
 /// The verdict as a sentence.
-pub(super) fn sentence(found: &Certification) -> &'static str {
+pub fn sentence(found: &Certification) -> &'static str {
     if found.own_word.is_some() {
         return super::verdicts::sentence(found);
     }
@@ -108,7 +108,7 @@ pub(super) fn sentence(found: &Certification) -> &'static str {
 /// The statement about the simulation; `None` where no simulated record is in a quantity. That
 /// nothing was changed after the comparison is printed only of a comparison with measurements whose
 /// campaign has no origin that contradicts it.
-pub(super) fn simulation_statement(found: &Certification) -> Option<String> {
+pub fn simulation_statement(found: &Certification) -> Option<String> {
     let (simulated, measured) = found.reads();
     if !simulated {
         return None;
@@ -125,7 +125,7 @@ pub(super) fn simulation_statement(found: &Certification) -> Option<String> {
 }
 
 /// The statement about the measurement; `None` where no measured record is in a quantity.
-pub(super) fn measurement_statement(found: &Certification) -> Option<&'static str> {
+pub fn measurement_statement(found: &Certification) -> Option<&'static str> {
     found.reads().1.then_some(
         "The measured records named in this report are those of the test runs described. Channels, calibration and sections were checked.",
     )
