@@ -7,7 +7,7 @@ use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::source::{Member, Span};
+use crate::source::{Located, Member, Span};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Severity {
@@ -94,15 +94,15 @@ impl Problem {
     }
 
     #[must_use]
-    pub fn at(mut self, span: &Span) -> Self {
-        self.at = Some(span.clone());
+    pub fn at(mut self, place: &impl Located) -> Self {
+        self.at = Some(place.place());
         self
     }
 
     /// At a place, if it has none yet: a problem of a file as a whole is shown where it is named.
     #[must_use]
-    pub fn or_at(self, span: &Span) -> Self {
-        if self.at.is_some() { self } else { self.at(span) }
+    pub fn or_at(self, place: &impl Located) -> Self {
+        if self.at.is_some() { self } else { self.at(place) }
     }
 
     #[must_use]
@@ -112,8 +112,8 @@ impl Problem {
     }
 
     #[must_use]
-    pub fn also(mut self, span: &Span, text: impl Into<String>) -> Self {
-        self.also.push((span.clone(), text.into()));
+    pub fn also(mut self, place: &impl Located, text: impl Into<String>) -> Self {
+        self.also.push((place.place(), text.into()));
         self
     }
 
@@ -322,12 +322,12 @@ impl From<Problem> for Vec<Problem> {
 }
 
 /// An error with its code and message, at a place.
-pub fn error(code: &'static str, says: impl Into<String>, at: &Span) -> Problem {
+pub fn error(code: &'static str, says: impl Into<String>, at: &impl Located) -> Problem {
     Problem::error(code, says).at(at)
 }
 
 /// A warning with its code and message, at a place.
-pub fn warning(code: &'static str, says: impl Into<String>, at: &Span) -> Problem {
+pub fn warning(code: &'static str, says: impl Into<String>, at: &impl Located) -> Problem {
     Problem::warning(code, says).at(at)
 }
 

@@ -91,6 +91,30 @@ impl Source {
     }
 }
 
+/// What is written somewhere, so that a problem can point at it.
+pub trait Located {
+    /// The place to underline.
+    fn place(&self) -> Span;
+}
+
+impl<T: Located + ?Sized> Located for &T {
+    fn place(&self) -> Span {
+        (*self).place()
+    }
+}
+
+impl Located for Span {
+    fn place(&self) -> Span {
+        self.clone()
+    }
+}
+
+impl<T> Located for Spanned<T> {
+    fn place(&self) -> Span {
+        self.span.clone()
+    }
+}
+
 /// A range of bytes in a source.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Span {

@@ -8,7 +8,6 @@ use super::plan::{DatumKind, Expr, Kind, Operator, Origin, Scalar, Type};
 use super::scope::Scope;
 use crate::problem::{error, warning};
 use crate::source::{Span, Spanned};
-use crate::syntax::document::Text;
 use crate::syntax::phrase::{Node, Number, Phrase};
 
 impl Checker<'_> {
@@ -17,7 +16,6 @@ impl Checker<'_> {
         &mut self,
         arms: &[(Phrase, Phrase)],
         otherwise: Option<&Phrase>,
-        text: &Text,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
@@ -31,12 +29,12 @@ impl Checker<'_> {
         {
             let before = scope.asked();
             let condition = condition.map(|condition| match scope.samples {
-                true => self.condition(condition, text, &mut Scope::section()),
-                false => self.condition(condition, text, scope),
+                true => self.condition(condition, &mut Scope::section()),
+                false => self.condition(condition, scope),
             });
             // The case of a condition that parameters or the zone make false is still checked, but
             // needs no records and no values.
-            let value = self.expr(value, text, scope);
+            let value = self.expr(value, scope);
             let Some(value) = value.filter(|_| !matches!(condition, Some(None))) else {
                 ok = false;
                 continue;
@@ -134,32 +132,28 @@ impl Checker<'_> {
         operator: Operator,
         left: &Phrase,
         right: &Phrase,
-        text: &Text,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        let Some(left) = self.expr(left, text, scope) else {
+        let Some(left) = self.expr(left, scope) else {
             // The right side is checked as well, unless it may be a word of the part with the
             // error.
             if !matches!(right.node, Node::Path(_)) {
-                self.expr(right, text, scope);
+                self.expr(right, scope);
             }
             return None;
         };
-        let constant = |value| Expr {
-            kind: Kind::Constant(value),
-            ty: left.ty.clone(),
-            span: origin(right, text),
-        };
+        let constant =
+            |value| Expr { kind: Kind::Constant(value), ty: left.ty.clone(), span: origin(right) };
         let right = match (&left.ty, &right.node) {
             (Type::Word(choices), _) => {
-                constant(Scalar::Word(self.compared_word(&left, choices, right, text)?))
+                constant(Scalar::Word(self.compared_word(&left, choices, right)?))
             }
             (Type::Flag, Node::Path(path)) if path == "true" || path == "false" => {
                 constant(Scalar::Flag(path == "true"))
             }
             _ => {
-                let right = self.expr(right, text, scope)?;
+                let right = self.expr(right, scope)?;
                 if left.ty != right.ty {
                     return self.mismatch("compared", &left, &right);
                 }
@@ -170,14 +164,8 @@ impl Checker<'_> {
     }
 
     /// The word with which a word is compared: one of its choices.
-    fn compared_word(
-        &mut self,
-        left: &Expr,
-        choices: &[String],
-        right: &Phrase,
-        text: &Text,
-    ) -> Option<String> {
-        let at = right.place(text);
+    fn compared_word(&mut self, left: &Expr, choices: &[String], right: &Phrase) -> Option<String> {
+        let at = right.place();
         let word = match &right.node {
             Node::Path(word) | Node::Quoted(word) => word.clone(),
             Node::Number(Number { value, unit: None }) => value.to_string(),

@@ -2,6 +2,7 @@
 //! and not at their first use.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use super::Checker;
 use super::functions::is_signal_function;
@@ -15,14 +16,12 @@ use crate::units::Dimension;
 impl Checker<'_> {
     /// Checks aliases, signals, estimates and definitions that nothing uses.
     pub fn unused_parts(&mut self) {
-        let places: Vec<_> =
-            self.names.places.values().flat_map(|place| place.aliases.clone()).collect();
-        for (alias, text) in places {
-            for (_, condition) in &alias.cases {
-                if let Some(condition) = self.expr(condition, &text, &mut Scope::section()) {
-                    self.flag_type(&condition);
-                }
-            }
+        let aliases = self.names.places.values().flat_map(|place| &place.aliases);
+        let conditions: Vec<Phrase> = aliases
+            .flat_map(|alias| alias.cases.iter().map(|(_, condition)| condition.clone()))
+            .collect();
+        for condition in conditions {
+            self.condition(&condition, &mut Scope::section());
         }
         let signals: Vec<_> = self
             .names
@@ -33,7 +32,8 @@ impl Checker<'_> {
         for (name, signal) in signals {
             let at = self.first_position(&signal.places);
             let text = Text { text: String::new(), span: signal.span.clone(), exact: false };
-            self.signal(&At { node: Node::Path(name), range: 0..0 }, &text, &at);
+            let text = Arc::new(text);
+            self.signal(&At { node: Node::Path(name), text, range: 0..0 }, &at);
         }
         let estimates: Vec<_> = self
             .names
@@ -53,7 +53,7 @@ impl Checker<'_> {
                 ..Scope::vehicle()
             };
             self.inside("estimate", &name, &written.text.span, |checker| {
-                checker.expr(&written.phrase, &written.text, &mut scope)
+                checker.expr(&written, &mut scope)
             });
             let told = self.problems.0.split_off(before);
             self.problems
@@ -70,17 +70,17 @@ impl Checker<'_> {
             if self.used_defines.contains(&name) {
                 continue;
             }
-            match self.stands_for(&define.phrase, &mut BTreeSet::new()) {
+            match self.stands_for(&define, &mut BTreeSet::new()) {
                 Meaning::Closed => {
                     drop(self.inside("define", &name, &define.text.span, |checker| {
-                        checker.expr(&define.phrase, &define.text, &mut Scope::section())
+                        checker.expr(&define, &mut Scope::section())
                     }))
                 }
                 Meaning::Signal => {
                     let places: Vec<String> = self.names.places.keys().cloned().collect();
                     let at = self.first_position(&places);
                     drop(self.inside("define", &name, &define.text.span, |checker| {
-                        checker.signal(&define.phrase, &define.text, &at)
+                        checker.signal(&define, &at)
                     }));
                 }
                 Meaning::Open => {}
@@ -126,7 +126,7 @@ impl Checker<'_> {
                 Meaning::Signal
             }
             Node::Path(path) => match self.names.defines.get(path) {
-                Some(define) if seen.insert(path.clone()) => self.stands_for(&define.phrase, seen),
+                Some(define) if seen.insert(path.clone()) => self.stands_for(&define, seen),
                 _ => Meaning::Closed,
             },
             Node::PlaceOf(..) | Node::Through(..) => Meaning::Signal,

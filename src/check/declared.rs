@@ -29,14 +29,14 @@ impl Checker<'_> {
                         "`{name}` has {} positions; there can be at most {MOST_MEMBERS}",
                         written.len()
                     ),
-                    &field.value.span,
+                    field,
                 )
                 .help("declare the positions that are compared; put the others into another place"),
             );
         }
         let mut members: Vec<String> = Vec::new();
         for member in written {
-            let place = field.value.place(member.range);
+            let place = member.place();
             if let Some(sign) = member.node.chars().find(|c| matches!(c, '-' | '.')) {
                 self.problems.push(error("bad-name", format!(
                     "`{}` cannot be a position of `{name}`: in an expression, `{sign}` is not read as part of a name",
@@ -63,7 +63,7 @@ impl Checker<'_> {
                             "`{}` is both a position of `{name}` and an alias",
                             alias.name.node
                         ),
-                        &alias.name.place(&field.value),
+                        &alias.name,
                     )
                     .also(&block.span().clone(), "the members"),
                 );
@@ -74,13 +74,13 @@ impl Checker<'_> {
                         error(
                             "unknown-place",
                             format!("`{}` is not a position of `{name}`", member.node),
-                            &member.place(&field.value),
+                            member,
                         )
                         .suggest(&member.node, &members),
                     );
                 }
             }
-            aliases.push((alias, field.value.clone()));
+            aliases.push(alias);
         }
         Some(Place { members, aliases })
     }
@@ -120,7 +120,7 @@ impl Checker<'_> {
                     error(
                         "missing-field",
                         format!("{} `{name}` needs a field `in` or `one of`", block.kind.text),
-                        block.span(),
+                        block,
                     )
                     .help("`in kN` for a number, `one of right, left` for a word"),
                 );
@@ -147,7 +147,7 @@ impl Checker<'_> {
             return self.refuse(error(
                 "unknown-field",
                 format!("`{name}` is a choice of words and cannot have a range"),
-                &field.key.span,
+                &field.key,
             ));
         };
         let [low, high] = self.range_ends(name, unit.dimension, field, None)?;
@@ -155,7 +155,7 @@ impl Checker<'_> {
             return self.refuse(error(
                 "out-of-range",
                 format!("the range of `{name}` has its upper end below its lower end"),
-                &field.value.span,
+                field,
             ));
         }
         Some(DatumRange {
@@ -193,13 +193,11 @@ impl Checker<'_> {
                             unit.dimension.in_words(),
                             dimension.in_words()
                         ),
-                        &field.value.span,
+                        field,
                     )
                     .label(dimension.in_words());
                     return self.refuse(match block.field("in") {
-                        Some(unit_field) => {
-                            problem.also(&unit_field.value.span, unit.dimension.in_words())
-                        }
+                        Some(unit_field) => problem.also(unit_field, unit.dimension.in_words()),
                         None => problem,
                     });
                 }
@@ -225,7 +223,7 @@ impl Checker<'_> {
                     error(
                         "unknown-choice",
                         format!("`{word}` is not one of the words of `{name}`"),
-                        &field.value.span,
+                        field,
                     )
                     .suggest(word, &words),
                 );
@@ -257,7 +255,7 @@ impl Checker<'_> {
             error(
                 "unknown-choice",
                 format!("`{NOT_STATED}` can only be written for vehicle data"),
-                &field.value.span,
+                field,
             )
             .help("remove the line: without a default, an empty cell is a missing value"),
         )
@@ -277,7 +275,7 @@ impl Checker<'_> {
             Some(("track", _)) => true,
             Some((other, field)) => {
                 self.problems.push(
-                    error("unknown-record", format!("`{other}` is not a kind of record"), &field.value.span)
+                    error("unknown-record", format!("`{other}` is not a kind of record"), field)
                         .help("write `record track` for the track file; without `record`, the channel is in the records of simulation and measurement"),
                 );
                 false
@@ -362,7 +360,7 @@ impl Checker<'_> {
                 ) {
                     Some(place) => found.push(place),
                     None => {
-                        self.unknown_place(&words, &field.value);
+                        self.unknown_place(&words, field);
                         return None;
                     }
                 }

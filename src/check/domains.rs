@@ -5,26 +5,19 @@ use super::plan::{Coordinate, DatumKind, Domain, Expr, Kind, OnFault};
 use super::scope::Scope;
 use crate::problem::error;
 use crate::source::Span;
-use crate::syntax::document::{Block, Field, Text};
+use crate::syntax::document::Block;
 use crate::syntax::from_pest;
 use crate::syntax::phrase::{At, Phrase};
-use crate::units::Dimension;
 
 impl Checker<'_> {
     /// What sections cover: what spans it, and by what words sections are told apart.
     pub fn domain(&mut self, block: &Block) -> Option<Domain> {
         let field = self.required(block, "over")?;
         let written = from_pest::domain(&field.value, self.problems)?;
-        let over: Vec<Option<Coordinate>> = written
-            .over
-            .iter()
-            .map(|(of, unit)| self.coordinate(of, unit.as_ref(), field))
-            .collect();
-        let each: Vec<Option<usize>> = written
-            .each
-            .iter()
-            .map(|key| self.domain_key(&key.node, &key.place(&field.value)))
-            .collect();
+        let over: Vec<Option<Coordinate>> =
+            written.over.iter().map(|(of, unit)| self.coordinate(of, unit.as_ref())).collect();
+        let each: Vec<Option<usize>> =
+            written.each.iter().map(|key| self.domain_key(&key.node, &key.place())).collect();
         let over = over.into_iter().collect::<Option<Vec<_>>>();
         let mut each = each.into_iter().collect::<Option<Vec<_>>>()?;
         each.dedup();
@@ -45,27 +38,22 @@ impl Checker<'_> {
         })
     }
 
-    fn coordinate(
-        &mut self,
-        of: &Phrase,
-        unit: Option<&At<String>>,
-        field: &Field,
-    ) -> Option<Coordinate> {
-        let expr = self.expr(of, &field.value, &mut Scope::section())?;
+    fn coordinate(&mut self, of: &Phrase, unit: Option<&At<String>>) -> Option<Coordinate> {
+        let expr = self.expr(of, &mut Scope::section())?;
         let dimension = self.number_type(&expr)?;
-        let words = of.words(&field.value);
+        let words = of.words();
         self.of_wanted_operation(&expr, &words)?;
         let unit = match unit {
             Some(unit) => {
-                let at = unit.place(&field.value);
-                let found = self.unit(&Text {
-                    text: unit.node.clone(),
-                    span: at.clone(),
-                    exact: field.value.exact,
-                })?;
+                let found = self.unit(&unit.to_text())?;
                 if found.dimension != dimension {
-                    self.unit_of_other_dimension(&words, dimension, found.dimension, &at);
-                    return None;
+                    let says = format!(
+                        "`{words}` is {}, `{}` is a unit of {}",
+                        dimension.in_words(),
+                        unit.place().text(),
+                        found.dimension.in_words()
+                    );
+                    return self.refuse(error("unit-mismatch", says, unit));
                 }
                 found
             }
@@ -78,25 +66,6 @@ impl Checker<'_> {
             _ => capital(&words.replace('_', " ")),
         };
         Some(Coordinate { expr, name, unit })
-    }
-
-    fn unit_of_other_dimension(
-        &mut self,
-        words: &str,
-        dimension: Dimension,
-        found: Dimension,
-        at: &Span,
-    ) {
-        self.problems.push(error(
-            "unit-mismatch",
-            format!(
-                "`{words}` is {}, `{}` is a unit of {}",
-                dimension.in_words(),
-                at.text(),
-                found.in_words()
-            ),
-            at,
-        ));
     }
 
     /// What spans a domain differs from section to section, and is known of operation that nobody

@@ -63,7 +63,6 @@ impl Checker<'_> {
         &mut self,
         name: &At<String>,
         phrase: &Phrase,
-        text: &Text,
         dimension: Option<Dimension>,
         zone: Option<&str>,
     ) -> Option<Estimate> {
@@ -72,10 +71,9 @@ impl Checker<'_> {
             && !self.names.estimates.contains_key(&plain)
             && plain != COUNT
         {
-            let statistic = At { node: plain, range: name.range.clone() };
-            return self.statistic(&statistic, text).map(|statistic| self.of_statistic(statistic));
+            return self.statistic(&name.with(plain)).map(|statistic| self.of_statistic(statistic));
         }
-        let kind = self.of_values(phrase, text, dimension?, zone)?;
+        let kind = self.of_values(phrase, dimension?, zone)?;
         self.named_estimate(&plain, kind, dimension)
     }
 
@@ -137,11 +135,10 @@ impl Checker<'_> {
     fn of_values(
         &mut self,
         phrase: &Phrase,
-        text: &Text,
         dimension: Dimension,
         zone: Option<&str>,
     ) -> Option<OfGroup> {
-        let found = self.of_group(phrase, text, Some(dimension), &Scope::zone(zone))?;
+        let found = self.of_group(phrase, Some(dimension), &Scope::zone(zone))?;
         let says = "this expression uses no statistic of the values";
         self.of_something(found, says, "for instance `mean + 3 * std`")
     }
@@ -160,20 +157,19 @@ impl Checker<'_> {
     pub fn of_group(
         &mut self,
         phrase: &Phrase,
-        text: &Text,
         values: Option<Dimension>,
         with: &Scope,
     ) -> Option<OfGroup> {
         let mut scope = with.of_group(values);
-        let expr = self.expr(phrase, text, &mut scope)?;
+        let expr = self.expr(phrase, &mut scope)?;
         Some(OfGroup { expr, taken: scope.group.map_or_else(Vec::new, |group| group.taken) })
     }
 
     /// The statistic of a name; a problem where there is none.
-    pub fn statistic(&mut self, written: &At<String>, text: &Text) -> Option<Statistic> {
+    pub fn statistic(&mut self, written: &At<String>) -> Option<Statistic> {
         let found = Statistic::named(&written.node);
         if found.is_none() && !self.is_failed(&written.node) {
-            let (name, span) = (&written.node, written.place(text));
+            let (name, span) = (&written.node, written.place());
             if let Some(percent) = name.strip_prefix('p').and_then(|percent| percent.parse().ok()) {
                 self.is_percentage(percent, &span)?;
             }
@@ -205,9 +201,8 @@ impl Checker<'_> {
         if let Some(written) = self.names.estimates.get(path).cloned() {
             self.used_defines.insert(format!("estimate {path}"));
             self.unconfirmed |= self.names.unconfirmed.contains_key(path);
-            let found = self.inside("estimate", path, span, |checker| {
-                checker.expr(&written.phrase, &written.text, scope)
-            });
+            let found =
+                self.inside("estimate", path, span, |checker| checker.expr(&written, scope));
             return Some(found);
         }
         let dimension = scope.values()?;
@@ -239,11 +234,10 @@ impl Checker<'_> {
         &mut self,
         reducer: &Phrase,
         of: &Phrase,
-        text: &Text,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        let found = self.group_reducer(reducer, "the sections of a group", text)?;
+        let found = self.group_reducer(reducer, "the sections of a group")?;
         // `mean of radius weighted by length` reads as `mean of (radius weighted by length)`.
         let (of, by) = match &of.node {
             Node::Weighted(of, by) => (of.as_ref(), Some(by.as_ref())),
@@ -262,25 +256,20 @@ impl Checker<'_> {
         let by = match (by, found) {
             (None, _) => None,
             (Some(by), DataReducer::Statistic(statistic, _)) if has_weights(statistic) => {
-                Some(self.weight(by, text, scope)?)
+                Some(self.weight(by, scope)?)
             }
             (Some(_), _) => {
                 return self
                     .no_weight(&format!("the {} of section data", reducer_name(reducer)), span);
             }
         };
-        let of = self.expr(of, text, &mut scope.of_section())?;
+        let of = self.expr(of, &mut scope.of_section())?;
         let dimension = self.number_type(&of)?;
         scope.take(Taking::Data { reducer: found, of, by }, dimension, span)
     }
 
     /// A statistic, or `total`.
-    pub fn group_reducer(
-        &mut self,
-        reducer: &Phrase,
-        from: &str,
-        text: &Text,
-    ) -> Option<DataReducer> {
+    pub fn group_reducer(&mut self, reducer: &Phrase, from: &str) -> Option<DataReducer> {
         let name = reducer_name(reducer);
         match (name.as_str(), Statistic::named(&name)) {
             ("total", _) => return Some(DataReducer::Total),
@@ -292,7 +281,7 @@ impl Checker<'_> {
             error(
                 "unknown-statistic",
                 format!("`{name} of` cannot be computed over {from}"),
-                &reducer.place(text),
+                reducer,
             )
             .suggest(&name, known),
         )
@@ -339,8 +328,8 @@ impl Checker<'_> {
     }
 
     /// In a condition on one value, `p80 of ...` must name another quantity.
-    pub fn no_such_quantity(&mut self, of: &Phrase, text: &Text, span: &Span) -> Option<Expr> {
-        let name = of.words(text);
+    pub fn no_such_quantity(&mut self, of: &Phrase, span: &Span) -> Option<Expr> {
+        let name = of.words();
         let says = format!("`{name}` is not a quantity that can be used here");
         let quantities = self.blocks_of("quantity").map(Block::name_text);
         self.refuse(error("no-such-quantity", says, span).suggest(&name, quantities))
@@ -352,20 +341,19 @@ impl Checker<'_> {
         &mut self,
         reducer: &Phrase,
         of: &Phrase,
-        text: &Text,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
         let (quantity, block) = self.other_quantity(of, scope)?;
-        let (name, range) = (reducer_name(reducer), reducer.range.clone());
+        let name = reducer_name(reducer);
         if self.names.estimates.contains_key(&name) {
             let says = format!(
                 "`{name}` is an estimate and can only be applied to the values of this quantity"
             );
             let help = "use a statistic of the other quantity: `p80 of ...`, `mean of ...`";
-            return self.refuse(error("unknown-statistic", says, &text.place(range)).help(help));
+            return self.refuse(error("unknown-statistic", says, reducer).help(help));
         }
-        let statistic = self.statistic(&At { node: name, range }, text)?;
+        let statistic = self.statistic(&reducer.with(name))?;
         let statistic = self.not_each(statistic, "quantity", span)?;
         let block = self.blocks.get(block)?.clone();
         let dimension = self.dimension_of(&block)?;
@@ -389,7 +377,6 @@ impl Checker<'_> {
         &mut self,
         (upper, confidence, bootstrap): (bool, f64, bool),
         of: &Phrase,
-        text: &Text,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
@@ -398,16 +385,16 @@ impl Checker<'_> {
         let name = match &of.node {
             Node::Path(path) => path.clone(),
             Node::Percentile(percent) => format!("p{percent}"),
-            _ => bare(&of.words(text)),
+            _ => bare(&of.words()),
         };
         let plain = matches!(of.node, Node::Path(_) | Node::Percentile(_))
             && !self.names.estimates.contains_key(&name);
         let estimate = if plain {
-            let statistic = self.statistic(&At { node: name, range: of.range.clone() }, text)?;
+            let statistic = self.statistic(&of.with(name))?;
             let statistic = self.not_each(statistic, "group", span)?;
             self.of_statistic(statistic)
         } else {
-            let kind = self.of_values(of, text, dimension, scope.zone.clone().as_deref())?;
+            let kind = self.of_values(of, dimension, scope.zone.clone().as_deref())?;
             if kind.taken.iter().any(|taking| matches!(taking, Taking::Bound { .. })) {
                 return self.refuse(error(
                     "interval-of-interval",
@@ -452,7 +439,6 @@ impl Checker<'_> {
         of_sections: bool,
         condition: &Phrase,
         by: Option<&Phrase>,
-        text: &Text,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
@@ -465,8 +451,8 @@ impl Checker<'_> {
             return self.no_values(span);
         }
         let mut of_row = Scope { value, ..scope.of_section() };
-        let condition = self.condition(condition, text, &mut of_row)?;
-        let by = if_written(by.map(|by| self.weight(by, text, scope)))?;
+        let condition = self.condition(condition, &mut of_row)?;
+        let by = if_written(by.map(|by| self.weight(by, scope)))?;
         let taking = Taking::Share { condition, of_sections, others: of_row.others, by };
         scope.take(taking, Dimension::ONE, span)
     }
@@ -475,7 +461,6 @@ impl Checker<'_> {
     pub fn group_fit(
         &mut self,
         written: &WrittenFit,
-        text: &Text,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
@@ -498,7 +483,7 @@ impl Checker<'_> {
             ), span)
                     .help("write for instance `prediction over a, b at 1, 2`"));
         }
-        let confidence = written.confidence.as_ref().map(|share| (share.node, share.place(text)));
+        let confidence = written.confidence.as_ref().map(|share| (share.node, share.place()));
         if let Some((share, place)) = &confidence {
             self.confidence(*share, place)?;
         }
@@ -509,8 +494,8 @@ impl Checker<'_> {
         }
         let (mut over, mut at, mut ok) = (Vec::new(), Vec::new(), true);
         for (regressor, target) in written.over.iter().zip(&written.at) {
-            let regressor = self.expr(regressor, text, &mut scope.of_section());
-            let target = self.of_group(target, text, None, scope);
+            let regressor = self.expr(regressor, &mut scope.of_section());
+            let target = self.of_group(target, None, scope);
             let (Some(regressor), Some(target)) = (regressor, target) else {
                 ok = false;
                 continue;

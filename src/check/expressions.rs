@@ -36,29 +36,23 @@ impl Type {
 
 impl Checker<'_> {
     /// A typed expression; `None` after a problem.
-    pub fn expr(&mut self, phrase: &Phrase, text: &Text, scope: &mut Scope) -> Option<Expr> {
-        let origin = origin(phrase, text);
+    pub fn expr(&mut self, phrase: &Phrase, scope: &mut Scope) -> Option<Expr> {
+        let origin = origin(phrase);
         let span = origin.span.clone();
-        self.deeper(&span, |checker| checker.expr_inside(phrase, text, origin, scope))
+        self.deeper(&span, |checker| checker.expr_inside(phrase, origin, scope))
     }
 
     /// An expression that is a condition.
-    pub fn condition(&mut self, phrase: &Phrase, text: &Text, scope: &mut Scope) -> Option<Expr> {
-        let condition = self.expr(phrase, text, scope)?;
+    pub fn condition(&mut self, phrase: &Phrase, scope: &mut Scope) -> Option<Expr> {
+        let condition = self.expr(phrase, scope)?;
         self.flag_type(&condition)?;
         Some(condition)
     }
 
-    fn expr_inside(
-        &mut self,
-        phrase: &Phrase,
-        text: &Text,
-        span: Origin,
-        scope: &mut Scope,
-    ) -> Option<Expr> {
+    fn expr_inside(&mut self, phrase: &Phrase, span: Origin, scope: &mut Scope) -> Option<Expr> {
         let (kind, ty) = match &phrase.node {
             node if scope.samples && !computed_from_samples(node) => {
-                let number = self.expr(phrase, text, &mut Scope::section())?;
+                let number = self.expr(phrase, &mut Scope::section())?;
                 self.number_type(&number)?;
                 return Some(number);
             }
@@ -86,22 +80,20 @@ impl Checker<'_> {
                 );
             }
             Node::Negative(inner) => {
-                let inner = self.expr(inner, text, scope)?;
+                let inner = self.expr(inner, scope)?;
                 self.number_type(&inner)?;
                 let ty = inner.ty.clone();
                 (Kind::Negative(Box::new(inner)), ty)
             }
-            Node::Not(inner) => {
-                (Kind::Not(Box::new(self.condition(inner, text, scope)?)), Type::Flag)
-            }
+            Node::Not(inner) => (Kind::Not(Box::new(self.condition(inner, scope)?)), Type::Flag),
             Node::Magnitude(inner) => {
-                let inner = self.expr(inner, text, scope)?;
+                let inner = self.expr(inner, scope)?;
                 self.number_type(&inner)?;
                 let ty = inner.ty.clone();
                 (Kind::Call(function("magnitude")?, vec![inner]), ty)
             }
             Node::Power(inner, exponent) => {
-                let inner = self.expr(inner, text, scope)?;
+                let inner = self.expr(inner, scope)?;
                 let Some(dimension) = self.number_type(&inner)?.power(*exponent) else {
                     let says = "this power gives exponents of units that are too large";
                     return self.refuse(error("power", says, &span));
@@ -110,7 +102,7 @@ impl Checker<'_> {
                 (Kind::Power(Box::new(inner), *exponent), ty)
             }
             Node::Binary(operator @ (Operator::Is | Operator::IsNot), left, right) => {
-                return self.equality(*operator, left, right, text, &span, scope);
+                return self.equality(*operator, left, right, &span, scope);
             }
             // `2/3 of std` is two thirds of it. `2/share of std` is ambiguous.
             Node::Binary(Operator::Divide, _, right)
@@ -122,29 +114,29 @@ impl Checker<'_> {
             }
             Node::Binary(operator, left, right) => {
                 let inputs = scope.inputs.len();
-                let found = self.binary(*operator, left, right, text, span, scope)?;
+                let found = self.binary(*operator, left, right, span, scope)?;
                 if matches!(found.kind, Kind::Constant(_)) {
                     // `false and p0.15 > p99.85` does not need the records.
                     scope.inputs.truncate(inputs);
                 }
                 return Some(found);
             }
-            Node::Near { .. } => return self.near(phrase, text, scope).map(|near| near.holds),
+            Node::Near { .. } => return self.near(phrase, scope).map(|near| near.holds),
             Node::Call(name, arguments) if scope.samples && is_signal_function(&name.node) => {
-                return self.over_axis(name, arguments, text, span, scope);
+                return self.over_axis(name, arguments, span, scope);
             }
             Node::Call(name, arguments)
                 if !scope.samples && matches!(name.node.as_str(), "measured" | "simulated") =>
             {
-                return self.on_side(name, arguments, text, &span, scope);
+                return self.on_side(name, arguments, &span, scope);
             }
             Node::Call(name, arguments) if self.metric_called(name, scope) => {
-                return self.metric_call(name, arguments, text, &span, scope);
+                return self.metric_call(name, arguments, &span, scope);
             }
             Node::Call(name, arguments) => {
-                let function = self.function(name, arguments.len(), text)?;
+                let function = self.function(name, arguments.len())?;
                 let arguments: Vec<Option<Expr>> =
-                    arguments.iter().map(|argument| self.expr(argument, text, scope)).collect();
+                    arguments.iter().map(|argument| self.expr(argument, scope)).collect();
                 let arguments = arguments.into_iter().collect::<Option<Vec<_>>>()?;
                 for argument in &arguments {
                     self.number_type(argument)?;
@@ -156,46 +148,46 @@ impl Checker<'_> {
             // `share of std` with a parameter `share` is a product, `mean of Y` a value of a
             // signal.
             Node::Reduced(factor, of) if self.is_number_name(factor) => {
-                return self.binary(Operator::Multiply, factor, of, text, span, scope);
+                return self.binary(Operator::Multiply, factor, of, span, scope);
             }
             Node::Reduced(reducer, of) if scope.samples => {
-                return self.level(reducer, of, text, span, scope);
+                return self.level(reducer, of, span, scope);
             }
             Node::Reduced(reducer, of) if let Node::ForEach(one, keys) = &of.node => {
-                return self.of_each_group(reducer, one, keys, text, &span, scope);
+                return self.of_each_group(reducer, one, keys, &span, scope);
             }
-            Node::ForEach(_, keys) => return self.many_numbers(keys, text, &span),
-            Node::Weighted(of, by) => return self.weighted(of, by, text, &span, scope),
+            Node::ForEach(_, keys) => return self.many_numbers(keys, &span),
+            Node::Weighted(of, by) => return self.weighted(of, by, &span, scope),
             Node::Reduced(reducer, of) if self.other_quantity(of, scope).is_some() => {
-                return self.of_other(reducer, of, text, &span, scope);
+                return self.of_other(reducer, of, &span, scope);
             }
             Node::Reduced(_, of) if scope.value.is_some() => {
-                return self.no_such_quantity(of, text, &span);
+                return self.no_such_quantity(of, &span);
             }
             Node::Reduced(reducer, of) if scope.group.is_some() => {
-                return self.group_data(reducer, of, text, &span, scope);
+                return self.group_data(reducer, of, &span, scope);
             }
             Node::Bound { upper, confidence, of, bootstrap } => {
-                return self.group_bound((*upper, *confidence, *bootstrap), of, text, &span, scope);
+                return self.group_bound((*upper, *confidence, *bootstrap), of, &span, scope);
             }
             Node::Share { of_sections, condition } => {
-                return self.group_share(*of_sections, condition, None, text, &span, scope);
+                return self.group_share(*of_sections, condition, None, &span, scope);
             }
-            Node::Fit(fit) => return self.group_fit(fit, text, &span, scope),
+            Node::Fit(fit) => return self.group_fit(fit, &span, scope),
             Node::Reduced(reducer, signal) => {
-                return self.reduced(reducer, signal, text, &span, scope);
+                return self.reduced(reducer, signal, &span, scope);
             }
-            Node::Over(value, over) => return self.slope_over(value, over, text, &span, scope),
+            Node::Over(value, over) => return self.slope_over(value, over, &span, scope),
             Node::PlaceOf(name, words) if scope.samples => {
-                return self.placed(name, words, text, &span, scope);
+                return self.placed(name, words, &span, scope);
             }
             Node::Through(inner, filter) if scope.samples => {
-                return self.filtered(inner, filter, text, span, scope);
+                return self.filtered(inner, filter, span, scope);
             }
             Node::PlaceOf(name, _) => return self.not_a_number(&name.node, &span),
-            Node::Through(inner, _) => return self.not_a_number(&inner.words(text), &span),
+            Node::Through(inner, _) => return self.not_a_number(&inner.words(), &span),
             Node::Cases(arms, otherwise) => {
-                return self.cases(arms, otherwise.as_deref(), text, &span, scope);
+                return self.cases(arms, otherwise.as_deref(), &span, scope);
             }
         };
         self.folded(Expr { kind, ty, span }, scope)
@@ -215,11 +207,10 @@ impl Checker<'_> {
         operator: Operator,
         left: &Phrase,
         right: &Phrase,
-        text: &Text,
         span: Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        let (left, right) = (self.expr(left, text, scope), self.expr(right, text, scope));
+        let (left, right) = (self.expr(left, scope), self.expr(right, scope));
         let (left, right) = (left?, right?);
         let ty = self.binary_type(operator, &left, &right, scope)?;
         if operator == Operator::Divide && number(&right, &Nothing) == Ok(0.0) {
@@ -341,13 +332,8 @@ impl Checker<'_> {
         )
     }
 
-    fn function(
-        &mut self,
-        name: &At<String>,
-        count: usize,
-        text: &Text,
-    ) -> Option<&'static Function> {
-        let span = name.place(text);
+    fn function(&mut self, name: &At<String>, count: usize) -> Option<&'static Function> {
+        let span = name.place();
         let Some(found) = function(&name.node) else {
             let problem =
                 error("unknown-function", format!("`{}` is not a function", name.node), &span);
@@ -439,6 +425,6 @@ fn computed_from_samples(node: &Node) -> bool {
 }
 
 /// The place and the words of a phrase.
-pub fn origin(phrase: &Phrase, text: &Text) -> Origin {
-    Origin { span: phrase.place(text), words: phrase.words(text).into() }
+pub fn origin(phrase: &Phrase) -> Origin {
+    Origin { span: phrase.place(), words: phrase.words().into() }
 }

@@ -44,7 +44,7 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
             problems.push(error(
                 "extends-too-deep",
                 format!("more than {DEEPEST} protocols extend each other"),
-                &field.value.span,
+                &field,
             ));
             whole = false;
             break;
@@ -58,7 +58,7 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
                     } else {
                         format!("`{name}` extends this protocol again")
                     };
-                    problems.push(error("extends-loop", says, &field.value.span));
+                    problems.push(error("extends-loop", says, &field));
                     whole = false;
                     break;
                 }
@@ -66,7 +66,7 @@ pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Fa
                 sources.push(found);
             }
             Err(problem) => {
-                problems.push(problem.at(&field.value.span));
+                problems.push(problem.at(&field));
                 whole = false;
                 break;
             }
@@ -214,7 +214,7 @@ fn remove(blocks: &mut Vec<Block>, field: &Field, families: &[Known], problems: 
         });
         let here: Vec<&str> = here.map(|family| family.name.as_str()).collect();
         known.extend(here);
-        problems.push(error("nothing-to-remove", says, &field.value.span).suggest(name, known));
+        problems.push(error("nothing-to-remove", says, field).suggest(name, known));
         return;
     }
     match (is_limit, words.as_slice()) {
@@ -231,7 +231,7 @@ fn remove(blocks: &mut Vec<Block>, field: &Field, families: &[Known], problems: 
                 error(
                     "remove",
                     format!("`remove` needs the name of one {}", field.key.text),
-                    &field.value.span,
+                    field,
                 )
                 .help("write one name on each line, or `every` for all"),
             );
@@ -257,7 +257,7 @@ fn remove_limits<'a>(
         let same = |limit: &Limit| {
             limit.statistic.node == wanted
                 || written.as_ref().is_some_and(|written| {
-                    !written.scope.node.is_all()
+                    !written.scope.is_all()
                         && (&written.count, &written.scope) == (&limit.estimate, &limit.scope)
                 })
         };
@@ -290,7 +290,5 @@ fn remove_limits<'a>(
         (false, _) => format!("{of} of the `{}`", words.join(" ")),
     };
     known.dedup();
-    problems.push(
-        error("nothing-to-remove", says, &field.value.span).suggest(&words.join(" "), &known),
-    );
+    problems.push(error("nothing-to-remove", says, field).suggest(&words.join(" "), &known));
 }

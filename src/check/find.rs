@@ -36,7 +36,7 @@ impl Checker<'_> {
         let Some(used) = used else {
             if let Some(first) = conditions.first() {
                 self.problems.push(
-                    warning("find-unused", "the protocol has conditions on found sections, and does not look for sections", first.span()).help(format!("write in the block `sections`: `use {FOUND_SECTIONS}`")),
+                    warning("find-unused", "the protocol has conditions on found sections, and does not look for sections", first).help(format!("write in the block `sections`: `use {FOUND_SECTIONS}`")),
                 );
             }
             return None;
@@ -48,7 +48,7 @@ impl Checker<'_> {
                 error(
                     "missing-field",
                     "`sections` has no `step`: where sections are looked for",
-                    &used.value.span,
+                    used,
                 )
                 .help("add the distance between two places that are tried: `step 1 m`"),
             ),
@@ -56,7 +56,7 @@ impl Checker<'_> {
         let length = block.field("length").map(|field| self.found_length(field));
         if length.is_none() && (rules.zone.is_none() || zones == 0) {
             self.problems.push(
-                error("missing-field", "a found section has no length: there is no field `length`, and no zone with a minimum length", &used.value.span)
+                error("missing-field", "a found section has no length: there is no field `length`, and no zone with a minimum length", used)
                     .help("add `length 100 m`"),
             );
         }
@@ -66,7 +66,7 @@ impl Checker<'_> {
             }) {
                 let says = format!("a found section of zone {} has no length", zone.name_text());
                 let help = "give the zone a `minimum length`, or `sections` a `length`";
-                self.problems.push(error("missing-field", says, zone.span()).help(help));
+                self.problems.push(error("missing-field", says, zone).help(help));
             }
         }
         let prefer = block
@@ -106,7 +106,7 @@ impl Checker<'_> {
                 axis.in_words(),
                 expr.ty.in_words()
             ),
-            &field.value.span,
+            field,
         );
         self.refuse(match (&self.axis, found) {
             (Some(axis), Dimension::ONE) => {
@@ -175,7 +175,7 @@ impl Checker<'_> {
             };
             if rules.zone == Some(column) {
                 self.problems.push(
-                    error("found-zone", "the zone of a found section follows from the conditions `where` of the zones", &field.key.span).help("remove the line"),
+                    error("found-zone", "the zone of a found section follows from the conditions `where` of the zones", &field.key).help("remove the line"),
                 );
                 sound = false;
                 continue;
@@ -213,7 +213,7 @@ impl Checker<'_> {
                 error(
                     "unit-mismatch",
                     format!("`{}` is {wanted}, this is {}", datum.name, expr.ty.in_words()),
-                    &field.value.span,
+                    field,
                 )
                 .also(&datum.span, "declared here"),
             );
@@ -270,7 +270,7 @@ impl Checker<'_> {
             return Some(value);
         };
         let code = if dimension == axis { "out-of-range" } else { "unit-mismatch" };
-        self.refuse(error(code, says, &field.value.span))
+        self.refuse(error(code, says, field))
     }
 
     /// `at most 9 for each zone and country`.
@@ -278,7 +278,7 @@ impl Checker<'_> {
         let text = &field.value.text;
         let wrong = |checker: &mut Self, says: String| {
             let help = "for instance: `keep at most 9 for each zone and country`";
-            checker.refuse(error("keep", says, &field.value.span).help(help))
+            checker.refuse(error("keep", says, field).help(help))
         };
         let Some(rest) =
             text.strip_prefix(AT_MOST).filter(|rest| rest.starts_with(char::is_whitespace))

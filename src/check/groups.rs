@@ -5,7 +5,7 @@ use super::plan::{DatumKind, Key, Kind, Scope};
 use super::scope::Scope as Names;
 use crate::problem::error;
 use crate::source::Span;
-use crate::syntax::document::{Block, Text};
+use crate::syntax::document::Block;
 use crate::syntax::phrase::{At, Scope as Written};
 
 /// Keys of groups that every campaign has.
@@ -53,12 +53,11 @@ impl Checker<'_> {
 
     /// The rows that a limit or a minimum applies to, and whether there is one limit for every
     /// zone.
-    pub fn scope_of(&mut self, scope: &At<Written>, text: &Text) -> Option<(Scope, bool)> {
-        let written = &scope.node;
-        let zones = self.limit_zones(&written.zones, text);
+    pub fn scope_of(&mut self, written: &Written) -> Option<(Scope, bool)> {
+        let zones = self.limit_zones(&written.zones);
         let (mut each_zone, mut each, mut ok) = (false, Vec::new(), true);
         for key in &written.each {
-            let place = key.place(text);
+            let place = key.place();
             if matches!(key.node.as_str(), "zone" | "zones") {
                 ok &= !each_zone || self.key_twice(&key.node, &place);
                 if self.zone_names.is_empty() {
@@ -77,8 +76,8 @@ impl Checker<'_> {
         let condition = match &written.condition {
             None => None,
             Some(condition) => {
-                let words = condition.words(text);
-                let condition = self.condition(condition, text, &mut Names::section());
+                let words = condition.words();
+                let condition = self.condition(condition, &mut Names::section());
                 ok &= condition.is_some();
                 condition.map(|condition| (condition, words))
             }
@@ -87,11 +86,11 @@ impl Checker<'_> {
         Some((Scope { zones, each, condition }, each_zone))
     }
 
-    fn limit_zones(&mut self, zones: &[At<String>], text: &Text) -> Option<Vec<String>> {
+    fn limit_zones(&mut self, zones: &[At<String>]) -> Option<Vec<String>> {
         let mut found: Vec<String> = Vec::new();
         let mut ok = true;
         for zone in zones {
-            let place = zone.place(text);
+            let place = zone.place();
             if !self.zone_names.contains(&zone.node) {
                 let known = self.zone_names.clone();
                 let problem =
@@ -158,8 +157,8 @@ impl Checker<'_> {
     }
 
     /// A key inside an estimate: there the zone is one like others.
-    pub fn group_key(&mut self, key: &At<String>, text: &Text) -> Option<Key> {
-        let place = key.place(text);
+    pub fn group_key(&mut self, key: &At<String>) -> Option<Key> {
+        let place = key.place();
         if !matches!(key.node.as_str(), "zone" | "zones") {
             return self.key(&key.node, &place);
         }

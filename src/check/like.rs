@@ -46,12 +46,8 @@ fn filled(
                 .map(|(_, block)| block.name_text())
                 .filter(|known| *known != own.name_text());
             problems.push(
-                error(
-                    "no-such-quantity",
-                    format!("no quantity is called `{name}`"),
-                    &field.value.span,
-                )
-                .suggest(name, known),
+                error("no-such-quantity", format!("no quantity is called `{name}`"), field)
+                    .suggest(name, known),
             );
         }
         return None;
@@ -63,7 +59,7 @@ fn filled(
                 error(
                     "like-loop",
                     format!("`{}` is like itself in the end", own.name_text()),
-                    &field.value.span,
+                    field,
                 )
                 .help("let one of them state its own `of`, `value` and limits"),
             );

@@ -54,9 +54,7 @@ impl Checker<'_> {
         let mut names = Vec::new();
         for field in &fields {
             if let Some(limit) = from_pest::limit(&field.value, &mut Problems::default()) {
-                names.push(
-                    self.with_statistic(limit.statistic, limit.estimate, &field.value).0.node,
-                );
+                names.push(self.with_statistic(limit.statistic, limit.estimate).0.node);
             }
         }
         let common = Common { block, unit, best, names };
@@ -82,22 +80,17 @@ impl Checker<'_> {
     /// The limits of a field: one, or one for every zone.
     fn limit(&mut self, text: &Text, common: &Common<'_>) -> Option<Vec<Limit>> {
         let written = from_pest::limit(text, self.problems)?;
-        let (statistic, estimate) = self.with_statistic(written.statistic, written.estimate, text);
+        let (statistic, estimate) = self.with_statistic(written.statistic, written.estimate);
         let written = Written { statistic, estimate, ..written };
         let dimension = common.unit.map(|(unit, _)| unit.dimension);
         let unconfirmed = common.block.field("unconfirmed").is_some();
-        let scope = self.scope_of(&written.scope, text);
+        let scope = self.scope_of(&written.scope);
         let mut limits = Vec::new();
         for (scope, zone) in self.zone_by_zone(scope) {
             self.unconfirmed = unconfirmed;
-            let estimate = self.estimate(
-                &written.statistic,
-                &written.estimate,
-                text,
-                dimension,
-                zone.as_deref(),
-            );
-            limits.push(self.limit_of(&written, &estimate?, scope?, zone, text, common)?);
+            let estimate =
+                self.estimate(&written.statistic, &written.estimate, dimension, zone.as_deref());
+            limits.push(self.limit_of(&written, &estimate?, scope?, zone, common)?);
         }
         Some(limits)
     }
@@ -108,9 +101,9 @@ impl Checker<'_> {
         estimate: &Estimate,
         applies: LimitScope,
         zone: Option<String>,
-        text: &Text,
         common: &Common<'_>,
     ) -> Option<Limit> {
+        let text = &written.statistic.text;
         let dimension =
             estimate.unit.as_ref().or(common.unit.map(|(unit, _)| unit)).map(|unit| unit.dimension);
         let others: Vec<String> =
@@ -124,10 +117,9 @@ impl Checker<'_> {
         let mut of_bound = scope();
         of_bound.limits = Some((dimension.unwrap_or(Dimension::ONE), others.clone()));
         let bound = if of_bound.section {
-            self.expr(&written.bound, text, &mut of_bound)
-                .map(|expr| OfGroup { expr, taken: Vec::new() })
+            self.expr(&written.bound, &mut of_bound).map(|expr| OfGroup { expr, taken: Vec::new() })
         } else {
-            self.of_group(&written.bound, text, None, &of_bound)
+            self.of_group(&written.bound, None, &of_bound)
         };
         let bound = bound.and_then(|bound| {
             let of = estimate.unit.as_ref().zip(Some(&text.span)).or(common.unit);
@@ -136,21 +128,18 @@ impl Checker<'_> {
             }
             let signed = matches!(common.best, Some((Best::Near(best), _)) if *best == 0.0);
             if signed && !written.at_least {
-                self.signed_estimate(estimate, &written.statistic.place(text));
+                self.signed_estimate(estimate, &written.statistic.place());
             }
             let expr = self.suitable_bound(bound.expr, written.at_least, of, common)?;
             self.share_above_one(estimate, &expr)?;
-            Some(OfGroup {
-                expr: self.on_its_side(expr, written, estimate, text, common)?,
-                ..bound
-            })
+            Some(OfGroup { expr: self.on_its_side(expr, written, estimate, common)?, ..bound })
         });
         let mut factors = Vec::new();
         let mut ok = true;
         for (factor, condition) in &written.factors {
             let factor =
-                self.expr(factor, text, &mut scope()).and_then(|factor| self.plain_factor(factor));
-            let condition = self.condition(condition, text, &mut scope());
+                self.expr(factor, &mut scope()).and_then(|factor| self.plain_factor(factor));
+            let condition = self.condition(condition, &mut scope());
             match factor.zip(condition) {
                 Some(found) => factors.push(found),
                 None => ok = false,
@@ -159,7 +148,7 @@ impl Checker<'_> {
         let only_when = match &written.only_when {
             None => None,
             Some(condition) => {
-                let condition = self.condition(condition, text, &mut Scope::zone(zone.as_deref()));
+                let condition = self.condition(condition, &mut Scope::zone(zone.as_deref()));
                 ok &= condition.is_some();
                 condition
             }
@@ -260,7 +249,6 @@ impl Checker<'_> {
         bound: Expr,
         written: &Written,
         estimate: &Estimate,
-        text: &Text,
         common: &Common<'_>,
     ) -> Option<Expr> {
         let scatter = estimate.of_scatter;
@@ -293,7 +281,7 @@ impl Checker<'_> {
         let problem = error(
             "wrong-side",
             format!("this limit is on the wrong side: for {of}, the best value is {is}"),
-            &text.place(written.statistic.range.start..written.bound.range.end),
+            &written.statistic.to(&written.bound, ()),
         );
         let problem = match from {
             Some(from) => problem.also(from, format!("best value {is}")),

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use super::Checker;
 use super::expressions::whole;
-use super::names::{Assignment, Written, bare_word, normalised};
+use super::names::{Assignment, bare_word, normalised};
 use super::plan::{
     Axis, AxisOperation, Evaluation, Expr, Input, InputSide, Kind, Origin, Pairing, Position, Side,
     Step, Taken,
@@ -62,7 +62,7 @@ impl Checker<'_> {
         let step = from_pest::step_alone(text, &mut unheard);
         if let Some(step) = &step {
             let step =
-                self.with_choices(step.node.clone(), text, METRICS.iter().map(|entry| &entry.form));
+                self.with_choices(step.node.clone(), METRICS.iter().map(|entry| &entry.form));
             if step
                 .parts
                 .first()
@@ -97,17 +97,17 @@ impl Checker<'_> {
     fn by_one(
         &mut self,
         metric: Metric,
-        over: Option<Written>,
+        over: Option<Phrase>,
         field: &Field,
         positions: &[(Position, Assignment)],
         chain: &[Step],
     ) -> Option<Compared> {
-        let over_name = over.as_ref().and_then(|over| bare_word(&over.phrase)).map(str::to_string);
+        let over_name = over.as_ref().and_then(|over| bare_word(&over)).map(str::to_string);
         let over = match over {
             None => Vec::new(),
             Some(over) => positions
                 .iter()
-                .map(|(_, at)| self.signal_where(&over.phrase, &over.text, at, &whole(&over.text)))
+                .map(|(_, at)| self.signal_where(&over, at, &whole(&over.text)))
                 .collect::<Option<Vec<_>>>()?,
         };
         self.samples_are_kept(Taken::Compared(metric), chain, &field.value.span)?;
@@ -220,13 +220,11 @@ impl Checker<'_> {
     }
 
     /// A metric and the signal that its wording names, at given positions.
-    fn metric(&mut self, text: &Text) -> Option<(Metric, Option<Written>)> {
+    fn metric(&mut self, text: &Text) -> Option<(Metric, Option<Phrase>)> {
         let step = from_pest::step_alone(text, self.problems)?;
-        let span = step.place(text);
-        let step = At {
-            node: self.with_choices(step.node, text, METRICS.iter().map(|entry| &entry.form)),
-            range: step.range,
-        };
+        let span = step.place();
+        let step = step
+            .with(self.with_choices(step.node.clone(), METRICS.iter().map(|entry| &entry.form)));
         let index =
             self.find_form(&step.node, &span, "metric", METRICS.iter().map(|entry| &entry.form))?;
         let entry = &METRICS[index];
@@ -237,19 +235,15 @@ impl Checker<'_> {
             .and_then(|part| part.first())
             .filter(|_| entry.form.numbers.is_empty())
         {
-            return self.refuse(error(
-                "unknown-option",
-                "this metric has no option",
-                &extra.place(text),
-            ));
+            return self.refuse(error("unknown-option", "this metric has no option", extra));
         }
         if let Some(condition) = &step.node.when {
             return self.refuse(
-                error("unknown-option", "a metric has no condition", &condition.place(text))
+                error("unknown-option", "a metric has no condition", condition)
                     .help("sections are left out of a quantity by its field `where`"),
             );
         }
-        self.metric_filled(entry, &step.node, text, &span)
+        self.metric_filled(entry, &step.node, &span)
     }
 
     /// A metric with its slots and options filled.
@@ -257,19 +251,14 @@ impl Checker<'_> {
         &mut self,
         entry: &'static MetricEntry,
         step: &WrittenStep,
-        text: &Text,
         span: &Span,
-    ) -> Option<(Metric, Option<Written>)> {
+    ) -> Option<(Metric, Option<Phrase>)> {
         let slot = entry.form.head.iter().position(|part| matches!(part, Part::Signal(_)));
         let over = match slot {
             None => None,
-            Some(slot) => {
-                let item = step.parts.first()?.get(slot)?;
-                let phrase = item_phrase(item);
-                Some(Written { phrase, text: text.clone() })
-            }
+            Some(slot) => Some(item_phrase(step.parts.first()?.get(slot)?)),
         };
-        let filled = self.fill_form(&entry.form, step, text, span)?;
+        let filled = self.fill_form(&entry.form, step, span)?;
         let points = filled.options.first().copied().flatten().map(|(points, _)| points);
         if let Some(points) = points.filter(|points| {
             points.fract() != 0.0 || !(LEAST_POINTS..=MOST_POINTS).contains(points)
@@ -317,14 +306,12 @@ impl Checker<'_> {
         &mut self,
         name: &At<String>,
         given: &[Phrase],
-        text: &Text,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
         let entry = MetricEntry::called(&name.node)?;
-        let item =
-            |phrase: &Phrase| At { node: Item::Value(phrase.clone()), range: phrase.range.clone() };
-        let word = |word: &str| At { node: Item::Word(word.into()), range: name.range.clone() };
+        let item = |phrase: &Phrase| phrase.with(Item::Value(phrase.clone()));
+        let word = |word: &str| name.with(Item::Word(word.into()));
         let mut rest = given.iter();
         let head: Option<Vec<At<Item>>> = entry
             .form
@@ -350,15 +337,14 @@ impl Checker<'_> {
                     entry.call_in_words(),
                     given.len()
                 ),
-                &name.place(text),
+                name,
             ));
         };
-        let (metric, over) =
-            self.metric_filled(entry, &WrittenStep { parts, when: None }, text, span)?;
+        let (metric, over) = self.metric_filled(entry, &WrittenStep { parts, when: None }, span)?;
         let at = scope.at.clone();
         let over = match over {
             None => None,
-            Some(over) => Some(self.signal(&over.phrase, text, &at)?),
+            Some(over) => Some(self.signal(&over, &at)?),
         };
         self.metric_input(metric, over, span, scope)
     }
@@ -405,11 +391,10 @@ impl Checker<'_> {
         &mut self,
         value: &Phrase,
         over: &Phrase,
-        text: &Text,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        let place = value.place(text);
+        let place = value.place();
         let reducer = bare_word(value).and_then(Reducer::named);
         let Some(reducer) = reducer else {
             return self.refuse(
@@ -422,7 +407,7 @@ impl Checker<'_> {
             );
         };
         let at = scope.at.clone();
-        let over = self.slope_axis(reducer, over, &place, text, &at)?;
+        let over = self.slope_axis(reducer, over, &place, &at)?;
         let Some(Reduce { own: Some(dimension), side, .. }) = scope.reduce else {
             return self.own_reducer(reducer, span.clone(), scope);
         };
@@ -437,7 +422,6 @@ impl Checker<'_> {
         reducer: Reducer,
         over: &Phrase,
         place: &Span,
-        text: &Text,
         at: &Assignment,
     ) -> Option<Expr> {
         if reducer.in_words() != "slope" {
@@ -453,7 +437,7 @@ impl Checker<'_> {
                 .help("write `slope over SIGNAL`"),
             );
         }
-        self.signal(over, text, at)
+        self.signal(over, at)
     }
 
     /// Whether an expression uses the samples of a side: `simulated - measured`.
@@ -464,9 +448,7 @@ impl Checker<'_> {
                 !self.is_signal(path)
             }
             Node::Path(path) => match self.names.defines.get(path) {
-                Some(define) if seen.insert(path.clone()) => {
-                    self.names_side(&define.phrase.clone(), seen)
-                }
+                Some(define) if seen.insert(path.clone()) => self.names_side(&define.clone(), seen),
                 _ => false,
             },
             Node::Binary(_, left, right) | Node::Over(left, right) => any(left) || any(right),
@@ -488,7 +470,6 @@ impl Checker<'_> {
         &mut self,
         reducer: Reducer,
         signal: &Phrase,
-        text: &Text,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
@@ -500,7 +481,7 @@ impl Checker<'_> {
             );
         }
         let mut samples = Scope::samples(&scope.at, own.filter(|_| metrics));
-        let signal = self.expr(signal, text, &mut samples)?;
+        let signal = self.expr(signal, &mut samples)?;
         if let Some(other) = not_of_both(&signal) {
             return self.refuse(error("mixed-records", "samples of both sides can only be combined with numbers: other signals and filters have other samples", &other.span).help("write filters in the field `filter`; `shifted` can only be applied to `simulated` and `measured`"));
         }

@@ -32,20 +32,20 @@ impl Checker<'_> {
                 found.all.get_or_insert(None);
                 continue;
             };
-            let groups = written.scope.node.clone();
+            let groups = written.scope.clone();
             if let Some((_, first)) = seen.iter().find(|(known, _)| *known == groups) {
                 self.problems.push(
                     error(
                         "duplicate-field",
                         "there are two `minimum pairs` for the same values",
-                        &field.value.span,
+                        field,
                     )
                     .also(first, "the first"),
                 );
                 continue;
             }
             seen.push((groups, field.value.span.clone()));
-            if written.scope.node.is_all() {
+            if written.scope.is_all() {
                 found.all = Some(self.pairs(&written.count, field));
             } else {
                 found.of_groups.push(field.clone());
@@ -70,7 +70,7 @@ impl Checker<'_> {
             };
             let before = self.problems.0.len();
             let needed = self.pairs(&written.count, field);
-            let scope = self.scope_of(&written.scope, &field.value);
+            let scope = self.scope_of(&written.scope);
             let (Some(needed), true) = (needed, scope.is_some()) else {
                 ok = false;
                 self.once(before);
@@ -95,11 +95,11 @@ impl Checker<'_> {
     }
 
     fn pairs(&mut self, count: &Phrase, field: &Field) -> Option<usize> {
-        let (value, dimension) = self.constant_phrase(count, &field.value)?;
+        let (value, dimension) = self.constant_phrase(count)?;
         if dimension == Dimension::ONE && value.fract() == 0.0 && (0.0..=MOST).contains(&value) {
             return Some(value as usize);
         }
-        let words = count.words(&field.value);
+        let words = count.words();
         self.no_count(&field.key.text, &words, (value, dimension), &field.value.span);
         None
     }

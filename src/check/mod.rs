@@ -296,7 +296,7 @@ impl Checker<'_> {
     /// The expression in a field.
     fn expression(&mut self, text: &Text, scope: &mut Scope) -> Option<Expr> {
         let phrase = from_pest::expression(text, self.problems)?;
-        self.expr(&phrase, text, scope)
+        self.expr(&phrase, scope)
     }
 
     /// Checks one level deeper; `None` after a problem if that is too deep or too much.
@@ -364,7 +364,7 @@ impl Checker<'_> {
                 .iter()
                 .find(|block| block.kind.text == kind && block.name_text() == name)
             {
-                problem = problem.also(block.span(), "begins here");
+                problem = problem.also(block, "begins here");
             }
             self.problems.push(problem);
             self.looped.extend(self.open[from..].iter().cloned());
@@ -429,7 +429,7 @@ impl Checker<'_> {
             self.problems.push(error(
                 "no-quantity",
                 "the protocol has no quantity, so nothing would be compared",
-                head.span(),
+                head,
             ));
         }
         self.unused_parts();

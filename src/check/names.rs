@@ -17,13 +17,6 @@ use crate::syntax::phrase::{Alias, Node, Phrase};
 pub use crate::syntax::phrase::normalised;
 use crate::units::{SYMBOLS, Unit};
 
-/// A phrase and the field it is written in.
-#[derive(Clone, Debug)]
-pub struct Written {
-    pub phrase: Phrase,
-    pub text: Text,
-}
-
 /// A parameter with the value that is used.
 #[derive(Clone, Debug)]
 pub struct ParameterDef {
@@ -39,11 +32,11 @@ pub struct ParameterDef {
     pub selects: Option<(String, Vec<String>)>,
 }
 
-/// The positions of a place and their aliases, each with the field it is written in.
+/// The positions of a place and their aliases.
 #[derive(Clone, Debug)]
 pub struct Place {
     pub members: Vec<String>,
-    pub aliases: Vec<(Alias, Text)>,
+    pub aliases: Vec<Alias>,
 }
 
 /// A channel, with a column of the records for each position.
@@ -60,7 +53,7 @@ pub struct Channel {
 #[derive(Clone, Debug)]
 pub struct SignalDef {
     pub places: Vec<String>,
-    pub is: Written,
+    pub is: Phrase,
     pub unit: Option<Unit>,
     pub named: String,
     pub span: Span,
@@ -78,10 +71,10 @@ pub struct Names {
     pub records: Vec<DeclaredRecord>,
     pub channels: IndexMap<String, Channel>,
     pub signals: IndexMap<String, SignalDef>,
-    pub defines: IndexMap<String, Written>,
+    pub defines: IndexMap<String, Phrase>,
     /// Definitions with a number that is to be confirmed, and why.
     pub unconfirmed: IndexMap<String, String>,
-    pub estimates: IndexMap<String, Written>,
+    pub estimates: IndexMap<String, Phrase>,
     /// Blocks of the filters.
     pub filters: IndexMap<String, Block>,
     /// Names whose block has an error. They are not reported as unknown.
@@ -195,7 +188,7 @@ impl Checker<'_> {
                 error(
                     "reserved-name",
                     format!("`{name}` is {what}, so this {kind} needs another name"),
-                    block.span(),
+                    block,
                 )
                 .help(format!("for instance `{name}_1`, or a longer name")),
             );
@@ -207,14 +200,14 @@ impl Checker<'_> {
             self.problems.push(
                 error("bad-name", format!(
                 "a {kind} cannot be called `{name}`: in an expression, `{sign}` is not read as part of a name"
-            ), block.span())
+            ), block)
                     .help("use letters, digits and `_`, and begin with a letter"),
             );
         } else if let Some(unit) =
             SYMBOLS.iter().find(|unit| unit.symbol == name && kind != "filter" && kind != "place")
         {
             self.problems.push(
-                warning("unit-name", format!("`{name}` is also a unit ({})", unit.name), block.span())
+                warning("unit-name", format!("`{name}` is also a unit ({})", unit.name), block)
                     .help(format!("after a number, `{name}` is read as the unit, elsewhere as the {kind}; a longer name is clearer")),
             );
         }
@@ -242,8 +235,8 @@ impl Checker<'_> {
                     && !(matches!(a, "vehicle" | "section") && matches!(b, "vehicle" | "section"))
                 {
                     self.problems.push(
-                        error("name-clash", format!("`{name}` is a {a} and a {b}"), block.span())
-                            .also(first.span(), format!("the {a}")),
+                        error("name-clash", format!("`{name}` is a {a} and a {b}"), block)
+                            .also(first, format!("the {a}")),
                     );
                 }
             } else {
@@ -253,9 +246,8 @@ impl Checker<'_> {
     }
 
     /// The expression in a field.
-    pub fn written(&mut self, field: &Field) -> Option<Written> {
-        let phrase = from_pest::expression(&field.value, self.problems)?;
-        Some(Written { phrase, text: field.value.clone() })
+    pub fn written(&mut self, field: &Field) -> Option<Phrase> {
+        from_pest::expression(&field.value, self.problems)
     }
 
     /// A required field.
@@ -289,7 +281,7 @@ impl Checker<'_> {
         };
         let name = format!("{kind} {}", block.name_text());
         self.problems.push(
-            error("missing-field", format!("`{}` has no {list}", name.trim()), block.span())
+            error("missing-field", format!("`{}` has no {list}", name.trim()), block)
                 .help(help.replace("` ...", " ...`")),
         );
     }

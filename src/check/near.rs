@@ -7,7 +7,6 @@ use super::functions::function;
 use super::plan::{Expr, Kind, Operator, Scalar, Type};
 use super::scope::Scope;
 use crate::problem::error;
-use crate::syntax::document::Text;
 use crate::syntax::phrase::{Node, Phrase};
 use crate::units::Dimension;
 
@@ -23,15 +22,12 @@ impl Checker<'_> {
     /// `a near b within c` means `|a - b| <= c`. If `c` is a plain number and `a` is not, `c` is a
     /// share of `|b|`. `a near b within a factor of c` means equal signs and a ratio of magnitudes
     /// from `1/c` to `c`.
-    pub fn near(&mut self, phrase: &Phrase, text: &Text, scope: &mut Scope) -> Option<Near> {
+    pub fn near(&mut self, phrase: &Phrase, scope: &mut Scope) -> Option<Near> {
         let Node::Near { value, target, tolerance, by_factor } = &phrase.node else { return None };
-        let (value, target, tolerance) = (
-            self.expr(value, text, scope),
-            self.expr(target, text, scope),
-            self.expr(tolerance, text, scope),
-        );
+        let (value, target, tolerance) =
+            (self.expr(value, scope), self.expr(target, scope), self.expr(tolerance, scope));
         let (found, expected, tolerance) = (value?, target?, tolerance?);
-        let span = origin(phrase, text);
+        let span = origin(phrase);
         let make = |kind: Kind, ty: Type| Expr { kind, ty, span: span.clone() };
         let pair = |operator, a: &Expr, b: &Expr, ty: Type| {
             make(Kind::Binary(operator, Box::new(a.clone()), Box::new(b.clone())), ty)
@@ -96,15 +92,12 @@ impl Checker<'_> {
     pub fn compared(
         &mut self,
         phrase: &Phrase,
-        text: &Text,
         scope: &mut Scope,
     ) -> Option<(Expr, Vec<(Near, bool)>)> {
         if let Node::Near { .. } = &phrase.node {
-            return self
-                .near(phrase, text, scope)
-                .map(|near| (near.holds.clone(), vec![(near, true)]));
+            return self.near(phrase, scope).map(|near| (near.holds.clone(), vec![(near, true)]));
         }
-        let holds = self.expr(phrase, text, scope)?;
+        let holds = self.expr(phrase, scope)?;
         let mut found = Vec::new();
         let whole = bounds(&holds, &mut found);
         Some((

@@ -82,7 +82,7 @@ pub fn slot(field: &Field) -> Slot {
     let quiet = &mut Problems::default();
     match field.key.text.as_str() {
         "minimum pairs" => {
-            Slot::Minimum(from_pest::minimum(&field.value, quiet).map(|of| of.scope.node))
+            Slot::Minimum(from_pest::minimum(&field.value, quiet).map(|of| of.scope))
         }
         "limit" => match from_pest::limit(&field.value, quiet) {
             Some(limit) => Slot::Limit(SlotOfLimit(limit)),

@@ -66,9 +66,9 @@ impl Checker<'_> {
                         error(
                             "unknown-field",
                             format!("`{name}` is a choice of words and cannot have a range"),
-                            &range.key.span,
+                            &range.key,
                         )
-                        .also(&choices.key.span, "the choice"),
+                        .also(&choices.key, "the choice"),
                     );
                 }
                 self.choice(name, choices, &default.value, &source)?
@@ -128,7 +128,7 @@ impl Checker<'_> {
         let written = normalised(&place.value.text);
         let Some(place_name) = self.place_called(&written) else {
             return self.refuse(
-                error("unknown-place", format!("`{written}` is not a place"), &place.value.span)
+                error("unknown-place", format!("`{written}` is not a place"), place)
                     .suggest(&written, self.names.places.keys()),
             );
         };
@@ -140,7 +140,7 @@ impl Checker<'_> {
                     return self.refuse(error("unknown-place", format!(
                         "`{}` is not a position of `{place_name}`; `{name}` selects such positions",
                         word.node
-                    ), &word.place(text)).suggest(&word.node, &members));
+                    ), &word).suggest(&word.node, &members));
                 }
                 if !positions.contains(&word.node) {
                     positions.push(word.node);
@@ -218,7 +218,7 @@ impl Checker<'_> {
                     format!("`{}` is outside the range of `{name}`", normalised(&source.text)),
                     &source.span,
                 )
-                .also(&range.value.span, "the range")
+                .also(range, "the range")
                 .help(format!("allowed: {}", normalised(&range.value.text))),
             );
         }
@@ -236,11 +236,11 @@ impl Checker<'_> {
         let (low, high) = from_pest::range(&range.value, self.problems)?;
         let mut ends = [0.0; 2];
         for (end, phrase) in ends.iter_mut().zip([low, high]) {
-            let (found, of) = self.constant_phrase(&phrase, &range.value)?;
+            let (found, of) = self.constant_phrase(&phrase)?;
             if of != dimension {
                 let says =
                     format!("`{name}` is {}, its range is {}", dimension.in_words(), of.in_words());
-                let at = phrase.place(&range.value);
+                let at = phrase.place();
                 let problem = error("unit-mismatch", says, &at).label(of.in_words());
                 return self.refuse(match of_value {
                     Some(source) => problem.also(&source.span, dimension.in_words()),
@@ -255,12 +255,12 @@ impl Checker<'_> {
     /// A number that follows from constants only, with its dimension.
     pub fn constant(&mut self, text: &Text) -> Option<(f64, Dimension)> {
         let phrase = from_pest::expression(text, self.problems)?;
-        self.constant_phrase(&phrase, text)
+        self.constant_phrase(&phrase)
     }
 
     /// As [`Self::constant`], for a part of a field.
-    pub fn constant_phrase(&mut self, phrase: &Phrase, text: &Text) -> Option<(f64, Dimension)> {
-        let expr = self.expr(phrase, text, &mut Scope::constant())?;
+    pub fn constant_phrase(&mut self, phrase: &Phrase) -> Option<(f64, Dimension)> {
+        let expr = self.expr(phrase, &mut Scope::constant())?;
         let dimension = self.number_type(&expr)?;
         if let Kind::Constant(Scalar::Number(value)) = expr.kind {
             return Some((value, dimension));

@@ -31,9 +31,9 @@ impl Checker<'_> {
                 error(
                     "require-and-distinct",
                     "a plausibility rule has one of `require`, `distinct` and `exchanged`",
-                    &second.key.span,
+                    &second.key,
                 )
-                .also(&first.key.span, "the first of them")
+                .also(&first.key, "the first of them")
                 .help("write two rules"),
             );
         }
@@ -113,7 +113,7 @@ impl Checker<'_> {
         let own = signals.first().map(|(_, signal)| after(chain, signal.dimension()));
         let mut scope =
             Scope { factor: after(chain, Dimension::ONE), ..Scope::comparing(own, axis) };
-        let (holds, compared) = self.compared(&phrase, &field.value, &mut scope)?;
+        let (holds, compared) = self.compared(&phrase, &mut scope)?;
         self.flag_type(&holds)?;
         self.inputs_of_one_record(&scope.inputs)?;
         let mut comparisons = Vec::new();
@@ -164,12 +164,8 @@ impl Checker<'_> {
                 "sides" => distinct.sides = true,
                 other => {
                     return self.refuse(
-                        error(
-                            "unknown-choice",
-                            format!("`distinct` cannot be `{other}`"),
-                            &word.place(&field.value),
-                        )
-                        .suggest(other, AMONG),
+                        error("unknown-choice", format!("`distinct` cannot be `{other}`"), &word)
+                            .suggest(other, AMONG),
                     );
                 }
             }
@@ -189,7 +185,7 @@ impl Checker<'_> {
         });
         if found.is_none() {
             self.problems.push(
-                error("exchanged-numbers", "`exchanged` must be two numbers between 0 and 1: a correlation, and a difference of two", &field.value.span)
+                error("exchanged-numbers", "`exchanged` must be two numbers between 0 and 1: a correlation, and a difference of two", field)
                     .help("write `exchanged  from 0.5, by 0.3`"),
             );
         }

@@ -8,17 +8,16 @@ use super::names::{Assignment, Place};
 use super::plan::{Expr, Operator, Origin};
 use super::scope::Scope;
 use crate::problem::{error, warning};
-use crate::source::Span;
-use crate::syntax::document::Text;
-use crate::syntax::phrase::{At, Node, Phrase, Pick};
+use crate::source::{Located, Span};
+use crate::syntax::phrase::{Alias, At, Node, Phrase, Pick};
 
 /// Largest number of positions of one quantity. Each is a column of every record and a signal in
 /// memory.
 const MOST_POSITIONS: usize = 2000;
 
 impl Place {
-    fn alias(&self, name: &str) -> Option<&(crate::syntax::phrase::Alias, Text)> {
-        self.aliases.iter().find(|(alias, _)| alias.name.node == name)
+    fn alias(&self, name: &str) -> Option<&Alias> {
+        self.aliases.iter().find(|alias| alias.name.node == name)
     }
 }
 
@@ -28,11 +27,10 @@ impl Checker<'_> {
         &mut self,
         name: &At<String>,
         words: &[At<String>],
-        text: &Text,
         span: &Origin,
         scope: &Scope,
     ) -> Option<Expr> {
-        let bare = At { node: Node::Path(name.node.clone()), range: name.range.clone() };
+        let bare = name.with(Node::Path(name.node.clone()));
         // Words alternate: place, member, place, member, ... A place name of several words is
         // joined by `_`.
         let mut assignment = scope.at.clone();
@@ -47,25 +45,25 @@ impl Checker<'_> {
                         error(
                             "open-place",
                             format!("the {place} is not stated"),
-                            &self.span_of(&words[from..], text),
+                            &extent(&words[from..])?,
                         )
                         .help(self.members_help(&place)),
                     );
                 } else {
-                    self.unknown_place(&words[from..words.len().max(from + 2) - 1], text);
+                    self.unknown_place(&words[from..words.len().max(from + 2) - 1], name);
                 }
                 return None;
             };
             let member = &words[member_at];
             let known = self.names.places.get(&place)?;
             if !known.members.contains(&member.node) && known.alias(&member.node).is_none() {
-                self.unknown_member(member, &place, text);
+                self.unknown_member(member, &place);
                 return None;
             }
             assignment.insert(place, member.node.clone());
             from = member_at + 1;
         }
-        let found = self.signal_where(&bare, text, &assignment, span)?;
+        let found = self.signal_where(&bare, &assignment, span)?;
         Some(Expr { span: span.clone(), ..found })
     }
 
@@ -73,13 +71,12 @@ impl Checker<'_> {
     pub fn signal_where(
         &mut self,
         phrase: &Phrase,
-        text: &Text,
         at: &Assignment,
         span: &Origin,
     ) -> Option<Expr> {
         let mut cases: Vec<(Option<Expr>, Assignment)> = vec![(None, at.clone())];
         for (place, member) in at {
-            let Some((alias, alias_text)) =
+            let Some(alias) =
                 self.names.places.get(place).and_then(|known| known.alias(member)).cloned()
             else {
                 continue;
@@ -87,7 +84,7 @@ impl Checker<'_> {
             let mut split = Vec::new();
             let mut conditions = Vec::new();
             for (target, condition) in &alias.cases {
-                let condition = self.condition(condition, &alias_text, &mut Scope::section())?;
+                let condition = self.condition(condition, &mut Scope::section())?;
                 for (before, assignment) in &cases {
                     let mut assignment = assignment.clone();
                     assignment.insert(place.clone(), target.node.clone());
@@ -100,7 +97,7 @@ impl Checker<'_> {
         }
         let mut arms = Vec::new();
         for (condition, assignment) in cases {
-            let signal = self.signal(phrase, text, &assignment)?;
+            let signal = self.signal(phrase, &assignment)?;
             match condition {
                 None => return Some(signal),
                 Some(condition) => arms.push((signal, condition)),
@@ -124,7 +121,7 @@ impl Checker<'_> {
     }
 
     /// Reports words that name no place.
-    pub fn unknown_place(&mut self, words: &[At<String>], text: &Text) {
+    pub fn unknown_place(&mut self, words: &[At<String>], within: &impl Located) {
         let name = joined(words);
         if self.names.failed.contains(&name)
             || self.names.failed.contains(name.strip_suffix('s').unwrap_or(&name))
@@ -133,28 +130,21 @@ impl Checker<'_> {
         }
         let names = self.names.places.keys().map(|place| place.replace('_', " "));
         let shown = name.replace('_', " ");
+        let at = extent(words).unwrap_or_else(|| within.place());
         self.problems.push(
-            error("unknown-place", format!("`{shown}` is not a place"), &self.span_of(words, text))
-                .suggest(&shown, names),
+            error("unknown-place", format!("`{shown}` is not a place"), &at).suggest(&shown, names),
         );
     }
 
-    fn span_of(&self, words: &[At<String>], text: &Text) -> Span {
-        match (words.first(), words.last()) {
-            (Some(first), Some(last)) => text.place(first.range.start..last.range.end),
-            _ => text.span.clone(),
-        }
-    }
-
-    fn unknown_member(&mut self, member: &At<String>, place: &str, text: &Text) {
+    fn unknown_member(&mut self, member: &At<String>, place: &str) {
         let Some(known) = self.names.places.get(place) else { return };
-        let aliases = known.aliases.iter().map(|(alias, _)| alias.name.node.as_str());
+        let aliases = known.aliases.iter().map(|alias| alias.name.node.as_str());
         let all: Vec<&str> = known.members.iter().map(String::as_str).chain(aliases).collect();
         self.problems.push(
             error(
                 "unknown-place",
                 format!("`{}` is not a position of `{}`", member.node, place.replace('_', " ")),
-                &member.place(text),
+                member,
             )
             .suggest(&member.node, all),
         );
@@ -167,25 +157,20 @@ impl Checker<'_> {
     }
 
     /// All positions of a selection, in the order of the signal's places.
-    pub fn positions(
-        &mut self,
-        signal: &At<String>,
-        picks: &[Pick],
-        text: &Text,
-    ) -> Option<Vec<Assignment>> {
+    pub fn positions(&mut self, signal: &At<String>, picks: &[Pick]) -> Option<Vec<Assignment>> {
         let places =
             match (self.names.channels.get(&signal.node), self.names.signals.get(&signal.node)) {
                 (Some(channel), _) => channel.places.clone(),
                 (_, Some(signal)) => signal.places.clone(),
                 _ => {
-                    self.unknown_signal(&signal.node, &signal.place(text));
+                    self.unknown_signal(&signal.node, &signal.place());
                     return None;
                 }
             };
         let mut chosen: IndexMap<String, Vec<String>> = IndexMap::new();
         let mut ok = true;
         for pick in picks {
-            ok &= self.one_pick(pick, signal, &places, text, &mut chosen).is_some();
+            ok &= self.one_pick(pick, signal, &places, &mut chosen).is_some();
         }
         if !ok {
             return None;
@@ -201,7 +186,7 @@ impl Checker<'_> {
                     error(
                         "too-large",
                         format!("`{}` has more than {MOST_POSITIONS} positions here", signal.node),
-                        &signal.place(text),
+                        signal,
                     )
                     .help("choose positions: `at wheelset 1 and side R`"),
                 );
@@ -230,7 +215,6 @@ impl Checker<'_> {
         pick: &Pick,
         signal: &At<String>,
         places: &[String],
-        text: &Text,
         chosen: &mut IndexMap<String, Vec<String>>,
     ) -> Option<()> {
         let words: Vec<At<String>> = pick
@@ -249,14 +233,14 @@ impl Checker<'_> {
             } else {
                 &words[..(words.len().max(2) - 1).min(words.len())]
             };
-            self.unknown_place(of_place, text);
+            self.unknown_place(of_place, signal);
             return None;
         };
         if !places.contains(&place) {
             let problem = error(
                 "unknown-place",
                 format!("`{}` has no place `{}`", signal.node, place.replace('_', " ")),
-                &self.span_of(&words[..end], text),
+                &extent(&words[..end])?,
             );
             let help = if places.is_empty() {
                 "it has no places".to_string()
@@ -274,14 +258,14 @@ impl Checker<'_> {
         }
         let mut ok = true;
         for member in members {
-            if let Some(selected) = self.selected(&member.node, &place, &member.place(text)) {
+            if let Some(selected) = self.selected(&member.node, &place, &member.place()) {
                 selected.into_iter().for_each(|member| {
                     if !found.contains(&member) {
                         found.push(member)
                     }
                 });
             } else if !known.members.contains(&member.node) && known.alias(&member.node).is_none() {
-                self.unknown_member(member, &place, text);
+                self.unknown_member(member, &place);
                 ok = false;
             } else if !found.contains(&member.node) {
                 found.push(member.node.clone());
@@ -293,6 +277,11 @@ impl Checker<'_> {
 
 fn joined(words: &[At<String>]) -> String {
     words.iter().map(|word| word.node.as_str()).collect::<Vec<_>>().join("_")
+}
+
+/// From the first word to the last.
+fn extent(words: &[At<String>]) -> Option<Span> {
+    Some(words.first()?.to(words.last()?, ()).place())
 }
 
 fn both(before: Option<&Expr>, condition: &Expr) -> Expr {

@@ -26,7 +26,7 @@ impl Checker<'_> {
                             dimension.in_words(),
                             unit.dimension.in_words()
                         ),
-                        &field.value.span,
+                        field,
                     )
                     .also(&of.span, dimension.in_words()),
                 );

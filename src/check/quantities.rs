@@ -21,7 +21,7 @@ use crate::result::Reason;
 use crate::source::Span;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
-use crate::syntax::phrase::{At, Node, Phrase};
+use crate::syntax::phrase::{Node, Phrase};
 use crate::units::Dimension;
 
 /// The result of checking value and difference, or the metric, of a quantity.
@@ -98,22 +98,18 @@ impl Checker<'_> {
                 error(
                     "metric-and-value",
                     "a quantity has either `metric`, or `value` and `difference`",
-                    &other.key.span,
+                    &other.key,
                 )
-                .also(&metric.key.span, "the metric"),
+                .also(&metric.key, "the metric"),
             );
         }
         if let (Some(from), Some(other)) =
             (assessed, block.field("difference").or(metric).or(block.field("compare")))
         {
             self.problems.push(
-                error(
-                    "from-and-compared",
-                    "values of one record cannot be compared",
-                    &other.key.span,
-                )
-                .also(&from.key.span, "the record")
-                .help(format!("remove `from` or `{}`", other.key.text)),
+                error("from-and-compared", "values of one record cannot be compared", &other.key)
+                    .also(&from.key, "the record")
+                    .help(format!("remove `from` or `{}`", other.key.text)),
             );
         }
         let chain =
@@ -148,9 +144,9 @@ impl Checker<'_> {
                 error(
                     "reported-and-limit",
                     "a quantity is either reported without a limit, or has one",
-                    &reported.key.span,
+                    &reported.key,
                 )
-                .also(&limit.key.span, "the limit"),
+                .also(&limit.key, "the limit"),
             );
         }
         let meant = block.field("reported").or(block.field("report")).is_some()
@@ -163,7 +159,7 @@ impl Checker<'_> {
                         "quantity `{}` has no limit: it is reported and has no effect on a verdict",
                         block.name_text()
                     ),
-                    block.span(),
+                    block,
                 )
                 .help("if that is meant, say why: `reported \"...\"`"),
             );
@@ -177,7 +173,7 @@ impl Checker<'_> {
                         block.name_text(),
                         self.minimum_pairs
                     ),
-                    &only.value.span,
+                    only,
                 )
                 .help("state the number for this quantity: `minimum pairs ...`"),
             );
@@ -251,8 +247,7 @@ impl Checker<'_> {
         for field in block.fields_named("of") {
             let written = from_pest::of_places(&field.value, self.problems);
             let when = written.and_then(|written| written.when);
-            let only =
-                when.as_ref().map(|when| self.condition(when, &field.value, &mut Scope::section()));
+            let only = when.as_ref().map(|when| self.condition(when, &mut Scope::section()));
             let only = if_written(only);
             let known = self.assumed.len();
             self.assumed.extend(only.clone().flatten());
@@ -269,7 +264,7 @@ impl Checker<'_> {
                     return self.refuse(error("unit-mismatch", format!(
                         "the signals of one quantity must have the same dimension: another is {}",
                         first.signal.dimension().in_words()
-                    ), &field.value.span)
+                    ), field)
                             .label(signal.dimension().in_words()));
                 }
                 let again = found
@@ -280,7 +275,7 @@ impl Checker<'_> {
                         error(
                             "position-twice",
                             format!("`{name}` is evaluated twice, so its values would count twice"),
-                            &field.value.span,
+                            field,
                         )
                         .help(
                             "add conditions that exclude each other to the fields `of`: `when ...`",
@@ -298,7 +293,7 @@ impl Checker<'_> {
     /// Every position with its name, signal and assignment.
     pub fn signals_of(&mut self, of: &Text) -> Option<Vec<(String, Expr, Assignment)>> {
         let written = from_pest::of_places(of, self.problems)?;
-        let positions = self.positions(&written.signal, &written.picks, of)?;
+        let positions = self.positions(&written.signal, &written.picks)?;
         let name = &written.signal.node;
         let (pattern, places, span) =
             match (self.names.channels.get(name), self.names.signals.get(name)) {
@@ -310,15 +305,15 @@ impl Checker<'_> {
                 }
                 _ => return None,
             };
-        let phrase = At { node: Node::Path(name.clone()), range: written.signal.range.clone() };
-        let used = written.signal.place(of);
+        let phrase = written.signal.with(Node::Path(name.clone()));
+        let used = written.signal.place();
         let mut found: Vec<(String, Expr, Assignment)> = Vec::new();
         for position in positions {
             let filled = self.fill(name, &pattern, &places, &span, &used, &position)?;
             if found.iter().any(|(known, _, _)| *known == filled) {
                 continue;
             }
-            let signal = self.signal_where(&phrase, of, &position, &whole(of))?;
+            let signal = self.signal_where(&phrase, &position, &whole(of))?;
             if signal.track() {
                 return self.refuse(error(
                     "track-quantity",
@@ -354,8 +349,8 @@ impl Checker<'_> {
                 return self.refuse(error("unit-mismatch", format!(
                     "the values of one quantity must have the same dimension: the first is {wanted}, this is {}",
                     other.in_words()
-                ), &field.value.span)
-                        .also(&fields[0].value.span, wanted));
+                ), field)
+                        .also(fields[0], wanted));
             }
         }
         for (at, field) in fields.iter().enumerate() {
@@ -367,9 +362,9 @@ impl Checker<'_> {
                     error(
                         "value-twice",
                         "this value is written twice and would count twice",
-                        &field.value.span,
+                        field,
                     )
-                    .also(&first.value.span, "the same value"),
+                    .also(first, "the same value"),
                 );
             }
         }
@@ -484,16 +479,12 @@ impl Checker<'_> {
         let scope_at =
             |at: &Assignment| Scope { at: at.clone(), factor, ..scope(Some(dimension), axis) };
         let mut scope = scope_at(at);
-        let expr = self.value_at(phrase, field, &first.only, &mut scope)?;
+        let expr = self.value_at(phrase, &first.only, &mut scope)?;
         let result = self.number_type(&expr)?;
         if scope.inputs.is_empty() {
             return self.refuse(
-                error(
-                    "value-of-nothing",
-                    "this expression uses no value of the signal",
-                    &field.value.span,
-                )
-                .help("for instance `median`, `rms`, `|p99.85|`"),
+                error("value-of-nothing", "this expression uses no value of the signal", field)
+                    .help("for instance `median`, `rms`, `|p99.85|`"),
             );
         }
         self.can_vary(&field.key.text, &expr, &scope.inputs, &field.value.span)?;
@@ -505,7 +496,7 @@ impl Checker<'_> {
                 continue;
             }
             let mut scope = scope_at(at);
-            self.value_at(phrase, field, &position.only, &mut scope)?;
+            self.value_at(phrase, &position.only, &mut scope)?;
             inputs.push(scope.inputs);
         }
         Some((Valued { expr, inputs }, result))
@@ -515,13 +506,12 @@ impl Checker<'_> {
     fn value_at(
         &mut self,
         phrase: &Phrase,
-        field: &Field,
         only: &Option<Expr>,
         scope: &mut Scope,
     ) -> Option<Expr> {
         let known = self.assumed.len();
         self.assumed.extend(only.clone());
-        let found = self.expr(phrase, &field.value, scope);
+        let found = self.expr(phrase, scope);
         self.assumed.truncate(known);
         found
     }
@@ -535,13 +525,13 @@ impl Checker<'_> {
     ) -> Option<(Expr, Dimension)> {
         let written = from_pest::expression(&field.value, self.problems)?;
         let mut phrase = written.clone();
-        let mut text = field.value.clone();
         if let Some(word) = bare_word(&written) {
-            let choice = self.choice_phrase(&written, &field.value)?;
+            let choice = self.choice_phrase(&written)?;
             if let Some((name, expression)) = DIFFERENCES.iter().find(|(name, _)| *name == choice) {
                 let source =
                     crate::source::Source::new(format!("difference `{name}`"), *expression);
-                text = Text { text: (*expression).to_string(), span: source.whole(), exact: true };
+                let text =
+                    Text { text: (*expression).to_string(), span: source.whole(), exact: true };
                 phrase = from_pest::expression(&text, self.problems)?;
             } else if choice != word
                 || !(matches!(word, "simulated" | "measured")
@@ -553,13 +543,13 @@ impl Checker<'_> {
                     error(
                         "unknown-difference",
                         format!("`{choice}` is not a difference of two values"),
-                        &field.value.span,
+                        field,
                     )
                     .suggest(&choice, differences),
                 );
             }
         }
-        let expr = self.expr(&phrase, &text, &mut Scope::pair(dimension?))?;
+        let expr = self.expr(&phrase, &mut Scope::pair(dimension?))?;
         let dimension = self.number_type(&expr)?;
         Some((expr, dimension))
     }

@@ -29,7 +29,7 @@ impl Checker<'_> {
                     format!(
                         "`{name}` is a word of the language and cannot be the name of this record"
                     ),
-                    block.span(),
+                    block,
                 )
                 .help(format!("for instance `{name}_1`")),
             );
@@ -62,12 +62,8 @@ impl Checker<'_> {
                     break;
                 }
                 return self.refuse(
-                    error(
-                        "syntax",
-                        "between commas, the name of a record is missing",
-                        &field.value.span,
-                    )
-                    .help("`is simulated simpack, vampire`"),
+                    error("syntax", "between commas, the name of a record is missing", field)
+                        .help("`is simulated simpack, vampire`"),
                 );
             }
             let place = field.value.place(range);
@@ -136,7 +132,7 @@ impl Checker<'_> {
                     "a metric compares two signals; a mean of several signals is not available",
                 );
                 let help = "use `value` and `difference`, or compare `simulated with measured` or `repeats with originals`";
-                self.refuse(problem.at(&field.value.span).also(metric, "the metric").help(help))
+                self.refuse(problem.at(field).also(metric, "the metric").help(help))
             }
         }
     }
@@ -162,7 +158,7 @@ impl Checker<'_> {
                         error(
                             "unknown-comparison",
                             "records are compared with the mean or median of their own side",
-                            &field.value.span,
+                            field,
                         )
                         .help(WAYS),
                     );
@@ -181,7 +177,7 @@ impl Checker<'_> {
                         error(
                             "unknown-comparison",
                             "simulated records are compared with measured ones",
-                            &field.value.span,
+                            field,
                         )
                         .help(format!("the other way round: `{second} with {first}`")),
                     );
@@ -191,7 +187,7 @@ impl Checker<'_> {
                         error(
                             "unknown-comparison",
                             format!("`{words}` compares records with themselves"),
-                            &field.value.span,
+                            field,
                         )
                         .help(format!(
                             "`{first} with each other`, or `{first} with mean of {first}`"
@@ -204,7 +200,7 @@ impl Checker<'_> {
                 error(
                     "unknown-comparison",
                     format!("`{words}` does not say which records are compared"),
-                    &field.value.span,
+                    field,
                 )
                 .help(WAYS),
             ),

@@ -10,7 +10,7 @@ use super::scope::Scope;
 use crate::catalog::Statistic;
 use crate::problem::error;
 use crate::source::Span;
-use crate::syntax::document::{Block, Field, Text};
+use crate::syntax::document::{Block, Field};
 use crate::syntax::from_pest;
 use crate::syntax::phrase::{At, Node, Phrase, Report as Written};
 use crate::units::{Dimension, Unit};
@@ -53,9 +53,7 @@ impl Checker<'_> {
             if let Some((_, first)) = seen.iter().find(|(known, _)| Some(known) == written.as_ref())
             {
                 let says = "the same is reported twice";
-                self.problems.push(
-                    error("duplicate-field", says, &field.value.span).also(first, "the first"),
-                );
+                self.problems.push(error("duplicate-field", says, field).also(first, "the first"));
                 ok = false;
                 continue;
             }
@@ -72,25 +70,23 @@ impl Checker<'_> {
     fn report(&mut self, field: &Field, of: Of, unconfirmed: bool) -> Option<Vec<Report>> {
         let text = &field.value;
         let written = from_pest::report(text, self.problems)?;
-        let name = At { node: written.of.words(text), range: written.of.range.clone() };
-        let (name, phrase) = self.with_statistic(name, written.of, text);
-        let scope = self.scope_of(&written.scope, text);
+        let name = written.of.with(written.of.words());
+        let (name, phrase) = self.with_statistic(name, written.of);
+        let scope = self.scope_of(&written.scope);
         let mut reports = Vec::new();
         for (scope, zone) in self.zone_by_zone(scope) {
             self.unconfirmed = unconfirmed;
             let estimate = match of {
-                Of::Values(dimension) => {
-                    self.estimate(&name, &phrase, text, dimension, zone.as_deref())
-                }
-                Of::Sections => self.of_sections(&name, &phrase, text, zone.as_deref()),
+                Of::Values(dimension) => self.estimate(&name, &phrase, dimension, zone.as_deref()),
+                Of::Sections => self.of_sections(&name, &phrase, zone.as_deref()),
             };
             let (mut estimate, scope) = (estimate?, scope?);
             if matches!(estimate.kind, super::plan::EstimateKind::Each) {
-                return self.refuse(error("each-value", "`each` stands for every single value, and all values are in the report anyway", &text.place(name.range)).help("name a statistic: `report maximum`"));
+                return self.refuse(error("each-value", "`each` stands for every single value, and all values are in the report anyway", &name).help("name a statistic: `report maximum`"));
             }
             if let Some(unit) = &written.unit {
                 let values = if let Of::Values(dimension) = of { dimension } else { None };
-                estimate.unit = Some(self.unit_of_report(&estimate, unit, values, text)?);
+                estimate.unit = Some(self.unit_of_report(&estimate, unit, values)?);
             }
             if self.unconfirmed {
                 estimate.title += self.to_be_confirmed();
@@ -110,10 +106,9 @@ impl Checker<'_> {
         &mut self,
         name: &At<String>,
         phrase: &Phrase,
-        text: &Text,
         zone: Option<&str>,
     ) -> Option<Estimate> {
-        let found = self.of_group(phrase, text, None, &Scope::zone(zone))?;
+        let found = self.of_group(phrase, None, &Scope::zone(zone))?;
         let says = "this expression uses no data of the sections";
         let help = "for instance `total of length`, `mean of radius`, `share of sections where radius < 300 m`";
         let found = self.of_something(found, says, help)?;
@@ -126,11 +121,8 @@ impl Checker<'_> {
         estimate: &Estimate,
         unit: &At<String>,
         values: Option<Dimension>,
-        text: &Text,
     ) -> Option<Unit> {
-        let place = unit.place(text);
-        let found =
-            self.unit(&Text { text: unit.node.clone(), span: place.clone(), exact: text.exact })?;
+        let found = self.unit(&unit.to_text())?;
         let dimension = estimate.unit.as_ref().map(|unit| unit.dimension).or(values)?;
         if found.dimension == dimension {
             return Some(found);
@@ -143,7 +135,7 @@ impl Checker<'_> {
                 unit.node,
                 found.dimension.in_words()
             ),
-            &place,
+            unit,
         ))
     }
 
@@ -152,13 +144,12 @@ impl Checker<'_> {
         &mut self,
         mut name: At<String>,
         mut estimate: Phrase,
-        text: &Text,
     ) -> (At<String>, Phrase) {
         let word = name.node.clone();
         let named = Statistic::named(&word).is_some() || self.names.estimates.contains_key(&word);
         let parameter = self.names.parameter_blocks.contains_key(&word);
         if let (false, true, Node::Path(_)) = (named, parameter, &estimate.node)
-            && let Some(choice) = self.choice_word(&word, &name.place(text))
+            && let Some(choice) = self.choice_word(&word, &name.place())
         {
             estimate.node = match Statistic::named(&choice) {
                 Some(Statistic::Percentile(percent)) => Node::Percentile(percent),

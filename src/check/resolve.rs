@@ -14,7 +14,6 @@ use super::steps::after;
 use crate::catalog::{METRICS, MetricEntry, REDUCERS, Reducer, STATISTICS, Statistic};
 use crate::problem::error;
 use crate::source::Span;
-use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase};
 use crate::units::Unit;
 
@@ -73,8 +72,8 @@ impl Checker<'_> {
     }
 
     /// The reducer of `NAME of signal`.
-    pub fn reducer(&mut self, reducer: &Phrase, text: &Text, of_records: bool) -> Option<Reducer> {
-        let place = reducer.place(text);
+    pub fn reducer(&mut self, reducer: &Phrase, of_records: bool) -> Option<Reducer> {
+        let place = reducer.place();
         let found = match &reducer.node {
             Node::Percentile(percent) => Some(Reducer::Percentile(*percent)),
             Node::Path(name) => Reducer::named(name),
@@ -101,12 +100,11 @@ impl Checker<'_> {
         &mut self,
         reducer: &Phrase,
         signal: &Phrase,
-        text: &Text,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        let place = reducer.place(text);
-        let found = self.reducer(reducer, text, scope.reduce.is_some())?;
+        let place = reducer.place();
+        let found = self.reducer(reducer, scope.reduce.is_some())?;
         let Some(Reduce { axis, side, .. }) = scope.reduce else {
             return self.refuse(error(
                 "no-records",
@@ -118,7 +116,7 @@ impl Checker<'_> {
             ));
         };
         if self.names_side(signal, &mut BTreeSet::new()) {
-            return self.of_both(found, signal, text, span, scope);
+            return self.of_both(found, signal, span, scope);
         }
         let at = scope.at.clone();
         // `slope of A over B` is parsed as `slope of (A over B)`.
@@ -128,14 +126,14 @@ impl Checker<'_> {
         };
         let (signal, chain) = match &signal.node {
             Node::Through(inner, filter) if over.is_none() => {
-                (inner.as_ref(), self.window_of(filter, text)?)
+                (inner.as_ref(), self.window_of(filter)?)
             }
             _ => (signal, Vec::new()),
         };
-        let signal = self.signal(signal, text, &at);
+        let signal = self.signal(signal, &at);
         let over = match over {
             None => None,
-            Some(over) => Some(self.slope_axis(found, over, &place, text, &at)?),
+            Some(over) => Some(self.slope_axis(found, over, &place, &at)?),
         };
         let signal = signal?;
         let axis = over.as_ref().map_or(axis, Expr::dimension);
@@ -147,8 +145,8 @@ impl Checker<'_> {
 
     /// The steps of a filter that stands last before a number is taken: there, windows may be among
     /// them.
-    fn window_of(&mut self, filter: &At<String>, text: &Text) -> Option<Vec<Step>> {
-        let steps = self.filter_named(&filter.node, &filter.place(text))?;
+    fn window_of(&mut self, filter: &At<String>) -> Option<Vec<Step>> {
+        let steps = self.filter_named(&filter.node, &filter.place())?;
         self.step_order(&steps, false)?;
         Some(steps)
     }
@@ -158,7 +156,6 @@ impl Checker<'_> {
         &mut self,
         name: &At<String>,
         arguments: &[Phrase],
-        text: &Text,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
@@ -170,7 +167,7 @@ impl Checker<'_> {
         };
         let side = if name.node == "measured" { InputSide::Measured } else { InputSide::Simulated };
         scope.reduce = Some(Reduce { side, ..reduce });
-        let found = self.expr(argument, text, scope);
+        let found = self.expr(argument, scope);
         scope.reduce = Some(reduce);
         found
     }
@@ -248,9 +245,7 @@ impl Checker<'_> {
     fn defined(&mut self, name: &str, span: &Span, scope: &mut Scope) -> Option<Expr> {
         let define = self.names.defines.get(name)?.clone();
         self.used_defines.insert(name.to_string());
-        self.inside("define", name, span, |checker| {
-            checker.expr(&define.phrase, &define.text, scope)
-        })
+        self.inside("define", name, span, |checker| checker.expr(&define, scope))
     }
 
     /// A name among samples: a side, a channel, a signal, or a number.
@@ -467,9 +462,9 @@ impl Checker<'_> {
     }
 
     /// As [`Self::choice_word`], for a phrase that is a bare word.
-    pub fn choice_phrase(&mut self, phrase: &Phrase, text: &Text) -> Option<String> {
+    pub fn choice_phrase(&mut self, phrase: &Phrase) -> Option<String> {
         let word = bare_word(phrase)?;
-        self.choice_word(word, &phrase.place(text))
+        self.choice_word(word, &phrase.place())
     }
 }
 

@@ -11,7 +11,7 @@ use super::scope::Scope;
 use super::{Checker, if_written};
 use crate::metrics::percentile::Method;
 use crate::problem::error;
-use crate::syntax::document::{Block, Field, Text};
+use crate::syntax::document::{Block, Field};
 use crate::syntax::from_pest;
 use crate::units::Dimension;
 
@@ -19,8 +19,7 @@ impl Checker<'_> {
     /// An axis such as `distance in m`, of one of the allowed dimensions.
     pub fn axis_field(&mut self, field: &Field, allowed: &[Dimension]) -> Option<Axis> {
         let (name, unit) = from_pest::axis(&field.value, self.problems)?;
-        let text =
-            Text { text: unit.node, span: field.value.place(unit.range), exact: field.value.exact };
+        let text = unit.to_text();
         let unit = self.unit(&text)?;
         if !allowed.contains(&unit.dimension) {
             return self.refuse(
@@ -130,12 +129,8 @@ impl Checker<'_> {
             _ => return Some(OnFault::Stop),
         }
         self.refuse(
-            error(
-                "unknown-choice",
-                format!("`{word}` is not a treatment of faults"),
-                &field.value.span,
-            )
-            .suggest(&word, treatments.iter().copied()),
+            error("unknown-choice", format!("`{word}` is not a treatment of faults"), field)
+                .suggest(&word, treatments.iter().copied()),
         )
     }
 
@@ -162,12 +157,8 @@ impl Checker<'_> {
                 "whole records" => rules.whole_records = true,
                 other => {
                     self.problems.push(
-                        error(
-                            "unknown-choice",
-                            format!("`use` cannot be `{other}`"),
-                            &field.value.span,
-                        )
-                        .suggest(other, ["sections", FOUND_SECTIONS, "whole records"]),
+                        error("unknown-choice", format!("`use` cannot be `{other}`"), field)
+                            .suggest(other, ["sections", FOUND_SECTIONS, "whole records"]),
                     );
                 }
             }
@@ -198,7 +189,7 @@ impl Checker<'_> {
                         error(
                             "unknown-choice",
                             format!("`{word}` is not a percentile rule"),
-                            &field.value.span,
+                            field,
                         )
                         .suggest(&word, Method::NAMES.iter().map(|(_, name)| *name)),
                     );
@@ -226,7 +217,7 @@ impl Checker<'_> {
                     error(
                         "unknown-choice",
                         format!("`{other}` is not a divisor of the variance"),
-                        &field.value.span,
+                        field,
                     )
                     .help("write `n-1` or `n`"),
                 );
@@ -250,8 +241,7 @@ impl Checker<'_> {
                 let known = self.names.columns.iter().map(|datum| datum.name.as_str());
                 let says = format!("`{word}` is neither `site`, `section` nor a section column");
                 let known = known.chain(["site", "section", "campaign"]);
-                self.problems
-                    .push(error("unknown-name", says, &field.value.span).suggest(&word, known));
+                self.problems.push(error("unknown-name", says, field).suggest(&word, known));
                 Independent::Site
             }
         }
@@ -266,7 +256,7 @@ impl Checker<'_> {
                     error(
                         "no-zone-column",
                         "there are zones, but no section column states the zone of a section",
-                        block.span(),
+                        block,
                     )
                     .help("add to `sections`: `zone zone`"),
                 );
@@ -304,7 +294,7 @@ impl Checker<'_> {
                 error(
                     "unknown-zone",
                     format!("no section can be of zone {}", block.name_text()),
-                    block.span(),
+                    block,
                 )
                 .also(&datum.span, "its words are those of the zone column")
                 .help("declare the column with `one of zones`"),

@@ -8,14 +8,13 @@ use super::scope::Scope;
 use super::steps::after;
 use crate::problem::error;
 use crate::source::Span;
-use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase};
 use crate::units::Dimension;
 
 impl Checker<'_> {
     /// The signal that an expression stands for at the given positions.
-    pub fn signal(&mut self, phrase: &Phrase, text: &Text, at: &Assignment) -> Option<Expr> {
-        self.expr(phrase, text, &mut Scope::samples(at, None))
+    pub fn signal(&mut self, phrase: &Phrase, at: &Assignment) -> Option<Expr> {
+        self.expr(phrase, &mut Scope::samples(at, None))
     }
 
     /// `Y through LP20`.
@@ -23,20 +22,17 @@ impl Checker<'_> {
         &mut self,
         inner: &Phrase,
         filter: &At<String>,
-        text: &Text,
         span: Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        let inner = self.expr(inner, text, scope);
-        let steps = self.filter_named(&filter.node, &filter.place(text));
+        let inner = self.expr(inner, scope);
+        let steps = self.filter_named(&filter.node, &filter.place());
         let (inner, steps) = (inner?, steps?);
         self.step_order(&steps, false)?;
         if let Some(window) = steps.iter().find(|step| !step.kind.keeps_samples()) {
             let says = "a filter inside a signal must keep the samples; this one has a window or resampling";
-            return self.refuse(
-                error("window-in-signal", says, &filter.place(text))
-                    .also(&window.span, "this step"),
-            );
+            return self
+                .refuse(error("window-in-signal", says, filter).also(&window.span, "this step"));
         }
         let dimension = after(&steps, inner.dimension());
         let ty = Type::Samples { dimension, track: inner.track() };
@@ -48,7 +44,6 @@ impl Checker<'_> {
         &mut self,
         name: &At<String>,
         arguments: &[Phrase],
-        text: &Text,
         span: Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
@@ -64,15 +59,15 @@ impl Checker<'_> {
                 };
                 let (name_of, count) = (&name.node, arguments.len());
                 let says = format!("`{name_of}` needs {takes}; number of arguments: {count}");
-                return self.refuse(error("arguments", says, &name.place(text)));
+                return self.refuse(error("arguments", says, name));
             }
         };
-        let signal = self.expr(of, text, scope);
+        let signal = self.expr(of, scope);
         let axis = self.axis_dimension();
         let over_time = !shifted && second.is_some();
         let operation = match second {
             Some(distance) if shifted => {
-                let distance = self.expr(distance, text, &mut Scope::section())?;
+                let distance = self.expr(distance, &mut Scope::section())?;
                 let found = self.number_type(&distance)?;
                 let needed = format!("a distance along the axis ({})", axis.in_words());
                 self.suits("distance", found == axis, &needed, found, &distance.span)?;
@@ -83,7 +78,7 @@ impl Checker<'_> {
                     && (self.has_time || axis == Dimension::TIME)) =>
             {
                 let says = format!("`{}` is computed over the axis or over `time`", name.node);
-                let problem = error("arguments", says, &second.place(text));
+                let problem = error("arguments", says, second);
                 return self.refuse(if self.has_time {
                     problem
                 } else {
@@ -115,12 +110,11 @@ impl Checker<'_> {
         &mut self,
         reducer: &Phrase,
         of: &Phrase,
-        text: &Text,
         span: Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        let reducer = self.reducer(reducer, text, true)?;
-        let of = self.expr(of, text, scope)?;
+        let reducer = self.reducer(reducer, true)?;
+        let of = self.expr(of, scope)?;
         let dimension = reducer.gives(of.dimension(), self.axis_dimension());
         let ty = Type::Samples { dimension, track: of.track() };
         Some(Expr { kind: Kind::Level(reducer, Box::new(of)), ty, span })
@@ -201,7 +195,7 @@ impl Checker<'_> {
             .collect();
         let found = self.inside("signal", name, span, |checker| {
             let mut scope = Scope::samples(&own, scope.own_of_both);
-            checker.expr(&signal.is.phrase, &signal.is.text, &mut scope)
+            checker.expr(&signal.is, &mut scope)
         })?;
         match &signal.unit {
             Some(unit) if unit.dimension != found.dimension() => {

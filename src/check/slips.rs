@@ -41,7 +41,7 @@ impl Checker<'_> {
             let Some(near) = siblings().find(slip).map(str::to_string) else { continue };
             self.problems.push(warning("near-name", format!(
                 "the parent has no {kind} `{name}`: this adds one, and `{near}` of the parent stays as it is"
-            ), block.span()).help(format!("to override `{near}`, use that name")));
+            ), block).help(format!("to override `{near}`, use that name")));
         }
     }
 }

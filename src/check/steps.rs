@@ -74,9 +74,9 @@ impl Checker<'_> {
         let mut all = Vec::new();
         let mut ok = true;
         for step in &steps {
-            match self.step(step, text) {
+            match self.step(step) {
                 Some(steps) => {
-                    self.few_steps(all.len() + steps.len(), &step.place(text))?;
+                    self.few_steps(all.len() + steps.len(), &step.place())?;
                     all.extend(steps);
                 }
                 None => ok = false,
@@ -178,11 +178,11 @@ impl Checker<'_> {
         Some(())
     }
 
-    fn step(&mut self, step: &At<Written_>, text: &Text) -> Option<Vec<Step>> {
-        let span = step.place(text);
+    fn step(&mut self, step: &At<Written_>) -> Option<Vec<Step>> {
+        let span = step.place();
         let mut written = step.node.clone();
         if let Some(condition) = written.when.take() {
-            let condition = self.expr(&condition, text, &mut Scope::constant())?;
+            let condition = self.expr(&condition, &mut Scope::constant())?;
             self.flag_type(&condition)?;
             match condition.kind {
                 Kind::Constant(Scalar::Flag(false)) => return Some(Vec::new()),
@@ -197,18 +197,18 @@ impl Checker<'_> {
             }
         }
         if let [part] = written.parts.as_slice()
-            && let [At { node: Item::Word(word), range }] = part.as_slice()
+            && let [item @ At { node: Item::Word(word), .. }] = part.as_slice()
             && !STEPS
                 .iter()
                 .any(|entry| entry.form.head == [Part::Word("magnitude")] && word == "magnitude")
         {
-            return self.filter_named(word, &text.place(range.clone()));
+            return self.filter_named(word, &item.place());
         }
-        let written = self.with_choices(written, text, STEPS.iter().map(|entry| &entry.form));
+        let written = self.with_choices(written, STEPS.iter().map(|entry| &entry.form));
         let entry =
             self.find_form(&written, &span, "step", STEPS.iter().map(|entry| &entry.form))?;
         let entry = &STEPS[entry];
-        let filled = self.fill_form(&entry.form, &written, text, &span)?;
+        let filled = self.fill_form(&entry.form, &written, &span)?;
         Some(vec![self.spec(entry, &filled, &span)?])
     }
 
@@ -216,7 +216,6 @@ impl Checker<'_> {
     pub fn with_choices<'f>(
         &mut self,
         mut step: Written_,
-        text: &Text,
         mut forms: impl Iterator<Item = &'f Form>,
     ) -> Written_ {
         let Some(items) = step.parts.first_mut() else { return step };
@@ -225,7 +224,7 @@ impl Checker<'_> {
         }
         for item in items {
             if let Item::Word(word) = &item.node
-                && let Some(choice) = self.choice_word(word, &item.place(text))
+                && let Some(choice) = self.choice_word(word, &item.place())
             {
                 item.node = Item::Word(choice);
             }
@@ -275,13 +274,7 @@ impl Checker<'_> {
     }
 
     /// The values of the slots and options of a wording; a problem where one does not suit.
-    pub fn fill_form(
-        &mut self,
-        form: &Form,
-        step: &Written_,
-        text: &Text,
-        span: &Span,
-    ) -> Option<Filled> {
+    pub fn fill_form(&mut self, form: &Form, step: &Written_, span: &Span) -> Option<Filled> {
         let mut filled = Filled {
             options: form
                 .numbers
@@ -296,8 +289,8 @@ impl Checker<'_> {
             if matches!(part, Part::Word(_) | Part::Signal(_)) {
                 continue;
             }
-            let place = item.place(text);
-            let (value, found) = self.constant_phrase(&item_phrase(item), text)?;
+            let place = item.place();
+            let (value, found) = self.constant_phrase(&item_phrase(item))?;
             match part {
                 Part::Word(_) | Part::Signal(_) => {}
                 Part::Number(name, dimension) => {
@@ -327,7 +320,7 @@ impl Checker<'_> {
             filled.numbers.push((value, found, place));
         }
         for part in &step.parts[1..] {
-            self.option(form, part, text, span, &mut filled)?;
+            self.option(form, part, span, &mut filled)?;
         }
         Some(filled)
     }
@@ -364,20 +357,18 @@ impl Checker<'_> {
         &mut self,
         form: &Form,
         part: &[At<Item>],
-        text: &Text,
         span: &Span,
         filled: &mut Filled,
     ) -> Option<()> {
-        let place = part.first().map_or_else(
-            || span.clone(),
-            |first| text.place(first.range.start..part[part.len() - 1].range.end),
-        );
+        let place = part
+            .first()
+            .map_or_else(|| span.clone(), |first| first.to(&part[part.len() - 1], ()).place());
         match part {
             [At { node: Item::Word(word), .. }, value]
             | [value @ At { node: Item::Value(_), .. }, At { node: Item::Word(word), .. }] => {
                 if let Some(index) = form.numbers.iter().position(|option| option.name == word) {
                     self.note(filled.option_said(form.numbers[index].name, &place))?;
-                    let (number, dimension) = self.constant_phrase(&item_phrase(value), text)?;
+                    let (number, dimension) = self.constant_phrase(&item_phrase(value))?;
                     let suits = form.numbers[index].with_unit || dimension == Dimension::ONE;
                     self.suits(word, suits, "a plain number", dimension, &place)?;
                     filled.options[index] = Some((number, dimension));
@@ -574,7 +565,7 @@ pub fn fits(form: &Form, items: &[At<Item>]) -> bool {
 pub fn item_phrase(item: &At<Item>) -> Phrase {
     match &item.node {
         Item::Value(phrase) => phrase.clone(),
-        Item::Word(word) => At { node: Node::Path(word.clone()), range: item.range.clone() },
+        Item::Word(word) => item.with(Node::Path(word.clone())),
     }
 }
 

@@ -121,8 +121,7 @@ impl Checker<'_> {
                     }
                 };
                 self.problems.push(
-                    error("verdict-rule", says, block.span())
-                        .help("write one of `holds` and `judged by`"),
+                    error("verdict-rule", says, block).help("write one of `holds` and `judged by`"),
                 );
                 Decision::Limits { rule: Rule::EveryLimit, quantities: about }
             }
@@ -162,7 +161,7 @@ impl Checker<'_> {
         };
         if let Some(says) = wrong {
             self.problems.push(
-                error("verdict-words", says, &field.value.span).help("write the word if it holds and the word if it does not, separated by a comma: `accepted, not accepted`"),
+                error("verdict-words", says, field).help("write the word if it holds and the word if it does not, separated by a comma: `accepted, not accepted`"),
             );
             return (default.map(String::from), false);
         }
@@ -180,7 +179,7 @@ impl Checker<'_> {
         let mut found = BTreeSet::new();
         for item in &items {
             let name = item.node.as_str();
-            let at = item.place(&field.value);
+            let at = item.place();
             if known.iter().any(|known| known == name) {
                 // A quantity that is not in the plan has an error that is reported elsewhere.
                 found.extend(quantities.iter().position(|quantity| quantity.id == name));
@@ -211,7 +210,7 @@ impl Checker<'_> {
                 error(
                     "verdict-of",
                     format!("`of` names quantities whose limits count, but {why}"),
-                    &field.key.span,
+                    &field.key,
                 )
                 .help("remove `of`"),
             );
@@ -232,9 +231,7 @@ impl Checker<'_> {
             Some(Written::AtLeast { count, of_limits }) => (count, of_limits),
             Some(Written::Over(over)) => {
                 self.needs_limits(of, "this rule uses other verdicts");
-                return self
-                    .over(&over, field, names)
-                    .map_or_else(|| every(about), Decision::Verdicts);
+                return self.over(&over, names).map_or_else(|| every(about), Decision::Verdicts);
             }
         };
         let (there, what) = match (of_limits, of) {
@@ -244,7 +241,7 @@ impl Checker<'_> {
             (false, Some(_)) => (about.len(), "quantities"),
             (false, None) => (self.blocks_of("quantity").count(), "quantities"),
         };
-        match self.how_many(&count, field, there, what) {
+        match self.how_many(&count, there, what) {
             Some(wanted) if of_limits => {
                 Decision::Limits { rule: Rule::AtLeastLimits(wanted), quantities: about }
             }
@@ -256,65 +253,55 @@ impl Checker<'_> {
     }
 
     /// A whole number, not larger than the number of things there are.
-    fn how_many(
-        &mut self,
-        count: &Phrase,
-        field: &Field,
-        there: usize,
-        what: &str,
-    ) -> Option<usize> {
-        let place = count.place(&field.value);
-        let (wanted, dimension) = self.constant_phrase(count, &field.value)?;
+    fn how_many(&mut self, count: &Phrase, there: usize, what: &str) -> Option<usize> {
+        let (wanted, dimension) = self.constant_phrase(count)?;
         if dimension != Dimension::ONE || wanted < 1.0 || wanted.fract() != 0.0 {
-            return self.refuse(error("not-a-count", "expected a whole number above zero", &place));
+            return self.refuse(error("not-a-count", "expected a whole number above zero", count));
         }
         let wanted = wanted as usize;
         if wanted > there && !self.problems.any_error() {
             self.problems.push(error(
                 "out-of-range",
                 format!("the rule needs {wanted} {what}, there are {there}"),
-                &place,
+                count,
             ));
         }
         Some(wanted)
     }
 
-    fn over(&mut self, over: &OverVerdicts, field: &Field, names: &Names) -> Option<Over> {
+    fn over(&mut self, over: &OverVerdicts, names: &Names) -> Option<Over> {
         // All parts are checked, so that all unknown names are reported.
         let all = |checker: &mut Self, parts: &[OverVerdicts]| {
             let found: Vec<Option<Over>> =
-                parts.iter().map(|part| checker.over(part, field, names)).collect();
+                parts.iter().map(|part| checker.over(part, names)).collect();
             found.into_iter().collect::<Option<Vec<_>>>()
         };
         Some(match over {
-            OverVerdicts::Holds(name) => Over::Holds(self.verdict_named(name, field, names)?),
+            OverVerdicts::Holds(name) => Over::Holds(self.verdict_named(name, names)?),
             OverVerdicts::Same(one, other) => {
-                let (one, other) = (
-                    self.verdict_named(one, field, names),
-                    self.verdict_named(other, field, names),
-                );
+                let (one, other) =
+                    (self.verdict_named(one, names), self.verdict_named(other, names));
                 Over::Same(one?, other?)
             }
             OverVerdicts::AtLeast { count, of } => {
                 let found: Vec<Option<usize>> =
-                    of.iter().map(|name| self.verdict_named(name, field, names)).collect();
+                    of.iter().map(|name| self.verdict_named(name, names)).collect();
                 let mut found = found.into_iter().collect::<Option<Vec<usize>>>()?;
                 found.sort_unstable();
                 found.dedup();
-                Over::AtLeast(self.how_many(count, field, found.len(), "verdicts")?, found)
+                Over::AtLeast(self.how_many(count, found.len(), "verdicts")?, found)
             }
-            OverVerdicts::Not(inner) => Over::Not(Box::new(self.over(inner, field, names)?)),
+            OverVerdicts::Not(inner) => Over::Not(Box::new(self.over(inner, names)?)),
             OverVerdicts::All(parts) => Over::All(all(self, parts)?),
             OverVerdicts::Any(parts) => Over::Any(all(self, parts)?),
         })
     }
 
-    fn verdict_named(&mut self, name: &At<String>, field: &Field, names: &Names) -> Option<usize> {
+    fn verdict_named(&mut self, name: &At<String>, names: &Names) -> Option<usize> {
         let found = names.names.iter().position(|known| *known == name.node);
         if found.is_none() {
-            let at = name.place(&field.value);
             self.problems.push(
-                error("unknown-verdict", format!("there is no verdict `{}`", name.node), &at)
+                error("unknown-verdict", format!("there is no verdict `{}`", name.node), name)
                     .suggest(&name.node, &names.names),
             );
         }

@@ -7,7 +7,6 @@ use super::plan::{Expr, Kind, Origin, Scalar, Taking};
 use super::scope::Scope;
 use crate::problem::error;
 use crate::source::Span;
-use crate::syntax::document::Text;
 use crate::syntax::phrase::{At, Node, Phrase};
 
 impl Checker<'_> {
@@ -16,7 +15,6 @@ impl Checker<'_> {
         &mut self,
         of: &Phrase,
         by: &Phrase,
-        text: &Text,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
@@ -31,7 +29,7 @@ impl Checker<'_> {
         }
         let name = match &of.node {
             Node::Share { of_sections, condition } => {
-                return self.group_share(*of_sections, condition, Some(by), text, span, scope);
+                return self.group_share(*of_sections, condition, Some(by), span, scope);
             }
             Node::Path(_) | Node::Percentile(_) => reducer_name(of),
             _ => return self.no_weight("this", span),
@@ -46,18 +44,18 @@ impl Checker<'_> {
             return self.no_weight("`n`", span);
         }
         let Some(dimension) = scope.values() else { return self.no_values(span) };
-        let statistic = self.statistic(&At { node: name, range: of.range.clone() }, text)?;
+        let statistic = self.statistic(&of.with(name))?;
         if !has_weights(statistic) {
             return self.no_weight(&format!("`{}`", statistic.name()), span);
         }
-        let by = self.weight(by, text, scope)?;
+        let by = self.weight(by, scope)?;
         let ddof = self.ddof;
         scope.take(Taking::Weighted { statistic, ddof, by }, dimension, span)
     }
 
     /// A number from the data of a section.
-    pub fn weight(&mut self, by: &Phrase, text: &Text, scope: &Scope) -> Option<Expr> {
-        let by = self.expr(by, text, &mut scope.of_section())?;
+    pub fn weight(&mut self, by: &Phrase, scope: &Scope) -> Option<Expr> {
+        let by = self.expr(by, &mut scope.of_section())?;
         self.number_type(&by)?;
         match by.kind {
             Kind::Constant(Scalar::Number(weight)) if weight <= 0.0 => {
@@ -81,7 +79,6 @@ impl Checker<'_> {
         reducer: &Phrase,
         one: &Phrase,
         keys: &[At<String>],
-        text: &Text,
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
@@ -94,9 +91,9 @@ impl Checker<'_> {
         if values.is_none() {
             return self.no_values(span);
         }
-        let reducer = self.group_reducer(reducer, "numbers of groups", text);
-        let keys: Option<Vec<_>> = keys.iter().map(|key| self.group_key(key, text)).collect();
-        let of = self.of_group(one, text, values, scope)?;
+        let reducer = self.group_reducer(reducer, "numbers of groups");
+        let keys: Option<Vec<_>> = keys.iter().map(|key| self.group_key(key)).collect();
+        let of = self.of_group(one, values, scope)?;
         let says = "this expression uses no statistic of the values";
         let of = self.of_something(of, says, "for instance `mean of (mean for each zone)`")?;
         let dimension = of.expr.dimension();
@@ -105,15 +102,8 @@ impl Checker<'_> {
     }
 
     /// `(mean for each zone)` where one number is needed.
-    pub fn many_numbers(
-        &mut self,
-        keys: &[At<String>],
-        text: &Text,
-        span: &Origin,
-    ) -> Option<Expr> {
-        let keys: Vec<&str> =
-            keys.iter().filter_map(|key| text.text.get(key.range.clone())).collect();
-        let keys = keys.join(" and ");
+    pub fn many_numbers(&mut self, keys: &[At<String>], span: &Origin) -> Option<Expr> {
+        let keys = keys.iter().map(At::words).collect::<Vec<_>>().join(" and ");
         self.refuse(error("many-numbers", format!("this gives a number for each {keys}, but one number is needed"), span).help(format!(
             "take one number of them: `mean of (... for each {keys})`; a limit for each group has `for each {keys}` at its end"
         )))

@@ -188,7 +188,7 @@ impl Checker<'_> {
 
     /// The grammar limits the depth of an expression.
     fn tree(&mut self, phrase: &Phrase) -> Option<(Tree, Dimension)> {
-        let span = self.text.place(phrase.range.clone());
+        let span = phrase.place();
         match &phrase.node {
             Node::Number(number) => Some((Tree::Number(number.value), number.dimension())),
             Node::Path(name) => self.named(name, &span),

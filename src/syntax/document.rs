@@ -6,7 +6,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::source::{Source, Span};
+use crate::source::{Located, Source, Span};
 
 #[derive(Clone, Debug)]
 pub struct Document {
@@ -72,6 +72,26 @@ impl Text {
     /// The place of a part of the text, as exact as possible.
     pub fn place(&self, range: Range<usize>) -> Span {
         if self.exact { self.span.part(range) } else { self.span.of_which(range) }
+    }
+}
+
+impl Located for Text {
+    fn place(&self) -> Span {
+        self.span.clone()
+    }
+}
+
+/// A field is pointed at by its value.
+impl Located for Field {
+    fn place(&self) -> Span {
+        self.value.span.clone()
+    }
+}
+
+/// The place for messages about the block as a whole.
+impl Located for Block {
+    fn place(&self) -> Span {
+        self.span().clone()
     }
 }
 

@@ -1,37 +1,60 @@
 //! The tree of a field's phrase, without its meaning: expressions, selections, chains, limits.
-//!
-//! Every node has its byte range in the field's text. [`super::document::Text::place`] turns it
-//! into a place in the file.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::document::Text;
-use crate::source::Span;
+use crate::source::{Located, Span};
 use crate::units::{Dimension, Unit};
 
-/// A node and its bytes in the field's text.
+/// A node, the text of the field that it is in, and its bytes there.
 #[derive(Clone, Debug)]
 pub struct At<T> {
     pub node: T,
+    pub text: Arc<Text>,
     pub range: Range<usize>,
+}
+
+impl<T> At<T> {
+    /// The place in the file, as exact as possible.
+    pub fn place(&self) -> Span {
+        self.text.place(self.range.clone())
+    }
+
+    /// The words as written, with single blanks between them.
+    pub fn words(&self) -> String {
+        self.text.text.get(self.range.clone()).map_or_else(String::new, normalised)
+    }
+
+    /// Another node at the same place.
+    pub fn with<U>(&self, node: U) -> At<U> {
+        self.to(self, node)
+    }
+
+    /// A node from the start of this one to the end of a later one of the same field.
+    pub fn to<U, V>(&self, later: &At<U>, node: V) -> At<V> {
+        let end = later.range.end.max(self.range.end);
+        At { node, text: Arc::clone(&self.text), range: self.range.start..end }
+    }
+}
+
+impl At<String> {
+    /// The word as a text of its own.
+    pub fn to_text(&self) -> Text {
+        Text { text: self.node.clone(), span: self.place(), exact: self.text.exact }
+    }
+}
+
+impl<T> Located for At<T> {
+    fn place(&self) -> Span {
+        self.place()
+    }
 }
 
 impl Item {
     /// The word, where it is one.
     pub fn word(&self) -> Option<&str> {
         if let Self::Word(word) = self { Some(word) } else { None }
-    }
-}
-
-impl<T> At<T> {
-    /// The place in the file, as exact as possible.
-    pub fn place(&self, text: &Text) -> Span {
-        text.place(self.range.clone())
-    }
-
-    /// The words as written, with single blanks between them.
-    pub fn words(&self, text: &Text) -> String {
-        text.text.get(self.range.clone()).map_or_else(String::new, normalised)
     }
 }
 
@@ -204,14 +227,14 @@ pub struct Limit {
     pub bound: Phrase,
     pub factors: Vec<(Phrase, Phrase)>,
     pub only_when: Option<Phrase>,
-    pub scope: At<Scope>,
+    pub scope: Scope,
 }
 
 /// `24`, `3 for each zone`: how many there must be, and of which values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Minimum {
     pub count: Phrase,
-    pub scope: At<Scope>,
+    pub scope: Scope,
 }
 
 /// `mean for each zone`, `total of length in km`: an estimate without a limit.
@@ -220,7 +243,7 @@ pub struct Report {
     pub of: Phrase,
     /// The text of the unit, if it has one.
     pub unit: Option<At<String>>,
-    pub scope: At<Scope>,
+    pub scope: Scope,
 }
 
 /// The values that a limit applies to, and their groups. By default, all values form one group.

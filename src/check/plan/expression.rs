@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::{Scalar, Side, Step};
 use crate::catalog::{Function, Reducer};
-use crate::source::Span;
+use crate::source::{Located, Span};
 use crate::units::{Dimension, Unit};
 
 pub use crate::syntax::phrase::Operator;
@@ -25,6 +25,12 @@ impl Deref for Origin {
     }
 }
 
+impl Located for Origin {
+    fn place(&self) -> Span {
+        self.span.clone()
+    }
+}
+
 /// A typed expression. One over samples states how the signal of one position is computed from
 /// channels.
 #[derive(Clone, Debug)]
@@ -32,6 +38,12 @@ pub struct Expr {
     pub kind: Kind,
     pub ty: Type,
     pub span: Origin,
+}
+
+impl Located for Expr {
+    fn place(&self) -> Span {
+        self.span.place()
+    }
 }
 
 /// What an expression gives.

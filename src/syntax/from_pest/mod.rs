@@ -7,6 +7,8 @@ mod tree;
 mod units;
 
 use std::ops::Range;
+use std::sync::Arc;
+use std::vec::IntoIter;
 
 use pest::Parser;
 use pest::iterators::Pair;
@@ -14,7 +16,7 @@ use pest::iterators::Pair;
 use super::document::Text;
 use super::phrase::{
     Alias, At, Domain, Limit, Minimum, Node, Number, OfPlaces, OverVerdicts, Phrase, Pick, Report,
-    Scope, Step, Verdict,
+    Scope, Step, Verdict, normalised,
 };
 use crate::problem::Problems;
 use tree::{cases, either, estimate, pick, step, sum};
@@ -30,9 +32,9 @@ pub fn expression(text: &Text, problems: &mut Problems) -> Option<Phrase> {
 pub fn of_places(text: &Text, problems: &mut Problems) -> Option<OfPlaces> {
     let mut inner = parsed(Rule::of_places, text, problems)?;
     let mut found = OfPlaces { signal: inner.next()?.named(), picks: Vec::new(), when: None };
-    for part in inner {
+    for mut part in inner {
         match part.rule {
-            Rule::of_when => found.when = Some(either(parts(part).next()?)?),
+            Rule::of_when => found.when = Some(either(part.next()?)?),
             _ => found.picks.push(pick(part)),
         }
     }
@@ -70,14 +72,13 @@ pub fn range(text: &Text, problems: &mut Problems) -> Option<(Phrase, Phrase)> {
 
 pub fn domain(text: &Text, problems: &mut Problems) -> Option<Domain> {
     let mut domain = Domain { over: Vec::new(), each: Vec::new() };
-    for part in parsed(Rule::domain, text, problems)? {
+    for mut part in parsed(Rule::domain, text, problems)? {
         if part.rule == Rule::each_keys {
-            domain.each = parts(part).map(|key| key.named()).collect();
-            continue;
+            domain.each = part.map(|key| key.named()).collect();
+        } else {
+            let of = sum(part.next()?)?;
+            domain.over.push((of, part.next().map(|unit| unit.named())));
         }
-        let mut inner = parts(part);
-        let of = sum(inner.next()?)?;
-        domain.over.push((of, inner.next().map(|unit| unit.named())));
     }
     Some(domain)
 }
@@ -93,47 +94,40 @@ pub fn step_alone(text: &Text, problems: &mut Problems) -> Option<At<Step>> {
 pub fn limit(text: &Text, problems: &mut Problems) -> Option<Limit> {
     let mut inner = parsed(Rule::limit, text, problems)?.peekable();
     let first = inner.next()?;
-    let statistic = first.named();
-    let statistic =
-        At { node: statistic.node.split_whitespace().collect::<Vec<_>>().join(" "), ..statistic };
+    let statistic = first.at(normalised(first.written()));
     let estimate = estimate(first)?;
     let at_least = inner.next_if(|part| part.rule == Rule::at_least).is_some();
-    let bound = cases(inner.next()?)?;
-    let everywhere = At { node: Scope::default(), range: 0..0 };
     let mut limit = Limit {
         statistic,
         estimate,
         at_least,
-        bound,
+        bound: cases(inner.next()?)?,
         factors: Vec::new(),
         only_when: None,
-        scope: everywhere,
+        scope: Scope::default(),
     };
-    for part in inner {
-        let part = parts(part).next()?;
-        let range = part.range.clone();
-        let rule = part.rule;
-        let mut inner = parts(part);
-        match rule {
+    for mut part in inner {
+        let mut part = part.next()?;
+        match part.rule {
             Rule::doubled => {
-                let two = At { node: Node::Number(Number { value: 2.0, unit: None }), range };
-                limit.factors.push((two, either(inner.next()?)?));
+                let two = part.at(Node::Number(Number { value: 2.0, unit: None }));
+                limit.factors.push((two, either(part.next()?)?));
             }
-            Rule::times => limit.factors.push((sum(inner.next()?)?, either(inner.next()?)?)),
+            Rule::times => limit.factors.push((sum(part.next()?)?, either(part.next()?)?)),
             Rule::only => {
-                let condition = either(inner.next()?)?;
+                let condition = either(part.next()?)?;
                 if limit.only_when.is_some() {
-                    problems.push(explain::twice("only when", text, range));
+                    problems.push(explain::twice("only when", text, part.range));
                     return None;
                 }
                 limit.only_when = Some(condition);
             }
             _ => {
-                if !limit.scope.node.is_all() {
-                    problems.push(explain::twice("for ...", text, range));
+                if !limit.scope.is_all() {
+                    problems.push(explain::twice("for ...", text, part.range));
                     return None;
                 }
-                limit.scope = At { node: scope(inner.next()?)?, range };
+                limit.scope = scope(part.next()?)?;
             }
         }
     }
@@ -143,8 +137,7 @@ pub fn limit(text: &Text, problems: &mut Problems) -> Option<Limit> {
 /// How many there must be: `24`, `3 for each zone and wheelset`.
 pub fn minimum(text: &Text, problems: &mut Problems) -> Option<Minimum> {
     let mut inner = parsed(Rule::minimum, text, problems)?;
-    let count = cases(inner.next()?)?;
-    Some(Minimum { count, scope: scope_or_all(inner.next())? })
+    Some(Minimum { count: cases(inner.next()?)?, scope: scope_or_all(inner.next())? })
 }
 
 /// An estimate without a limit: `mean for each zone`, `total of length in km`.
@@ -155,19 +148,17 @@ pub fn report(text: &Text, problems: &mut Problems) -> Option<Report> {
     Some(Report { of, unit, scope: scope_or_all(inner.next())? })
 }
 
-fn scope_or_all(part: Option<Part<'_>>) -> Option<At<Scope>> {
-    let Some(part) = part else { return Some(At { node: Scope::default(), range: 0..0 }) };
-    let range = part.range.clone();
-    Some(At { node: scope(parts(part).next()?)?, range })
+fn scope_or_all(part: Option<Part>) -> Option<Scope> {
+    part.map_or(Some(Scope::default()), |mut part| scope(part.next()?))
 }
 
-fn scope(part: Part<'_>) -> Option<Scope> {
+fn scope(part: Part) -> Option<Scope> {
     let mut scope = Scope::default();
-    for part in parts(part) {
+    for mut part in part {
         match part.rule {
             Rule::zone => scope.zones.push(part.named()),
             Rule::each_keys => scope.each = keys(part),
-            Rule::scope_where => scope.condition = Some(either(parts(part).next()?)?),
+            Rule::scope_where => scope.condition = Some(either(part.next()?)?),
             _ => scope.condition = Some(either(part)?),
         }
     }
@@ -181,14 +172,14 @@ pub fn verdict(text: &Text, problems: &mut Problems) -> Option<Verdict> {
         Rule::some_verdict => return Some(Verdict::Over(over_verdicts(inner)?)),
         _ => {}
     }
-    let mut inner = parts(inner).filter(|part| part.rule != Rule::at_least);
+    let mut inner = inner.filter(|part| part.rule != Rule::at_least);
     let count = sum(inner.next()?)?;
     Some(Verdict::AtLeast { count, of_limits: inner.next()?.rule == Rule::of_limits })
 }
 
-fn over_verdicts(part: Part<'_>) -> Option<OverVerdicts> {
+fn over_verdicts(part: Part) -> Option<OverVerdicts> {
     let rule = part.rule;
-    let mut inner = parts(part).peekable();
+    let mut inner = part.peekable();
     match rule {
         Rule::some_verdict | Rule::all_verdicts => {
             let mut all = inner.map(over_verdicts).collect::<Option<Vec<_>>>()?;
@@ -206,15 +197,14 @@ fn over_verdicts(part: Part<'_>) -> Option<OverVerdicts> {
         Rule::enough_verdicts => {
             let mut inner = inner.filter(|part| !matches!(part.rule, Rule::at_least | Rule::of));
             let count = inner.next()?;
-            let range = count.range.clone();
             let node = match count.rule {
                 Rule::number => {
-                    Node::Number(Number { value: count.text.parse().ok()?, unit: None })
+                    Node::Number(Number { value: count.written().parse().ok()?, unit: None })
                 }
-                _ => Node::Path(count.text.to_string()),
+                _ => Node::Path(count.written().to_string()),
             };
             Some(OverVerdicts::AtLeast {
-                count: At { node, range },
+                count: count.at(node),
                 of: inner.map(|name| name.named()).collect(),
             })
         }
@@ -242,14 +232,14 @@ fn is_keyword(word: &str) -> bool {
     Grammar::parse(Rule::keyword, word).is_ok()
 }
 
-/// The parts of a field that is parsed with one rule. A syntax error becomes a problem at its word.
-fn parsed<'t>(rule: Rule, text: &'t Text, problems: &mut Problems) -> Option<Parts<'t>> {
+/// A field that is parsed with one rule. A syntax error becomes a problem at its word.
+fn parsed(rule: Rule, text: &Text, problems: &mut Problems) -> Option<Part> {
     if let Some(problem) = depth::too_deep(text) {
         problems.push(problem);
         return None;
     }
     match Grammar::parse(rule, &units::marked(&text.text)) {
-        Ok(mut pairs) => Some(parts(Part::new(pairs.next()?, &text.text))),
+        Ok(mut pairs) => Some(Part::new(pairs.next()?, &Arc::new(text.clone()))),
         Err(error) => {
             problems.push(explain::syntax(rule, &error, text));
             None
@@ -259,44 +249,47 @@ fn parsed<'t>(rule: Rule, text: &'t Text, problems: &mut Problems) -> Option<Par
 
 /// `each zone and running gear`: a name of several words has `_` between them, as where it is
 /// declared.
-fn keys(part: Part<'_>) -> Vec<At<String>> {
-    let key = |part: Part<'_>| {
-        let At { node, range } = part.named();
-        At { node: node.split_whitespace().collect::<Vec<_>>().join("_"), range }
-    };
-    parts(part).map(key).collect()
+fn keys(part: Part) -> Vec<At<String>> {
+    part.map(|key| key.at(normalised(key.written()).replace(' ', "_"))).collect()
 }
 
-/// A part of a parsed phrase with its bytes in the field's text, without the keywords in it.
-struct Part<'t> {
+/// A part of a parsed phrase with its bytes in the field's text; it gives the parts in it one by
+/// one, without the keywords.
+struct Part {
     rule: Rule,
-    text: &'t str,
+    text: Arc<Text>,
     range: Range<usize>,
-    inner: Vec<Part<'t>>,
+    inner: IntoIter<Part>,
 }
 
-impl<'t> Part<'t> {
-    fn new(pair: Pair<'_, Rule>, text: &'t str) -> Self {
+impl Iterator for Part {
+    type Item = Self;
+    fn next(&mut self) -> Option<Self> {
+        self.inner.next()
+    }
+}
+
+impl Part {
+    fn new(pair: Pair<'_, Rule>, text: &Arc<Text>) -> Self {
         let (rule, start) = (pair.as_rule(), pair.as_span().start());
-        let written = text[start..pair.as_span().end()].trim_end();
+        let written = text.text[start..pair.as_span().end()].trim_end().len();
         let inner = pair.into_inner().filter(|pair| !explain::joins(pair.as_rule()));
-        Part {
-            rule,
-            text: written,
-            range: start..start + written.len(),
-            inner: inner.map(|pair| Part::new(pair, text)).collect(),
-        }
+        let inner: Vec<Self> = inner.map(|pair| Self::new(pair, text)).collect();
+        let range = start..start + written;
+        Self { rule, text: Arc::clone(text), range, inner: inner.into_iter() }
+    }
+
+    fn written(&self) -> &str {
+        &self.text.text[self.range.clone()]
+    }
+
+    fn at<T>(&self, node: T) -> At<T> {
+        At { node, text: Arc::clone(&self.text), range: self.range.clone() }
     }
 
     fn named(&self) -> At<String> {
-        At { node: self.text.to_string(), range: self.range.clone() }
+        self.at(self.written().to_string())
     }
-}
-
-type Parts<'t> = std::vec::IntoIter<Part<'t>>;
-
-fn parts(part: Part<'_>) -> Parts<'_> {
-    part.inner.into_iter()
 }
 
 #[cfg(test)]
@@ -419,12 +412,10 @@ mod tests {
                 .expect("a limit");
         assert_eq!(found.statistic.node, "std");
         assert_eq!(found.factors.len(), 1);
-        assert!(found.scope.node.zones.len() == 2);
+        assert!(found.scope.zones.len() == 2);
         let found = limit(&text("p95 at least 0.8 only when a is b for each zone"), &mut problems)
             .expect("a limit");
-        assert!(
-            found.at_least && found.only_when.is_some() && found.scope.node.each[0].node == "zone"
-        );
+        assert!(found.at_least && found.only_when.is_some() && found.scope.each[0].node == "zone");
     }
 
     #[test]
@@ -433,10 +424,10 @@ mod tests {
         let found =
             minimum(&text("needed - 1 for each zone and running gear where v > 3"), &mut problems)
                 .expect("a minimum");
-        let keys: Vec<&str> = found.scope.node.each.iter().map(|key| key.node.as_str()).collect();
+        let keys: Vec<&str> = found.scope.each.iter().map(|key| key.node.as_str()).collect();
         assert_eq!(keys, ["zone", "running_gear"]);
-        assert!(found.scope.node.condition.is_some());
-        assert!(minimum(&text("24"), &mut problems).expect("a minimum").scope.node.is_all());
+        assert!(found.scope.condition.is_some());
+        assert!(minimum(&text("24"), &mut problems).expect("a minimum").scope.is_all());
     }
 
     #[test]
