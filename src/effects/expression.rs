@@ -1,53 +1,36 @@
 //! Effects as expressions of the protocol language: a channel is computed sample by sample from
 //! channels of the same record.
 
+use std::collections::BTreeMap;
+
 use super::signals::Signals;
 use crate::catalog::{FUNCTIONS, Function, Signature};
-use crate::problem::{Problem, Problems};
-use crate::source::Span;
+use crate::problem::{Problem, Problems, error};
 use crate::syntax::document::Text;
 use crate::syntax::from_pest::expression;
 use crate::syntax::phrase::{Node, Operator, Phrase};
 use crate::units::{Dimension, Unit};
 
-/// The expression for a channel.
+/// The expression for a channel, with consistent units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Formula {
     /// The channel that is replaced.
     pub channel: String,
     unit: Unit,
-    tree: Tree,
+    phrase: Phrase,
+    /// The names in the expression.
+    names: BTreeMap<String, Meaning>,
 }
 
-/// An expression with consistent units; values in SI.
-#[derive(Clone, Debug)]
-enum Tree {
-    Number(f64),
-    Channel(String, Unit),
+/// What a name stands for.
+#[derive(Clone, Debug, PartialEq)]
+enum Meaning {
+    Channel(Unit),
     /// Index of the effect's parameter.
     Parameter(usize, Unit),
-    Binary(Operator, Box<[Tree; 2]>),
-    Negative(Box<Tree>),
-    Power(Box<Tree>, i8),
-    Call(&'static Function, Vec<Tree>),
 }
 
-impl PartialEq for Tree {
-    fn eq(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Number(a), Self::Number(b)) => a == b,
-            (Self::Channel(a, u), Self::Channel(b, v)) => a == b && u == v,
-            (Self::Parameter(a, u), Self::Parameter(b, v)) => a == b && u == v,
-            (Self::Binary(a, x), Self::Binary(b, y)) => a == b && x == y,
-            (Self::Negative(a), Self::Negative(b)) => a == b,
-            (Self::Power(a, x), Self::Power(b, y)) => a == b && x == y,
-            (Self::Call(a, x), Self::Call(b, y)) => a.name == b.name && x == y,
-            _ => false,
-        }
-    }
-}
-
-/// Meaning of the names in an expression.
+/// The names that an expression can use.
 #[derive(Clone, Copy)]
 pub(super) struct Known<'a> {
     /// Channels with their units.
@@ -68,8 +51,8 @@ impl Formula {
         problems: &mut Problems,
     ) -> Option<Self> {
         let phrase = expression(text, problems)?;
-        let mut checker = Checker { text, known, problems };
-        let (tree, dimension) = checker.tree(&phrase)?;
+        let mut checker = Checker { known, problems, names: BTreeMap::new() };
+        let dimension = checker.dimension(&phrase)?;
         let (name, unit) = channel;
         if dimension != unit.dimension {
             let says = format!(
@@ -77,10 +60,10 @@ impl Formula {
                 unit.dimension.in_words(),
                 dimension.in_words()
             );
-            problems.push(Problem::error("unit-mismatch", says).at(&text.span));
-            return None;
+            return checker.refuse(error("unit-mismatch", says, text));
         }
-        Some(Self { channel: name.to_string(), unit: unit.clone(), tree })
+        let names = checker.names;
+        Some(Self { channel: name.to_string(), unit: unit.clone(), phrase, names })
     }
 
     /// The new values of the channel in its unit; `None` if the record lacks a channel of the
@@ -94,8 +77,7 @@ impl Formula {
         parameters: &[f64],
     ) -> Option<Result<Vec<f64>, String>> {
         signals.channel(&self.channel)?;
-        let values = self.tree.values(signals, parameters)?;
-        let values: Vec<f64> = match values {
+        let values: Vec<f64> = match self.evaluated(&self.phrase, signals, parameters)? {
             Values::All(values) => {
                 values.into_iter().map(|value| self.unit.from_si(value)).collect()
             }
@@ -110,45 +92,45 @@ impl Formula {
             None => Ok(values),
         })
     }
-}
 
-/// One value for all samples, or one per sample.
-enum Values {
-    One(f64),
-    All(Vec<f64>),
-}
-
-impl Tree {
-    fn values(&self, signals: &Signals, parameters: &[f64]) -> Option<Values> {
-        Some(match self {
-            Self::Number(value) => Values::One(*value),
-            Self::Parameter(at, unit) => Values::One(unit.to_si(*parameters.get(*at)?)),
-            Self::Channel(name, unit) => Values::All(
-                signals.channel(name)?.values.iter().map(|value| unit.to_si(*value)).collect(),
-            ),
-            Self::Negative(inner) => each(&[inner.values(signals, parameters)?], |x| -x[0]),
-            Self::Power(inner, exponent) => {
-                each(&[inner.values(signals, parameters)?], |x| x[0].powi(i32::from(*exponent)))
+    /// The values of a part of the expression, SI.
+    fn evaluated(&self, part: &Phrase, signals: &Signals, parameters: &[f64]) -> Option<Values> {
+        let of = |part: &Phrase| self.evaluated(part, signals, parameters);
+        Some(match &part.node {
+            Node::Number(number) => Values::One(number.value),
+            Node::Path(name) => match self.names.get(name)? {
+                Meaning::Parameter(at, unit) => Values::One(unit.to_si(*parameters.get(*at)?)),
+                Meaning::Channel(unit) => Values::All(
+                    signals.channel(name)?.values.iter().map(|value| unit.to_si(*value)).collect(),
+                ),
+            },
+            Node::Negative(inner) => each(&[of(inner)?], |x| -x[0]),
+            Node::Magnitude(inner) => each(&[of(inner)?], |x| x[0].abs()),
+            Node::Power(inner, exponent) => {
+                each(&[of(inner)?], |x| x[0].powi(i32::from(*exponent)))
             }
-            Self::Binary(operator, sides) => {
-                let sides =
-                    [sides[0].values(signals, parameters)?, sides[1].values(signals, parameters)?];
-                each(&sides, |x| match operator {
+            Node::Binary(operator, left, right) => {
+                each(&[of(left)?, of(right)?], |x| match operator {
                     Operator::Add => x[0] + x[1],
                     Operator::Subtract => x[0] - x[1],
                     Operator::Multiply => x[0] * x[1],
                     _ => x[0] / x[1],
                 })
             }
-            Self::Call(function, arguments) => {
-                let arguments: Vec<Values> = arguments
-                    .iter()
-                    .map(|argument| argument.values(signals, parameters))
-                    .collect::<Option<_>>()?;
-                each(&arguments, function.run)
+            Node::Call(name, arguments) => {
+                let arguments = arguments.iter().map(of).collect::<Option<Vec<_>>>()?;
+                each(&arguments, function(&name.node)?.run)
             }
+            // The checker accepts nothing else.
+            _ => return None,
         })
     }
+}
+
+/// One value for all samples, or one per sample.
+enum Values {
+    One(f64),
+    All(Vec<f64>),
 }
 
 fn each(arguments: &[Values], run: impl Fn(&[f64]) -> f64) -> Values {
@@ -174,132 +156,99 @@ fn each(arguments: &[Values], run: impl Fn(&[f64]) -> f64) -> Values {
     }
 }
 
+fn function(name: &str) -> Option<&'static Function> {
+    FUNCTIONS.iter().find(|function| function.name == name)
+}
+
 struct Checker<'a> {
-    text: &'a Text,
     known: Known<'a>,
     problems: &'a mut Problems,
+    names: BTreeMap<String, Meaning>,
 }
 
 impl Checker<'_> {
-    fn refuse<T>(&mut self, code: &'static str, says: String, at: &Span) -> Option<T> {
-        self.problems.push(Problem::error(code, says).at(at));
+    fn refuse<T>(&mut self, problem: Problem) -> Option<T> {
+        self.problems.push(problem);
         None
     }
 
-    /// The grammar limits the depth of an expression.
-    fn tree(&mut self, phrase: &Phrase) -> Option<(Tree, Dimension)> {
-        let span = phrase.place();
+    /// The dimension of an expression. The grammar limits its depth.
+    fn dimension(&mut self, phrase: &Phrase) -> Option<Dimension> {
         match &phrase.node {
-            Node::Number(number) => Some((Tree::Number(number.value), number.dimension())),
-            Node::Path(name) => self.named(name, &span),
-            Node::Negative(inner) => self
-                .tree(inner)
-                .map(|(tree, dimension)| (Tree::Negative(Box::new(tree)), dimension)),
-            Node::Magnitude(inner) => self.call("magnitude", std::slice::from_ref(inner), &span),
-            Node::Power(inner, exponent) => {
-                let (tree, dimension) = self.tree(inner)?;
-                match dimension.power(*exponent) {
-                    Some(dimension) => Some((Tree::Power(Box::new(tree), *exponent), dimension)),
-                    None => {
-                        self.refuse("power", "this power is beyond any unit".to_string(), &span)
+            Node::Number(number) => Some(number.dimension()),
+            Node::Path(name) => self.named(name, phrase),
+            Node::Negative(inner) | Node::Magnitude(inner) => self.dimension(inner),
+            Node::Power(inner, exponent) => match self.dimension(inner)?.power(*exponent) {
+                None => self.refuse(error("power", "this power is beyond any unit", phrase)),
+                found => found,
+            },
+            Node::Binary(operator, left, right) => {
+                let (left, right) = (self.dimension(left), self.dimension(right));
+                let (a, b) = (left?, right?);
+                match operator {
+                    Operator::Multiply => Some(a * b),
+                    Operator::Divide => Some(a / b),
+                    Operator::Add | Operator::Subtract if a == b => Some(a),
+                    Operator::Add | Operator::Subtract => {
+                        let says = format!("{} and {} cannot be added", a.in_words(), b.in_words());
+                        self.refuse(error("unit-mismatch", says, phrase))
                     }
+                    _ => self.refuse(error("not-here", "a condition is not a signal", phrase)),
                 }
             }
-            Node::Binary(operator, left, right) => {
-                let (left, right) = (self.tree(left), self.tree(right));
-                let ((left, a), (right, b)) = (left?, right?);
-                let dimension = match operator {
-                    Operator::Multiply => a * b,
-                    Operator::Divide => a / b,
-                    Operator::Add | Operator::Subtract if a == b => a,
-                    Operator::Add | Operator::Subtract => {
-                        return self.refuse(
-                            "unit-mismatch",
-                            format!("{} and {} cannot be added", a.in_words(), b.in_words()),
-                            &span,
-                        );
-                    }
-                    _ => {
-                        return self.refuse(
-                            "not-here",
-                            "a condition is not a signal".to_string(),
-                            &span,
-                        );
-                    }
-                };
-                Some((Tree::Binary(*operator, Box::new([left, right])), dimension))
-            }
-            Node::Call(name, arguments) => {
-                self.call(&name.node, &arguments.iter().collect::<Vec<_>>(), &span)
-            }
-            _ => self.refuse(
+            Node::Call(name, arguments) => self.call(&name.node, arguments, phrase),
+            _ => self.refuse(error(
                 "not-here",
-                "an effect may contain only numbers, channels, parameters and functions of samples"
-                    .into(),
-                &span,
-            ),
+                "an effect may contain only numbers, channels, parameters and functions of samples",
+                phrase,
+            )),
         }
     }
 
-    fn named(&mut self, name: &str, span: &Span) -> Option<(Tree, Dimension)> {
-        if let Some(at) = self.known.parameters.iter().position(|(known, _)| known == name) {
-            let unit = self.known.parameters[at].1.clone();
-            return Some((Tree::Parameter(at, unit.clone()), unit.dimension));
-        }
-        if let Some((_, unit)) = self.known.channels.iter().find(|(known, _)| known == name) {
-            return Some((Tree::Channel(name.to_string(), unit.clone()), unit.dimension));
-        }
-        let names =
-            self.known.parameters.iter().chain(self.known.channels).map(|(name, _)| name.as_str());
-        let problem = Problem::error(
-            "unknown-name",
-            format!("`{name}` is neither a parameter of this effect nor a channel with a unit"),
-        );
-        self.problems.push(problem.at(span).suggest(name, names));
-        None
+    fn named(&mut self, name: &str, phrase: &Phrase) -> Option<Dimension> {
+        let Known { channels, parameters } = self.known;
+        let parameter = parameters.iter().enumerate().find(|(_, (known, _))| known == name);
+        let channel = channels.iter().find(|(known, _)| known == name);
+        let (meaning, unit) = match (parameter, channel) {
+            (Some((at, (_, unit))), _) => (Meaning::Parameter(at, unit.clone()), unit),
+            (None, Some((_, unit))) => (Meaning::Channel(unit.clone()), unit),
+            (None, None) => {
+                let known = parameters.iter().chain(channels).map(|(name, _)| name);
+                let says = format!(
+                    "`{name}` is neither a parameter of this effect nor a channel with a unit"
+                );
+                return self.refuse(error("unknown-name", says, phrase).suggest(name, known));
+            }
+        };
+        self.names.insert(name.to_string(), meaning);
+        Some(unit.dimension)
     }
 
-    fn call(
-        &mut self,
-        name: &str,
-        arguments: &[impl std::borrow::Borrow<Phrase>],
-        span: &Span,
-    ) -> Option<(Tree, Dimension)> {
-        let Some(function) = FUNCTIONS.iter().find(|function| function.name == name) else {
-            let problem =
-                Problem::error("unknown-name", format!("there is no function `{name}`")).at(span);
-            self.problems
-                .push(problem.suggest(name, FUNCTIONS.iter().map(|function| function.name)));
-            return None;
+    fn call(&mut self, name: &str, arguments: &[Phrase], phrase: &Phrase) -> Option<Dimension> {
+        let Some(function) = function(name) else {
+            let known = FUNCTIONS.iter().map(|function| function.name);
+            let says = format!("there is no function `{name}`");
+            return self.refuse(error("unknown-name", says, phrase).suggest(name, known));
         };
         let needed = if function.signature == Signature::PairSame { 2 } else { 1 };
         if arguments.len() != needed {
-            return self.refuse(
-                "wrong-kind",
-                format!("`{name}` takes {needed}, but {} are given", arguments.len()),
-                span,
-            );
+            let says = format!("`{name}` takes {needed}, but {} are given", arguments.len());
+            return self.refuse(error("wrong-kind", says, phrase));
         }
-        let found: Vec<(Tree, Dimension)> =
-            arguments.iter().map(|argument| self.tree(argument.borrow())).collect::<Option<_>>()?;
-        let first = found[0].1;
+        let found: Vec<Dimension> =
+            arguments.iter().map(|argument| self.dimension(argument)).collect::<Option<_>>()?;
+        let first = found[0];
         let dimension = match function.signature {
             Signature::Same => Some(first),
             Signature::ToPlain => Some(Dimension::ONE),
             Signature::Plain => (first == Dimension::ONE).then_some(first),
             Signature::Root => first.root(),
-            Signature::PairSame => (first == found[1].1).then_some(first),
+            Signature::PairSame => (first == found[1]).then_some(first),
         };
-        match dimension {
-            Some(dimension) => Some((
-                Tree::Call(function, found.into_iter().map(|(tree, _)| tree).collect()),
-                dimension,
-            )),
-            None => self.refuse(
-                "unit-mismatch",
-                format!("`{name}` does not take {}", found.last()?.1.in_words()),
-                span,
-            ),
+        if dimension.is_some() {
+            return dimension;
         }
+        let says = format!("`{name}` does not take {}", found.last()?.in_words());
+        self.refuse(error("unit-mismatch", says, phrase))
     }
 }
