@@ -9,7 +9,7 @@ use super::plan::{
 use super::resolve::LIMITS_NOT_VALUES;
 use super::scope::Scope;
 use super::values::Values;
-use super::{Checker, overlap};
+use super::{Checker, overlap, printed};
 use crate::catalog::Best;
 use crate::metrics::rounded;
 use crate::problem::{Problems, error};
@@ -155,7 +155,7 @@ impl Checker<'_> {
         };
         let bound = bound.filter(|_| ok)?;
         let words = self.with_values(&normalised(&text.text[written.statistic.range.end..]));
-        let printed = naming_limit(&words, &others);
+        let printed = printed::naming_limit(&words, &others);
         Some(Limit {
             estimate: estimate.clone(),
             at_least: written.at_least,
@@ -400,17 +400,6 @@ impl Checker<'_> {
             self.problems.push(problem.help(LIMITS_NOT_VALUES));
         }
     }
-}
-
-/// The words of a limit, saying so where the name of another statistic stands for its limit: `2/3 of
-/// the limit of std` for `2/3 of std`.
-fn naming_limit(words: &str, others: &[String]) -> String {
-    let (bound, rest) = words.split_at(words.find(", ").unwrap_or(words.len()));
-    let named = |name: &String| match bound.strip_suffix(name.as_str())? {
-        "" => Some(format!("limit of {name}{rest}")),
-        share => Some(format!("{}of the limit of {name}{rest}", share.strip_suffix("of ")?)),
-    };
-    others.iter().find_map(named).unwrap_or_else(|| words.to_owned())
 }
 
 /// Says so behind each limit with a number that is to be confirmed, and behind each that refers to
