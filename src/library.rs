@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::disk;
-use crate::problem::Problem;
+use crate::problem::{Problem, problem};
 use crate::source::Source;
 
 /// Maximum size of a protocol or catalogue in bytes: a hundred times the longest shipped one.
@@ -63,36 +63,23 @@ pub const CONVENTIONS: &[Shipped] =
 ///
 /// # Errors
 /// `no-such-catalogue`, `unreadable`, `not-utf8`.
-pub fn find_catalogue(name: &str, beside: Option<&Path>) -> Result<Arc<Source>, Box<Problem>> {
-    let path = beside.map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
-    if there(&path)? {
-        return read(&path);
-    }
+pub fn find_catalogue(name: &str, beside: Option<&Path>) -> Result<Arc<Source>, Problem> {
     let shipped = CATALOGUES.iter().find(|shipped| shipped.name == name);
-    shipped.map(|shipped| Source::new(format!("effects/{name}.yaml"), shipped.text)).ok_or_else(
-        || {
-            let problem = Problem::error(
-                "no-such-catalogue",
-                format!("there is no file and no shipped catalogue `{name}`"),
-            );
-            Box::new(problem.suggest(name, CATALOGUES.iter().map(|shipped| shipped.name)))
-        },
-    )
+    let shipped = shipped.map(|shipped| Source::new(format!("effects/{name}.yaml"), shipped.text));
+    file_or(name, beside, shipped, || {
+        let known = CATALOGUES.iter().map(|shipped| shipped.name);
+        problem!("no-such-catalogue", "there is no file and no shipped catalogue `{name}`")
+            .suggest(name, known)
+    })
 }
 
 /// The catalogue that another extends: a shipped name, or a path relative to its folder.
 ///
 /// # Errors
 /// As [`find_catalogue`].
-pub fn parent_catalogue(name: &str, from: &Source) -> Result<Arc<Source>, Box<Problem>> {
-    find_catalogue(
-        name,
-        if CATALOGUES.iter().any(|shipped| shipped.name == name) {
-            None
-        } else {
-            Path::new(&from.name).parent()
-        },
-    )
+pub fn parent_catalogue(name: &str, from: &Source) -> Result<Arc<Source>, Problem> {
+    let shipped = CATALOGUES.iter().any(|shipped| shipped.name == name);
+    find_catalogue(name, if shipped { None } else { Path::new(&from.name).parent() })
 }
 
 /// Names of the shipped protocols.
@@ -102,27 +89,18 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 
 /// The text of a shipped protocol.
 pub fn shipped(name: &str) -> Option<Arc<Source>> {
-    SHIPPED
-        .iter()
-        .find(|shipped| shipped.name == name)
-        .map(|shipped| Source::new(format!("protocols/{name}.fp"), shipped.text))
+    let shipped = SHIPPED.iter().find(|shipped| shipped.name == name)?;
+    Some(Source::new(format!("protocols/{name}.fp"), shipped.text))
 }
 
 /// A protocol by path, if such a file exists, else by shipped name.
 ///
 /// # Errors
 /// `no-such-protocol`, or `unreadable` with the system's error.
-pub fn find(name: &str, beside: Option<&Path>) -> Result<Arc<Source>, Box<Problem>> {
-    let path = beside.map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
-    if there(&path)? {
-        return read(&path);
-    }
-    shipped(name).ok_or_else(|| {
-        let problem = Problem::error(
-            "no-such-protocol",
-            format!("there is no file and no shipped protocol `{name}`"),
-        );
-        Box::new(problem.suggest(name, names()))
+pub fn find(name: &str, beside: Option<&Path>) -> Result<Arc<Source>, Problem> {
+    file_or(name, beside, shipped(name), || {
+        problem!("no-such-protocol", "there is no file and no shipped protocol `{name}`")
+            .suggest(name, names())
     })
 }
 
@@ -130,44 +108,42 @@ pub fn find(name: &str, beside: Option<&Path>) -> Result<Arc<Source>, Box<Proble
 ///
 /// # Errors
 /// As [`find`].
-pub fn parent(name: &str, from: &Source) -> Result<Arc<Source>, Box<Problem>> {
-    if let Some(found) = shipped(name) {
-        return Ok(found);
-    }
-    find(name, Path::new(&from.name).parent())
+pub fn parent(name: &str, from: &Source) -> Result<Arc<Source>, Problem> {
+    shipped(name).map_or_else(|| find(name, Path::new(&from.name).parent()), Ok)
 }
 
-/// Whether a file exists, or an object that cannot be read as one.
-fn there(path: &Path) -> Result<bool, Box<Problem>> {
-    match disk::kind(path) {
-        Ok(kind) => Ok(matches!(kind, Some(disk::Kind::File(_) | disk::Kind::Other))),
-        Err(error) => Err(unreadable(path, &error)),
+/// The text of a file, if there is one or an object that cannot be read as one, else a shipped one.
+fn file_or(
+    name: &str,
+    beside: Option<&Path>,
+    shipped: Option<Arc<Source>>,
+    missing: impl FnOnce() -> Problem,
+) -> Result<Arc<Source>, Problem> {
+    let path = beside.map_or_else(|| PathBuf::from(name), |folder| folder.join(name));
+    match disk::kind(&path).map_err(|error| unreadable(&path, &error))? {
+        Some(disk::Kind::File(_) | disk::Kind::Other) => read(&path),
+        _ => shipped.ok_or_else(missing),
     }
 }
 
-fn unreadable(path: &Path, error: &std::io::Error) -> Box<Problem> {
-    Box::new(Problem::error("unreadable", format!("{} cannot be read: {error}", path.display())))
+fn unreadable(path: &Path, error: &std::io::Error) -> Problem {
+    problem!("unreadable", "{} cannot be read: {error}", path.display())
 }
 
 /// Reads a protocol file.
 ///
 /// # Errors
 /// `unreadable`, `not-utf8`.
-pub fn read(path: &Path) -> Result<Arc<Source>, Box<Problem>> {
+pub fn read(path: &Path) -> Result<Arc<Source>, Problem> {
     let shown = path.display().to_string();
     let bytes = disk::read(path, LARGEST).map_err(|error| unreadable(path, &error))?;
-    match String::from_utf8(bytes) {
+    match std::str::from_utf8(&bytes) {
         Ok(text) => Ok(Source::new(shown, text)),
         Err(error) => {
-            let at = error.utf8_error().valid_up_to();
-            let row = error.as_bytes()[..at].iter().filter(|byte| **byte == b'\n').count() + 1;
-            Err(Box::new(
-                Problem::error(
-                    "not-utf8",
-                    format!("{shown} is not UTF-8: byte {at}, in row {row}"),
-                )
-                .help("save it as UTF-8"),
-            ))
+            let at = error.valid_up_to();
+            let row = bytes[..at].iter().filter(|byte| **byte == b'\n').count() + 1;
+            Err(problem!("not-utf8", "{shown} is not UTF-8: byte {at}, in row {row}")
+                .help("save it as UTF-8"))
         }
     }
 }

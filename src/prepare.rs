@@ -42,13 +42,8 @@ const IN_MEMORY: &str = "protocol.fp";
 
 /// A protocol and its ancestors, by name or path.
 pub fn load(name: &str, problems: &mut Problems) -> Option<Family> {
-    match library::find(name, None) {
-        Ok(source) => Some(family::read(&source, &library::parent, problems)),
-        Err(problem) => {
-            problems.push(*problem);
-            None
-        }
-    }
+    let source = library::find(name, None).map_err(|problem| problems.push(problem)).ok()?;
+    Some(family::read(&source, &library::parent, problems))
 }
 
 /// What a diagnosis needs beside the protocol: the catalogue and its settings, and the sections of
@@ -76,7 +71,7 @@ pub fn for_diagnosis(
 /// A catalogue of effects, by path or name.
 pub fn load_catalogue(name: &str, problems: &mut Problems) -> Option<Catalogue> {
     let source =
-        library::find_catalogue(name, None).map_err(|problem| problems.push(*problem)).ok()?;
+        library::find_catalogue(name, None).map_err(|problem| problems.push(problem)).ok()?;
     effects::read(&source, &library::parent_catalogue, &model_parameters(), problems)
 }
 
@@ -333,7 +328,6 @@ fn campaign_protocol(
         }
         let beside = Path::new(campaign.inside(&from.name)).parent().unwrap_or(Path::new(""));
         inside(&Spanned::new(beside.join(name).display().to_string(), source.whole()))
-            .map_err(Box::new)
     };
     Some(family::read(&source, &parent, problems))
 }

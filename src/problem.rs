@@ -16,6 +16,7 @@ pub enum Severity {
 }
 
 /// One problem in a protocol or a data file.
+#[must_use]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Problem {
     pub severity: Severity,
@@ -93,38 +94,32 @@ impl Problem {
         Self { severity: Severity::Warning, ..Self::error(code, says) }
     }
 
-    #[must_use]
     pub fn at(mut self, place: &impl Located) -> Self {
         self.at = Some(place.place());
         self
     }
 
     /// At a place, if it has none yet: a problem of a file as a whole is shown where it is named.
-    #[must_use]
     pub fn or_at(self, place: &impl Located) -> Self {
         if self.at.is_some() { self } else { self.at(place) }
     }
 
-    #[must_use]
     pub fn label(mut self, text: impl Into<String>) -> Self {
         self.label = Some(text.into());
         self
     }
 
-    #[must_use]
     pub fn also(mut self, place: &impl Located, text: impl Into<String>) -> Self {
         self.also.push((place.place(), text.into()));
         self
     }
 
-    #[must_use]
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.help = Some(text.into());
         self
     }
 
     /// Adds help if there is some.
-    #[must_use]
     pub fn help_if(self, help: Option<impl Into<String>>) -> Self {
         match help {
             Some(help) => self.help(help),
@@ -133,7 +128,6 @@ impl Problem {
     }
 
     /// Adds the help "did you mean ...?" with a known word.
-    #[must_use]
     pub fn meant(mut self, near: &str) -> Self {
         self.help = Some(format!("did you mean `{near}`?"));
         self.near = Some(near.to_owned());
@@ -142,7 +136,6 @@ impl Problem {
 
     /// Adds the help "did you mean ...?" if a candidate is similar, else the list of candidates if
     /// it is short.
-    #[must_use]
     pub fn suggest(
         mut self,
         word: &str,
@@ -284,22 +277,13 @@ impl Problem {
 /// underlined.
 fn range(span: &Span) -> std::ops::Range<usize> {
     let text = &span.source.text;
-    let mut start = span.start.min(text.len());
-    while !text.is_char_boundary(start) {
-        start -= 1;
-    }
+    let start = text.floor_char_boundary(span.start);
     let mut end = span.end.clamp(start, text.len());
     if end == start {
-        end = text[start..]
-            .chars()
-            .next()
-            .filter(|c| *c != '\n')
-            .map_or(start, |c| start + c.len_utf8());
+        let next = text[start..].chars().next().filter(|c| *c != '\n');
+        end += next.map_or(0, char::len_utf8);
     }
-    while !text.is_char_boundary(end) {
-        end += 1;
-    }
-    start..end
+    start..text.ceil_char_boundary(end)
 }
 
 /// Replaces control characters in user text, so that a terminal does not interpret them.
@@ -325,6 +309,18 @@ impl From<Problem> for Vec<Problem> {
 pub fn error(code: &'static str, says: impl Into<String>, at: &impl Located) -> Problem {
     Problem::error(code, says).at(at)
 }
+
+/// An error with its code, where there is one its place, and its message as `format!` has it:
+/// `problem!("unknown-run", &cell.span, "the campaign has no run `{name}`")`.
+macro_rules! problem {
+    ($code:expr, $says:literal $($with:tt)*) => {
+        $crate::problem::Problem::error($code, format!($says $($with)*))
+    };
+    ($code:expr, $at:expr, $says:literal $($with:tt)*) => {
+        $crate::problem::error($code, format!($says $($with)*), $at)
+    };
+}
+pub(crate) use problem;
 
 /// A warning with its code and message, at a place.
 pub fn warning(code: &'static str, says: impl Into<String>, at: &impl Located) -> Problem {
@@ -360,7 +356,7 @@ impl Problems {
     }
 
     pub fn any_error(&self) -> bool {
-        self.0.iter().any(|problem| problem.severity == Severity::Error)
+        self.errors() > 0
     }
 
     pub fn errors(&self) -> usize {

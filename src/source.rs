@@ -10,7 +10,6 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// One input text: a protocol, a YAML or CSV file, or an excerpt of one.
-#[derive(PartialEq, Eq)]
 pub struct Source {
     /// Name shown to the user: the path as given, or `protocols/<name>.fp` for an embedded
     /// protocol.
@@ -18,29 +17,18 @@ pub struct Source {
     pub text: String,
     /// Number of the first line of `text` in the file (1 unless this is an excerpt).
     pub first_line: usize,
-    lines: Lines,
+    /// Where the lines of the text begin, computed on first use: a large table requests them for
+    /// each row.
+    lines: OnceLock<Vec<usize>>,
 }
 
-/// Start positions of the lines of a text, computed on first use: a large table requests them for
-/// each row.
-#[derive(Default)]
-struct Lines(OnceLock<Vec<usize>>);
-
-/// Derived from the text.
-impl PartialEq for Lines {
-    fn eq(&self, _: &Self) -> bool {
-        true
+impl PartialEq for Source {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.name, &self.text, self.first_line) == (&other.name, &other.text, other.first_line)
     }
 }
 
-impl Eq for Lines {}
-
-impl Lines {
-    fn of(&self, text: &str) -> &[usize] {
-        let ends = || memchr::memchr_iter(b'\n', text.as_bytes()).map(|end| end + 1);
-        self.0.get_or_init(|| std::iter::once(0).chain(ends()).collect())
-    }
-}
+impl Eq for Source {}
 
 impl fmt::Debug for Source {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -60,7 +48,7 @@ impl Source {
         text: impl Into<String>,
         first_line: usize,
     ) -> Arc<Self> {
-        Arc::new(Self { name: name.into(), text: text.into(), first_line, lines: Lines::default() })
+        Arc::new(Self { name: name.into(), text: text.into(), first_line, lines: OnceLock::new() })
     }
 
     /// The name without its folders, independent of the working folder.
@@ -72,11 +60,9 @@ impl Source {
 
     /// Line and column (both from 1, column in characters) of a byte offset.
     pub fn line_column(&self, offset: usize) -> (usize, usize) {
-        let mut offset = offset.min(self.text.len());
-        while !self.text.is_char_boundary(offset) {
-            offset -= 1;
-        }
-        let starts = self.lines.of(&self.text);
+        let offset = self.text.floor_char_boundary(offset);
+        let ends = || memchr::memchr_iter(b'\n', self.text.as_bytes()).map(|end| end + 1);
+        let starts = self.lines.get_or_init(|| std::iter::once(0).chain(ends()).collect());
         let line = starts.partition_point(|start| *start <= offset) - 1;
         (self.first_line + line, self.text[starts[line]..offset].chars().count() + 1)
     }
@@ -185,17 +171,11 @@ const BEHIND: usize = 4096;
 impl Serialize for Span {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         let text = &self.source.text;
-        let boundary = |mut at: usize| {
-            at = at.min(text.len());
-            while !text.is_char_boundary(at) {
-                at -= 1;
-            }
-            at
-        };
-        let (start, end) = (boundary(self.start), boundary(self.end.max(self.start)));
+        let start = text.floor_char_boundary(self.start);
+        let end = text.floor_char_boundary(self.end.max(self.start));
         let from = text[..start].rfind('\n').map_or(0, |at| at + 1);
         let to_line = text[end..].find('\n').map_or(text.len(), |at| end + at);
-        let to_line = boundary(to_line.min(end + BEHIND));
+        let to_line = text.floor_char_boundary(to_line.min(end + BEHIND));
         let first_line = self.source.line_column(start).0;
         let (name, text) = (self.source.name.clone(), text[from..to_line].to_string());
         Stored { name, first_line, text, start: start - from, end: end - from }.serialize(to)
@@ -260,43 +240,37 @@ pub struct Piece {
 impl Filled {
     fn part(&self, span: &Span, range: Range<usize>, exact: bool) -> Span {
         let end = range.end.max(range.start + 1);
-        let touched = || {
-            self.pieces
-                .iter()
-                .filter(|piece| piece.text.start < end && range.start < piece.text.end)
-        };
+        let touches = |piece: &&Piece| piece.text.start < end && range.start < piece.text.end;
+        let touched = || self.pieces.iter().filter(touches);
         let (Some(first), Some(last)) = (touched().next(), touched().next_back()) else {
             return span.clone();
         };
-        let ahead = |piece: &Piece| {
-            if piece.put_in.is_some() { 0 } else { range.start.saturating_sub(piece.text.start) }
+        // Bytes of a piece before the range and behind it; braces are taken as a whole.
+        let (from, to) = (range.start, range.end.max(range.start));
+        let ahead = |piece: &Piece| match piece.put_in {
+            Some(_) => 0,
+            None => from.saturating_sub(piece.text.start),
         };
-        let behind = |piece: &Piece| {
-            if piece.put_in.is_some() {
-                0
-            } else {
-                piece.text.end.saturating_sub(range.end.max(range.start))
-            }
+        let behind = |piece: &Piece| match piece.put_in {
+            Some(_) => 0,
+            None => piece.text.end.saturating_sub(to),
         };
         let from = first.from.start + ahead(first);
         let to = last.from.end.saturating_sub(behind(last)).max(from);
         let shift = if exact { from } else { 0 };
-        let pieces = touched().map(|piece| Piece {
-            text: piece.text.start.max(range.start) - range.start
-                ..piece.text.end.min(range.end.max(range.start)) - range.start,
-            from: piece.from.start + ahead(piece) - shift
-                ..(piece.from.end - behind(piece)).max(piece.from.start + ahead(piece)) - shift,
-            put_in: piece.put_in.clone(),
+        let pieces = touched().map(|piece| {
+            let start = piece.from.start + ahead(piece);
+            let end = (piece.from.end - behind(piece)).max(start);
+            Piece {
+                text: piece.text.start.max(range.start) - range.start
+                    ..piece.text.end.min(range.end.max(range.start)) - range.start,
+                from: start - shift..end - shift,
+                put_in: piece.put_in.clone(),
+            }
         });
-        let filled = Self {
-            text: self
-                .text
-                .get(range.start..range.end.min(self.text.len()))
-                .unwrap_or("")
-                .to_owned(),
-            member: Arc::clone(&self.member),
-            pieces: pieces.collect(),
-        };
+        let text = self.text.get(range.start..range.end.min(self.text.len())).unwrap_or("");
+        let (text, member) = (text.to_owned(), Arc::clone(&self.member));
+        let filled = Self { text, member, pieces: pieces.collect() };
         let (start, end) =
             if exact { (span.start + from, span.start + to) } else { (span.start, span.end) };
         Span { source: Arc::clone(&span.source), start, end, filled: Some(Arc::new(filled)) }

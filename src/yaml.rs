@@ -85,6 +85,16 @@ impl Node {
         self.get(key).map_or(&self.span, |node| &node.span)
     }
 
+    /// The place where the value begins.
+    pub fn start(&self) -> Span {
+        self.span.part(0..0)
+    }
+
+    /// The place of the value of a key; of one that is not there, the beginning of the map.
+    pub fn span_or_start(&self, key: &str) -> Span {
+        self.get(key).map_or_else(|| self.start(), |node| node.span.clone())
+    }
+
     /// Looks up `a.b.c` in nested maps. A key that contains a dot is found by its full text first.
     pub fn lookup(&self, path: &str) -> Option<&Node> {
         if let Some(node) = self.get(path) {

@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 /// The catalogue cannot be read.
 pub fn catalogue() -> Result<Catalogue, String> {
     let known = &fishplate::library::CATALOGUES[0];
-    let find = |name: &str, _: &Source| Err(Box::new(Problem::error("unknown", name)));
+    let find = |name: &str, _: &Source| Err(Problem::error("unknown", name));
     let mut problems = Problems::default();
     read(
         &Source::new(known.name, known.text),

@@ -89,9 +89,9 @@ fn compiled(name: &str, text: &str) -> (Option<Compiled>, Problems) {
 
 /// Only what the program carries may be extended: a fuzzed text must not choose files of this
 /// machine.
-fn shipped(name: &str, _: &Source) -> Result<Arc<Source>, Box<Problem>> {
+fn shipped(name: &str, _: &Source) -> Result<Arc<Source>, Problem> {
     let says = || Problem::error("no-such-protocol", format!("there is no protocol `{name}`"));
-    library::shipped(name).ok_or_else(|| Box::new(says()))
+    library::shipped(name).ok_or_else(says)
 }
 
 /// A rule of the phrases: whether it reads a text.

@@ -25,12 +25,12 @@ pub fn catalogue(input: &[u8]) {
 }
 
 /// Only what the program carries may be extended.
-fn shipped(name: &str, from: &Source) -> Result<Arc<Source>, Box<Problem>> {
+fn shipped(name: &str, from: &Source) -> Result<Arc<Source>, Problem> {
     let known = library::CATALOGUES.iter().any(|catalogue| catalogue.name == name);
     if known {
         return library::parent_catalogue(name, from);
     }
-    Err(Box::new(Problem::error("no-such-catalogue", format!("there is no catalogue `{name}`"))))
+    Err(Problem::error("no-such-catalogue", format!("there is no catalogue `{name}`")))
 }
 
 #[track_caller]

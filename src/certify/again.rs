@@ -22,13 +22,10 @@ pub fn again(
 ) -> Option<Compiled> {
     let next = |_: &str, from: &Source| {
         let at = sources.iter().position(|source| source.name == from.name).map_or(0, |at| at + 1);
-        let lacks = || {
-            Box::new(Problem::error(
-                "protocol-missing",
-                "the protocol extends one that is not carried with it",
-            ))
-        };
-        sources.get(at).cloned().ok_or_else(lacks)
+        sources.get(at).cloned().ok_or_else(|| {
+            let says = "the protocol extends one that is not carried with it";
+            Problem::error("protocol-missing", says)
+        })
     };
     let family = family::read(sources.first()?, &next, problems);
     if problems.any_error() {

@@ -31,7 +31,7 @@ pub struct Family {
 }
 
 /// Finds the text of a protocol by name or path, relative to the text that names it.
-pub type Find<'a> = &'a dyn Fn(&str, &Source) -> Result<Arc<Source>, Box<Problem>>;
+pub type Find<'a> = &'a dyn Fn(&str, &Source) -> Result<Arc<Source>, Problem>;
 
 /// Reads a protocol and its ancestors.
 pub fn read(source: &Arc<Source>, find: Find<'_>, problems: &mut Problems) -> Family {

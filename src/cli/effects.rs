@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::kit::*;
 use super::simulate::load_catalogue;
 use crate::effects::{Action, Catalogue};
+use crate::yaml::Words;
 
 #[derive(Debug, Args)]
 pub struct Effects {
@@ -36,13 +37,13 @@ fn list(catalogue: &Catalogue) -> String {
         let how = match &effect.action {
             Action::Simulator => "simulated".to_string(),
             Action::Formulas(_) => "signals: expressions".to_string(),
-            Action::Signals(operator, _) => format!("signals: {}", operator.name()),
+            Action::Signals(operator, _) => format!("signals: {}", operator.word()),
         };
         let _ = write!(
             out,
             "\n{}  ({}, {how})\n  {}: {}\n",
             effect.name,
-            effect.acts.in_words(),
+            effect.acts.word(),
             effect.title,
             effect.means
         );

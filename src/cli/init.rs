@@ -55,7 +55,7 @@ impl Init {
         let (first, last) = (headings.first(), headings.last());
         let listed = listed(found, self.channels_from.is_some()).map_err(|problem| match first {
             Some(first) => problem.at(&first.span),
-            None => *problem,
+            None => problem,
         });
         let listed = problems.value(listed)?;
         if listed.groups.is_empty() && self.extends.is_none() {
@@ -84,7 +84,7 @@ impl Init {
         }
         let parent = family.as_ref().map(parent);
         let text = protocol::text(name, listed.as_ref(), parent.as_ref());
-        let source = Source::new(PROTOCOL, problems.value(text.map_err(|problem| *problem))?);
+        let source = Source::new(PROTOCOL, problems.value(text)?);
         let find = |name: &str, from: &Source| match copies.iter().find(|(path, _)| path == name) {
             Some((_, source)) => Ok(Arc::clone(source)),
             None => library::parent(name, from),
@@ -94,7 +94,7 @@ impl Init {
         let needs = needs::needs(&plan, &graph::from_plan(&plan));
         let mut files = vec![(PROTOCOL.to_string(), source.text.clone())];
         files.extend(copies.into_iter().map(|(path, source)| (path, source.text.clone())));
-        let campaign = campaign::files(name, &needs).map_err(|problem| *problem);
+        let campaign = campaign::files(name, &needs);
         files.extend(problems.value(campaign)?);
         Some(files)
     }

@@ -49,7 +49,7 @@ pub fn fmt(paths: &[PathBuf], only_check: bool, console: &Console) -> Done {
         let source = match library::read(path) {
             Ok(source) => source,
             Err(problem) => {
-                console.problems(&(*problem).into());
+                console.problems(&problem.into());
                 exit = Exit::Wrong;
                 continue;
             }
@@ -89,7 +89,7 @@ fn canonical(source: &Arc<Source>, problems: &mut Problems, yaml: bool) -> Strin
 
 pub fn convert(name: &str, yaml: bool, output: Option<&Path>, console: &Console) -> Done {
     output.map_or(Ok(()), |output| check_file(output, &[Path::new(name)]))?;
-    let source = library::find(name, None).map_err(|problem| *problem)?;
+    let source = library::find(name, None)?;
     let mut problems = Problems::default();
     let text = canonical(&source, &mut problems, yaml);
     let text = console.sound(Some(text), &problems)?;

@@ -5,6 +5,8 @@
 
 mod facts;
 mod files;
+mod layout;
+mod members;
 mod opening;
 mod records;
 mod runs;
@@ -13,23 +15,26 @@ use std::path::Path;
 use std::sync::Arc;
 
 pub use facts::Fact;
-pub use files::{Inputs, ReadFile};
-pub use opening::POINT_KEY;
-pub use records::{OFFSET, RecordKind};
+pub use files::Inputs;
+pub use layout::POINT_KEY;
+pub use members::{RecordKind, WhichRecord};
+pub use opening::ReadFile;
+pub use records::OFFSET;
 pub use runs::{OnDrift, Part, RUN_COLUMN, RUNS, Run, RunFact};
 
 pub use super::folder::Memory;
-use super::folder::{Folder, Place, check_file_name};
-use super::identification::Stated;
-use super::members::RecordFolder;
+use super::folder::{Folder, check_file_name};
+use super::identification::{Report, Stated};
 use super::origin::Origin;
+use super::place::Place;
 use super::table::{Cell, Table};
 use crate::disk;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, error, problem};
 use crate::source::{Source, Spanned};
-use crate::yaml::{Key, Node, Reader, Value};
-use opening::Layout;
-pub(super) use opening::{LAYOUT, Opening, at_the_margin};
+use crate::yaml::{Key, Node, Value};
+use layout::Layout;
+use members::RecordFolder;
+use opening::{Opening, Reader};
 
 /// The file that makes a folder a campaign.
 pub const CAMPAIGN_FILE: &str = "campaign.yaml";
@@ -96,9 +101,8 @@ impl Campaign {
     pub fn open(path: &Path, problems: &mut Problems) -> Option<Self> {
         let named = path.file_name().is_some_and(|name| name == CAMPAIGN_FILE)
             && !disk::is_folder(path).unwrap_or(false);
-        let folder = Folder::open(if named { parent(path) } else { path })
-            .map_err(|problem| problems.push(problem))
-            .ok()?;
+        let folder = if named { disk::folder_of(path) } else { path };
+        let folder = Folder::open(folder).map_err(|problem| problems.push(problem)).ok()?;
         Self::in_folder(folder, path, problems)
     }
 
@@ -135,23 +139,18 @@ impl Campaign {
             folder.place(CAMPAIGN_FILE, &nowhere).map_err(|problem| problems.push(problem)).ok()?;
         let on_disk = !folder.memory().texts.contains_key(CAMPAIGN_FILE);
         if on_disk && disk::is_folder(&folder.real().join(disk::UNFINISHED)).unwrap_or(false) {
-            let says = format!(
+            let problem = problem!(
+                "unfinished-set",
                 "`{}` is incomplete: the run that wrote this campaign was interrupted",
                 path.display()
             );
-            problems.push(
-                Problem::error("unfinished-set", says)
-                    .help("repeat that run, with the same `--out`"),
-            );
+            problems.push(problem.help("repeat that run, with the same `--out`"));
             return None;
         }
         // Anything else that is not a plain file is reported when it is read.
         if on_disk && matches!(disk::kind(&place.path), Ok(None)) {
-            let says = format!("there is no file `{}`", place.shown);
-            problems.push(
-                Problem::error("file-missing", says)
-                    .help("a campaign is a folder with a file `campaign.yaml`"),
-            );
+            let problem = problem!("file-missing", "there is no file `{}`", place.shown);
+            problems.push(problem.help("a campaign is a folder with a file `campaign.yaml`"));
             return None;
         }
         let with = Opening { folder, files: Vec::new(), tree: None };
@@ -188,47 +187,45 @@ impl Campaign {
 
     /// Everything that `campaign.yaml` and its tables say; the names of the sections are not known
     /// yet.
-    fn of_tree(reader: Reader<'_, Opening<'_>>, source: Arc<Source>, tree: Node) -> Option<Self> {
+    fn of_tree(reader: Reader<'_, '_>, source: Arc<Source>, tree: Node) -> Option<Self> {
         let before = reader.problems.errors();
         let Opening { folder, files, .. } = reader.with;
         let with = Opening { folder, files, tree: Some(&tree) };
         let mut reader = Reader { with, problems: reader.problems };
         let layout: Layout = reader.file(&tree)?;
-        let runs = layout.runs.0;
-        let sections = layout.sections.map(|table| table.0);
-        if let Some(table) = &sections {
-            runs::check_column(table, &runs, reader.problems);
+        let Reader { with: Opening { folder, files, .. }, problems } = reader;
+        let report = layout.report.map(|node| Report::read(&node, Layout::KEYS, problems));
+        let runs = layout.runs.unwrap_or_default();
+        if let Some(table) = &layout.sections {
+            runs::check_column(table, &runs, problems);
         }
         let name = layout.name.map(|name| name.value).unwrap_or_default();
-        let mut vehicles = layout.vehicles.0;
+        let mut vehicles = layout.vehicles.unwrap_or_default();
         if vehicles.is_empty() {
             let data = Node { value: Value::Map(Vec::new()), ..tree.clone() };
             vehicles.push(VehicleState { state: None, data });
         }
-        let Reader { with: Opening { folder, files, .. }, problems } = reader;
-        let of_kinds = [layout.measurement, layout.simulation, layout.track];
+        let record_folders = [layout.measurement, layout.simulation, layout.track];
+        let short_name = layout.short_name;
         let campaign = Self {
-            short_name: layout.short_name.unwrap_or_else(|| {
-                let at =
-                    tree.get("name").map_or_else(|| tree.span.part(0..0), |node| node.span.clone());
-                Spanned::new(name.clone(), at)
-            }),
+            short_name: short_name
+                .unwrap_or_else(|| Spanned::new(name.clone(), tree.span_or_start("name"))),
             name,
             facts: facts::facts(&tree),
-            parameters: layout.parameters.0,
-            report: layout.report.0,
+            parameters: layout.parameters.unwrap_or_default(),
+            report: report.unwrap_or_default().0,
             protocol: layout.protocol,
-            origin: layout.origin.map(|origin| origin.0),
+            origin: layout.origin,
             vehicle: vehicles[0].data.clone(),
             vehicles,
             names: Vec::new(),
-            sections,
-            application: layout.application.map(|table| table.0),
+            sections: layout.sections,
+            application: layout.application,
             source,
             files,
             protocols: Vec::new(),
             folder,
-            record_folders: of_kinds.into_iter().flat_map(|folders| folders.0).collect(),
+            record_folders: record_folders.into_iter().flatten().flatten().collect(),
             runs,
             tree,
         };
@@ -238,7 +235,7 @@ impl Campaign {
     fn find_names(&mut self, problems: &mut Problems) {
         self.names = match &self.sections {
             Some(table) => table.names().cloned().collect(),
-            None if !self.runs.is_empty() => self.run_names(),
+            None if !self.runs.is_empty() => self.runs.iter().map(|run| run.name.clone()).collect(),
             None => match self.measured() {
                 Ok(names) => names,
                 Err(problem) => return problems.push(problem),
@@ -263,12 +260,8 @@ impl Campaign {
             "the campaign has a vehicle file for each state ({}), and one vehicle is needed here",
             names.join(", ")
         );
-        let at = self
-            .tree
-            .get("vehicle")
-            .map_or_else(|| self.tree.span.part(0..0), |node| node.span.clone());
         let help = "name one file in a copy of campaign.yaml, with the sections of that state: `vehicle: vehicle.yaml`";
-        Err(Problem::error("several-vehicles", says).at(&at).help(help))
+        Err(error("several-vehicles", says, &self.tree.span_or_start("vehicle")).help(help))
     }
 
     /// The folder of the campaign, without symbolic links.
@@ -301,8 +294,4 @@ impl Campaign {
     pub fn place(&self, written: &Spanned<String>) -> Result<Place, Problem> {
         self.folder.place(&written.value, &written.span)
     }
-}
-
-fn parent(path: &Path) -> &Path {
-    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }

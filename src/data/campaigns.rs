@@ -1,7 +1,8 @@
 //! Several campaigns evaluated as one: a pool. A single campaign is a pool of one.
 
 use super::campaign::{Campaign, VehicleState};
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, error, problem};
+use crate::source::Spanned;
 
 /// The campaigns of a run, in the order given; at least one.
 #[derive(Clone, Copy, Debug)]
@@ -77,31 +78,24 @@ impl<'a> Campaigns<'a> {
     pub fn check(self, problems: &mut Problems) {
         const HELP: &str = "give it a name of its own in campaign.yaml: `short name: series 2`";
         for (at, campaign) in self.0.iter().enumerate().filter(|_| self.pooled()) {
-            let name = &campaign.short_name;
-            if name.value.contains(BETWEEN) || name.value.contains(char::is_control) {
+            let Spanned { value: name, span } = &campaign.short_name;
+            if name.contains(BETWEEN) || name.contains(char::is_control) {
                 let says = format!(
-                    "`{}` cannot be the name of one of several campaigns: it contains `{BETWEEN}`",
-                    name.value
+                    "`{name}` cannot be the name of one of several campaigns: it contains `{BETWEEN}`"
                 );
-                problems.push(Problem::error("name-invalid", says).at(&name.span).help(HELP));
+                problems.push(error("name-invalid", says, span).help(HELP));
             }
             let before = &self.0[..at];
-            if campaign.on_disk() && before.iter().any(|other| other.folder() == campaign.folder())
-            {
-                let says = format!("the campaign `{}` is given twice", name.value);
+            let same = |other: &Campaign| other.folder() == campaign.folder();
+            if campaign.on_disk() && before.iter().any(same) {
                 problems.push(
-                    Problem::error("campaign-twice", says)
-                        .at(&name.span)
+                    problem!("campaign-twice", span, "the campaign `{name}` is given twice")
                         .help("name each folder once"),
                 );
-            } else if let Some(other) =
-                before.iter().find(|other| other.short_name.value == name.value)
+            } else if let Some(other) = before.iter().find(|other| other.short_name.value == *name)
             {
-                let says = format!("two campaigns are called `{}`", name.value);
-                let problem = Problem::error("duplicate-name", says)
-                    .at(&name.span)
-                    .also(&other.short_name.span, "the first");
-                problems.push(problem.help(HELP));
+                let problem = problem!("duplicate-name", span, "two campaigns are called `{name}`");
+                problems.push(problem.also(&other.short_name.span, "the first").help(HELP));
             }
         }
     }

@@ -6,25 +6,24 @@
 use std::ops::Range;
 
 use super::faults::Faults;
-use crate::problem::Problem;
+use crate::problem::{Problem, error, problem};
 use crate::source::{Source, Span};
 use crate::units::{Dimension, Unit};
 
 /// A cell without surrounding blanks.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct RawCell {
+pub struct RawCell {
     pub text: String,
     /// Bytes in the line, without quotes.
     pub place: Range<usize>,
 }
 
-/// Place of a quote that is not closed, or of text after it.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct StrayQuote(pub Range<usize>);
-
 /// Splits a line without its line break. Quoted cells may contain commas and doubled quotes, but no
 /// line breaks.
-pub(super) fn split(line: &str) -> Result<Vec<RawCell>, StrayQuote> {
+///
+/// # Errors
+/// The place of a quote that is not closed, or of text after it.
+pub fn split(line: &str) -> Result<Vec<RawCell>, Range<usize>> {
     let mut cells = Vec::new();
     let mut from = 0;
     loop {
@@ -49,10 +48,10 @@ fn trimmed(line: &str, place: Range<usize>) -> RawCell {
 }
 
 /// The cell with its opening quote at `open`, and the place of its comma or of the end of the line.
-fn quoted(line: &str, open: usize) -> Result<(RawCell, usize), StrayQuote> {
+fn quoted(line: &str, open: usize) -> Result<(RawCell, usize), Range<usize>> {
     let mut close = open + 1;
     loop {
-        close += line[close..].find('"').ok_or(StrayQuote(open..line.len()))?;
+        close += line[close..].find('"').ok_or(open..line.len())?;
         if !line[close + 1..].starts_with('"') {
             break;
         }
@@ -60,7 +59,7 @@ fn quoted(line: &str, open: usize) -> Result<(RawCell, usize), StrayQuote> {
     }
     let end = line[close..].find(',').map_or(line.len(), |at| close + at);
     if !line[close + 1..end].trim().is_empty() {
-        return Err(StrayQuote(close + 1..end));
+        return Err(close + 1..end);
     }
     let mut cell = trimmed(line, open + 1..close);
     cell.text = cell.text.replace("\"\"", "\"");
@@ -91,42 +90,61 @@ impl Heading {
     /// `unit-missing`, `unknown-unit`, `unit-mismatch`, each with its place in the header.
     pub fn unit(&self, wanted: Option<Dimension>) -> Result<Unit, Problem> {
         let name = &self.name;
-        let Some(written) = &self.unit else {
-            let needed = wanted
-                .map_or(String::new(), |dimension| format!("; {} is needed", dimension.in_words()));
-            return Err(Problem::error("unit-missing", format!("the column `{name}` has no unit{needed}"))
-                .at(&self.span)
+        let Some(HeadingUnit { text, span }) = &self.unit else {
+            let needed = wanted.map(|wanted| format!("; {} is needed", wanted.in_words()));
+            return Err(problem!("unit-missing", &self.span, "the column `{name}` has no unit{}", needed.unwrap_or_default())
                 .help(format!("write the unit in square brackets: `{name} [...]`, or `{name} [-]` for a plain number")));
         };
-        let unit = Unit::parse(&written.text).map_err(|unknown| {
-            let problem = Problem::error(
+        let unit = Unit::parse(text).map_err(|unknown| {
+            let word = unknown.word;
+            let problem = problem!(
                 "unknown-unit",
-                format!("the unit of the column `{name}`: `{}` is not a known unit", unknown.word),
-            )
-            .at(&written.span);
+                span,
+                "the unit of the column `{name}`: `{word}` is not a known unit"
+            );
             match unknown.near {
                 Some(near) => problem.meant(near),
                 None => problem,
             }
         })?;
         match wanted {
-            Some(dimension) if dimension != unit.dimension => Err(Problem::error(
-                "unit-mismatch",
-                format!(
-                    "the column `{name}` is in {}, which is {}; {} is needed",
-                    unit.text,
-                    unit.dimension.in_words(),
-                    dimension.in_words()
-                ),
-            )
-            .at(&written.span)),
+            Some(wanted) if wanted != unit.dimension => {
+                let (is, wanted) = (unit.dimension.in_words(), wanted.in_words());
+                Err(problem!(
+                    "unit-mismatch",
+                    span,
+                    "the column `{name}` is in {}, which is {is}; {wanted} is needed",
+                    unit.text
+                ))
+            }
             _ => Ok(unit),
         }
     }
+
+    /// Of the text of a cell `name [unit]`, and its place.
+    pub fn read(text: &str, span: Span) -> Self {
+        let (name, unit) = name_and_unit(text);
+        let unit = unit.map(|range| {
+            let text = text[range.clone()].trim().to_string();
+            HeadingUnit { text, span: span.part(range) }
+        });
+        Self { name: name.to_string(), unit, span }
+    }
+}
+
+/// The names of columns.
+pub fn names(headings: &[Heading]) -> Vec<String> {
+    headings.iter().map(|heading| heading.name.clone()).collect()
+}
+
+/// As [`name_and_unit`], with the text of the unit.
+pub fn name_and_unit_text(text: &str) -> (String, Option<String>) {
+    let (name, unit) = name_and_unit(text);
+    (name.to_string(), unit.map(|range| text[range].trim().to_string()))
 }
 
 /// Splits `cant deficiency [mm]` into the name and the range of the unit.
-pub(crate) fn name_and_unit(text: &str) -> (&str, Option<Range<usize>>) {
+pub fn name_and_unit(text: &str) -> (&str, Option<Range<usize>>) {
     let inner = text.strip_suffix(']').and_then(|inner| Some((inner.rfind('[')?, inner.len())));
     match inner {
         Some((open, close)) => (text[..open].trim_end(), Some(open + 1..close)),
@@ -135,38 +153,21 @@ pub(crate) fn name_and_unit(text: &str) -> (&str, Option<Range<usize>>) {
 }
 
 /// The headings in the first line of a file, whose place is given.
-pub(super) fn headings(line: &Span, problems: &mut Vec<Problem>) -> Option<Vec<Heading>> {
+pub fn headings(line: &Span, problems: &mut Vec<Problem>) -> Option<Vec<Heading>> {
     if let Some(problem) = carriage_returns(line).or_else(|| other_separator(line)) {
         problems.push(problem);
         return None;
     }
-    let cells = match split(line.text()) {
-        Ok(cells) => cells,
-        Err(StrayQuote(place)) => {
-            problems.push(stray_quote(&line.part(place)));
-            return None;
-        }
-    };
-    let headings: Vec<Heading> = cells
-        .iter()
-        .map(|cell| {
-            let span = line.part(cell.place.clone());
-            let (name, unit) = name_and_unit(&cell.text);
-            let unit = unit.map(|range| HeadingUnit {
-                text: cell.text[range.clone()].trim().to_string(),
-                span: span.part(range),
-            });
-            Heading { name: name.to_string(), unit, span }
-        })
-        .collect();
+    let cells = split(line.text());
+    let cells = cells.map_err(|at| problems.push(stray_quote(&line.part(at)))).ok()?;
+    let heading = |cell: &RawCell| Heading::read(&cell.text, line.part(cell.place.clone()));
+    let headings: Vec<Heading> = cells.iter().map(heading).collect();
     let twice = duplicates(&headings);
-    if let Some(problem) = unit_in_cell(&headings).filter(|_| !twice.is_empty()) {
-        problems.push(problem);
-        return None;
+    if twice.is_empty() {
+        return Some(headings);
     }
-    let good = twice.is_empty();
-    problems.extend(twice);
-    good.then_some(headings)
+    problems.extend(unit_in_cell(&headings).map_or(twice, |problem| vec![problem]));
+    None
 }
 
 /// Lines that end with a carriage return alone: the whole file is one line, of which only the
@@ -174,26 +175,26 @@ pub(super) fn headings(line: &Span, problems: &mut Vec<Problem>) -> Option<Vec<H
 fn carriage_returns(line: &Span) -> Option<Problem> {
     let end = line.text().trim_end_matches('\r').find('\r')?;
     let header = Source::excerpt(line.source.name.clone(), &line.text()[..end], line.line());
-    let problem = Problem::error("line-ends", "the lines end with a carriage return (CR) alone")
-        .at(&header.whole());
+    let problem =
+        error("line-ends", "the lines end with a carriage return (CR) alone", &header.whole());
     Some(problem.help("save the file with the line ends of Windows (CR LF) or Linux (LF)"))
 }
 
 /// The first columns with the name of another one, and how many there are more.
-pub(super) fn duplicates(headings: &[Heading]) -> Vec<Problem> {
+pub fn duplicates(headings: &[Heading]) -> Vec<Problem> {
     let mut sorted: Vec<&Heading> =
         headings.iter().filter(|heading| !heading.name.is_empty()).collect();
     sorted.sort_by(|a, b| (&a.name, a.span.start).cmp(&(&b.name, b.span.start)));
-    let twice = sorted.windows(2).filter(|pair| pair[0].name == pair[1].name);
     let file = headings.first().map_or("", |heading| heading.span.source.name.as_str());
     let mut faults = Faults::new(file);
-    for pair in twice {
+    for pair in sorted.windows(2).filter(|pair| pair[0].name == pair[1].name) {
         faults.push(|| {
-            Problem::error(
+            problem!(
                 "duplicate-column",
-                format!("two columns are called `{}`", shortened(&pair[1].name)),
+                &pair[1].span,
+                "two columns are called `{}`",
+                shortened(&pair[1].name)
             )
-            .at(&pair[1].span)
             .also(&pair[0].span, "the first of them")
         });
     }
@@ -201,7 +202,7 @@ pub(super) fn duplicates(headings: &[Heading]) -> Vec<Problem> {
 }
 
 /// `Y_1R,kN,Q_1R,kN`: a cell that is a unit and nothing else, behind a name that has none.
-pub(super) fn unit_in_cell(headings: &[Heading]) -> Option<Problem> {
+pub fn unit_in_cell(headings: &[Heading]) -> Option<Problem> {
     let is_unit = |heading: &Heading| heading.unit.is_none() && Unit::parse(&heading.name).is_ok();
     let [name, unit] = headings
         .windows(2)
@@ -209,39 +210,41 @@ pub(super) fn unit_in_cell(headings: &[Heading]) -> Option<Problem> {
     else {
         return None;
     };
-    let says = format!(
-        "the unit of `{}` stands in a cell of its own: the comma parts columns",
-        shortened(&name.name)
-    );
-    let problem = Problem::error("units-in-cell", says).at(&unit.span).also(&name.span, "its name");
-    Some(problem.help(format!(
-        "write the unit behind the name, in one cell: `{} [{}]`",
-        name.name, unit.name
-    )))
+    let (first, unit_name) = (shortened(&name.name), &unit.name);
+    let help =
+        format!("write the unit behind the name, in one cell: `{} [{unit_name}]`", name.name);
+    Some(
+        problem!(
+            "units-in-cell",
+            &unit.span,
+            "the unit of `{first}` stands in a cell of its own: the comma parts columns"
+        )
+        .also(&name.span, "its name")
+        .help(help),
+    )
 }
 
 /// A header without a comma that is parted by something else.
 fn other_separator(line: &Span) -> Option<Problem> {
     let text = line.text();
-    [(';', "semicolon-separated", "semicolons"), ('\t', "tab-separated", "tabs")]
-        .into_iter()
-        .find_map(|(separator, code, word)| {
-            let at = text.find(separator).filter(|_| !text.contains(','))?;
-            Some(
-                Problem::error(code, format!("the columns are separated by {word}, not by commas"))
-                    .at(&line.part(at..at + 1))
-                    .help("write a comma between the columns and a point in the numbers"),
-            )
-        })
+    let others = [(';', "semicolon-separated", "semicolons"), ('\t', "tab-separated", "tabs")];
+    others.into_iter().filter(|_| !text.contains(',')).find_map(|(separator, code, word)| {
+        let at = text.find(separator)?;
+        let problem = problem!(
+            code,
+            &line.part(at..at + 1),
+            "the columns are separated by {word}, not by commas"
+        );
+        Some(problem.help("write a comma between the columns and a point in the numbers"))
+    })
 }
 
-pub(super) fn stray_quote(span: &Span) -> Problem {
-    Problem::error("stray-quote", "a quoted cell is not closed, or text follows its closing quote")
-        .at(span)
+pub fn stray_quote(span: &Span) -> Problem {
+    error("stray-quote", "a quoted cell is not closed, or text follows its closing quote", span)
 }
 
 /// A line with too few or too many cells; too many are most likely due to decimal commas.
-pub(super) fn ragged(line: &Span, cells: &[RawCell], columns: usize) -> Problem {
+pub fn ragged(line: &Span, cells: &[RawCell], columns: usize) -> Problem {
     let whole = |cell: &RawCell| {
         cell.text.trim_start_matches(['-', '+']).bytes().all(|byte| byte.is_ascii_digit())
     };
@@ -250,51 +253,44 @@ pub(super) fn ragged(line: &Span, cells: &[RawCell], columns: usize) -> Problem 
     // point.
     let excess = cells.len().saturating_sub(columns);
     if 2 * excess >= columns && excess <= columns && cells.iter().rev().take(columns).all(whole) {
-        return Problem::error(
+        return problem!(
             "decimal-comma",
-            format!("{counts}: the numbers seem to have decimal commas"),
+            line,
+            "{counts}: the numbers seem to have decimal commas"
         )
-        .at(line)
         .help("write numbers with a point");
     }
-    let (at, label) = match cells.get(columns) {
-        Some(extra) => {
-            (line.part(extra.place.start..line.end - line.start), "beyond the last column")
-        }
-        None => (
-            cells.last().map_or_else(|| line.clone(), |last| line.part(last.place.clone())),
-            "the last value",
-        ),
+    let (place, label) = match (cells.get(columns), cells.last()) {
+        (Some(extra), _) => (extra.place.start..line.end - line.start, "beyond the last column"),
+        (None, Some(last)) => (last.place.clone(), "the last value"),
+        (None, None) => (0..line.end - line.start, "the last value"),
     };
-    Problem::error("ragged-row", counts).at(&at).label(label)
+    error("ragged-row", counts, &line.part(place)).label(label)
 }
 
 /// A finite number as written in a cell.
 ///
 /// # Errors
 /// Code and fact: `not-a-number`, `not-finite` or `decimal-comma`.
-pub(super) fn number(text: &str) -> Result<f64, (&'static str, String)> {
-    match fast_float2::parse::<f64, _>(text) {
-        Ok(number) if number.is_finite() => Ok(number),
-        Ok(_) => Err(("not-finite", format!("`{text}` is not a finite number"))),
+pub fn number(text: &str) -> Result<f64, (&'static str, String)> {
+    let parse = |text: &str| fast_float2::parse::<f64, _>(text);
+    let comma = || text.matches(',').count() == 1 && parse(&text.replace(',', ".")).is_ok();
+    Err(match parse(text) {
+        Ok(number) if number.is_finite() => return Ok(number),
+        Ok(_) => ("not-finite", format!("`{text}` is not a finite number")),
         Err(_) if text.is_empty() => {
-            Err(("not-a-number", "the cell is empty; expected a number".to_string()))
+            ("not-a-number", "the cell is empty; expected a number".to_string())
         }
-        Err(_)
-            if text.matches(',').count() == 1
-                && fast_float2::parse::<f64, _>(text.replace(',', ".")).is_ok() =>
-        {
-            Err((
-                "decimal-comma",
-                format!("`{text}` has a decimal comma; numbers are written with a point"),
-            ))
-        }
-        Err(_) => Err(("not-a-number", format!("`{}` is not a number", shortened(text)))),
-    }
+        Err(_) if comma() => (
+            "decimal-comma",
+            format!("`{text}` has a decimal comma; numbers are written with a point"),
+        ),
+        Err(_) => ("not-a-number", format!("`{}` is not a number", shortened(text))),
+    })
 }
 
 /// Cell text for a message, shortened, since a cell can be as long as the file.
-pub(crate) fn shortened(text: &str) -> String {
+pub fn shortened(text: &str) -> String {
     const MOST: usize = 40;
     if text.chars().count() <= MOST {
         text.to_string()

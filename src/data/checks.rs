@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use super::record::{Column, Record};
-use crate::problem::Problem;
+use crate::problem::{Problem, error, problem};
 use crate::source::Span;
 
 /// A step of the clock longer than the median by this factor is a gap.
@@ -57,10 +57,7 @@ pub fn check_axis(
 ) -> Result<Axis, Vec<Problem>> {
     let column = |name: &str| {
         record.column(name).ok_or_else(|| {
-            vec![Problem::error(
-                "unknown-channel",
-                format!("`{}` was read without its column `{name}`", record.shown),
-            )]
+            problem!("unknown-channel", "`{}` was read without its column `{name}`", record.shown)
         })
     };
     let (clock, axis) = (column(clock)?, column(axis)?);
@@ -96,36 +93,22 @@ fn not_increasing(code: &'static str, record: &Record, column: &Column, row: usi
     } else {
         format!("goes back from {from} to {to}")
     };
-    placed(
-        Problem::error(
-            code,
-            format!(
-                "`{}` {does} at row {} of `{}`; it must increase",
-                column.name,
-                record.row_shown(row + 1),
-                record.shown
-            ),
-        ),
-        record,
-        row + 1,
-        column,
-    )
+    let (name, shown, at) = (&column.name, &record.shown, record.row_shown(row + 1));
+    let says = format!("`{name}` {does} at row {at} of `{shown}`; it must increase");
+    at_row(code, says, record, row + 1, column)
 }
 
 /// The sampling rate, if the steps are constant.
 fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> Option<f64> {
-    let times = &clock.values;
+    let (times, name, shown) = (&clock.values, &clock.name, &record.shown);
     if times.is_empty() {
         return None;
     }
     if times.len() < 3 {
-        problems.push(Problem::error(
+        let samples = times.len();
+        problems.push(problem!(
             "too-short",
-            format!(
-                "`{}` has {} samples; a sampling rate cannot be determined",
-                record.shown,
-                times.len()
-            ),
+            "`{shown}` has {samples} samples; a sampling rate cannot be determined"
         ));
         return None;
     }
@@ -135,22 +118,21 @@ fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> 
     }
     let Steps { usual, rate, gaps, uneven } = steps(times, clock.unit.factor);
     let step = |row: usize| times[row + 1] - times[row];
-    for row in gaps.iter().take(TOLD) {
+    for &row in gaps.iter().take(TOLD) {
         let says = format!(
-            "`{}` has a gap of {} between rows {} and {} of `{}`, {:.0} sampling steps",
-            clock.name,
-            number(clock, step(*row)),
-            record.row_shown(*row),
+            "`{name}` has a gap of {} between rows {} and {} of `{shown}`, {:.0} sampling steps",
+            number(clock, step(row)),
+            record.row_shown(row),
             record.row_shown(row + 1),
-            record.shown,
-            step(*row) / usual
+            step(row) / usual
         );
-        problems.push(placed(Problem::error("gap", says), record, row + 1, clock));
+        problems.push(at_row("gap", says, record, row + 1, clock));
     }
     if gaps.len() > TOLD {
-        problems.push(Problem::error(
+        problems.push(problem!(
             "more-problems",
-            format!("and {} more gaps in `{}`", gaps.len() - TOLD, record.shown),
+            "and {} more gaps in `{shown}`",
+            gaps.len() - TOLD
         ));
     }
     if !gaps.is_empty() {
@@ -158,17 +140,13 @@ fn check_clock(record: &Record, clock: &Column, problems: &mut Vec<Problem>) -> 
     }
     if let Some(row) = uneven {
         let says = format!(
-            "the step of `{}` is {} at row {} of `{}`, {} on average",
-            clock.name,
+            "the step of `{name}` is {} at row {} of `{shown}`, {} on average",
             number(clock, step(row)),
             record.row_shown(row + 1),
-            record.shown,
             number(clock, 1.0 / rate)
         );
-        problems.push(
-            placed(Problem::error("uneven-step", says), record, row + 1, clock)
-                .help("records must have a constant sampling rate"),
-        );
+        let problem = at_row("uneven-step", says, record, row + 1, clock);
+        problems.push(problem.help("records must have a constant sampling rate"));
         return None;
     }
     Some(whole(rate))
@@ -229,7 +207,8 @@ fn resolution(times: &[f64], factor: f64) -> f64 {
         .map_or(0.0, |scale| factor / scale)
 }
 
-fn median(values: &[f64]) -> f64 {
+/// The middle value, or the larger of the two.
+pub fn median(values: &[f64]) -> f64 {
     let mut values = values.to_vec();
     let middle = values.len() / 2;
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
@@ -244,18 +223,16 @@ pub fn check_section(
     axis: &Column,
     section: &Section,
 ) -> Result<Range<usize>, Problem> {
-    let at = |problem: Problem| match &section.at {
-        Some(span) => problem.at(span),
-        None => problem,
+    let fault = |code, says: String| match &section.at {
+        Some(span) => error(code, says, span),
+        None => Problem::error(code, says),
     };
     let (start, end) = (number(axis, section.start), number(axis, section.end));
     if section.start >= section.end {
-        return Err(at(Problem::error(
-            "section-reversed",
-            format!("the section ends at {end}, not after its start at {start}"),
-        )));
+        let says = format!("the section ends at {end}, not after its start at {start}");
+        return Err(fault("section-reversed", says));
     }
-    let values = &axis.values;
+    let (values, shown) = (&axis.values, &record.shown);
     let (first, last) = (values[0], values[values.len() - 1]);
     let mut missing = Vec::new();
     if section.start < first {
@@ -265,22 +242,18 @@ pub fn check_section(
         missing.push(format!("{} at the end", number(axis, section.end - last)));
     }
     if !missing.is_empty() {
-        let (first, last) = (number(axis, first), number(axis, last));
+        let (name, first, last) = (&axis.name, number(axis, first), number(axis, last));
+        let missing = missing.join(" and ");
         let says = format!(
-            "the section from {start} to {end} is not inside `{}`, which has `{}` from {first} to {last}: {} missing",
-            record.shown,
-            axis.name,
-            missing.join(" and ")
+            "the section from {start} to {end} is not inside `{shown}`, which has `{name}` from {first} to {last}: {missing} missing"
         );
-        return Err(at(Problem::error("outside-record", says)));
+        return Err(fault("outside-record", says));
     }
     let rows = values.partition_point(|value| *value < section.start)
         ..values.partition_point(|value| *value <= section.end);
     if rows.is_empty() {
-        return Err(at(Problem::error(
-            "section-empty",
-            format!("no sample of `{}` lies between {start} and {end}", record.shown),
-        )));
+        let says = format!("no sample of `{shown}` lies between {start} and {end}");
+        return Err(fault("section-empty", says));
     }
     Ok(rows)
 }
@@ -291,11 +264,14 @@ fn number(column: &Column, value: f64) -> String {
     format!("{}{}", text.trim_end_matches('0').trim_end_matches('.'), column.unit.suffix())
 }
 
-fn placed(problem: Problem, record: &Record, row: usize, column: &Column) -> Problem {
-    match record.place(row, Some(column)) {
-        Some(span) => problem.at(&span),
-        None => problem,
-    }
+fn at_row(
+    code: &'static str,
+    says: String,
+    record: &Record,
+    row: usize,
+    column: &Column,
+) -> Problem {
+    Problem { at: record.place(row, Some(column)), ..Problem::error(code, says) }
 }
 
 #[cfg(test)]

@@ -7,10 +7,9 @@ use super::hash::sha256;
 use super::origin::{ORIGIN_FILE, ORIGIN_KEY};
 use super::record::{Format, read_raw};
 use super::text::read_any;
-use super::write::{Entry, Outputs, campaign_yaml, csv, parquet, table_csv};
+use super::write::{Entry, Outputs, campaign_yaml, campaign_yaml_with, in_format, table_csv};
 use super::{Campaign, RecordKind};
 use crate::problem::Problem;
-use crate::source::Spanned;
 use crate::yaml::{Node, Value};
 
 /// The key of `campaign.yaml` that names the table of converted records.
@@ -45,11 +44,8 @@ pub fn convert(
     outputs: &mut Outputs,
 ) -> Result<Converted, Vec<Problem>> {
     let (mut pairs, mut done, mut seen) = (Vec::new(), Converted::default(), BTreeSet::new());
-    for which in RecordKind::ALL
-        .into_iter()
-        .filter(|kind| campaign.has(*kind))
-        .flat_map(|kind| campaign.records(kind))
-    {
+    let kinds = RecordKind::ALL.into_iter().filter(|kind| campaign.has(*kind));
+    for which in kinds.flat_map(|kind| campaign.records(kind)) {
         for name in &campaign.names {
             let place = match campaign.place_of(which, name) {
                 Ok(place) if seen.insert(place.inside.clone()) => place,
@@ -58,7 +54,7 @@ pub fn convert(
                     done.missing += 1;
                     continue;
                 }
-                Err(problem) => return Err(vec![problem]),
+                Err(problem) => return Err(problem.into()),
             };
             let before = read_any(&place.path, &place.shown)?;
             if Format::of(&place.path) == to {
@@ -66,18 +62,11 @@ pub fn convert(
                 done.copied += 1;
                 continue;
             }
-            let columns = read_raw(&place.path, &place.shown)?;
-            let after = match to {
-                Format::Csv => csv(&columns),
-                Format::Parquet => parquet(&columns)?,
-            };
-            let stem = Format::stem(&place.inside).unwrap_or(&place.inside);
-            let inside = format!("{stem}.{}", to.ending());
+            let after = in_format(to, &read_raw(&place.path, &place.shown)?)?;
+            let inside = to.file(Format::stem(&place.inside).unwrap_or(&place.inside));
             outputs.add(&inside, &after)?;
-            pairs.push(Pair {
-                before: (place.inside.clone(), sha256(&before)),
-                after: (inside, sha256(&after)),
-            });
+            let before = (place.inside, sha256(&before));
+            pairs.push(Pair { before, after: (inside, sha256(&after)) });
             done.converted += 1;
         }
     }
@@ -88,22 +77,14 @@ pub fn convert(
 /// The files of the copy but its records.
 fn rest(campaign: &Campaign, pairs: &[Pair], outputs: &mut Outputs) -> Result<(), Problem> {
     let node = campaign.tree.get(ORIGIN_KEY);
-    let origin_file = node.and_then(Node::scalar_text).map_or(ORIGIN_FILE, str::trim).to_string();
     let mut origin = node.filter(|node| matches!(node.value, Value::Map(_))).map(|node| {
-        let entries: Vec<(&str, Entry<'_>)> = node
-            .entries()
-            .iter()
-            .map(|(key, value)| (key.text.as_str(), Entry::Node(value)))
-            .collect();
-        campaign_yaml(&entries)
+        let entries = node.entries().iter();
+        let entries = entries.map(|(key, value)| (key.text.as_str(), Entry::Node(value)));
+        campaign_yaml(&entries.collect::<Vec<_>>())
     });
-    let place = |inside: &str| {
-        campaign.place(&Spanned::new(inside.to_string(), campaign.tree.span.part(0..0)))
-    };
-    let origin_inside = place(&origin_file)?.inside;
-    for inside in campaign.plain_files()? {
-        let place = place(&inside)?;
-        let bytes = read_any(&place.path, &place.shown)?;
+    let named = node.and_then(Node::scalar_text).map_or(ORIGIN_FILE, str::trim);
+    let origin_inside = campaign.inner(named)?.inside;
+    for (inside, bytes) in campaign.plain_files()? {
         if node.is_some() && inside == origin_inside {
             origin = Some(String::from_utf8_lossy(&bytes).into_owned());
         } else if inside != CAMPAIGN_FILE && inside != TABLE {
@@ -113,32 +94,26 @@ fn rest(campaign: &Campaign, pairs: &[Pair], outputs: &mut Outputs) -> Result<()
     if let Some(text) = origin {
         outputs.add(&origin_inside, fitted(text, pairs).as_bytes())?;
     }
-    let kept =
-        campaign.tree.entries().iter().filter(|(key, _)| key.text != KEY && key.text != ORIGIN_KEY);
-    let runs = campaign.tree.get(RUNS).map(|runs| of_runs(runs, pairs));
-    let mut entries: Vec<(&str, Entry<'_>)> = kept
-        .map(|(key, node)| {
-            let runs = runs.as_ref().filter(|_| key.text == RUNS);
-            (key.text.as_str(), Entry::Node(runs.unwrap_or(node)))
-        })
-        .collect();
-    if node.is_some() {
-        entries.push((ORIGIN_KEY, Entry::Text(&origin_inside)));
+    let mut tree = campaign.tree.clone();
+    if let Value::Map(entries) = &mut tree.value
+        && let Some((_, runs)) = entries.iter_mut().find(|(key, _)| key.text == RUNS)
+    {
+        name_converted(runs, pairs);
     }
-    entries.push((KEY, Entry::Text(TABLE)));
-    outputs.add(CAMPAIGN_FILE, campaign_yaml(&entries).as_bytes())?;
-    let mut rows =
-        vec![["record", "sha256", "converted from", "sha256 before"].map(str::to_string).to_vec()];
+    let origin = node.map(|_| (ORIGIN_KEY, Entry::Text(&origin_inside)));
+    let new: Vec<_> = origin.into_iter().chain([(KEY, Entry::Text(TABLE))]).collect();
+    let text = campaign_yaml_with(&tree, &[KEY, ORIGIN_KEY], &new);
+    outputs.add(CAMPAIGN_FILE, text.as_bytes())?;
+    let mut rows = vec![["record", "sha256", "converted from", "sha256 before"]];
     rows.extend(pairs.iter().map(|Pair { before, after }| {
-        vec![after.0.clone(), after.1.clone(), before.0.clone(), before.1.clone()]
+        [after.0.as_str(), after.1.as_str(), before.0.as_str(), before.1.as_str()]
     }));
     outputs.add(TABLE, table_csv(&rows).as_bytes())
 }
 
-/// The runs of a campaign with the converted records in place of those that they name.
-fn of_runs(runs: &Node, pairs: &[Pair]) -> Node {
-    let mut runs = runs.clone();
-    let Value::Map(entries) = &mut runs.value else { return runs };
+/// Puts the converted records in place of those that the runs of a campaign name.
+fn name_converted(runs: &mut Node, pairs: &[Pair]) {
+    let Value::Map(entries) = &mut runs.value else { return };
     for (_, run) in entries {
         let Value::Map(files) = &mut run.value else { continue };
         for (_, file) in files {
@@ -148,7 +123,6 @@ fn of_runs(runs: &Node, pairs: &[Pair]) -> Node {
             }
         }
     }
-    runs
 }
 
 /// The origin with the converted records in place of those to which the simulation was fitted:

@@ -1,13 +1,13 @@
 //! The first problems of a file and the number of further ones: a file in a wrong format has one in
 //! every row.
 
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, problem};
 
 /// Maximum number of problems shown per file.
 const SHOWN: usize = 5;
 
 #[derive(Debug)]
-pub(crate) struct Faults<'a> {
+pub struct Faults<'a> {
     file: &'a str,
     problems: Vec<Problem>,
     more: usize,
@@ -30,9 +30,11 @@ impl<'a> Faults<'a> {
     pub fn into_vec(mut self) -> Vec<Problem> {
         if self.more > 0 {
             let word = if self.more == 1 { "problem" } else { "problems" };
-            self.problems.push(Problem::error(
+            self.problems.push(problem!(
                 "more-problems",
-                format!("and {} more {word} in `{}`", self.more, self.file),
+                "and {} more {word} in `{}`",
+                self.more,
+                self.file
             ));
         }
         self.problems

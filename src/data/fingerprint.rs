@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::folder::Folder;
 use super::hash::Hasher;
+use super::text::unreadable;
 use crate::disk::{self, Kind};
 use crate::problem::Problem;
 use crate::source::Source;
@@ -14,17 +15,13 @@ use crate::source::Source;
 /// `folder-missing`, `path-outside`, `path-invalid`, `file-unreadable`.
 pub fn fingerprint(campaign: &Path, inside: &str) -> Result<Option<(String, u64)>, Problem> {
     let place = Folder::open(campaign)?.place(inside, &Source::new("", "").whole())?;
-    let unreadable = |why: &dyn std::fmt::Display| {
-        Problem::error("file-unreadable", format!("`{inside}` cannot be read: {why}"))
-    };
-    match disk::kind(&place.path) {
-        Ok(Some(Kind::File(_))) => {}
-        Ok(Some(_)) => return Err(unreadable(&"it is not a plain file")),
-        Ok(None) => return Ok(None),
-        Err(error) => return Err(unreadable(&error)),
+    match disk::kind(&place.path).map_err(unreadable(inside))? {
+        Some(Kind::File(_)) => {}
+        Some(_) => return Err(unreadable(inside)("it is not a plain file")),
+        None => return Ok(None),
     }
-    let mut file = disk::open(&place.path).map_err(|error| unreadable(&error))?;
     let mut hash = Hasher::default();
-    let bytes = hash.add_all(&mut file).map_err(|error| unreadable(&error))?;
+    let read = disk::open(&place.path).and_then(|mut file| hash.add_all(&mut file));
+    let bytes = read.map_err(unreadable(inside))?;
     Ok(Some((hash.finish(), bytes)))
 }

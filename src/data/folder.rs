@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
+use super::place::Place;
 use super::record::Frame;
-use super::text::{read_any, read_text, text_of, unreadable};
+use super::text::{read_any, read_small, text_of, unreadable};
 use crate::disk;
-use crate::problem::{Problem, nearest};
+use crate::problem::{Problem, error, nearest, problem};
 use crate::source::{Source, Span};
 
 /// Small files and records of a campaign that are in memory, by their paths inside it. A record has
@@ -23,7 +24,7 @@ pub struct Memory {
 const NOWHERE: &str = "\0";
 
 #[derive(Clone, Debug)]
-pub(super) struct Folder {
+pub struct Folder {
     /// As given by the user; the prefix of file names in messages.
     shown: PathBuf,
     /// Without symbolic links, for comparison.
@@ -32,41 +33,18 @@ pub(super) struct Folder {
     memory: Arc<Memory>,
 }
 
-/// A file or folder of the campaign.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Place {
-    /// Path of the file.
-    pub path: PathBuf,
-    /// Name for messages: the folder as given by the user, and the path inside.
-    pub shown: String,
-    /// Path inside the campaign, with `/` on all systems; the name in results.
-    pub inside: String,
-}
-
-impl Place {
-    /// The path of a file in this folder, inside the campaign; the folder may be that of the
-    /// campaign itself.
-    pub fn below(&self, name: &str) -> String {
-        if self.inside.is_empty() { name.to_string() } else { format!("{}/{name}", self.inside) }
-    }
-}
-
 impl Folder {
     pub fn open(folder: &Path) -> Result<Self, Problem> {
+        let shown = folder.display();
         let unreadable = |error: std::io::Error| {
-            Problem::error(
-                "folder-unreadable",
-                format!("`{}` cannot be read: {error}", folder.display()),
-            )
+            problem!("folder-unreadable", "`{shown}` cannot be read: {error}")
         };
         let there = disk::is_folder(folder).map_err(unreadable)?;
-        match disk::real(folder).map_err(unreadable)?.filter(|_| there) {
-            Some(real) => Ok(Self { shown: folder.to_path_buf(), real, memory: Arc::default() }),
-            None => Err(Problem::error(
-                "folder-missing",
-                format!("there is no folder `{}`", folder.display()),
-            )),
-        }
+        let real = disk::real(folder)
+            .map_err(unreadable)?
+            .filter(|_| there)
+            .ok_or_else(|| problem!("folder-missing", "there is no folder `{shown}`"))?;
+        Ok(Self { shown: folder.to_path_buf(), real, memory: Arc::default() })
     }
 
     /// A folder without a place on the disk.
@@ -95,23 +73,12 @@ impl Folder {
     /// A small text file without its byte order mark, the SHA-256 of its bytes, and their number.
     ///
     /// # Errors
-    /// As [`read_text`]; `file-missing` with the nearest name in that folder.
+    /// As [`read_text`](super::text::read_text); `file-missing` with the nearest name in that
+    /// folder.
     pub fn read_text(&self, place: &Place) -> Result<(Arc<Source>, String, u64), Problem> {
-        if let Some(bytes) = self.memory.texts.get(&place.inside) {
-            let (source, hash) = text_of(bytes, &place.shown)?;
-            return Ok((source, hash, bytes.len() as u64));
-        }
-        self.missing(place)?;
-        let (source, hash) =
-            read_text(&place.path, &place.shown).map_err(|problem| near_file(problem, place))?;
-        match disk::kind(&place.path) {
-            Ok(Some(disk::Kind::File(size))) => Ok((source, hash, size)),
-            Ok(_) => Err(Problem::error(
-                "file-missing",
-                format!("`{}` went away while it was read", place.shown),
-            )),
-            Err(error) => Err(unreadable(&place.shown, &error)),
-        }
+        let bytes = self.bytes(place, read_small)?;
+        let (source, hash) = text_of(&bytes, &place.shown)?;
+        Ok((source, hash, bytes.len() as u64))
     }
 
     /// All bytes of a file.
@@ -119,20 +86,23 @@ impl Folder {
     /// # Errors
     /// As [`read_any`]; `file-missing` with the nearest name in that folder.
     pub fn read_any(&self, place: &Place) -> Result<Vec<u8>, Problem> {
-        if let Some(bytes) = self.memory.texts.get(&place.inside) {
-            return Ok(bytes.clone());
-        }
-        self.missing(place)?;
-        read_any(&place.path, &place.shown).map_err(|problem| near_file(problem, place))
+        self.bytes(place, read_any)
     }
 
-    fn missing(&self, place: &Place) -> Result<(), Problem> {
-        if self.on_disk() {
-            return Ok(());
+    fn bytes(
+        &self,
+        place: &Place,
+        read: fn(&Path, &str) -> Result<Vec<u8>, Problem>,
+    ) -> Result<Vec<u8>, Problem> {
+        let texts = &self.memory.texts;
+        if let Some(bytes) = texts.get(&place.inside) {
+            return Ok(bytes.clone());
         }
-        let problem =
-            Problem::error("file-missing", format!("there is no `{}` in memory", place.inside));
-        Err(problem.suggest(&place.inside, self.memory.texts.keys().map(String::as_str)))
+        if !self.on_disk() {
+            return Err(problem!("file-missing", "there is no `{}` in memory", place.inside)
+                .suggest(&place.inside, texts.keys()));
+        }
+        read(&place.path, &place.shown).map_err(|problem| near_file(problem, place))
     }
 
     /// The folder itself, without symbolic links.
@@ -149,8 +119,7 @@ impl Folder {
     /// resolved. It need not exist.
     pub fn place(&self, written: &str, at: &Span) -> Result<Place, Problem> {
         let outside = |how: &str| {
-            Problem::error("path-outside", format!("`{written}` {how}"))
-                .at(at)
+            problem!("path-outside", at, "`{written}` {how}")
                 .help("paths must be relative to the campaign's folder and stay inside it")
         };
         // `\` and drive letters are checked explicitly, so that the result is the same on all
@@ -161,7 +130,7 @@ impl Folder {
             return Err(outside("is an absolute path"));
         }
         if written.trim().is_empty() || written.contains('\0') {
-            return Err(Problem::error("path-invalid", "this is not a path").at(at));
+            return Err(error("path-invalid", "this is not a path", at));
         }
         let mut inside = Vec::new();
         for part in written.split(['/', '\\']) {
@@ -177,7 +146,7 @@ impl Folder {
         if !self.on_disk() {
             return Ok(Place { path, shown: inside.clone(), inside });
         }
-        let real = disk::real(&path).map_err(|error| unreadable(written, &error).at(at))?;
+        let real = disk::real(&path).map_err(|why| unreadable(written)(why).at(at))?;
         if real.is_some_and(|real| !real.starts_with(&self.real)) {
             return Err(outside("is a symbolic link out of the campaign's folder"));
         }
@@ -191,31 +160,22 @@ impl Folder {
 }
 
 /// The names in a folder that are texts; none if it cannot be read.
-pub(super) fn names_in(folder: &Path) -> Vec<String> {
+pub fn names_in(folder: &Path) -> Vec<String> {
     let names = disk::names(folder).unwrap_or_default().into_iter();
     names.filter_map(|name| name.into_string().ok()).collect()
 }
 
 /// Names a file beside one that is missing, if its name is similar.
 fn near_file(problem: Problem, place: &Place) -> Problem {
-    let (Some(folder), Some(name)) =
-        (place.path.parent(), place.path.file_name().and_then(|name| name.to_str()))
-    else {
+    let path = &place.path;
+    let named = path.parent().zip(path.file_name().and_then(|name| name.to_str()));
+    let Some((folder, name)) = named.filter(|_| problem.code == "file-missing") else {
         return problem;
     };
-    if problem.code != "file-missing" {
-        return problem;
-    }
     let beside = names_in(folder);
-    match nearest(name, beside.iter().map(String::as_str)) {
-        Some(near) => problem.meant(
-            &place
-                .inside
-                .rsplit_once('/')
-                .map_or_else(|| near.to_string(), |(above, _)| format!("{above}/{near}")),
-        ),
-        None => problem,
-    }
+    let Some(near) = nearest(name, beside.iter().map(String::as_str)) else { return problem };
+    let above = place.inside.rfind('/').map_or("", |at| &place.inside[..=at]);
+    problem.meant(&format!("{above}{near}"))
 }
 
 /// Checks a name that becomes part of a file name.
@@ -234,7 +194,7 @@ pub fn check_file_name(name: &str, at: &Span) -> Result<(), Problem> {
     } else {
         return Ok(());
     };
-    Err(Problem::error("path-outside", says).at(at))
+    Err(error("path-outside", says, at))
 }
 
 #[cfg(test)]

@@ -1,9 +1,8 @@
 //! The block `report` of `campaign.yaml`: identification of the report, customer, test item,
 //! equipment and dates.
 
-use super::campaign::{LAYOUT, at_the_margin};
-use crate::problem::{Problem, Problems};
-use crate::yaml::{FromNode, Key, Node, Reader, Value};
+use crate::problem::{Problem, Problems, problem};
+use crate::yaml::{Key, Node, Value};
 
 /// The key of the block.
 pub const REPORT_KEY: &str = "report";
@@ -19,15 +18,15 @@ pub struct Field {
     pub clause: Option<&'static str>,
 }
 
-impl Field {
-    const fn new(
-        group: Option<&'static str>,
-        key: &'static str,
-        title: &'static str,
-        clause: Option<&'static str>,
-    ) -> Self {
-        Self { group, key, title, clause }
-    }
+/// `clause` is empty where no clause requires the item.
+const fn field(
+    group: Option<&'static str>,
+    key: &'static str,
+    title: &'static str,
+    clause: &'static str,
+) -> Field {
+    let clause = if clause.is_empty() { None } else { Some(clause) };
+    Field { group, key, title, clause }
 }
 
 const ITEM: Option<&str> = Some("test item");
@@ -37,36 +36,33 @@ const ISSUE: &str = "issue";
 
 /// In the order of printing.
 pub const FIELDS: &[Field] = &[
-    Field::new(None, "number", "Report number", Some("7.8.2.1 d)")),
-    Field::new(None, "revision", "Revision", Some("7.8.8")),
-    Field::new(None, "customer", "Customer", Some("7.8.2.1 e)")),
-    Field::new(None, "laboratory", "Laboratory", Some("7.8.2.1 b)")),
-    Field::new(None, "location", "Location of the tests", Some("7.8.2.1 c)")),
-    Field::new(ITEM, "description", "Test item", Some("7.8.2.1 g)")),
-    Field::new(ITEM, "vehicle number", "Test item: vehicle number", Some("7.8.2.1 g)")),
-    Field::new(ITEM, "state", "Test item: state", Some("7.8.2.1 g)")),
-    Field::new(DATES, "receipt", "Date of receipt of the test item", Some("7.8.2.1 h)")),
-    Field::new(DATES, "test", "Date of test", Some("7.8.2.1 i)")),
-    Field::new(DATES, ISSUE, "Date of issue", Some("7.8.2.1 j)")),
-    Field::new(None, "sampling", "Sampling plan or choice of sections", Some("7.8.2.1 k)")),
-    Field::new(None, "simulation software", "Simulation software", None),
-    Field::new(None, "model version", "Model version", None),
-    Field::new(None, "instrumentation", "Instrumentation", Some("7.8.3.1 a)")),
-    Field::new(None, "calibration", "Calibration and traceability", Some("6.5")),
-    Field::new(None, "uncertainty", "Measurement uncertainty", Some("7.8.3.1 c)")),
-    Field::new(None, "decision rule", "Decision rule", Some("7.8.6")),
-    Field::new(None, "external providers", "Results from external providers", Some("7.8.2.1 p)")),
-    Field::new(None, "authorised by", "Person authorising the report", Some("7.8.2.1 o)")),
-    Field::new(None, "distribution", "Distribution", None),
+    field(None, "number", "Report number", "7.8.2.1 d)"),
+    field(None, "revision", "Revision", "7.8.8"),
+    field(None, "customer", "Customer", "7.8.2.1 e)"),
+    field(None, "laboratory", "Laboratory", "7.8.2.1 b)"),
+    field(None, "location", "Location of the tests", "7.8.2.1 c)"),
+    field(ITEM, "description", "Test item", "7.8.2.1 g)"),
+    field(ITEM, "vehicle number", "Test item: vehicle number", "7.8.2.1 g)"),
+    field(ITEM, "state", "Test item: state", "7.8.2.1 g)"),
+    field(DATES, "receipt", "Date of receipt of the test item", "7.8.2.1 h)"),
+    field(DATES, "test", "Date of test", "7.8.2.1 i)"),
+    field(DATES, ISSUE, "Date of issue", "7.8.2.1 j)"),
+    field(None, "sampling", "Sampling plan or choice of sections", "7.8.2.1 k)"),
+    field(None, "simulation software", "Simulation software", ""),
+    field(None, "model version", "Model version", ""),
+    field(None, "instrumentation", "Instrumentation", "7.8.3.1 a)"),
+    field(None, "calibration", "Calibration and traceability", "6.5"),
+    field(None, "uncertainty", "Measurement uncertainty", "7.8.3.1 c)"),
+    field(None, "decision rule", "Decision rule", "7.8.6"),
+    field(None, "external providers", "Results from external providers", "7.8.2.1 p)"),
+    field(None, "authorised by", "Person authorising the report", "7.8.2.1 o)"),
+    field(None, "distribution", "Distribution", ""),
 ];
 
 /// A field of [`FIELDS`] and its value.
 pub type Stated = (&'static Field, Option<String>);
 
 /// The block: all fields in the order of [`FIELDS`]; missing ones are `None`.
-///
-/// Problems: `unknown-key` (with the nearest one), `key-twice`, `wrong-kind`, `report-date` (not a
-/// date).
 #[derive(Clone, Debug)]
 pub struct Report(pub Vec<Stated>);
 
@@ -76,22 +72,24 @@ impl Default for Report {
     }
 }
 
-impl<C> FromNode<C> for Report {
-    fn from_node(reader: &mut Reader<'_, C>, _: &Key, node: &Node) -> Option<Self> {
+impl Report {
+    /// Reads the block. `above`: the keys of the campaign, which were meant if they stand here.
+    ///
+    /// Problems: `unknown-key` (with the nearest one), `key-twice`, `wrong-kind`, `report-date`
+    /// (not a date).
+    pub fn read(node: &Node, above: &[&str], problems: &mut Problems) -> Self {
         let mut report = Self::default();
         if !matches!(node.value, Value::Map(_) | Value::Null) {
             let what = format!("`{REPORT_KEY}`");
-            reader.tell(node.is_not(&what, "a map of keys and values"));
+            problems.push(node.is_not(&what, "a map of keys and values"));
         }
         for (key, node) in node.entries() {
-            report.entry(key, node, reader.problems);
+            report.entry(key, node, above, problems);
         }
-        Some(report)
+        report
     }
-}
 
-impl Report {
-    fn entry(&mut self, key: &Key, node: &Node, problems: &mut Problems) {
+    fn entry(&mut self, key: &Key, node: &Node, above: &[&str], problems: &mut Problems) {
         let name = plain(&key.text);
         let groups = || FIELDS.iter().filter_map(|field| field.group);
         let Some(group) = groups().find(|group| *group == name) else {
@@ -105,7 +103,7 @@ impl Report {
             }
             let dates = ["date of receipt", "date of test", "date of issue"];
             let problem = unknown(key, "a report", members(None).chain(groups()).chain(dates));
-            return problems.push(match LAYOUT.contains(&key.text.as_str()) {
+            return problems.push(match above.contains(&key.text.as_str()) {
                 true => problem.help(at_the_margin(&key.text)),
                 false => problem,
             });
@@ -149,22 +147,31 @@ impl Report {
             let what = format!("`{}`", key.text);
             return problems.push(node.is_not(&what, "text or a list of texts"));
         };
-        let text = text.trim().to_owned();
+        let text = text.trim();
         if text.is_empty() {
             return;
         }
-        problems.push(if (field.group, field.key) == (DATES, ISSUE) && date(&text).is_none() {
-            Problem::error("report-date", format!("`{text}` is not a valid date of issue"))
-                .at(&node.span)
-                .help("write year-month-day, such as 2026-03-31")
+        if (field.group, field.key) == (DATES, ISSUE) && date(text).is_none() {
+            problems.push(
+                problem!("report-date", &node.span, "`{text}` is not a valid date of issue")
+                    .help("write year-month-day, such as 2026-03-31"),
+            );
         } else if stated.is_some() {
-            let says = format!("the {} is stated twice", field.title.to_lowercase());
-            Problem::error("key-twice", says).at(&key.span)
+            problems.push(problem!(
+                "key-twice",
+                &key.span,
+                "the {} is stated twice",
+                field.title.to_lowercase()
+            ));
         } else {
-            *stated = Some(text);
-            return;
-        });
+            *stated = Some(text.to_owned());
+        }
     }
+}
+
+/// Help for a key of the campaign that was indented into a block.
+pub fn at_the_margin(key: &str) -> String {
+    format!("`{key}` is a key of the campaign: it stands at the left margin")
 }
 
 /// The place of a field in [`FIELDS`].
@@ -177,16 +184,15 @@ fn members(group: Option<&str>) -> impl Iterator<Item = &'static str> {
     FIELDS.iter().filter(move |field| field.group == group).map(|field| field.key)
 }
 
-fn unknown<'a>(key: &Key, of: &str, known: impl Iterator<Item = &'a str>) -> Problem {
+fn unknown<'a>(key: &Key, block: &str, known: impl Iterator<Item = &'a str>) -> Problem {
     let mut known: Vec<&str> = known.collect();
     known.dedup();
-    let problem =
-        Problem::error("unknown-key", format!("{of} has no key `{}`", key.text)).at(&key.span);
-    let suggested = problem.suggest(&plain(&key.text), known.iter().copied());
-    if suggested.help.is_some() {
-        suggested
+    let problem = problem!("unknown-key", &key.span, "{block} has no key `{}`", key.text)
+        .suggest(&plain(&key.text), &known);
+    if problem.help.is_some() {
+        problem
     } else {
-        suggested.help(format!("the keys are {}", known.join(", ")))
+        problem.help(format!("the keys are {}", known.join(", ")))
     }
 }
 
@@ -197,13 +203,15 @@ fn plain(key: &str) -> String {
 
 /// Year, month and day of `2026-03-31`; `None` if this is not a valid date.
 pub fn date(text: &str) -> Option<(i32, u8, u8)> {
-    let form = text.len() == 10
-        && text.bytes().enumerate().all(|(at, byte)| {
-            if at == 4 || at == 7 { byte == b'-' } else { byte.is_ascii_digit() }
-        });
-    let number = |range: std::ops::Range<usize>| text.get(range)?.parse::<u16>().ok();
-    let (year, month, day) =
-        if form { (number(0..4)?, number(5..7)?, number(8..10)?) } else { return None };
+    let form = |(at, byte): (usize, u8)| match at {
+        4 | 7 => byte == b'-',
+        _ => byte.is_ascii_digit(),
+    };
+    if text.len() != 10 || !text.bytes().enumerate().all(form) {
+        return None;
+    }
+    let (year, month, day): (u16, u8, u8) =
+        (text[..4].parse().ok()?, text[5..7].parse().ok()?, text[8..].parse().ok()?);
     let leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
     let days = match month {
         2 if leap => 29,
@@ -212,7 +220,7 @@ pub fn date(text: &str) -> Option<(i32, u8, u8)> {
         1..=12 => 31,
         _ => return None,
     };
-    (year > 0 && (1..=days).contains(&day)).then_some((i32::from(year), month as u8, day as u8))
+    (year > 0 && (1..=days).contains(&day)).then_some((i32::from(year), month, day))
 }
 
 #[cfg(test)]
@@ -223,9 +231,9 @@ mod tests {
     fn stated(text: &str) -> (Vec<(String, String)>, String) {
         let mut problems = Problems::default();
         let source = Source::new("campaign.yaml", text);
-        let found = crate::yaml::load(&source, &mut problems).and_then(|tree| {
-            Reader { with: (), problems: &mut problems }.optional(&tree, REPORT_KEY)
-        });
+        let tree = crate::yaml::load(&source, &mut problems);
+        let node = tree.as_ref().and_then(|tree| tree.get(REPORT_KEY));
+        let found = node.map(|node| Report::read(node, &[], &mut problems));
         let Report(found) = found.unwrap_or_default();
         let given = found
             .into_iter()

@@ -6,7 +6,8 @@
 //! | `campaign` | a campaign folder: `campaign.yaml`, the vehicle, the sections, where the records are |
 //! | `campaigns` | several campaigns evaluated as one |
 //! | `identification` | identification of the report |
-//! | `members` | the folders of records, one or several of a kind |
+//! | `place`, `folder` | where a file of a campaign is; no path leads out of its folder |
+//! | `format` | the formats of records |
 //! | `record` | one sampled record, as text, as Parquet or in memory; optimised for speed |
 //! | `record/source` | where a record is: the one place from which campaigns read records |
 //! | `conversion` | a copy of a campaign with its records in another format |
@@ -30,9 +31,10 @@ pub mod cut;
 pub(crate) mod faults;
 pub mod fingerprint;
 mod folder;
+mod format;
 pub mod identification;
-mod members;
 pub mod origin;
+mod place;
 pub mod record;
 pub mod sites;
 pub mod table;
@@ -40,11 +42,11 @@ pub mod text;
 pub mod write;
 
 pub use crate::hash;
-pub use campaign::{Campaign, RecordKind};
+pub use campaign::{Campaign, RecordKind, WhichRecord};
 pub use campaigns::{Campaigns, qualified};
 pub use cells::Heading;
 pub use checks::{Axis, check_axis};
-pub use folder::{Place, check_file_name};
-pub use members::WhichRecord;
+pub use folder::check_file_name;
+pub use place::Place;
 pub use record::{Column, Record, Wanted, read_record};
 pub use table::Table;

@@ -76,21 +76,23 @@ impl OriginEffect {
     /// `friction = 0.23`, `sensor_gain: gain = 0.8 on Y_3R`, `payload: payload.mass = 3500 kg in
     /// zone 4`
     pub fn in_words(&self, equals: &str) -> String {
-        let mut words = match &self.parameters[..] {
-            [one] => format!("{}{equals}{}", self.effect, one.in_words()),
-            [] => self.effect.clone(),
+        let mut words = self.effect.clone();
+        match &self.parameters[..] {
+            [] => {}
+            [one] => words += &format!("{equals}{}", one.in_words()),
             several => {
-                let all: Vec<String> = several
-                    .iter()
-                    .map(|one| format!("{}{equals}{}", one.name, one.in_words()))
-                    .collect();
-                format!("{} ({})", self.effect, all.join(", "))
+                let each =
+                    several.iter().map(|one| format!("{}{equals}{}", one.name, one.in_words()));
+                words += &format!(" ({})", each.collect::<Vec<_>>().join(", "));
             }
-        };
-        if !self.channels.is_empty() {
-            words = format!("{words} on {}", self.channels.join(", "));
         }
-        self.confined_to.as_ref().map_or(words.clone(), |place| format!("{words} in {place}"))
+        if !self.channels.is_empty() {
+            words += &format!(" on {}", self.channels.join(", "));
+        }
+        if let Some(place) = &self.confined_to {
+            words += &format!(" in {place}");
+        }
+        words
     }
 }
 

@@ -7,9 +7,11 @@
 mod columnar;
 mod decoded;
 mod fault;
+pub(crate) mod guard;
 mod header_fault;
 mod held;
 mod known;
+mod layout;
 mod memory;
 mod raw;
 mod recent;
@@ -19,9 +21,11 @@ mod stored;
 mod stretch;
 mod text;
 
-pub(crate) use columnar::{guard, guarded, numbers};
+pub use super::format::Format;
+pub(crate) use columnar::numbers;
 pub use held::Held;
 pub use known::Known;
+pub(crate) use layout::guarded;
 pub use memory::{Frame, ReadFrom};
 pub use raw::read_raw;
 pub use source::RecordSource;
@@ -32,6 +36,7 @@ use std::path::Path;
 
 use super::cells::{self, Heading};
 use super::faults::Faults;
+use super::text::empty;
 use crate::problem::Problem;
 use crate::source::{Source, Span};
 use crate::units::{Dimension, Unit};
@@ -54,16 +59,11 @@ impl Wanted {
 
     /// Columns of whatever dimension, all of which must be there.
     pub fn all<'a>(headings: impl IntoIterator<Item = &'a Heading>) -> Vec<Self> {
-        let wanted = |heading: &Heading| Self {
-            name: heading.name.clone(),
-            dimension: None,
-            required: true,
-        };
-        headings.into_iter().map(wanted).collect()
+        let names = headings.into_iter().map(|heading| heading.name.clone());
+        names.map(|name| Self { name, dimension: None, required: true }).collect()
     }
 
     /// The same column, optional.
-    #[must_use]
     pub fn if_there(self) -> Self {
         Self { required: false, ..self }
     }
@@ -89,40 +89,6 @@ pub struct Record {
     from: RecordSource,
 }
 
-/// Format of a record, which is told by the ending of its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    Csv,
-    Parquet,
-}
-
-impl Format {
-    pub const ALL: [Self; 2] = [Self::Csv, Self::Parquet];
-
-    /// Of a file; every other ending is read as CSV.
-    pub fn of(path: &Path) -> Self {
-        let parquet = path
-            .extension()
-            .is_some_and(|ending| ending.eq_ignore_ascii_case(Self::Parquet.ending()));
-        if parquet { Self::Parquet } else { Self::Csv }
-    }
-
-    /// Without the point.
-    pub fn ending(self) -> &'static str {
-        match self {
-            Self::Csv => "csv",
-            Self::Parquet => "parquet",
-        }
-    }
-
-    /// The name of a record without its ending.
-    pub fn stem(name: &str) -> Option<&str> {
-        Self::ALL
-            .into_iter()
-            .find_map(|format| name.strip_suffix(format.ending())?.strip_suffix('.'))
-    }
-}
-
 /// A channel: one finite value per sample.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
@@ -133,6 +99,14 @@ pub struct Column {
     pub values: Vec<f64>,
     /// Index of the column in the file, from 0.
     pub position: usize,
+}
+
+impl Column {
+    /// The same column without its values.
+    fn empty(&self) -> Self {
+        let Self { name, unit, position, .. } = self;
+        Self { name: name.clone(), unit: unit.clone(), values: Vec::new(), position: *position }
+    }
 }
 
 impl Record {
@@ -169,21 +143,16 @@ pub fn read_headings(path: &Path, shown: &str) -> Result<Vec<Heading>, Vec<Probl
     RecordSource::at(path, shown).headings()
 }
 
-/// The headings of a list in the form of a header, such as `Y_1R [kN], ay_I [m/s^2]`.
+/// The headings in the first line of a text, such as `Y_1R [kN], ay_I [m/s^2]`.
 ///
 /// # Errors
 /// As of a header; `file-empty`.
 pub fn listed_headings(text: &str, shown: &str) -> Result<Vec<Heading>, Vec<Problem>> {
-    header(text, shown)
-}
-
-/// The headings in the first line of a text.
-fn header(text: &str, shown: &str) -> Result<Vec<Heading>, Vec<Problem>> {
+    if text.trim().is_empty() {
+        return Err(empty(shown).into());
+    }
     let line = text.split('\n').next().unwrap_or_default();
     let line = Source::new(shown, line.trim_end_matches('\r')).whole();
-    if text.trim().is_empty() {
-        return Err(vec![Problem::error("file-empty", format!("`{shown}` is empty"))]);
-    }
     let mut problems = Vec::new();
     cells::headings(&line, &mut problems).ok_or(problems)
 }
@@ -194,28 +163,23 @@ fn find_columns(
     shown: &str,
 ) -> Result<Vec<Column>, Vec<Problem>> {
     let mut columns: Vec<Column> = Vec::with_capacity(wanted.len());
-    let mut faults = Faults::new(shown);
     let mut lacking: Vec<&str> = Vec::new();
     let mut wrong: Vec<(&Heading, Problem)> = Vec::new();
-    for wanted in wanted {
-        let Some(position) = headings.iter().position(|heading| heading.name == wanted.name) else {
-            if wanted.required {
-                lacking.push(&wanted.name);
-            }
+    for Wanted { name, dimension, required } in wanted {
+        let Some(position) = headings.iter().position(|heading| heading.name == *name) else {
+            lacking.extend(required.then_some(name.as_str()));
             continue;
         };
-        match headings[position].unit(wanted.dimension) {
+        match headings[position].unit(*dimension) {
             // A column requested twice is read once.
             Ok(_) if columns.iter().any(|column| column.position == position) => {}
-            Ok(unit) => columns.push(Column {
-                name: wanted.name.clone(),
-                unit,
-                values: Vec::new(),
-                position,
-            }),
+            Ok(unit) => {
+                columns.push(Column { name: name.clone(), unit, values: Vec::new(), position });
+            }
             Err(problem) => wrong.push((&headings[position], problem)),
         }
     }
+    let mut faults = Faults::new(shown);
     for problem in header_fault::alike(wrong) {
         faults.push(|| problem);
     }

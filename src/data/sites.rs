@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 
 use super::table::{Cell, Table};
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, problem};
 
 /// Columns of the section table that define the site of a section.
 pub const SITE: &str = "site";
@@ -77,6 +77,7 @@ pub fn originals(table: &Table) -> Vec<Option<usize>> {
 fn circles(table: &Table, problems: &mut Problems) {
     let originals = originals(table);
     let (names, repeat): (Vec<&Cell>, _) = (table.names().collect(), Column::of(table, REPEAT_OF));
+    let name = |row: &usize| format!("`{}`", names[*row].value);
     // The walk that came to a row: 0 for none.
     let mut walked = vec![0; originals.len()];
     for row in 0..originals.len() {
@@ -89,50 +90,46 @@ fn circles(table: &Table, problems: &mut Problems) {
         if walked[at] != walk || originals[at].is_none() {
             continue;
         }
+        let onwards = std::iter::successors(originals[at], |next| originals[*next]);
         let mut circle = vec![at];
-        circle.extend(
-            std::iter::successors(originals[at], |next| originals[*next])
-                .take_while(|next| *next != at),
-        );
-        let first =
-            circle.iter().enumerate().min_by_key(|(_, row)| **row).map_or(0, |(first, _)| first);
+        circle.extend(onwards.take_while(|next| *next != at));
+        let first = (0..circle.len()).min_by_key(|place| circle[*place]).unwrap_or(0);
         circle.rotate_left(first);
-        let mut told: Vec<String> =
-            circle.iter().take(NAMED).map(|row| format!("`{}`", names[*row].value)).collect();
+        let mut told: Vec<String> = circle.iter().take(NAMED).map(name).collect();
         if circle.len() > NAMED {
             told.push(format!("... ({} sections)", circle.len()));
         }
-        told.push(format!("`{}`", names[circle[0]].value));
-        let mut problem = Problem::error(
-            "repeat-circle",
-            format!("sections repeat each other: {}", told.join(" repeats ")),
+        told.push(name(&circle[0]));
+        let at = repeat.cell(circle[0]).map(|cell| cell.span.clone());
+        problems.push(
+            Problem {
+                at,
+                ..Problem::error(
+                    "repeat-circle",
+                    format!("sections repeat each other: {}", told.join(" repeats ")),
+                )
+            }
+            .help(FIRST),
         );
-        if let Some(cell) = repeat.cell(circle[0]) {
-            problem = problem.at(&cell.span);
-        }
-        problems.push(problem.help(FIRST));
     }
 }
 
 fn no_repeat(table: &Table, row: usize, cell: &Cell) -> Problem {
-    if table.row_named(&cell.value) == Some(row) {
-        let problem = Problem::error("repeat-circle", format!("`{}` repeats itself", cell.value))
-            .at(&cell.span);
-        return problem.help(FIRST);
+    let name = &cell.value;
+    if table.row_named(name) == Some(row) {
+        return problem!("repeat-circle", &cell.span, "`{name}` repeats itself").help(FIRST);
     }
-    let says = format!("`{REPEAT_OF}` names `{}`, which is not another section", cell.value);
-    let others = table
-        .names()
-        .enumerate()
-        .filter(|(other, _)| *other != row)
-        .map(|(_, name)| name.value.as_str());
-    let problem =
-        Problem::error("unknown-section", says).at(&cell.span).suggest(&cell.value, others);
-    match problem.help {
-        Some(_) => problem,
-        None => problem
-            .help(format!("name the section that was measured before, or use a column `{SITE}`")),
+    let others = table.names().enumerate().filter(|(other, _)| *other != row);
+    let problem = problem!(
+        "unknown-section",
+        &cell.span,
+        "`{REPEAT_OF}` names `{name}`, which is not another section"
+    )
+    .suggest(name, others.map(|(_, name)| &name.value));
+    if problem.help.is_some() {
+        return problem;
     }
+    problem.help(format!("name the section that was measured before, or use a column `{SITE}`"))
 }
 
 /// Pairs of rows on the same named track that share at least [`SHARED`] of the shorter one.
@@ -145,16 +142,14 @@ fn overlaps(table: &Table) -> Vec<(usize, usize)> {
     known.sort_by(|(_, a), (_, b)| a.0.cmp(b.0).then(a.1.total_cmp(&b.1)));
     let mut found = Vec::new();
     for (at, (row, (name, low, high))) in known.iter().enumerate() {
-        let behind = known[at + 1..]
-            .iter()
-            .take_while(|(_, (other, start, _))| other == name && start < high);
-        found.extend(
-            behind
-                .filter(|(_, (_, start, end))| {
-                    high.min(*end) - start >= SHARED * (high - low).min(end - start)
-                })
-                .map(|(other, _)| (*row.min(other), *row.max(other))),
-        );
+        for (other, (track, start, end)) in &known[at + 1..] {
+            if track != name || start >= high {
+                break;
+            }
+            if high.min(*end) - start >= SHARED * (high - low).min(end - start) {
+                found.push((*row.min(other), *row.max(other)));
+            }
+        }
     }
     found
 }

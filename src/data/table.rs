@@ -4,10 +4,10 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::cells::{self, Heading, StrayQuote};
+use super::cells::{self, Heading};
 use super::faults::Faults;
 use super::text::read_text;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, error, problem};
 use crate::source::{Source, Span, Spanned};
 use crate::units::Dimension;
 
@@ -43,13 +43,9 @@ impl Table {
         key: Option<&str>,
         problems: &mut Problems,
     ) -> Option<Self> {
-        match read_text(path, shown) {
-            Ok((source, sha256)) => Self::parse(source, sha256, key, problems),
-            Err(problem) => {
-                problems.push(problem);
-                None
-            }
-        }
+        let read = read_text(path, shown).map_err(|problem| problems.push(problem));
+        let (source, sha256) = read.ok()?;
+        Self::parse(source, sha256, key, problems)
     }
 
     /// A table that is not in a file, with the names of its rows in the first column.
@@ -58,15 +54,14 @@ impl Table {
     /// The first of the problems of a table that is read.
     pub fn of_text(name: &str, text: &str) -> Result<Self, Problem> {
         let mut problems = Problems::default();
-        let table = Self::parse(
-            Source::new(name, text),
-            super::hash::sha256(text.as_bytes()),
-            Some(""),
-            &mut problems,
-        );
+        let sha256 = super::hash::sha256(text.as_bytes());
+        let table = Self::parse(Source::new(name, text), sha256, Some(""), &mut problems);
         table.ok_or_else(|| {
-            let says = format!("the table `{name}` cannot be made");
-            problems.0.into_iter().next().unwrap_or_else(|| Problem::error("internal", says))
+            problems
+                .0
+                .into_iter()
+                .next()
+                .unwrap_or_else(|| problem!("internal", "the table `{name}` cannot be made"))
         })
     }
 
@@ -91,16 +86,11 @@ impl Table {
         let rows: Vec<Vec<Cell>> =
             lines.filter_map(|line| row(&line, (&header, &columns), &mut faults)).collect();
         if rows.is_empty() && faults.is_empty() {
-            faults.push(|| {
-                Problem::error("no-rows", "the table has a header and no rows").at(&columns[0].span)
-            });
+            faults
+                .push(|| error("no-rows", "the table has a header and no rows", &columns[0].span));
         }
-        let mut table = Self { source, sha256, columns, rows, key, named: HashMap::new() };
-        table.check_names(&mut faults);
-        table.named = table.by_name();
-        let good = faults.is_empty();
-        faults.add_to(problems);
-        good.then_some(table)
+        let table = Self { source, sha256, columns, rows, key, named: HashMap::new() };
+        table.with_names(faults, problems)
     }
 
     /// The same table with the names of its rows in a column, which must be there.
@@ -108,46 +98,35 @@ impl Table {
     /// Problems: `unknown-column`; `name-missing`, `duplicate-name`.
     pub fn named_by(mut self, column: &str, problems: &mut Problems) -> Option<Self> {
         self.key = Some(self.need_column(column).map_err(|problem| problems.push(problem)).ok()?);
-        let source = Arc::clone(&self.source);
-        let mut faults = Faults::new(&source.name);
-        self.check_names(&mut faults);
-        let good = faults.is_empty();
-        faults.add_to(problems);
-        self.named = self.by_name();
-        good.then_some(self)
+        let file = self.source.name.clone();
+        self.with_names(Faults::new(&file), problems)
     }
 
-    /// The first row of each name. A map, because each section asks for its row more than once.
-    fn by_name(&self) -> HashMap<String, usize> {
-        let mut named = HashMap::with_capacity(self.rows.len());
-        for (row, name) in self.names().enumerate() {
+    /// Checks the names of the rows, and keeps the first row of each: each section asks for its row
+    /// more than once.
+    fn with_names(mut self, mut faults: Faults<'_>, problems: &mut Problems) -> Option<Self> {
+        let mut named: HashMap<String, usize> = HashMap::with_capacity(self.rows.len());
+        let column = self.key.and_then(|key| self.columns.get(key));
+        let names: Vec<&Cell> = self.names().collect();
+        for (row, name) in names.iter().enumerate() {
+            if name.value.is_empty() {
+                let key = column.map_or("", |column| &column.name);
+                let says = || format!("the row has no `{key}`");
+                faults.push(|| error("name-missing", says(), &name.span));
+            } else if let Some(before) = named.get(&name.value) {
+                let says = || format!("two rows are called `{}`", name.value);
+                faults.push(|| {
+                    error("duplicate-name", says(), &name.span)
+                        .also(&names[*before].span, "the first of them")
+                });
+                continue;
+            }
             named.entry(name.value.clone()).or_insert(row);
         }
-        named
-    }
-
-    fn check_names(&self, faults: &mut Faults<'_>) {
-        let Some(column) = self.key.and_then(|key| self.columns.get(key)) else { return };
-        let mut first: HashMap<&str, &Span> = HashMap::new();
-        for name in self.names() {
-            if name.value.is_empty() {
-                faults.push(|| {
-                    Problem::error("name-missing", format!("the row has no `{}`", column.name))
-                        .at(&name.span)
-                });
-            } else if let Some(before) = first.get(name.value.as_str()) {
-                faults.push(|| {
-                    Problem::error(
-                        "duplicate-name",
-                        format!("two rows are called `{}`", name.value),
-                    )
-                    .at(&name.span)
-                    .also(before, "the first of them")
-                });
-            } else {
-                first.insert(&name.value, &name.span);
-            }
-        }
+        self.named = named;
+        let good = faults.is_empty();
+        faults.add_to(problems);
+        good.then_some(self)
     }
 
     /// The names of the rows in order; none if it was read without a key.
@@ -171,9 +150,8 @@ impl Table {
     pub fn need_column(&self, name: &str) -> Result<usize, Problem> {
         self.column(name).ok_or_else(|| {
             let header = self.columns[0].span.to(&self.columns[self.columns.len() - 1].span);
-            Problem::error("unknown-column", format!("the table has no column `{name}`"))
-                .at(&header)
-                .suggest(name, self.columns.iter().map(|column| column.name.as_str()))
+            problem!("unknown-column", &header, "the table has no column `{name}`")
+                .suggest(name, self.columns.iter().map(|column| &column.name))
         })
     }
 
@@ -211,9 +189,9 @@ impl Table {
             match cells::number(&cell.value) {
                 _ if cell.value.is_empty() => values.push(None),
                 Ok(number) => values.push(Some(unit.to_si(number))),
-                Err((code, says)) => faults.push(|| {
-                    Problem::error(code, format!("`{}`: {says}", heading.name)).at(&cell.span)
-                }),
+                Err((code, says)) => {
+                    faults.push(|| problem!(code, &cell.span, "`{}`: {says}", heading.name))
+                }
             }
         }
         faults.finish(values)
@@ -238,21 +216,20 @@ fn row(
     faults: &mut Faults<'_>,
 ) -> Option<Vec<Cell>> {
     if line.text().trim().is_empty() {
-        faults.push(|| Problem::error("blank-line", "blank line between the rows").at(line));
+        faults.push(|| error("blank-line", "blank line between the rows", line));
         return None;
     }
     // Two tables that were put together.
     if columns.len() > 1 && line.text().trim_end() == header.text().trim_end() {
         faults.push(|| {
             let problem =
-                Problem::error("header-repeated", "the header stands between the rows again")
-                    .at(line);
+                error("header-repeated", "the header stands between the rows again", line);
             problem.also(header, "the header").help("remove this line")
         });
         return None;
     }
     match cells::split(line.text()) {
-        Err(StrayQuote(place)) => faults.push(|| cells::stray_quote(&line.part(place))),
+        Err(place) => faults.push(|| cells::stray_quote(&line.part(place))),
         Ok(cells) if cells.len() == columns.len() => {
             return Some(
                 cells.into_iter().map(|cell| Cell::new(cell.text, line.part(cell.place))).collect(),

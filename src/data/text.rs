@@ -1,12 +1,13 @@
 //! Reads the text of a file: readable, not empty, UTF-8.
 
-use std::io::{BufRead, BufReader, Read};
+use std::fmt::Display;
+use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::Path;
 use std::sync::Arc;
 
 use super::hash::sha256;
-use crate::disk::{self, Kind};
-use crate::problem::Problem;
+use crate::disk;
+use crate::problem::{Problem, problem};
 use crate::source::{Source, Span};
 
 /// Maximum size of a YAML file or table in bytes; typical ones have a few thousand.
@@ -28,7 +29,12 @@ const SHOWN: usize = 80;
 /// # Errors
 /// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`, `encoding`.
 pub fn read_text(path: &Path, shown: &str) -> Result<(Arc<Source>, String), Problem> {
-    text_of(&read_bytes(path, shown, SMALL)?, shown)
+    text_of(&read_small(path, shown)?, shown)
+}
+
+/// The bytes of a small text file.
+pub(super) fn read_small(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
+    read_bytes(path, shown, SMALL)
 }
 
 /// As [`read_text`], of bytes in memory.
@@ -37,10 +43,7 @@ pub fn read_text(path: &Path, shown: &str) -> Result<(Arc<Source>, String), Prob
 /// `file-empty`, `file-too-large`, `encoding`, `line-too-long`.
 pub fn text_of(bytes: &[u8], shown: &str) -> Result<(Arc<Source>, String), Problem> {
     if bytes.len() as u64 > SMALL {
-        return Err(Problem::error(
-            "file-too-large",
-            format!("`{shown}` has more than {} MB", SMALL >> 20),
-        ));
+        return Err(problem!("file-too-large", "`{shown}` has more than {} MB", SMALL >> 20));
     }
     let text = decode(bytes, shown)?;
     if text.trim().is_empty() {
@@ -55,18 +58,12 @@ pub fn text_of(bytes: &[u8], shown: &str) -> Result<(Arc<Source>, String), Probl
 /// # Errors
 /// `line-too-long`.
 pub fn check_lines(text: &str, shown: &str) -> Result<(), Problem> {
-    match text.split('\n').position(|line| line.len() > LONGEST_TEXT_LINE) {
-        Some(at) => {
-            let says = format!(
-                "line {} of `{shown}` has more than {} kB",
-                at + 1,
-                LONGEST_TEXT_LINE >> 10
-            );
-            Err(Problem::error("line-too-long", says)
-                .help("break the line, or check whether this is the right file"))
-        }
-        None => Ok(()),
-    }
+    let Some(at) = text.split('\n').position(|line| line.len() > LONGEST_TEXT_LINE) else {
+        return Ok(());
+    };
+    let (line, most) = (at + 1, LONGEST_TEXT_LINE >> 10);
+    Err(problem!("line-too-long", "line {line} of `{shown}` has more than {most} kB")
+        .help("break the line, or check whether this is the right file"))
 }
 
 /// Reads all bytes of a plain file of any format, which is not empty and not larger than a limit.
@@ -75,7 +72,7 @@ pub fn check_lines(text: &str, shown: &str) -> Result<(), Problem> {
 /// `file-missing`, `file-unreadable`, `file-empty`, `file-too-large`.
 pub fn read_file(path: &Path, shown: &str, limit: u64) -> Result<Vec<u8>, Problem> {
     size(path, shown, limit)?;
-    let bytes = disk::read(path, limit).map_err(|error| unreadable(shown, &error))?;
+    let bytes = disk::read(path, limit).map_err(unreadable(shown))?;
     if bytes.is_empty() { Err(empty(shown)) } else { Ok(bytes) }
 }
 
@@ -84,10 +81,7 @@ pub fn read_file(path: &Path, shown: &str, limit: u64) -> Result<Vec<u8>, Proble
 /// # Errors
 /// As [`read_file`]; `format-not-read`.
 pub fn read_bytes(path: &Path, shown: &str, limit: u64) -> Result<Vec<u8>, Problem> {
-    match other_format(path, shown) {
-        Some(problem) => Err(problem),
-        None => read_file(path, shown, limit),
-    }
+    other_format(path, shown).map_or_else(|| read_file(path, shown, limit), Err)
 }
 
 /// The size of a record of any length that is not a text.
@@ -101,7 +95,7 @@ pub(super) fn open_text(path: &Path, shown: &str) -> Result<BufReader<disk::Read
         return Err(problem);
     }
     size(path, shown, u64::MAX)?;
-    Ok(BufReader::new(disk::open(path).map_err(|error| unreadable(shown, &error))?))
+    Ok(BufReader::new(disk::open(path).map_err(unreadable(shown))?))
 }
 
 /// Reads all bytes of any file of a campaign.
@@ -118,10 +112,13 @@ pub fn read_any(path: &Path, shown: &str) -> Result<Vec<u8>, Problem> {
 /// A problem for a line that exceeds the maximum length, at its start.
 pub(super) fn long_line(start: &[u8], line: usize, shown: &str) -> Problem {
     let start = String::from_utf8_lossy(&start[..start.len().min(SHOWN)]).into_owned();
-    let says = format!("line {line} of `{shown}` has more than {} MB", LONGEST_LINE >> 20);
-    Problem::error("line-too-long", says)
-        .at(&Source::excerpt(shown, start, line).whole())
-        .help("a record is a text file with one line per sample; export it again")
+    problem!(
+        "line-too-long",
+        &Source::excerpt(shown, start, line).whole(),
+        "line {line} of `{shown}` has more than {} MB",
+        LONGEST_LINE >> 20
+    )
+    .help("a record is a text file with one line per sample; export it again")
 }
 
 /// Refuses a record that is too large to be read as a whole.
@@ -133,7 +130,7 @@ pub(super) fn record_size(path: &Path, shown: &str) -> Result<(), Problem> {
 pub(super) fn read_line_of(file: &mut impl BufRead, shown: &str) -> Result<Vec<u8>, Problem> {
     let mut line = Vec::new();
     let read = file.take(LONGEST_LINE as u64 + 1).read_until(b'\n', &mut line);
-    read.map_err(|error| unreadable(shown, &error))?;
+    read.map_err(unreadable(shown))?;
     if line.len() > LONGEST_LINE {
         return Err(long_line(&line, 1, shown));
     }
@@ -143,23 +140,23 @@ pub(super) fn read_line_of(file: &mut impl BufRead, shown: &str) -> Result<Vec<u
 /// Words of every message about a file or folder that exists but cannot be read.
 pub const UNREADABLE: &str = "cannot be read:";
 
-pub(super) fn unreadable(shown: &str, why: &dyn std::fmt::Display) -> Problem {
-    Problem::error("file-unreadable", format!("`{shown}` {UNREADABLE} {why}"))
+/// Makes the problem of a file or folder that exists but cannot be read, of the reason.
+pub(super) fn unreadable<E: Display>(shown: &str) -> impl Fn(E) -> Problem {
+    move |why| problem!("file-unreadable", "`{shown}` {UNREADABLE} {why}")
 }
 
-/// The size of a plain file. Other kinds are refused before they are opened, since reading a pipe
-/// could block for ever.
+/// The size of a plain file that is not larger than a limit.
 fn size(path: &Path, shown: &str, limit: u64) -> Result<u64, Problem> {
-    match disk::kind(path).map_err(|error| unreadable(shown, &error))? {
-        None => Err(Problem::error("file-missing", format!("there is no file `{shown}`"))),
-        Some(Kind::Folder) => Err(unreadable(shown, &"it is a folder")),
-        Some(Kind::Other) => Err(unreadable(shown, &"it is not a plain file")),
-        Some(Kind::File(size)) if size > limit => Err(Problem::error(
-            "file-too-large",
-            format!("`{shown}` has {} MB; the maximum is {} MB", size >> 20, limit >> 20),
-        )
-        .help("split it, or leave out channels and samples that are not needed")),
-        Some(Kind::File(size)) => Ok(size),
+    match disk::size(path) {
+        Err(why) if why.kind() == ErrorKind::NotFound => {
+            Err(problem!("file-missing", "there is no file `{shown}`"))
+        }
+        Ok(size) if size > limit => {
+            let (size, most) = (size >> 20, limit >> 20);
+            Err(problem!("file-too-large", "`{shown}` has {size} MB; the maximum is {most} MB")
+                .help("split it, or leave out channels and samples that are not needed"))
+        }
+        size => size.map_err(unreadable(shown)),
     }
 }
 
@@ -183,14 +180,11 @@ const OTHER_FORMATS: [(&str, &str); 12] = [
 pub(super) fn other_format(path: &Path, shown: &str) -> Option<Problem> {
     let ending = path.extension()?.to_str()?.to_lowercase();
     let (_, what) = OTHER_FORMATS.iter().find(|(known, _)| *known == ending)?;
-    Some(
-        Problem::error("format-not-read", format!("`{shown}` is {what}; tables are read as CSV, records as CSV or Parquet"))
-            .help("export it as CSV in UTF-8: one header line `name [unit]`, commas between columns, points in numbers"),
-    )
+    Some(problem!("format-not-read", "`{shown}` is {what}; tables are read as CSV, records as CSV or Parquet").help("export it as CSV in UTF-8: one header line `name [unit]`, commas between columns, points in numbers"))
 }
 
-fn empty(shown: &str) -> Problem {
-    Problem::error("file-empty", format!("`{shown}` is empty"))
+pub(super) fn empty(shown: &str) -> Problem {
+    problem!("file-empty", "`{shown}` is empty")
 }
 
 /// The text of a file without its byte order mark.
@@ -222,25 +216,22 @@ pub(super) fn decode_from<'a>(
         _ => None,
     };
     if let Some(encoding) = wide {
-        return Err(Problem::error("encoding", format!("`{shown}` is {encoding} text, not UTF-8"))
-            .help(HELP));
+        return Err(problem!("encoding", "`{shown}` is {encoding} text, not UTF-8").help(HELP));
     }
     let without_mark = |text: &'a str| {
         if first_line > 1 { text } else { text.strip_prefix('\u{feff}').unwrap_or(text) }
     };
-    std::str::from_utf8(bytes).map(without_mark).map_err(|error| {
-        let at = error.valid_up_to();
+    std::str::from_utf8(bytes).map(without_mark).map_err(|invalid| {
+        let at = invalid.valid_up_to();
         let byte = bytes.get(at).copied().unwrap_or(0);
         let number = before + at as u64 + 1;
-        let says = format!("byte {number} of `{shown}`, hexadecimal {byte:02x}, is not UTF-8");
-        let problem =
-            Problem::error("encoding", says).at(&line_of_bytes(bytes, at, shown, first_line));
-        match latin(byte) {
-            Some(letter) => {
-                problem.label(format!("`{letter}` if the file is Windows-1252")).help(HELP)
-            }
-            None => problem.help(HELP),
-        }
+        let problem = problem!(
+            "encoding",
+            &line_of_bytes(bytes, at, shown, first_line),
+            "byte {number} of `{shown}`, hexadecimal {byte:02x}, is not UTF-8"
+        );
+        let label = latin(byte).map(|letter| format!("`{letter}` if the file is Windows-1252"));
+        Problem { label, ..problem }.help(HELP)
     })
 }
 

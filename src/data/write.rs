@@ -4,19 +4,18 @@ mod columnar;
 mod digits;
 mod format;
 
-pub use columnar::{
-    FileColumn, Layout, Values, csv, csv_header, csv_rows, parquet, parquet_in_groups,
-};
+pub use columnar::{FileColumn, Layout, Values, parquet, parquet_in_groups};
 pub use digits::Digits;
 pub use format::{
-    Entry, OutColumn, campaign_yaml, campaign_yaml_with, record, record_csv, table_csv, yaml_text,
+    Entry, OutColumn, campaign_yaml, campaign_yaml_with, csv, csv_header, csv_rows, in_format,
+    record, record_csv, table_csv, yaml_text,
 };
 
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::disk::{self, ScratchFile, Set, SetKind};
-use crate::problem::Problem;
+use crate::problem::{Problem, problem};
 
 /// Writes a file under a temporary name in the same folder, then renames it. The folder is created
 /// if missing.
@@ -41,19 +40,18 @@ fn written(
     how: fn(&Path, &[u8]) -> io::Result<()>,
 ) -> Result<(), Problem> {
     if path.file_name().is_none() {
-        return Err(failed(path, &"this is not a file name"));
+        return Err(failed(path)("this is not a file name"));
     }
-    let folder =
-        path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let done = disk::make_folder(folder).and_then(|()| match disk::is_folder(path)? {
-        true => Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")),
-        false => how(path, bytes),
-    });
-    done.map_err(|error| failed(path, &error))
+    let done =
+        disk::make_folder(disk::folder_of(path)).and_then(|()| match disk::is_folder(path)? {
+            true => Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")),
+            false => how(path, bytes),
+        });
+    done.map_err(failed(path))
 }
 
-fn failed(path: &Path, why: &dyn std::fmt::Display) -> Problem {
-    Problem::error("write-failed", format!("`{}` cannot be written: {why}", path.display()))
+fn failed<E: std::fmt::Display>(path: &Path) -> impl Fn(E) -> Problem {
+    move |why| problem!("write-failed", "`{}` cannot be written: {why}", path.display())
 }
 
 /// A set of files: none is in its place before all are on the disk, and a previous set is removed
@@ -62,24 +60,23 @@ fn failed(path: &Path, why: &dyn std::fmt::Display) -> Problem {
 /// If dropped without [`Outputs::commit`], nothing is changed.
 #[derive(Debug)]
 pub struct Outputs {
-    folder: std::path::PathBuf,
+    folder: PathBuf,
     set: Set,
 }
 
 impl Outputs {
     /// A report in a folder, which is created when the first file is added.
-    pub fn new(folder: impl Into<std::path::PathBuf>) -> Self {
+    pub fn new(folder: impl Into<PathBuf>) -> Self {
         Self::of(SetKind::Report, folder)
     }
 
     /// A set of a kind.
-    pub fn of(kind: SetKind, folder: impl Into<std::path::PathBuf>) -> Self {
+    pub fn of(kind: SetKind, folder: impl Into<PathBuf>) -> Self {
         let folder = folder.into();
         Self { set: Set::new(&folder, kind), folder }
     }
 
     /// The same in a folder that does not outlive the run.
-    #[must_use]
     pub fn for_this_run(mut self) -> Self {
         self.set.unsynced();
         self
@@ -90,7 +87,7 @@ impl Outputs {
     /// # Errors
     /// `write-failed`, `path-outside`.
     pub fn add(&mut self, inside: &str, bytes: &[u8]) -> Result<(), Problem> {
-        self.set.add(inside, bytes).map_err(|error| self.not_added(inside, &error))
+        self.set.add(inside, bytes).map_err(|error| self.not_added(inside, error))
     }
 
     /// Adds a file that is written in parts.
@@ -102,9 +99,9 @@ impl Outputs {
         inside: &str,
         fill: impl FnOnce(&mut (dyn io::Write + Send)) -> Result<(), Problem>,
     ) -> Result<(), Problem> {
-        let mut file = self.set.open(inside).map_err(|error| self.not_added(inside, &error))?;
+        let mut file = self.set.open(inside).map_err(|error| self.not_added(inside, error))?;
         fill(&mut file)?;
-        self.set.close(file).map_err(|error| self.not_added(inside, &error))
+        self.set.close(file).map_err(|error| self.not_added(inside, error))
     }
 
     /// A temporary file without a name on the disk of the folder, for what does not fit into the
@@ -113,17 +110,17 @@ impl Outputs {
     /// # Errors
     /// `write-failed`.
     pub fn scratch_file(&mut self) -> Result<ScratchFile, Problem> {
-        self.set.scratch_file().map_err(|error| failed(&self.folder, &error))
+        self.set.scratch_file().map_err(failed(&self.folder))
     }
 
-    fn not_added(&self, inside: &str, error: &io::Error) -> Problem {
-        match error.kind() {
-            io::ErrorKind::InvalidInput => Problem::error(
-                "path-outside",
-                format!("`{inside}` is not a path inside the output folder, or is given twice"),
-            ),
-            _ => failed(&self.set.path(inside), error),
+    fn not_added(&self, inside: &str, error: io::Error) -> Problem {
+        if error.kind() != io::ErrorKind::InvalidInput {
+            return failed(&self.set.path(inside))(error);
         }
+        problem!(
+            "path-outside",
+            "`{inside}` is not a path inside the output folder, or is given twice"
+        )
     }
 
     /// A warning if the set of an interrupted run was completed.
@@ -142,7 +139,7 @@ impl Outputs {
     /// `write-failed`; the previous set is then complete.
     pub fn commit(self) -> Result<(), Problem> {
         let Self { folder, set } = self;
-        set.commit().map_err(|error| failed(&folder, &error))
+        set.commit().map_err(failed(&folder))
     }
 }
 

@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 
 use faults::{Op, pass, passed};
 pub use set::{SIGNATURE, Set, SetKind, UNFINISHED};
-pub use single::{create_new, keep, remove, write_whole};
+pub use single::{create_new, folder_of, keep, remove, write_whole};
 pub use tempfile::TempDir as Scratch;
 
 /// Kind of the object at a path.
@@ -41,11 +41,22 @@ pub enum Kind {
 /// # Errors
 /// The system's error, except for a path that does not exist.
 pub fn kind(path: &Path) -> io::Result<Option<Kind>> {
+    let meta = looked(path, fs::metadata)?;
+    Ok(meta.map(|meta| match meta.file_type() {
+        kind if kind.is_file() => Kind::File(meta.len()),
+        kind if kind.is_dir() => Kind::Folder,
+        _ => Kind::Other,
+    }))
+}
+
+/// What the system says of a path; `None` if nothing exists.
+fn looked<'a, T>(
+    path: &'a Path,
+    look: impl Fn(&'a Path) -> io::Result<T>,
+) -> io::Result<Option<T>> {
     pass(Op::Look, path)?;
-    match fs::metadata(path) {
-        Ok(meta) if meta.is_file() => Ok(Some(Kind::File(meta.len()))),
-        Ok(meta) if meta.is_dir() => Ok(Some(Kind::Folder)),
-        Ok(_) => Ok(Some(Kind::Other)),
+    match look(path) {
+        Ok(found) => Ok(Some(found)),
         Err(error) if missing(&error) => Ok(None),
         Err(error) => Err(error),
     }
@@ -95,12 +106,7 @@ pub fn is_folder(path: &Path) -> io::Result<bool> {
 /// # Errors
 /// As [`kind`].
 pub fn is_link(path: &Path) -> io::Result<bool> {
-    pass(Op::Look, path)?;
-    match fs::symlink_metadata(path) {
-        Ok(meta) => Ok(meta.is_symlink()),
-        Err(error) if missing(&error) => Ok(false),
-        Err(error) => Err(error),
-    }
+    Ok(looked(path, fs::symlink_metadata)?.is_some_and(|meta| meta.is_symlink()))
 }
 
 /// The absolute path without symbolic links; `None` if nothing exists.
@@ -108,12 +114,7 @@ pub fn is_link(path: &Path) -> io::Result<bool> {
 /// # Errors
 /// As [`kind`].
 pub fn real(path: &Path) -> io::Result<Option<PathBuf>> {
-    pass(Op::Look, path)?;
-    match fs::canonicalize(path) {
-        Ok(real) => Ok(Some(real)),
-        Err(error) if missing(&error) => Ok(None),
-        Err(error) => Err(error),
-    }
+    looked(path, fs::canonicalize)
 }
 
 /// The user who owns a file or folder.
@@ -133,9 +134,8 @@ pub fn owner(path: &Path) -> io::Result<u32> {
 /// The system's error.
 pub fn names(folder: &Path) -> io::Result<Vec<OsString>> {
     pass(Op::List, folder)?;
-    let mut names = fs::read_dir(folder)?
-        .map(|entry| Ok(entry?.file_name()))
-        .collect::<io::Result<Vec<_>>>()?;
+    let names = fs::read_dir(folder)?.map(|entry| Ok(entry?.file_name()));
+    let mut names = names.collect::<io::Result<Vec<_>>>()?;
     names.sort();
     Ok(names)
 }
@@ -170,19 +170,26 @@ impl Seek for Reader {
     }
 }
 
+/// The size of a plain file. Other kinds are refused before they are opened, since reading a pipe
+/// could block for ever.
+///
+/// # Errors
+/// Not a plain file; the system's error.
+pub fn size(path: &Path) -> io::Result<u64> {
+    match kind(path)? {
+        Some(Kind::File(size)) => Ok(size),
+        Some(Kind::Folder) => Err(io::Error::new(ErrorKind::IsADirectory, "it is a folder")),
+        Some(Kind::Other) => Err(io::Error::other("it is not a plain file")),
+        None => Err(ErrorKind::NotFound.into()),
+    }
+}
+
 /// Reads a plain file.
 ///
 /// # Errors
 /// Not a plain file; more than `limit` bytes (`FileTooLarge`); the system's error.
 pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
-    let size = match kind(path)? {
-        Some(Kind::File(size)) => size,
-        Some(Kind::Folder) => {
-            return Err(io::Error::new(ErrorKind::IsADirectory, "it is a folder"));
-        }
-        Some(Kind::Other) => return Err(io::Error::other("it is not a plain file")),
-        None => return Err(ErrorKind::NotFound.into()),
-    };
+    let size = size(path)?;
     let too_large =
         || io::Error::new(ErrorKind::FileTooLarge, format!("it has more than {} MB", limit >> 20));
     if size > limit {
@@ -317,10 +324,9 @@ pub(crate) fn make_folders(folder: &Path, made: &mut Vec<PathBuf>) -> io::Result
             Err(error) => return Err(error),
         }
     }
-    if is_folder(folder)? {
-        Ok(())
-    } else {
-        Err(io::Error::new(ErrorKind::NotADirectory, "it is not a folder"))
+    match is_folder(folder)? {
+        true => Ok(()),
+        false => Err(io::Error::new(ErrorKind::NotADirectory, "it is not a folder")),
     }
 }
 

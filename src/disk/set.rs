@@ -185,12 +185,6 @@ impl Set {
         ScratchFile::new(&self.folder.join(NEW))
     }
 
-    fn stage(&mut self, inside: &str, bytes: &[u8]) -> io::Result<()> {
-        self.write(&self.paths.len().to_string(), bytes)?;
-        self.paths.push(inside.to_string());
-        Ok(())
-    }
-
     fn write(&mut self, name: &str, bytes: &[u8]) -> io::Result<()> {
         let mut file = create(&self.folder.join(NEW).join(name))?;
         file.write(bytes)?;
@@ -207,23 +201,18 @@ impl Set {
         self.begin()?;
         for path in &self.paths {
             if is_folder(&self.folder.join(path))? {
-                return Err(io::Error::new(
-                    ErrorKind::IsADirectory,
-                    format!("`{path}` is a folder"),
-                ));
+                let says = format!("`{path}` is a folder");
+                return Err(io::Error::new(ErrorKind::IsADirectory, says));
             }
         }
-        let manifest: String = self
-            .hashes
-            .iter()
-            .zip(&self.paths)
-            .map(|(hash, path)| format!("{hash}  {path}\n"))
-            .collect();
+        let lines = self.hashes.iter().zip(&self.paths);
+        let manifest: String = lines.map(|(hash, path)| format!("{hash}  {path}\n")).collect();
         let new: HashSet<&str> = self.paths.iter().map(String::as_str).collect();
         let mut removes = before(&self.folder, self.kind.manifest())?;
         removes.retain(|path| !new.contains(path.as_str()));
         removes.extend(self.outdated_signatures(&removes, &new)?);
-        self.stage(self.kind.manifest(), manifest.as_bytes())?;
+        self.write(&self.paths.len().to_string(), manifest.as_bytes())?;
+        self.paths.push(self.kind.manifest().to_string());
         let journal = Journal { installs: self.paths.clone(), removes };
         self.write(JOURNAL, journal.text().as_bytes())?;
         self.sync()?;
@@ -235,15 +224,13 @@ impl Set {
         let placed =
             sync_folder(&self.folder).and_then(|()| place(&self.folder, &journal, &mut done));
         if let Err(error) = placed {
-            return Err(match done.undo(&self.folder) {
-                Ok(()) => error,
-                Err(_) => io::Error::new(
-                    error.kind(),
-                    format!(
-                        "{error}; the folder is incomplete, and the next run that writes there completes it"
-                    ),
-                ),
-            });
+            if done.undo(&self.folder).is_ok() {
+                return Err(error);
+            }
+            let says = format!(
+                "{error}; the folder is incomplete, and the next run that writes there completes it"
+            );
+            return Err(io::Error::new(error.kind(), says));
         }
         // The new set is complete. The rest of the old one is in a folder that the next run removes
         // if this one cannot.
@@ -264,9 +251,8 @@ impl Set {
         new: &HashSet<&str>,
     ) -> io::Result<Vec<String>> {
         let changed = |path: &str, hash: Option<&String>| {
-            let before = read(&self.folder.join(path), LARGEST_SIGNED);
-            hash.is_none()
-                || !before.is_ok_and(|bytes| hash.is_some_and(|hash| *hash == sha256(&bytes)))
+            let before = || read(&self.folder.join(path), LARGEST_SIGNED).ok();
+            !hash.is_some_and(|hash| before().is_some_and(|bytes| *hash == sha256(&bytes)))
         };
         let written = self.paths.iter().zip(&self.hashes).map(|(path, hash)| (path, Some(hash)));
         let mut outdated = Vec::new();
@@ -323,9 +309,8 @@ fn before(folder: &Path, manifest: &str) -> io::Result<Vec<String>> {
     }
     let bytes = read(&folder.join(manifest), LARGEST_LIST)?;
     let mut found = Vec::new();
-    for path in
-        String::from_utf8_lossy(&bytes).lines().filter_map(|line| Some(line.split_once("  ")?.1))
-    {
+    let text = String::from_utf8_lossy(&bytes);
+    for path in text.lines().filter_map(|line| Some(line.split_once("  ")?.1)) {
         // The manifest may have been edited: its paths must be inside this folder and not behind a
         // link.
         if plain(path)

@@ -73,7 +73,8 @@ pub fn remove(path: &Path) -> io::Result<()> {
     remove_file(path)
 }
 
-fn folder_of(path: &Path) -> &Path {
+/// The folder of a file.
+pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 

@@ -40,14 +40,6 @@ pub enum Acts {
     MeasuringChain,
 }
 
-impl Acts {
-    /// The word for it in a catalogue.
-    #[must_use]
-    pub fn in_words(self) -> &'static str {
-        self.word()
-    }
-}
-
 impl Words for Acts {
     const WORDS: &'static [(&'static str, Self)] = &[
         ("vehicle", Self::Vehicle),
@@ -125,26 +117,21 @@ pub struct Fit {
 }
 
 impl Catalogue {
-    #[must_use]
     pub fn effect(&self, name: &str) -> Option<&Effect> {
         self.effects.iter().find(|effect| effect.name == name)
     }
 
-    #[must_use]
     pub fn group(&self, name: &str) -> Option<&Group> {
         self.groups.iter().find(|group| group.name == name)
     }
 
     /// The channels of a group or a single channel.
-    #[must_use]
     pub fn channels(&self, name: &str) -> Option<Vec<String>> {
         if let Some(group) = self.group(name) {
             return Some(group.channels.clone());
         }
-        self.groups
-            .iter()
-            .any(|group| group.channels.iter().any(|channel| channel == name))
-            .then(|| vec![name.to_string()])
+        let mut channels = self.groups.iter().flat_map(|group| &group.channels);
+        channels.any(|channel| channel == name).then(|| vec![name.to_string()])
     }
 }
 

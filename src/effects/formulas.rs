@@ -3,7 +3,7 @@
 use super::catalogue::{Action, Parameter};
 use super::expression::{Formula, Known};
 use super::read::{CHANNEL, Reader};
-use crate::problem::Problem;
+use crate::problem::problem;
 use crate::syntax::document::Text;
 use crate::units::Unit;
 use crate::yaml::Node;
@@ -18,43 +18,47 @@ impl Reader<'_, '_> {
     ) -> Option<Action> {
         for key in ["operator", "channels", "each", "together"] {
             if let Some((key, _)) = effect.entry(key) {
-                let says = format!(
-                    "`{}` cannot be combined with `signals`, which defines the channels itself",
-                    key.text
+                self.fault(
+                    "contradiction",
+                    format!(
+                        "`{}` cannot be combined with `signals`, which defines the channels itself",
+                        key.text
+                    ),
+                    &key.span,
                 );
-                self.tell(Problem::error("contradiction", says).at(&key.span));
             }
         }
         if signals.entries().is_empty() {
             self.tell(signals.is_not("`signals`", "a map of channels and expressions"));
             return None;
         }
-        for parameter in parameters
-            .iter()
-            .filter(|parameter| parameter.neutral.is_none() || parameter.name.contains(CHANNEL))
-        {
+        for Parameter { name, neutral, .. } in parameters {
+            if neutral.is_some() && !name.contains(CHANNEL) {
+                continue;
+            }
             let says = format!(
-                "`{}` needs a number as `neutral`, at which the expressions change nothing",
-                parameter.name
+                "`{name}` needs a number as `neutral`, at which the expressions change nothing"
             );
-            let at = effect.get("parameters").unwrap_or(effect);
-            self.fault("key-missing", says, &at.span);
+            self.fault("key-missing", says, effect.span_of("parameters"));
         }
-        let last = |name: &str| name.rsplit('.').next().unwrap_or_default().to_string();
-        let names: Vec<(String, Unit)> = parameters
-            .iter()
-            .map(|parameter| (last(&parameter.name), parameter.unit.clone()))
-            .collect();
+        let named = |Parameter { name, unit, .. }: &Parameter| {
+            (name.rsplit('.').next().unwrap_or_default().to_string(), unit.clone())
+        };
+        let names: Vec<(String, Unit)> = parameters.iter().map(named).collect();
         let channels = self.with.units.clone();
         let mut formulas = Vec::new();
         for (key, written) in signals.entries() {
             let Some((_, unit)) = channels.iter().find(|(channel, _)| *channel == key.text) else {
-                let problem = Problem::error(
-                    "unit-missing",
-                    format!("the channel `{}` has no unit in this catalogue", key.text),
+                let known = channels.iter().map(|(channel, _)| channel);
+                self.tell(
+                    problem!(
+                        "unit-missing",
+                        &key.span,
+                        "the channel `{}` has no unit in this catalogue",
+                        key.text
+                    )
+                    .suggest(&key.text, known),
                 );
-                let known = channels.iter().map(|(channel, _)| channel.as_str());
-                self.tell(problem.at(&key.span).suggest(&key.text, known));
                 continue;
             };
             let Some(text) = written.scalar_text() else {

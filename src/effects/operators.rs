@@ -26,14 +26,6 @@ pub enum Operator {
     Shift,
 }
 
-impl Operator {
-    /// The word for it in a catalogue.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        self.word()
-    }
-}
-
 impl Words for Operator {
     const CODE: &'static str = "unknown-operator";
     const WORDS: &'static [(&'static str, Self)] = &[
@@ -62,15 +54,12 @@ impl Signals {
     pub fn compute(&mut self, formulas: &[Formula], parameters: &[f64]) -> Result<(), String> {
         let mut made = Vec::new();
         for formula in formulas {
-            if let Some(values) = formula.values(self, parameters) {
-                made.push((self.position(&formula.channel), values?));
+            let values = formula.values(self, parameters);
+            if let Some((at, values)) = self.position(&formula.channel).zip(values) {
+                made.push((at, values?));
             }
         }
-        for (at, values) in made {
-            if let Some(at) = at {
-                self.channels[at].values = values;
-            }
-        }
+        made.into_iter().for_each(|(at, values)| self.channels[at].values = values);
         Ok(())
     }
 
@@ -89,54 +78,40 @@ impl Signals {
         channels: &[String],
         seed: u64,
     ) -> Result<(), String> {
+        let positions: Vec<usize> =
+            channels.iter().filter_map(|name| self.position(name)).collect();
+        let pairs = channels.chunks_exact(2);
+        let pairs = pairs.filter_map(|pair| self.position(&pair[0]).zip(self.position(&pair[1])));
         match operator {
             Operator::Shift => self.axis.iter_mut().for_each(|x| *x += value),
             Operator::Swap => {
-                for pair in channels.chunks_exact(2) {
-                    if let (Some(a), Some(b)) = (self.position(&pair[0]), self.position(&pair[1])) {
-                        let (low, high) = (a.min(b), a.max(b));
-                        let (left, right) = self.channels.split_at_mut(high);
-                        std::mem::swap(&mut left[low].values, &mut right[0].values);
-                    }
+                for (a, b) in pairs.collect::<Vec<_>>() {
+                    let values = std::mem::take(&mut self.channels[a].values);
+                    self.channels[a].values =
+                        std::mem::replace(&mut self.channels[b].values, values);
                 }
             }
             Operator::Crosstalk => {
-                for pair in channels.chunks_exact(2) {
-                    if let (Some(to), Some(from)) =
-                        (self.position(&pair[0]), self.position(&pair[1]))
-                    {
-                        let partner = self.channels[from].values.clone();
-                        self.channels[to]
-                            .values
-                            .iter_mut()
-                            .zip(partner)
-                            .for_each(|(x, y)| *x += value * y);
-                    }
+                for (to, from) in pairs.collect::<Vec<_>>() {
+                    let partner = self.channels[from].values.clone();
+                    let values = self.channels[to].values.iter_mut();
+                    values.zip(partner).for_each(|(x, y)| *x += value * y);
                 }
             }
             Operator::LowPass => {
-                let filter = Filter::design(
-                    Band::LowPass(value),
-                    LOW_PASS_ORDER,
-                    self.rate,
-                    Phase::Causal,
-                    Cutoff::PerPass,
-                );
+                let band = Band::LowPass(value);
+                let (causal, per_pass) = (Phase::Causal, Cutoff::PerPass);
+                let filter = Filter::design(band, LOW_PASS_ORDER, self.rate, causal, per_pass);
                 let filter = filter.map_err(|error| error.to_string())?;
-                for name in channels {
-                    if let Some(at) = self.position(name) {
-                        self.channels[at].values = filter
-                            .apply(&self.channels[at].values)
-                            .map_err(|error| error.to_string())?;
-                    }
+                for at in positions {
+                    let values = &mut self.channels[at].values;
+                    *values = filter.apply(values).map_err(|error| error.to_string())?;
                 }
             }
             _ => {
-                for name in channels {
-                    if let Some(at) = self.position(name) {
-                        let seed = seed ^ (at as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-                        each(operator, value, &mut self.channels[at].values, self.rate, seed);
-                    }
+                for at in positions {
+                    let seed = seed ^ (at as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+                    each(operator, value, &mut self.channels[at].values, self.rate, seed);
                 }
             }
         }
@@ -165,7 +140,6 @@ fn each(operator: Operator, value: f64, values: &mut [f64], rate: f64, seed: u64
 pub struct Gauss(fastrand::Rng);
 
 impl Gauss {
-    #[must_use]
     pub fn new(seed: u64) -> Self {
         Self(fastrand::Rng::with_seed(seed))
     }

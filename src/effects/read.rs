@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::catalogue::{Action, Acts, Catalogue, Effect, Fit, Group, Parameter};
 use super::operators::Operator;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, problem};
 use crate::source::{Source, Span, Spanned};
 use crate::units::Unit;
 use crate::yaml::{self, Entries, FromNode, Key, Node, OneOrMore, Value, fields};
@@ -15,7 +15,7 @@ pub const CHANNEL: &str = "<channel>";
 const DEEPEST: usize = 8;
 
 /// Finds the text of an extended catalogue.
-pub type Find<'a> = &'a dyn Fn(&str, &Source) -> Result<Arc<Source>, Box<Problem>>;
+pub type Find<'a> = &'a dyn Fn(&str, &Source) -> Result<Arc<Source>, Problem>;
 
 /// The parameters of the built-in model: names with units.
 pub type ModelParameters<'a> = [(&'a str, &'a str)];
@@ -66,7 +66,8 @@ fields! {
     /// A parameter as it is written.
     struct WrittenParameter: "a parameter" {
         "unit" unit: Unit,
-        "neutral" neutral: Neutral = Neutral(None),
+        /// None if the vehicle file has it.
+        "neutral" neutral (neutral): Option<f64>,
         "default" default: Option<f64>,
         "range" range: Vec<f64>,
         "trials" trials: Vec<f64>,
@@ -115,21 +116,16 @@ fn read_below(
     let written: Written = reader.file(&tree)?;
     let base = written.extends.as_ref().and_then(|named| {
         if depth > DEEPEST {
-            let says = "catalogues extend each other in a circle";
-            reader.fault("extends-loop", says, &named.span);
+            reader.fault("extends-loop", "catalogues extend each other in a circle", &named.span);
             return None;
         }
-        let placed = |problem: Box<Problem>| match problem.at {
-            Some(_) => *problem,
-            None => problem.at(&named.span),
-        };
-        let text = reader.keep(find(&named.value, source).map_err(placed))?;
+        let found = find(&named.value, source).map_err(|problem| problem.or_at(&named.span));
+        let text = reader.keep(found)?;
         read_below(&text, find, model, reader.problems, depth + 1)
     });
     let (mut groups, mut units, mut effects, diagnosis) = base
-        .map_or_else(Default::default, |base| {
-            (base.groups, base.units, base.effects, base.diagnosis)
-        });
+        .map(|base| (base.groups, base.units, base.effects, base.diagnosis))
+        .unwrap_or_default();
     for (key, channels) in written.groups.0 {
         groups.retain(|group: &Group| group.name != key.text);
         groups.push(Group { name: key.text, channels: channels.0 });
@@ -145,9 +141,13 @@ fn read_below(
     for (key, node) in written.effects.0 {
         let removed = node.scalar_text() == Some("remove");
         if removed && !effects.iter().any(|effect: &Effect| effect.name == key.text) {
-            let known = effects.iter().map(|effect| effect.name.as_str());
-            let says = format!("there is no effect `{}` to remove", key.text);
-            let problem = Problem::error("unknown-effect", says).at(&key.span);
+            let known = effects.iter().map(|effect| &effect.name);
+            let problem = problem!(
+                "unknown-effect",
+                &key.span,
+                "there is no effect `{}` to remove",
+                key.text
+            );
             reader.tell(problem.suggest(&key.text, known));
         }
         effects.retain(|effect| effect.name != key.text);
@@ -179,16 +179,9 @@ impl FromNode<Known<'_>> for Channels {
 }
 
 /// A neutral value; none if the vehicle file has it.
-#[derive(Clone, Copy, Debug)]
-struct Neutral(Option<f64>);
-
-impl<C> FromNode<C> for Neutral {
-    fn from_node(reader: &mut yaml::Reader<'_, C>, key: &Key, node: &Node) -> Option<Self> {
-        match node.scalar_text() {
-            Some("vehicle") => Some(Self(None)),
-            _ => f64::from_node(reader, key, node).map(|value| Self(Some(value))),
-        }
-    }
+fn neutral<C>(reader: &mut yaml::Reader<'_, C>, key: &Key, node: &Node) -> Option<f64> {
+    let of_vehicle = node.scalar_text() == Some("vehicle");
+    if of_vehicle { None } else { f64::from_node(reader, key, node) }
 }
 
 impl FromNode<Known<'_>> for Effect {
@@ -199,8 +192,11 @@ impl FromNode<Known<'_>> for Effect {
         if parameters.is_empty() {
             // If all parameters are faulty, this is reported already.
             if node.get("parameters").is_none_or(|node| node.entries().is_empty()) {
-                let says = format!("the effect `{}` has no parameters", key.text);
-                reader.fault("key-missing", says, &key.span);
+                reader.fault(
+                    "key-missing",
+                    format!("the effect `{}` has no parameters", key.text),
+                    &key.span,
+                );
             }
             return None;
         }
@@ -209,7 +205,7 @@ impl FromNode<Known<'_>> for Effect {
             (None, None) => Action::Simulator,
             (None, Some(operator)) => {
                 let all = || reader.with.groups.iter().flat_map(|group| group.channels.clone());
-                let named = written.channels.as_ref().map(|channels| channels.0.clone());
+                let named = written.channels.clone().map(|Channels(named)| named);
                 Action::Signals(operator, named.unwrap_or_else(|| all().collect()))
             }
         };
@@ -243,10 +239,14 @@ impl Reader<'_, '_> {
             } else {
                 let known = groups
                     .iter()
-                    .flat_map(|group| std::iter::once(&group.name).chain(&group.channels));
-                let says = format!("`{name}` is neither a group nor a channel of a group");
-                let problem = Problem::error("unknown-channel", says).at(at);
-                self.tell(problem.suggest(&name, known.map(String::as_str)));
+                    .flat_map(|group| [&group.name].into_iter().chain(&group.channels));
+                let problem = problem!(
+                    "unknown-channel",
+                    at,
+                    "`{name}` is neither a group nor a channel of a group"
+                )
+                .suggest(&name, known);
+                self.tell(problem);
             }
         }
         channels
@@ -261,9 +261,9 @@ impl Reader<'_, '_> {
         parameters: &[Parameter],
         action: &Action,
     ) -> Vec<Fit> {
-        let each = effect.each.iter().flat_map(|channels| &channels.0);
-        let mut lists: Vec<Vec<String>> = each.map(|channel| vec![channel.clone()]).collect();
-        lists.extend(effect.together.iter().map(|channels| channels.0.clone()));
+        let each = effect.each.iter().flat_map(|Channels(each)| each.iter().cloned());
+        let mut lists: Vec<Vec<String>> = each.map(|channel| vec![channel]).collect();
+        lists.extend(effect.together.iter().map(|Channels(together)| together.clone()));
         if lists.is_empty() {
             lists.push(match action {
                 Action::Signals(_, channels) => channels.clone(),
@@ -276,18 +276,18 @@ impl Reader<'_, '_> {
             None => sets.extend((0..parameters.len()).filter(varied).map(|at| vec![at])),
             Some(fit) => {
                 for Spanned { value: OneOrMore(names), span } in fit {
-                    let found: Option<Vec<usize>> = names
-                        .iter()
-                        .map(|name| parameters.iter().position(|known| known.name == *name))
-                        .collect();
-                    match found.filter(|set| set.iter().all(varied)) {
-                        Some(set) => sets.push(set),
-                        None => self.fault(
+                    let number =
+                        |name: &String| parameters.iter().position(|known| known.name == *name);
+                    let set: Option<Vec<usize>> =
+                        names.iter().map(|name| number(name).filter(varied)).collect();
+                    if set.is_none() {
+                        self.fault(
                             "unknown-parameter",
                             "`fit` must list parameters of this effect that have `trials`",
                             span,
-                        ),
+                        );
                     }
+                    sets.extend(set);
                 }
             }
         }
@@ -302,8 +302,8 @@ impl Reader<'_, '_> {
         let Spanned { value: parameter, span } = named;
         let model = self.with.model;
         let Some((_, wanted)) = model.iter().find(|(known, _)| known == parameter) else {
-            let says = format!("the model has no parameter `{parameter}`");
-            let problem = Problem::error("unknown-parameter", says).at(span);
+            let problem =
+                problem!("unknown-parameter", span, "the model has no parameter `{parameter}`");
             self.tell(problem.suggest(parameter, model.iter().map(|(known, _)| *known)));
             return None;
         };
@@ -323,7 +323,6 @@ impl FromNode<Known<'_>> for Parameter {
     fn from_node(reader: &mut Reader<'_, '_>, key: &Key, node: &Node) -> Option<Self> {
         let written = WrittenParameter::from_node(reader, key, node)?;
         let name = &key.text;
-        let place = |key: &str| node.get(key).map_or(&node.span, |node| &node.span);
         let [low, high] = written.range[..] else {
             let says = format!(
                 "`range` of `{name}` must be two numbers, the smallest and the largest plausible value"
@@ -332,37 +331,42 @@ impl FromNode<Known<'_>> for Parameter {
             return None;
         };
         if low > high {
-            let says = format!("the range of `{name}` is empty: {low} to {high}");
-            reader.fault("range", says, place("range"));
+            reader.fault(
+                "range",
+                format!("the range of `{name}` is empty: {low} to {high}"),
+                node.span_of("range"),
+            );
             return None;
         }
         let mut trials = written.trials;
         trials.sort_by(f64::total_cmp);
         for trial in trials.iter().filter(|trial| !(low..=high).contains(*trial)) {
-            let says =
-                format!("the trial {trial} is outside the range {low} to {high} of `{name}`");
-            reader.fault("range", says, place("trials"));
+            reader.fault(
+                "range",
+                format!("the trial {trial} is outside the range {low} to {high} of `{name}`"),
+                node.span_of("trials"),
+            );
         }
-        let Neutral(neutral) = written.neutral;
         let model = match &written.model {
             Some(named) => Some(reader.model(named, &written.unit)?),
             None => None,
         };
-        let simulators = written.simulators.0.into_iter();
+        let simulators =
+            written.simulators.0.into_iter().map(
+                |(simulator, SimulatorParameter(name, factor))| (simulator.text, name, factor),
+            );
         Some(Self {
             name: name.clone(),
             unit: written.unit,
-            neutral,
-            default: written.default.or(neutral).unwrap_or(low),
+            neutral: written.neutral,
+            default: written.default.or(written.neutral).unwrap_or(low),
             low,
             high,
             trials,
             meaning: written.meaning.unwrap_or_default(),
             vanishes_high: written.vanishes.as_deref() == Some("high"),
             model,
-            simulators: simulators
-                .map(|(simulator, SimulatorParameter(name, factor))| (simulator.text, name, factor))
-                .collect(),
+            simulators: simulators.collect(),
         })
     }
 }

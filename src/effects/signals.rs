@@ -19,7 +19,6 @@ pub struct Channel {
 }
 
 impl Signals {
-    #[must_use]
     pub fn channel(&self, name: &str) -> Option<&Channel> {
         self.channels.iter().find(|channel| channel.name == name)
     }

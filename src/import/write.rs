@@ -69,7 +69,8 @@ pub fn write_record(
     };
     match format {
         Format::Csv => {
-            let headings: Vec<&str> = layouts.iter().map(Layout::heading).collect();
+            let headings: Vec<&str> =
+                layouts.iter().map(|layout| layout.heading.as_str()).collect();
             sink.write_all(csv_header(&headings).as_bytes()).map_err(failed)?;
             for start in (0..rows).step_by(BLOCK) {
                 let file = |(heading, values): (&&str, FileValues)| FileColumn {

@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use serde::Serialize;
+use serde_json::json;
 
 use super::{File, filled};
 use crate::data::write::{table_csv, yaml_text};
@@ -16,32 +16,21 @@ const FIRST: &str = "S01";
 /// Name of the first point of wanted operation.
 const FIRST_POINT: &str = "P01";
 
-#[derive(Serialize)]
-struct Parts {
-    name: String,
-    vehicle: bool,
-    sections: bool,
-    application: bool,
-    measured: bool,
-    simulated: bool,
-    track: bool,
-}
-
 /// # Errors
 /// `internal`: the template cannot be filled.
-pub fn files(name: &str, needs: &Needs) -> Result<Vec<File>, Box<Problem>> {
+pub fn files(name: &str, needs: &Needs) -> Result<Vec<File>, Problem> {
     let reads = |record: &str| needs.channels.iter().any(|need| need.record == record);
-    let parts = Parts {
-        name: yaml_text(name),
-        vehicle: !needs.vehicle.is_empty(),
-        sections: !needs.sections.is_empty(),
-        application: !needs.application.is_empty(),
-        measured: reads("measured"),
-        simulated: reads("simulated"),
-        track: reads("track"),
-    };
-    let mut files = vec![("campaign.yaml".to_string(), filled(TEMPLATE, &parts)?)];
-    if parts.vehicle {
+    let data = json!({
+        "name": yaml_text(name),
+        "vehicle": !needs.vehicle.is_empty(),
+        "sections": !needs.sections.is_empty(),
+        "application": !needs.application.is_empty(),
+        "measured": reads("measured"),
+        "simulated": reads("simulated"),
+        "track": reads("track"),
+    });
+    let mut files = vec![("campaign.yaml".to_string(), filled(TEMPLATE, &data)?)];
+    if !needs.vehicle.is_empty() {
         files.push(("vehicle.yaml".into(), vehicle(&needs.vehicle)));
     }
     for (path, table, first) in [
@@ -51,9 +40,8 @@ pub fn files(name: &str, needs: &Needs) -> Result<Vec<File>, Box<Problem>> {
         if !table.is_empty() {
             let header: Vec<String> =
                 table.iter().map(|need| heading(&need.key, need.unit.as_deref())).collect();
-            let row = (0..header.len())
-                .map(|column| if column == 0 { first.to_string() } else { String::new() })
-                .collect();
+            let mut row = vec![String::new(); header.len()];
+            row[0] = first.to_string();
             files.push((path.into(), table_csv(&[header, row])));
         }
     }

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use crate::data::Heading;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, error, problem};
 use crate::units::{Dimension, Unit};
 
 /// Columns that serve as axis and time if they are in the list.
@@ -45,36 +45,32 @@ pub struct Listed {
 
 /// Problems: `unit-missing`, `unknown-unit`, `name-missing`, `channel-name`, each with its place.
 pub fn channels(headings: &[Heading], problems: &mut Problems) -> Vec<Channel> {
-    let one = |heading: &Heading| {
-        if heading.name.is_empty() {
-            problems.push(
-                Problem::error("name-missing", "a channel has no name")
-                    .at(&heading.span)
-                    .help("write name and unit: `Y_1R [kN]`"),
-            );
-            return None;
+    let channel = |Heading { name, span, .. }: &Heading| {
+        if name.is_empty() {
+            return Err(error("name-missing", "a channel has no name", span)
+                .help("write name and unit: `Y_1R [kN]`"));
         }
-        if heading.name.contains(NOT_IN_NAMES) || heading.name.chars().any(crate::problem::acts) {
-            let says = format!(
-                "the channel `{}` has a quotation mark, a backslash or a brace in its name",
-                heading.name
-            );
-            problems.push(
-                Problem::error("channel-name", says)
-                    .at(&heading.span)
-                    .help("rename the column in the records"),
-            );
-            return None;
+        if name.contains(NOT_IN_NAMES) || name.chars().any(crate::problem::acts) {
+            return Err(problem!(
+                "channel-name",
+                span,
+                "the channel `{name}` has a quotation mark, a backslash or a brace in its name"
+            )
+            .help("rename the column in the records"));
         }
-        let unit = heading.unit(None).map_err(|problem| problems.push(problem)).ok()?;
-        Some(Channel { name: heading.name.clone(), unit })
+        Ok(name.clone())
     };
-    headings.iter().filter_map(one).collect()
+    let mut keep = |heading: &Heading| {
+        let found =
+            channel(heading).and_then(|name| Ok(Channel { name, unit: heading.unit(None)? }));
+        found.map_err(|problem| problems.push(problem)).ok()
+    };
+    headings.iter().filter_map(&mut keep).collect()
 }
 
 /// Axis and time are the channels `distance` and `time`. A list that has neither gets both, unless
 /// it is the header of a record.
-pub fn listed(channels: Vec<Channel>, of_record: bool) -> Result<Listed, Box<Problem>> {
+pub fn listed(channels: Vec<Channel>, of_record: bool) -> Result<Listed, Problem> {
     let named = |name: &str, dimension: Dimension| {
         channels
             .iter()
@@ -90,22 +86,16 @@ pub fn listed(channels: Vec<Channel>, of_record: bool) -> Result<Listed, Box<Pro
         time = time.or_else(|| new(TIME, "s"));
     }
     let Some(axis) = axis.or_else(|| time.clone()) else {
-        let problem = Problem::error(
+        return Err(problem!(
             "no-axis",
-            format!(
-                "the record has neither a column `{DISTANCE}`, a length, nor a column `{TIME}`"
-            ),
-        );
-        return Err(Box::new(
-            problem.help("sections are cut along one of them: rename the column, with its unit"),
-        ));
+            "the record has neither a column `{DISTANCE}`, a length, nor a column `{TIME}`"
+        )
+        .help("sections are cut along one of them: rename the column, with its unit"));
     };
-    let rest: Vec<Channel> = channels
-        .into_iter()
-        .filter(|channel| {
-            channel.name != axis.name && Some(&channel.name) != time.as_ref().map(|time| &time.name)
-        })
-        .collect();
+    let mut rest = channels;
+    rest.retain(|Channel { name, .. }| {
+        *name != axis.name && time.as_ref().is_none_or(|time| *name != time.name)
+    });
     Ok(Listed { axis, time, groups: groups(&rest) })
 }
 
@@ -117,33 +107,28 @@ pub fn groups(channels: &[Channel]) -> Vec<Group> {
         if taken.contains(channel.name.as_str()) {
             continue;
         }
-        let single = Group {
+        let mut group = Group {
             stem: channel.name.clone(),
             separator: "",
             unit: channel.unit.clone(),
             positions: Vec::new(),
         };
-        let Some((stem, separator, _)) = position(&channel.name) else {
-            found.push(single);
-            continue;
-        };
-        let alike = |other: &&Channel| {
-            other.unit.dimension == channel.unit.dimension
-                && position(&other.name)
-                    .is_some_and(|(its, between, _)| (its, between) == (stem, separator))
-        };
-        let members: Vec<&Channel> = channels.iter().filter(alike).collect();
-        if members.len() < 2 {
-            found.push(single);
-            continue;
+        if let Some((stem, separator, _)) = position(&channel.name) {
+            let alike = |other: &&Channel| {
+                other.unit.dimension == channel.unit.dimension
+                    && position(&other.name)
+                        .is_some_and(|(its, between, _)| (its, between) == (stem, separator))
+            };
+            let members: Vec<&str> =
+                channels.iter().filter(alike).map(|member| member.name.as_str()).collect();
+            if members.len() > 1 {
+                taken.extend(&members);
+                let places = members.iter().filter_map(|member| position(member));
+                group.positions = places.map(|(.., at)| at.to_string()).collect();
+                (group.stem, group.separator) = (stem.into(), separator);
+            }
         }
-        taken.extend(members.iter().map(|member| member.name.as_str()));
-        let positions = members
-            .iter()
-            .filter_map(|member| position(&member.name))
-            .map(|(.., at)| at.to_string())
-            .collect();
-        found.push(Group { stem: stem.into(), separator, unit: channel.unit.clone(), positions });
+        found.push(group);
     }
     found
 }

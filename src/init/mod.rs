@@ -6,25 +6,21 @@ pub mod channels;
 pub mod protocol;
 
 use minijinja::{Environment, UndefinedBehavior, Value};
-use serde::Serialize;
 use serde_json::Value as Json;
 
-use crate::problem::Problem;
+use crate::problem::{Problem, problem};
 
 /// A file of the draft: its path inside the folder, and its text.
 pub type File = (String, String);
 
 /// Fills a template with texts, as they are.
-pub(crate) fn filled(template: &str, data: &impl Serialize) -> Result<String, Box<Problem>> {
-    let failed = |error: String| {
-        Box::new(Problem::error("internal", format!("a template cannot be filled: {error}")))
-    };
-    let data = serde_json::to_value(data).map_err(|error| failed(error.to_string()))?;
+pub(crate) fn filled(template: &str, data: &Json) -> Result<String, Problem> {
     let mut engine = Environment::new();
     engine.set_undefined_behavior(UndefinedBehavior::Strict);
-    let text =
-        engine.render_str(template, value(&data)).map(|text| text.trim_end().to_owned() + "\n");
-    text.map_err(|error| failed(error.to_string()))
+    let text = engine
+        .render_str(template, value(data))
+        .map_err(|error| problem!("internal", "a template cannot be filled: {error}"))?;
+    Ok(text.trim_end().to_owned() + "\n")
 }
 
 fn value(data: &Json) -> Value {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use serde::Serialize;
+use serde_json::{Value as Json, json};
 
 use super::channels::{Channel, Group, Listed};
 use super::filled;
@@ -28,47 +28,6 @@ pub struct Parent<'a> {
     pub names: BTreeSet<String>,
 }
 
-#[derive(Serialize)]
-struct Draft<'a> {
-    name: String,
-    title: String,
-    parent: Option<&'a str>,
-    extends: Option<&'a str>,
-    axis: Option<Column>,
-    time: Option<Column>,
-    has_filter: bool,
-    cut_off: String,
-    filter: String,
-    groups: Vec<Block>,
-    places: Vec<Place>,
-}
-
-#[derive(Serialize)]
-struct Column {
-    name: String,
-    unit: String,
-}
-
-#[derive(Serialize)]
-struct Block {
-    name: String,
-    title: String,
-    unit: String,
-    /// ` kN` after a number.
-    number_unit: String,
-    place: Option<String>,
-    column: String,
-    quantity: String,
-    std_limit: String,
-    mean_limit: String,
-}
-
-#[derive(Serialize)]
-struct Place {
-    name: String,
-    members: String,
-}
-
 /// The protocol of a folder in canonical form. With a parent, `listed` holds the channels that the
 /// parent does not have.
 ///
@@ -78,68 +37,62 @@ pub fn text(
     folder: &str,
     listed: Option<&Listed>,
     parent: Option<&Parent<'_>>,
-) -> Result<String, Box<Problem>> {
+) -> Result<String, Problem> {
     let mut names = Names(parent.map(|parent| parent.names.clone()).unwrap_or_default());
     let groups = listed.map(|listed| listed.groups.as_slice()).unwrap_or_default();
-    let has_filter = !groups.is_empty() && listed.is_some_and(|listed| listed.time.is_some());
-    let (mut places, mut blocks): (Vec<(Vec<String>, Place)>, Vec<Block>) =
-        (Vec::new(), Vec::new());
-    for group in groups {
-        let place =
-            (!group.positions.is_empty()).then(|| place(&group.positions, &mut places, &mut names));
-        blocks.push(block(group, place, &mut names));
-    }
-    let column =
-        |channel: &Channel| Column { name: channel.name.clone(), unit: channel.unit.text.clone() };
-    let draft = Draft {
-        name: format!("{}-protocol", block_name(folder)),
-        title: format!("Protocol of {}", plain_text(folder)),
-        parent: parent.map(|parent| parent.name),
-        extends: parent.map(|parent| parent.extends.as_str()),
-        axis: listed.map(|listed| column(&listed.axis)),
-        time: listed.and_then(|listed| listed.time.as_ref()).map(column),
-        has_filter,
-        cut_off: names.free("lowpass_frequency"),
-        filter: names.free("LP"),
-        groups: blocks,
-        places: places.into_iter().map(|(_, place)| place).collect(),
-    };
+    let time = listed.and_then(|listed| listed.time.as_ref());
+    let mut places: Vec<(&[String], String)> = Vec::new();
+    let blocks: Vec<Json> =
+        groups.iter().map(|group| block(group, &mut places, &mut names)).collect();
+    let places: Vec<Json> = places
+        .into_iter()
+        .map(|(positions, name)| json!({"name": name, "members": positions.join(", ")}))
+        .collect();
+    let column = |channel: &Channel| json!({"name": channel.name, "unit": channel.unit.text});
+    let draft = json!({
+        "name": format!("{}-protocol", block_name(folder)),
+        "title": format!("Protocol of {}", plain_text(folder)),
+        "parent": parent.map(|parent| parent.name),
+        "extends": parent.map(|parent| &parent.extends),
+        "axis": listed.map(|listed| column(&listed.axis)),
+        "time": time.map(column),
+        "has_filter": !groups.is_empty() && time.is_some(),
+        "cut_off": names.free("lowpass_frequency"),
+        "filter": names.free("LP"),
+        "groups": blocks,
+        "places": places,
+    });
     let source = Source::new("protocol.fp", filled(TEMPLATE, &draft)?);
     Ok(syntax::print_text(&syntax::read_text(&source, &mut Problems::default())))
 }
 
-/// The place with these positions; channels with the same positions share one.
-fn place(
-    positions: &[String],
-    places: &mut Vec<(Vec<String>, Place)>,
+/// The blocks of a group. Channels with the same positions share a place.
+fn block<'a>(
+    group: &'a Group,
+    places: &mut Vec<(&'a [String], String)>,
     names: &mut Names,
-) -> String {
-    if let Some((_, known)) = places.iter().find(|(known, _)| known == positions) {
-        return known.name.clone();
+) -> Json {
+    let positions = group.positions.as_slice();
+    if !positions.is_empty() && places.iter().all(|(known, _)| *known != positions) {
+        places.push((positions, names.free("position")));
     }
-    let name = names.free("position");
-    places.push((positions.to_vec(), Place { name: name.clone(), members: positions.join(", ") }));
-    name
-}
-
-fn block(group: &Group, place: Option<String>, names: &mut Names) -> Block {
-    let name = names.free(&identifier(&group.stem));
-    let unit = group.unit.text.clone();
-    let column = match &place {
-        Some(place) => format!("{}{}{{{place}}}", group.stem, group.separator),
-        None => group.stem.clone(),
-    };
-    Block {
-        number_unit: after_number(&group.unit),
-        quantity: names.free(&format!("{name}_rms")),
-        std_limit: names.free(&format!("{name}_std_limit")),
-        mean_limit: names.free(&format!("{name}_mean_limit")),
-        title: group.stem.clone(),
-        name,
-        unit,
-        place,
-        column,
-    }
+    let place = places.iter().find(|(known, _)| *known == positions).map(|(_, name)| name);
+    let Group { stem, separator, unit, .. } = group;
+    let name = names.free(&identifier(stem));
+    json!({
+        "number_unit": after_number(unit),
+        "quantity": names.free(&format!("{name}_rms")),
+        "std_limit": names.free(&format!("{name}_std_limit")),
+        "mean_limit": names.free(&format!("{name}_mean_limit")),
+        "title": stem,
+        "name": name,
+        "unit": unit.text,
+        "place": place,
+        "column": match place {
+            Some(place) => format!("{stem}{separator}{{{place}}}"),
+            None => stem.clone(),
+        },
+    })
 }
 
 /// Names that are in use.

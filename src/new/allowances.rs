@@ -42,24 +42,22 @@ struct Difference {
 }
 
 /// Allowances of the compared channels, and what they were estimated from.
-#[must_use]
 pub fn allowances(pairs: &[Pair], roles: &Roles, cut: &Cut) -> (Vec<Allowance>, String) {
     let repeats = repeats(pairs, roles, cut);
+    let of_repeats = !repeats.is_empty();
+    let neighbours = |at: &usize| {
+        let next = cut.windows.get(at + 1);
+        next.is_some_and(|next| next.pair == cut.windows[*at].pair)
+    };
+    let couples: Vec<(usize, usize)> = if of_repeats {
+        repeats
+    } else {
+        (0..cut.windows.len()).filter(neighbours).map(|at| (at, at + 1)).collect()
+    };
     let mut counted = 0;
-    let all = roles.outputs.iter().map(|name| {
+    let allowance = |name: &String| {
         let of: Vec<Option<Difference>> =
             (0..cut.windows.len()).map(|at| difference(pairs, cut, name, at)).collect();
-        let neighbours = |at: &usize| {
-            cut.windows
-                .get(at + 1)
-                .is_some_and(|next| next.pair == cut.windows[*at].pair)
-                .then_some((*at, at + 1))
-        };
-        let couples: Vec<(usize, usize)> = if repeats.is_empty() {
-            (0..cut.windows.len()).filter_map(|at| neighbours(&at)).collect()
-        } else {
-            repeats.clone()
-        };
         let both: Vec<(&Difference, &Difference)> =
             couples.iter().filter_map(|(a, b)| of[*a].as_ref().zip(of[*b].as_ref())).collect();
         counted = counted.max(both.len());
@@ -87,14 +85,14 @@ pub fn allowances(pairs: &[Pair], roles: &Roles, cut: &Cut) -> (Vec<Allowance>, 
             rms,
             peak,
         }
-    });
-    let all = all.collect();
-    let from = match (counted >= FEWEST, repeats.is_empty()) {
+    };
+    let all = roles.outputs.iter().map(allowance).collect();
+    let from = match (counted >= FEWEST, of_repeats) {
         (false, _) => {
             "Too few sections for a scatter: the standard deviations are placeholders.".to_string()
         }
-        (true, false) => format!("Standard deviations from {counted} repeated sections."),
-        (true, true) => format!(
+        (true, true) => format!("Standard deviations from {counted} repeated sections."),
+        (true, false) => format!(
             "Standard deviations from the scatter of the differences of {counted} neighbouring sections."
         ),
     };

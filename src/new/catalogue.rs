@@ -7,7 +7,7 @@ use super::records::Roles;
 use super::scales::{Of, Scales};
 use super::windows::{Cut, two_digits};
 use crate::init::protocol::identifier;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, problem};
 use crate::source::Source;
 use crate::units::Unit;
 use crate::yaml::{self, Entries, Reader, fields};
@@ -74,7 +74,7 @@ pub fn entries(
     sizes: &[(Allowance, Unit)],
     cut: &Cut,
 ) -> Result<Vec<Entry>, Problem> {
-    let wrong = |says: &str| Problem::error("internal", format!("the list of effects: {says}"));
+    let wrong = |says: &str| problem!("internal", "the list of effects: {says}");
     let mut problems = Problems::default();
     let tree = yaml::load(&Source::new("effects.yaml", EFFECTS), &mut problems)
         .ok_or_else(|| wrong("no YAML"))?;
@@ -88,93 +88,55 @@ pub fn entries(
         if !effect.domains.iter().any(|known| known == domain) {
             continue;
         }
-        let (&[low, high], default) = (effect.range.as_slice(), effect.default) else {
+        let &[low, high] = effect.range.as_slice() else {
             return Err(wrong("an effect without range"));
         };
         let entry = Entry {
             name: key.text.clone(),
             title: effect.title,
-            means: effect.means.clone(),
+            means: effect.means,
             acts_on: "vehicle",
             settled_by: effect.settled_by,
-            parameter: key.text.clone(),
+            parameter: key.text,
             unit: "-".into(),
-            neutral: "0".into(),
             term: effect.term,
             ..Entry::default()
         };
-        let sized = |entry: Entry, neutral: f64, scale: f64| {
-            sized(entry, (low, high), neutral, default, scale)
-        };
+        let (range, neutral, default) = ((low, high), effect.neutral, effect.default);
         let Some(operator) = effect.operator else {
             let of = Of::named(&effect.of).ok_or_else(|| wrong("an unknown `of`"))?;
-            for scales in all {
-                let (unit, scale) = of.of(scales);
-                if !(scale.is_finite() && scale > 0.0) {
-                    continue;
-                }
-                let name = format!("{}{}", key.text, scales.suffix);
-                let title = if scales.suffix.is_empty() {
-                    entry.title.clone()
-                } else {
-                    format!("{} of {}", entry.title, scales.channel)
-                };
-                let term = entry.term.replacen(&key.text, &name, 1);
-                let entry = Entry {
-                    parameter: name.clone(),
-                    name,
-                    title,
-                    term,
-                    measured_in: effect.means.clone(),
-                    unit,
-                    ..entry.clone()
-                };
-                found.push(sized(entry, 0.0, scale));
-            }
+            let scaled = all.iter().map(|scales| (scales, of.of(scales)));
+            let scaled = scaled.filter(|(_, (_, scale))| scale.is_finite() && *scale > 0.0);
+            found.extend(scaled.map(|(scales, (unit, scale))| {
+                sized(of_machine(&entry, scales, unit), range, 0.0, default, scale)
+            }));
             continue;
         };
         let entry = Entry {
             acts_on: "measuring chain",
             operator: Some(operator.clone()),
+            group: "all_channels".into(),
+            measured_in: "factor".into(),
             parameter: effect.parameter,
             ..entry
         };
-        let neutral = effect.neutral;
         match effect.of.as_str() {
-            "" => found.push(sized(
-                Entry { group: "all_channels".into(), measured_in: "factor".into(), ..entry },
-                neutral,
-                1.0,
-            )),
+            "" => found.push(sized(entry, range, neutral, default, 1.0)),
             "axis" => {
-                let unit = if cut.over_distance { "m" } else { "s" };
-                let (group, measured_in) =
-                    ("all_channels".to_string(), "recorded minus true position".to_string());
-                let entry = Entry { unit: unit.into(), group, measured_in, ..entry };
-                found.push(sized(entry, neutral, cut.furthest));
+                let unit = if cut.over_distance { "m" } else { "s" }.into();
+                let measured_in = "recorded minus true position".into();
+                let entry = Entry { unit, measured_in, ..entry };
+                found.push(sized(entry, range, neutral, default, cut.furthest));
             }
             _ => {
-                for (channel, (allowance, unit)) in roles.outputs.iter().zip(sizes) {
-                    let group = identifier(channel);
-                    let several = roles.outputs.len() > 1;
-                    let name = if several {
-                        format!("{}_{group}", entry.name)
-                    } else {
-                        entry.name.clone()
-                    };
-                    let title = if several {
-                        format!("{} ({channel})", entry.title)
-                    } else {
-                        entry.title.clone()
-                    };
-                    let measured_in = format!("in {unit}");
-                    let of_channel = Entry { name, title, group, measured_in, ..entry.clone() };
-                    let clip = operator == "clip";
-                    let bound = ABOVE_PEAK * allowance.peak;
-                    found.push(if clip {
-                        clipped(of_channel, low * allowance.rms, bound)
-                    } else {
-                        sized(of_channel, neutral, allowance.rms)
+                let several = roles.outputs.len() > 1;
+                for (channel, (Allowance { rms, peak, .. }, unit)) in
+                    roles.outputs.iter().zip(sizes)
+                {
+                    let entry = of_channel(&entry, channel, unit, several);
+                    found.push(match operator.as_str() {
+                        "clip" => clipped(entry, low * rms, ABOVE_PEAK * peak),
+                        _ => sized(entry, range, neutral, default, *rms),
                     });
                 }
             }
@@ -183,21 +145,44 @@ pub fn entries(
     Ok(found)
 }
 
+/// An effect of the machine on a force.
+fn of_machine(entry: &Entry, scales: &Scales, unit: String) -> Entry {
+    let name = format!("{}{}", entry.name, scales.suffix);
+    let title = if scales.suffix.is_empty() {
+        entry.title.clone()
+    } else {
+        format!("{} of {}", entry.title, scales.channel)
+    };
+    Entry {
+        term: entry.term.replacen(&entry.name, &name, 1),
+        parameter: name.clone(),
+        name,
+        title,
+        measured_in: entry.means.clone(),
+        unit,
+        ..entry.clone()
+    }
+}
+
+/// An effect of the measuring chain on a channel.
+fn of_channel(entry: &Entry, channel: &str, unit: &Unit, several: bool) -> Entry {
+    let group = identifier(channel);
+    let mut entry = entry.clone();
+    if several {
+        entry.name += &format!("_{group}");
+        entry.title += &format!(" ({channel})");
+    }
+    Entry { group, measured_in: format!("in {unit}"), ..entry }
+}
+
 /// A bound: neutral above every value.
 fn clipped(entry: Entry, low: f64, bound: f64) -> Entry {
     let (low, bound) = (two_digits(low.min(0.3 * bound)), up(bound));
-    let trials: Vec<f64> =
+    let mut trials: Vec<f64> =
         ONE_SIDED.iter().rev().map(|share| two_digits(bound - share * (bound - low))).collect();
-    let trials: Vec<f64> =
-        trials.into_iter().filter(|trial| *trial > low && *trial < bound).collect();
+    trials.retain(|trial| *trial > low && *trial < bound);
     let default = trials.get(trials.len() / 2).copied().unwrap_or(low);
-    Entry {
-        neutral: bound.to_string(),
-        default: default.to_string(),
-        range: listed(&[low, bound]),
-        trials: listed(&trials),
-        ..entry
-    }
+    ranged(entry, (low, bound), bound, default, &trials)
 }
 
 /// Range, default and trials in the unit of the parameter.
@@ -214,17 +199,22 @@ fn sized(entry: Entry, (low, high): (f64, f64), neutral: f64, default: f64, scal
     };
     trials.sort_by(f64::total_cmp);
     trials.dedup();
-    let default = default.clamp(low, high);
-    Entry {
-        neutral: neutral.to_string(),
-        default: default.to_string(),
-        range: listed(&[low, high]),
-        trials: listed(&trials),
-        ..entry
-    }
+    ranged(entry, (low, high), neutral, default.clamp(low, high), &trials)
 }
 
-fn listed(numbers: &[f64]) -> String {
+fn ranged(
+    entry: Entry,
+    (low, high): (f64, f64),
+    neutral: f64,
+    default: f64,
+    trials: &[f64],
+) -> Entry {
+    let (neutral, default) = (neutral.to_string(), default.to_string());
+    Entry { neutral, default, range: listed(&[low, high]), trials: listed(trials), ..entry }
+}
+
+/// A list as YAML has it.
+pub fn listed(numbers: &[f64]) -> String {
     format!("[{}]", numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(", "))
 }
 

@@ -9,7 +9,7 @@ pub mod records;
 pub mod scales;
 pub mod windows;
 
-use serde::Serialize;
+use serde_json::{Value as Json, json};
 
 use crate::data::write::{table_csv, yaml_text};
 use crate::init::protocol::{Names, after_number, block_name, identifier, plain_text};
@@ -19,8 +19,8 @@ use crate::source::Source;
 use crate::syntax;
 use crate::units::Unit;
 use crate::units::number::significant;
-use allowances::allowances;
-use catalogue::{Entry, entries};
+use allowances::{Allowance, allowances};
+use catalogue::{Entry, entries, listed};
 use records::{DISTANCE, Pair, Roles, Series, TIME, roles};
 use scales::{Motion, motion, scales};
 use windows::{Cut, cut, piece, two_digits};
@@ -47,63 +47,6 @@ pub struct Made {
     pub told: Vec<String>,
 }
 
-/// A compared channel in templates.
-#[derive(Serialize)]
-struct Compared {
-    name: String,
-    quoted: String,
-    title: String,
-    id: String,
-    group: String,
-    unit: String,
-    /// ` kN` after a number.
-    number_unit: String,
-    limit: String,
-    noise: String,
-    noise_name: String,
-    gain_name: String,
-    level_sd: String,
-    band_sd: String,
-    gain_sd: String,
-    lag_sd: String,
-}
-
-#[derive(Serialize)]
-struct Column {
-    name: String,
-    unit: String,
-}
-
-#[derive(Serialize)]
-struct Parameter {
-    name: String,
-    unit: String,
-    title: String,
-    term: String,
-}
-
-#[derive(Serialize)]
-struct Parts {
-    name: String,
-    title: String,
-    axis: Column,
-    time: Option<Column>,
-    inputs: Vec<Column>,
-    channels: Vec<Compared>,
-    all: String,
-    parameters: Vec<Parameter>,
-    effects: Vec<Entry>,
-    highest: String,
-    bands: String,
-    count: String,
-    alike: String,
-    furthest: String,
-    step: String,
-    strata: bool,
-    covariates: String,
-    origin: String,
-}
-
 /// All files of the campaign of a machine.
 ///
 /// # Errors
@@ -114,75 +57,70 @@ pub fn files(folder: &str, domain: &str, pairs: &[Pair]) -> Result<Made, Problem
     let (allowed, origin) = allowances(pairs, &roles, &cut);
     let scales = scales(pairs, &roles, &cut);
     let motion = motion(pairs, &roles, None);
-    let unit = |name: &str| {
-        pairs[0].measured.channel(name).map_or_else(Unit::one, |channel| channel.unit.clone())
-    };
+    let unit = |name: &str| unit_of(pairs, name);
     let sizes: Vec<_> =
         allowed.iter().copied().zip(roles.outputs.iter().map(|name| unit(name))).collect();
     let effects = entries(domain, &scales, &roles, &sizes, &cut)?;
     let mut names = Names::default();
-    let channels: Vec<Compared> = roles
-        .outputs
-        .iter()
-        .zip(&sizes)
-        .map(|(name, (allowed, unit))| compared(name, allowed, unit, &mut names))
-        .collect();
+    let compared = roles.outputs.iter().zip(&sizes);
+    let channels: Vec<Json> =
+        compared.map(|(name, (allowed, unit))| channel(name, allowed, unit, &mut names)).collect();
     let (table, covariates) = sections(pairs, &cut, motion.as_ref(), &roles);
-    let parameters: Vec<Parameter> = effects
-        .iter()
-        .filter(|effect| effect.operator.is_none())
-        .map(|effect| Parameter {
-            name: effect.parameter.clone(),
-            unit: effect.unit.clone(),
-            title: effect.title.clone(),
-            term: effect.term.clone(),
+    let of_machine = effects.iter().filter(|effect| effect.operator.is_none());
+    let parameters: Vec<Json> = of_machine
+        .map(|Entry { parameter, unit, title, term, .. }| {
+            json!({"name": parameter, "unit": unit, "title": title, "term": term})
         })
         .collect();
-    let column = |name: &str, unit: &str| Column { name: name.into(), unit: unit.into() };
-    let time = column(TIME, "s");
-    let (axis, time) =
-        if cut.over_distance { (column(DISTANCE, "m"), Some(time)) } else { (time, None) };
-    let given = [column(axis.name.as_str(), axis.unit.as_str())]
-        .into_iter()
-        .chain(time.as_ref().map(|time| column(&time.name, &time.unit)));
-    let inputs = given
-        .chain(roles.inputs.iter().map(|name| Column { name: name.clone(), unit: unit(name).text }))
-        .collect();
-    let highest = two_digits(cut.content.1).to_string();
-    let parts = Parts {
-        name: block_name(folder),
-        title: plain_text(folder),
-        axis,
-        time,
-        inputs,
-        all: channels.iter().map(|channel| channel.quoted.clone()).collect::<Vec<_>>().join(", "),
-        channels,
-        parameters,
-        effects,
-        highest,
-        bands: listed(&cut.edges),
-        count: cut.edges.len().saturating_sub(1).to_string(),
-        alike: listed(&[cut.edges[0], cut.edges[cut.edges.len() - 1]]),
-        furthest: cut.furthest.to_string(),
-        step: two_digits(cut.step).to_string(),
-        strata: pairs.len() > 1,
-        covariates: format!("[{}]", covariates.join(", ")),
-        origin,
-    };
-    let fill = |template: &str| filled(template, &parts).map_err(|problem| *problem);
-    let own = |template: &str| Ok::<_, Problem>(fill(template)?.replace("\n\n\n", "\n\n"));
+    let column = |name: &str, unit: &str| json!({"name": name, "unit": unit});
+    let (time, distance) = (column(TIME, "s"), column(DISTANCE, "m"));
+    let axes = if cut.over_distance { vec![distance, time] } else { vec![time] };
+    let given = roles.inputs.iter().map(|name| column(name, &unit(name).text));
+    let inputs: Vec<Json> = axes.iter().cloned().chain(given).collect();
+    let quoted: Vec<String> = roles.outputs.iter().map(|name| yaml_text(name)).collect();
+    let bands = listed(&cut.edges);
+    let data = json!({
+        "name": block_name(folder),
+        "title": plain_text(folder),
+        "axis": axes[0],
+        "time": axes.get(1),
+        "inputs": inputs,
+        "all": quoted.join(", "),
+        "channels": channels,
+        "parameters": parameters,
+        "effects": effects,
+        "highest": two_digits(cut.content.1).to_string(),
+        "bands": bands,
+        "count": cut.edges.len().saturating_sub(1).to_string(),
+        "alike": listed(&[cut.edges[0], cut.edges[cut.edges.len() - 1]]),
+        "furthest": cut.furthest.to_string(),
+        "step": two_digits(cut.step).to_string(),
+        "strata": pairs.len() > 1,
+        "covariates": format!("[{}]", covariates.join(", ")),
+        "origin": origin,
+    });
+    let own = |template: &str| Ok::<_, Problem>(filled(template, &data)?.replace("\n\n\n", "\n\n"));
     // The stub keeps the two blank lines that Python has before a function.
     let mut files = vec![
         ("campaign.yaml".to_string(), own(CAMPAIGN)?),
         (PROTOCOL_FILE.to_string(), canonical(&own(PROTOCOL)?)),
         (CATALOGUE_FILE.to_string(), own(CATALOGUE)?),
         ("sim.yaml".to_string(), own(SIM)?),
-        ("simulator.py".to_string(), fill(STUB)?),
+        ("simulator.py".to_string(), filled(STUB, &data)?),
         ("vehicle.yaml".to_string(), own(VEHICLE)?),
         ("sections.csv".to_string(), table),
     ];
     files.extend(records(pairs, &cut, &roles));
-    let told = told(&parts, &cut, &scales);
+    let given: Vec<&str> = inputs.iter().filter_map(|input| input["name"].as_str()).collect();
+    let mut told = vec![
+        format!("compared: {}", roles.outputs.join(", ")),
+        format!("inputs of the simulator: {}", given.join(", ")),
+        format!("{} sections; bands {bands} Hz", cut.windows.len()),
+        origin,
+    ];
+    if scales.is_empty() {
+        told.push("no column is a force (N, N m, A, V, Pa) with a motion (m, rad, m/s, ...) beside it: only effects of the measuring chain are offered".into());
+    }
     Ok(Made { files, told })
 }
 
@@ -193,34 +131,31 @@ fn canonical(text: &str) -> String {
     ))
 }
 
-fn compared(
-    name: &str,
-    allowed: &allowances::Allowance,
-    unit: &Unit,
-    names: &mut Names,
-) -> Compared {
+/// A compared channel, for the templates.
+fn channel(name: &str, allowed: &Allowance, unit: &Unit, names: &mut Names) -> Json {
     let id = names.free(&identifier(name));
-    Compared {
-        name: name.into(),
-        quoted: yaml_text(name),
-        title: plain_text(name),
-        group: id.clone(),
-        unit: unit.text.clone(),
-        number_unit: after_number(unit),
-        limit: two_digits(LIMIT * allowed.rms).to_string(),
-        noise: allowed.noise.to_string(),
-        noise_name: format!("{id} noise"),
-        gain_name: format!("{id} gain"),
-        id,
-        level_sd: allowed.level.to_string(),
-        band_sd: allowed.band.to_string(),
-        gain_sd: allowed.gain.to_string(),
-        lag_sd: allowed.lag.to_string(),
-    }
+    json!({
+        "name": name,
+        "quoted": yaml_text(name),
+        "title": plain_text(name),
+        "id": id,
+        "group": id,
+        "unit": unit.text,
+        "number_unit": after_number(unit),
+        "limit": two_digits(LIMIT * allowed.rms).to_string(),
+        "noise": allowed.noise.to_string(),
+        "noise_name": format!("{id} noise"),
+        "gain_name": format!("{id} gain"),
+        "level_sd": allowed.level.to_string(),
+        "band_sd": allowed.band.to_string(),
+        "gain_sd": allowed.gain.to_string(),
+        "lag_sd": allowed.lag.to_string(),
+    })
 }
 
-fn listed(numbers: &[f64]) -> String {
-    format!("[{}]", numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(", "))
+/// The unit of a measured channel.
+fn unit_of(pairs: &[Pair], name: &str) -> Unit {
+    pairs[0].measured.channel(name).map_or_else(Unit::one, |channel| channel.unit.clone())
 }
 
 fn section(at: usize) -> String {
@@ -235,25 +170,23 @@ fn sections(
     roles: &Roles,
 ) -> (String, Vec<String>) {
     let axis = if cut.over_distance { "m" } else { "s" };
-    let mut header: Vec<String> = ["section", "record"].iter().map(ToString::to_string).collect();
+    let mut header = vec!["section".to_string(), "record".to_string()];
     header.extend([format!("start [{axis}]"), format!("end [{axis}]")]);
-    let speed = motion.filter(|motion| motion.order < 2).map(|motion| {
-        let unit =
-            if motion.order == 1 { motion.unit.text.clone() } else { format!("{}/s", motion.unit) };
-        (motion, unit)
-    });
-    let first = motion
-        .map(|motion| motion.column.clone())
-        .or_else(|| roles.inputs.iter().chain(&roles.outputs).next().cloned())
-        .unwrap_or_default();
-    let unit =
-        pairs[0].measured.channel(&first).map_or_else(Unit::one, |channel| channel.unit.clone());
-    let mut covariates = vec!["amplitude".to_string()];
-    if let Some((_, unit)) = &speed {
+    let mut covariates = Vec::new();
+    let speed = motion.filter(|motion| motion.order < 2);
+    if let Some(Motion { order, unit, .. }) = speed {
+        let unit = if *order == 1 { unit.text.clone() } else { format!("{unit}/s") };
         header.push(format!("mean speed [{unit}]"));
-        covariates.insert(0, "mean speed".into());
+        covariates.push("mean speed".to_string());
     }
+    let first = match motion {
+        Some(motion) => Some(&motion.column),
+        None => roles.inputs.iter().chain(&roles.outputs).next(),
+    };
+    let first = first.cloned().unwrap_or_default();
+    let unit = unit_of(pairs, &first);
     header.push(format!("amplitude [{unit}]"));
+    covariates.push("amplitude".to_string());
     let mut rows = vec![header];
     for (at, window) in cut.windows.iter().enumerate() {
         let measured = &pairs[window.pair].measured;
@@ -264,7 +197,7 @@ fn sections(
             window.start.to_string(),
             window.end.to_string(),
         ];
-        if let Some((motion, _)) = &speed {
+        if let Some(motion) = speed {
             let mean = of(&motion.column).map_or(0.0, |piece| match motion.order {
                 1 => mean(piece.values.iter().map(|value| value.abs())),
                 _ => {
@@ -293,15 +226,15 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 fn records(pairs: &[Pair], cut: &Cut, roles: &Roles) -> Vec<File> {
     let mut files = Vec::new();
     for (at, window) in cut.windows.iter().enumerate() {
-        let pair = &pairs[window.pair];
-        let of = |series: &Series, names: &[String]| {
-            text(series, names, cut.over_distance, (window.from, window.to))
-        };
-        files
-            .push((format!("simulation/{}.csv", section(at)), of(&pair.simulated, &roles.outputs)));
-        files
-            .push((format!("measurement/{}.csv", section(at)), of(&pair.measured, &roles.outputs)));
-        files.push((format!("inputs/{}.csv", section(at)), of(&pair.measured, &roles.inputs)));
+        let Pair { simulated, measured, .. } = &pairs[window.pair];
+        for (folder, series, names) in [
+            ("simulation", simulated, &roles.outputs),
+            ("measurement", measured, &roles.outputs),
+            ("inputs", measured, &roles.inputs),
+        ] {
+            let text = text(series, names, cut.over_distance, (window.from, window.to));
+            files.push((format!("{folder}/{}.csv", section(at)), text));
+        }
     }
     files
 }
@@ -328,24 +261,4 @@ fn text(series: &Series, names: &[String], over_distance: bool, (from, to): (f64
         out.push('\n');
     }
     out
-}
-
-fn told(parts: &Parts, cut: &Cut, scales: &[scales::Scales]) -> Vec<String> {
-    let names = |columns: Vec<&str>| columns.join(", ");
-    let mut told = vec![
-        format!(
-            "compared: {}",
-            names(parts.channels.iter().map(|channel| channel.name.as_str()).collect())
-        ),
-        format!(
-            "inputs of the simulator: {}",
-            names(parts.inputs.iter().map(|column| column.name.as_str()).collect())
-        ),
-        format!("{} sections; bands {} Hz", cut.windows.len(), parts.bands),
-        parts.origin.clone(),
-    ];
-    if scales.is_empty() {
-        told.push("no column is a force (N, N m, A, V, Pa) with a motion (m, rad, m/s, ...) beside it: only effects of the measuring chain are offered".into());
-    }
-    told
 }

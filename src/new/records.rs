@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use crate::data::record::{Wanted, read_headings, read_record};
+use crate::data::checks::median;
+use crate::data::record::{Column, Wanted, read_headings, read_record};
 use crate::metrics::resample::interpolate;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, problem};
 use crate::units::number::significant;
 use crate::units::{Dimension, Unit};
 
@@ -60,19 +61,16 @@ pub struct Roles {
 }
 
 impl Series {
-    #[must_use]
     pub fn channel(&self, name: &str) -> Option<&Channel> {
         self.channels.iter().find(|channel| channel.name == name)
     }
 
-    #[must_use]
     pub fn step(&self) -> f64 {
         let steps = self.time.len().saturating_sub(1).max(1) as f64;
         self.time.last().zip(self.time.first()).map_or(1.0, |(last, first)| (last - first) / steps)
     }
 
     /// The axis of sections: the distance where `over_distance`, otherwise the time.
-    #[must_use]
     pub fn axis(&self, over_distance: bool) -> &[f64] {
         self.distance.as_deref().filter(|_| over_distance).unwrap_or(&self.time)
     }
@@ -84,15 +82,12 @@ impl Series {
             let values = interpolate(&self.time, values, &time).unwrap_or_default();
             values.into_iter().map(|value| significant(value, 9)).collect()
         };
-        let channels = self
-            .channels
-            .iter()
-            .map(|channel| Channel { values: of(&channel.values), ..channel.clone() })
-            .collect();
+        let channel =
+            |channel: &Channel| Channel { values: of(&channel.values), ..channel.clone() };
         Self {
             shown: self.shown.clone(),
-            distance: self.distance.as_ref().map(|values| of(values)),
-            channels,
+            distance: self.distance.as_deref().map(of),
+            channels: self.channels.iter().map(channel).collect(),
             time,
         }
     }
@@ -136,13 +131,11 @@ impl Pair {
     }
 
     /// Whether both records have a distance.
-    #[must_use]
     pub fn over_distance(&self) -> bool {
         self.simulated.distance.is_some() && self.measured.distance.is_some()
     }
 
     /// The range of the axis that both records have.
-    #[must_use]
     pub fn common(&self, over_distance: bool) -> (f64, f64) {
         let ends = |series: &Series| {
             let axis = series.axis(over_distance);
@@ -182,71 +175,55 @@ impl Pair {
 pub fn roles(pairs: &[Pair]) -> Result<Roles, Problem> {
     let first = &pairs[0];
     let over_distance = pairs.iter().all(Pair::over_distance);
-    let names = |series: &Series| {
-        series.channels.iter().map(|channel| channel.name.clone()).collect::<Vec<_>>()
+    let names = |series: &Series| -> Vec<String> {
+        series.channels.iter().map(|channel| channel.name.clone()).collect()
     };
-    let common: Vec<String> = names(&first.measured)
-        .into_iter()
-        .filter(|name| first.simulated.channel(name).is_some())
-        .collect();
+    let mut common = names(&first.measured);
+    common.retain(|name| first.simulated.channel(name).is_some());
     for name in &common {
-        for pair in pairs {
-            for series in [&pair.simulated, &pair.measured] {
-                let Some(channel) = series.channel(name) else {
-                    let problem = Problem::error(
-                        "unknown-channel",
-                        format!(
-                            "`{}` has no column `{name}`, which the first pair has",
-                            series.shown
-                        ),
-                    );
-                    return Err(problem.suggest(
-                        name,
-                        series.channels.iter().map(|channel| channel.name.as_str()),
-                    ));
-                };
-                let unit = &first
-                    .measured
-                    .channel(name)
-                    .map_or_else(Unit::one, |channel| channel.unit.clone());
-                if channel.unit.dimension != unit.dimension {
-                    let says = format!(
-                        "the column `{name}` is in {} in `{}`, and in {unit} in `{}`",
-                        channel.unit, series.shown, first.measured.shown
-                    );
-                    return Err(Problem::error("unit-mismatch", says));
-                }
+        let Some(wanted) = first.measured.channel(name) else { continue };
+        for series in pairs.iter().flat_map(|pair| [&pair.simulated, &pair.measured]) {
+            let shown = &series.shown;
+            let Some(channel) = series.channel(name) else {
+                let known = series.channels.iter().map(|channel| &channel.name);
+                return Err(problem!(
+                    "unknown-channel",
+                    "`{shown}` has no column `{name}`, which the first pair has"
+                )
+                .suggest(name, known));
+            };
+            if channel.unit.dimension != wanted.unit.dimension {
+                return Err(problem!(
+                    "unit-mismatch",
+                    "the column `{name}` is in {} in `{shown}`, and in {} in `{}`",
+                    channel.unit,
+                    wanted.unit,
+                    first.measured.shown
+                ));
             }
         }
     }
     let repeated = |name: &String| {
-        pairs
-            .iter()
-            .all(|pair| pair.differs(name, over_distance).is_some_and(|share| share < REPEATED))
+        let differs = |pair: &Pair| pair.differs(name, over_distance);
+        pairs.iter().all(|pair| differs(pair).is_some_and(|share| share < REPEATED))
     };
-    let mut inputs: Vec<String> = common.iter().filter(|name| repeated(name)).cloned().collect();
+    let (mut inputs, mut outputs): (Vec<String>, Vec<String>) =
+        common.iter().cloned().partition(repeated);
     // Records that agree in everything are compared in everything.
-    if inputs.len() == common.len() {
-        inputs.clear();
+    if outputs.is_empty() {
+        outputs = std::mem::take(&mut inputs);
     }
-    let outputs: Vec<String> =
-        common.iter().filter(|name| !inputs.contains(name)).cloned().collect();
     if outputs.is_empty() {
         let (a, b) = (names(&first.simulated).join(", "), names(&first.measured).join(", "));
-        let problem = Problem::error(
-            "no-common-channel",
-            "the simulated and the measured record have no column in common that could be compared",
-        );
-        return Err(problem.help(format!(
+        let says =
+            "the simulated and the measured record have no column in common that could be compared";
+        return Err(Problem::error("no-common-channel", says).help(format!(
             "the simulation has {a}; the measurement has {b}: give what is compared the same name"
         )));
     }
     let everywhere = |name: &String| pairs.iter().all(|pair| pair.measured.channel(name).is_some());
-    inputs.extend(
-        names(&first.measured)
-            .into_iter()
-            .filter(|name| !common.contains(name) && everywhere(name)),
-    );
+    let measured = names(&first.measured).into_iter();
+    inputs.extend(measured.filter(|name| !common.contains(name) && everywhere(name)));
     Ok(Roles { outputs, inputs })
 }
 
@@ -260,34 +237,39 @@ fn series(path: &Path, told: &mut Vec<String>) -> Result<Series, Vec<Problem>> {
     }
     let record = read_record(path, &shown, &Wanted::all(&headings))?;
     let axis = |name: &str, dimension: Dimension| {
-        record
-            .columns
-            .iter()
-            .find(|column| column.name == name && column.unit.dimension == dimension)
+        record.column(name).filter(|column| column.unit.dimension == dimension)
     };
     let Some(time) = axis(TIME, Dimension::TIME) else {
-        let problem = Problem::error(
-            "no-time",
-            format!("`{shown}` has no column `{TIME}` with a unit of time"),
-        );
-        let problem = headings.first().map_or(problem.clone(), |first| problem.at(&first.span));
-        return Err(vec![problem.help("call the column with the time so: `time [s]`")]);
+        let at = headings.first().map(|first| first.span.clone());
+        let problem = Problem {
+            at,
+            ..Problem::error(
+                "no-time",
+                format!("`{shown}` has no column `{TIME}` with a unit of time"),
+            )
+        };
+        return Err(problem.help("call the column with the time so: `time [s]`").into());
     };
     if record.rows < FEWEST {
-        let says = format!("`{shown}` has {} samples; at least {FEWEST} are needed", record.rows);
-        return Err(vec![Problem::error("too-short", says)]);
+        return Err(problem!(
+            "too-short",
+            "`{shown}` has {} samples; at least {FEWEST} are needed",
+            record.rows
+        )
+        .into());
     }
-    let distance = axis(DISTANCE, Dimension::LENGTH)
-        .filter(|distance| distance.values.windows(2).all(|pair| pair[1] > pair[0]));
+    let increases = |column: &Column| column.values.windows(2).all(|pair| pair[1] > pair[0]);
+    let distance = axis(DISTANCE, Dimension::LENGTH).filter(|column| increases(column));
     if let Some(row) = time.values.windows(2).position(|pair| pair[1] <= pair[0]) {
-        let problem =
-            Problem::error("time-not-increasing", format!("`{shown}`: the time does not increase"));
-        let place = record.place(row + 1, Some(time));
-        return Err(vec![
-            place
-                .map_or(problem.clone(), |place| problem.at(&place))
-                .help("delete the row, or export the record again"),
-        ]);
+        let at = record.place(row + 1, Some(time));
+        let problem = Problem {
+            at,
+            ..Problem::error(
+                "time-not-increasing",
+                format!("`{shown}`: the time does not increase"),
+            )
+        };
+        return Err(problem.help("delete the row, or export the record again").into());
     }
     let own = |name: &str| name == TIME || name == DISTANCE;
     let channels =
@@ -296,16 +278,14 @@ fn series(path: &Path, told: &mut Vec<String>) -> Result<Series, Vec<Problem>> {
             unit: column.unit.clone(),
             values: column.values.iter().map(|value| column.unit.from_si(*value)).collect(),
         });
-    let channels = channels.collect();
     let found = Series {
         shown,
         time: time.values.clone(),
         distance: distance.map(|column| column.values.clone()),
-        channels,
+        channels: channels.collect(),
     };
-    let mut steps: Vec<f64> = found.time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let middle = steps.len() / 2;
-    let median = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let steps: Vec<f64> = found.time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let median = median(&steps);
     if steps.iter().all(|step| (step - median).abs() <= JITTER * median + 2.0 * ROUNDING) {
         return Ok(found);
     }

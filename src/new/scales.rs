@@ -46,7 +46,6 @@ pub struct Motion {
 
 /// A set of effects for each force that is compared; if the motion is compared, one for the force
 /// among the inputs.
-#[must_use]
 pub fn scales(pairs: &[Pair], roles: &Roles, cut: &Cut) -> Vec<Scales> {
     let measured = &pairs[0].measured;
     let force = |name: &&String| {
@@ -77,7 +76,6 @@ pub fn scales(pairs: &[Pair], roles: &Roles, cut: &Cut) -> Vec<Scales> {
 
 /// The motion that belongs to a force: the one with the same number at its end, or else the first;
 /// a position before a speed.
-#[must_use]
 pub fn motion(pairs: &[Pair], roles: &Roles, force: Option<&str>) -> Option<Motion> {
     let measured = &pairs[0].measured;
     let number =
@@ -167,7 +165,6 @@ pub enum Of {
 }
 
 impl Of {
-    #[must_use]
     pub fn named(text: &str) -> Option<Self> {
         Some(match text {
             "F" => Self::Force,
@@ -182,7 +179,6 @@ impl Of {
     }
 
     /// Unit and scale of the parameter.
-    #[must_use]
     pub fn of(self, scales: &Scales) -> (String, f64) {
         let ((force, size), (position, amplitude)) = (&scales.force, &scales.position);
         match self {

@@ -61,7 +61,6 @@ pub struct Cut {
 }
 
 /// Cuts all pairs.
-#[must_use]
 pub fn cut(pairs: &[Pair], roles: &Roles) -> Cut {
     let over_distance = pairs.iter().all(Pair::over_distance);
     let content = content(pairs, roles);
@@ -110,7 +109,6 @@ fn seconds(pair: &Pair, over_distance: bool) -> f64 {
 }
 
 /// The samples of a channel in a range of the axis.
-#[must_use]
 pub fn piece(
     series: &Series,
     name: &str,
@@ -172,7 +170,6 @@ fn edges((low, high): (f64, f64), least: f64) -> Vec<f64> {
 }
 
 /// Rounded to two significant digits.
-#[must_use]
 pub fn two_digits(value: f64) -> f64 {
     significant(value, 2)
 }

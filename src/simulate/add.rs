@@ -3,6 +3,7 @@
 use super::{Section, Simulator, Task};
 use crate::effects::{Action, Applied, Catalogue, Formula, Operator, Parameter, Signals};
 use crate::problem::{Problem, error};
+use crate::yaml::Words;
 
 /// Effects on one section.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -106,7 +107,7 @@ impl Plan {
         for (operator, value, channels) in &self.operators {
             signals
                 .apply(*operator, *value, channels, seed)
-                .map_err(|says| failed(format!("{}: {says}", operator.name())))?;
+                .map_err(|says| failed(format!("{}: {says}", operator.word())))?;
         }
         Ok(())
     }

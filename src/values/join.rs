@@ -6,7 +6,7 @@ use serde_json::Value;
 use super::rows::into_sections;
 use super::{File, Head};
 use crate::certify::{Compiled, certification};
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, problem};
 use crate::result::{Certification, FileHash};
 use crate::run::{self, Evaluated, Kept, Numbered, SectionValues, Settings, Signals};
 
@@ -40,9 +40,10 @@ pub fn join(files: Vec<File>, problems: &mut Problems) -> Option<Joined> {
     let mut traces = Vec::new();
     for mut file in std::iter::once(first).chain(files) {
         if let Some((_, shown)) = known.iter().find(|(hash, _)| *hash == file.hash) {
-            let says =
-                format!("`{}` has the same values as `{shown}`, and is left out", file.shown);
-            problems.push(Problem::warning("values-twice", says));
+            problems.push(Problem::warning(
+                "values-twice",
+                format!("`{}` has the same values as `{shown}`, and is left out", file.shown),
+            ));
             continue;
         }
         let shown = known.first().map(|(_, shown)| shown.clone());
@@ -67,11 +68,12 @@ pub fn join(files: Vec<File>, problems: &mut Problems) -> Option<Joined> {
                 Some(other) if same(&all[other].1, &values) => {}
                 Some(_) => {
                     let unit = &head.basis.units()[number];
-                    let says = format!(
+                    let problem = problem!(
+                        "values-differ",
                         "`{}` has other values of section {} than a file before it",
-                        file.shown, unit.name
+                        file.shown,
+                        unit.name
                     );
-                    let problem = Problem::error("values-differ", says);
                     problems.push(problem.help(
                         "a record was changed between two runs of `reduce`: make the values again",
                     ));
@@ -114,13 +116,14 @@ impl Joined {
 }
 
 fn unreadable(shown: &str, why: &str) -> Problem {
-    Problem::error("values-unreadable", format!("`{shown}` does not fit its protocol: {why}"))
+    problem!("values-unreadable", "`{shown}` does not fit its protocol: {why}")
 }
 
 fn same(a: &SectionValues, b: &SectionValues) -> bool {
-    let marks =
-        |of: &SectionValues| of.prints.iter().map(|print| print.marks.clone()).collect::<Vec<_>>();
-    a.rows == b.rows && alike(a, b) && marks(a) == marks(b)
+    fn marks(of: &SectionValues) -> impl Iterator<Item = &Vec<u32>> {
+        of.prints.iter().map(|print| &print.marks)
+    }
+    a.rows == b.rows && alike(a, b) && marks(a).eq(marks(b))
 }
 
 /// Why a file is not of the same campaign and protocol as the first one.
@@ -199,10 +202,8 @@ fn without_folders(mut of: Value) -> Value {
 
 fn changed_file(head: &Head, own: &Head) -> Option<String> {
     let hash = |head: &Head, path: &str| {
-        head.about
-            .files()
-            .find(|file: &&FileHash| file.path == path)
-            .map(|file| file.sha256.clone())
+        let file = head.about.files().find(|file: &&FileHash| file.path == path);
+        file.map(|file| file.sha256.clone())
     };
     let all = head.about.files().chain(own.about.files());
     all.map(|file| file.path.clone()).find(|path| hash(head, path) != hash(own, path))

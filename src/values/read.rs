@@ -1,11 +1,13 @@
 //! Reads a file of values: first its seal, then which program wrote it, then its contents.
 
+use std::error::Error;
 use std::path::Path;
 
 use arrow_array::RecordBatch;
 use bytes::Bytes;
 use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use parquet::errors::ParquetError;
 use serde::de::DeserializeOwned;
 
 use super::rows::OWN;
@@ -13,7 +15,7 @@ use super::seal::{self, Broken};
 use super::{FORM, Head, PROGRAM, write};
 use crate::data::record::guarded;
 use crate::data::text::read_file;
-use crate::problem::Problem;
+use crate::problem::{Problem, problem};
 use crate::run::{Kept, Numbered};
 
 /// Maximum size of a file in bytes. The values of 100 km take 2 MB.
@@ -51,76 +53,61 @@ pub fn open(path: &Path) -> Result<File, Problem> {
 /// `values-unreadable`, `values-damaged`, `values-version`.
 pub fn read(shown: &str, bytes: Vec<u8>) -> Result<File, Problem> {
     const AGAIN: &str = "make it again with `fishplate reduce`, or copy it again";
+    let no_values = |says| {
+        let help = "give files that `fishplate reduce` wrote";
+        Err(problem!("values-unreadable", "`{shown}` is {says}").help(help))
+    };
     if !bytes.starts_with(MAGIC) {
-        let says = format!("`{shown}` is not a file of values");
-        return Err(Problem::error("values-unreadable", says)
-            .help("give files that `fishplate reduce` wrote"));
+        return no_values("not a file of values");
     }
     let hash = match seal::check(&bytes) {
         Ok(hash) => hash,
         Err(Broken::NoSeal) if bytes.ends_with(MAGIC) => {
-            let says = format!("`{shown}` is a Parquet file, but not one of values");
-            return Err(Problem::error("values-unreadable", says)
-                .help("give files that `fishplate reduce` wrote"));
+            return no_values("a Parquet file, but not one of values");
         }
         Err(broken) => {
-            let how = if broken == Broken::NoSeal {
-                "is not complete"
-            } else {
-                "is not as it was written: its SHA-256 differs"
+            let how = match broken {
+                Broken::NoSeal => "is not complete",
+                Broken::Changed => "is not as it was written: its SHA-256 differs",
             };
-            return Err(Problem::error("values-damaged", format!("`{shown}` {how}")).help(AGAIN));
+            return Err(problem!("values-damaged", "`{shown}` {how}").help(AGAIN));
         }
     };
-    let contents =
-        guarded(|| Ok(contents(bytes))).unwrap_or_else(|why| Err(Why::Unreadable(why.to_string())));
-    let (head, table, sections, traces) = contents.map_err(|why| match why {
-        Why::Version(other, form) => {
-            let says =
-                format!("`{shown}` was written by fishplate {other}, this is {PROGRAM}{form}");
-            Problem::error("values-version", says)
-                .help("values are judged by the version that computed them: make it again")
-        }
-        Why::Unreadable(why) => {
-            Problem::error("values-unreadable", format!("`{shown}` is not a file of values: {why}"))
-                .help(AGAIN)
-        }
+    let unreadable =
+        |why| problem!("values-unreadable", "`{shown}` is not a file of values: {why}").help(AGAIN);
+    let contents = guarded(|| contents(bytes)).map_err(unreadable)?;
+    let (head, table, sections, traces) = contents.map_err(|OtherVersion { file, own }| {
+        problem!("values-version", "`{shown}` was written by fishplate {file}, this is {own}")
+            .help("values are judged by the version that computed them: make it again")
     })?;
     Ok(File { shown: shown.to_string(), hash, head, table, sections, traces })
 }
 
-enum Why {
-    /// Of the file, and what is added to that of this program.
-    Version(String, String),
-    Unreadable(String),
-}
-
-impl From<String> for Why {
-    fn from(why: String) -> Self {
-        Self::Unreadable(why)
-    }
+/// The versions of a file and of this program, with the form of the values where only that differs.
+struct OtherVersion {
+    file: String,
+    own: String,
 }
 
 type Contents = (Head, Vec<RecordBatch>, Vec<Numbered>, Vec<Kept>);
 
-fn contents(bytes: Vec<u8>) -> Result<Contents, Why> {
-    let builder = ParquetRecordBatchReaderBuilder::try_new(Bytes::from(bytes))
-        .map_err(|error| error.to_string())?;
+fn contents(bytes: Vec<u8>) -> Result<Result<Contents, OtherVersion>, Box<dyn Error>> {
+    let builder = ParquetRecordBatchReaderBuilder::try_new(Bytes::from(bytes))?;
     let entries =
         builder.metadata().file_metadata().key_value_metadata().cloned().unwrap_or_default();
     let text = |key: &str| {
-        let found =
-            entries.iter().find(|entry| entry.key == key).and_then(|entry| entry.value.as_deref());
-        found.ok_or_else(|| format!("it has no `{key}`"))
+        let entry = entries.iter().find(|entry| entry.key == key);
+        let text = entry.and_then(|entry| entry.value.as_deref());
+        text.ok_or_else(|| format!("it has no `{key}`"))
     };
-    let about: serde_json::Value =
-        serde_json::from_str(text(write::ABOUT)?).map_err(|error| error.to_string())?;
+    let about: serde_json::Value = serde_json::from_str(text(write::ABOUT)?)?;
     let program = about["program"].as_str().unwrap_or("of an unknown version");
     if program != PROGRAM || about["form"] != FORM {
         let form = |form: &serde_json::Value| {
             if program == PROGRAM { format!(" with values of form {form}") } else { String::new() }
         };
-        return Err(Why::Version(format!("{program}{}", form(&about["form"])), form(&FORM.into())));
+        let file = format!("{program}{}", form(&about["form"]));
+        return Ok(Err(OtherVersion { file, own: format!("{PROGRAM}{}", form(&FORM.into())) }));
     }
     let head: Head = json(text(write::HEAD)?)?;
     let mut sections: Vec<Numbered> = json(text(write::SECTIONS)?)?;
@@ -130,15 +117,13 @@ fn contents(bytes: Vec<u8>) -> Result<Contents, Why> {
         return Err(format!("it has a section number {number} of {sections_of_head}").into());
     }
     if traces.iter().any(|kept| !kept.is_sound()) {
-        return Err("the signals of a plot differ in length".to_string().into());
+        return Err("the signals of a plot differ in length".into());
     }
     marks(&seal::unpacked(text(write::MARKS)?)?, &mut sections)?;
     let own = ProjectionMask::columns(builder.parquet_schema(), OWN);
-    let table = builder
-        .with_projection(own)
-        .build()
-        .and_then(|reader| reader.map(|batch| Ok(batch?)).collect());
-    Ok((head, table.map_err(|error| error.to_string())?, sections, traces))
+    let batches = builder.with_projection(own).build()?.map(|batch| Ok(batch?));
+    let table = batches.collect::<Result<_, ParquetError>>()?;
+    Ok(Ok((head, table, sections, traces)))
 }
 
 fn json<T: DeserializeOwned>(text: &str) -> Result<T, String> {

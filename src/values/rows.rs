@@ -69,12 +69,9 @@ pub fn table(plan: &Plan, values: &Values) -> Result<RecordBatch, ArrowError> {
     all.text(QUANTITY, |row| Some(&row.quantity.id));
     all.text(SECTION, |row| Some(&row.unit.name));
     all.text(SIGNAL, |row| Some(&row.quantity.positions[row.row.position].name));
-    let places = plan
-        .quantities
-        .iter()
-        .flat_map(|quantity| &quantity.positions)
-        .flat_map(|position| &position.places);
-    for place in places.map(|(place, _)| place).collect::<BTreeSet<_>>() {
+    let positions = plan.quantities.iter().flat_map(|quantity| &quantity.positions);
+    let places = positions.flat_map(|position| &position.places).map(|(place, _)| place);
+    for place in places.collect::<BTreeSet<_>>() {
         all.text(place, |row| {
             let places = &row.quantity.positions[row.row.position].places;
             places.iter().find(|(name, _)| name == place).map(|(_, member)| member)
@@ -108,10 +105,7 @@ pub fn table(plan: &Plan, values: &Values) -> Result<RecordBatch, ArrowError> {
     all.number("value", |row| Some(shown(row, row.row.value)));
     all.text("unit", |row| Some(&row.quantity.unit.text));
     all.count(SAMPLES, |row| row.row.samples);
-    all.add(
-        "source_sha256",
-        Arc::new(sources(&rows).into_iter().map(Some).collect::<StringArray>()),
-    );
+    all.add("source_sha256", Arc::new(StringArray::from_iter_values(sources(&rows))));
     for (at, name) in RECORDS.into_iter().enumerate() {
         all.text(name, |row| match (&row.row.record, at) {
             (Some(RecordName::Single(name) | RecordName::Pair(name, _)), 0)
@@ -139,14 +133,9 @@ fn sources(rows: &[Placed<'_>]) -> Vec<Arc<str>> {
             continue;
         }
         let took = |file: &&FileHash| {
-            let record = file.record.as_ref();
-            record.is_some_and(|of| {
-                of.kind != "track"
-                    && RecordName::took_part(
-                        row.row.record.as_ref(),
-                        of.kind == "simulation",
-                        of.name.as_deref(),
-                    )
+            file.record.as_ref().filter(|of| of.kind != "track").is_some_and(|of| {
+                let (simulated, name) = (of.kind == "simulation", of.name.as_deref());
+                RecordName::took_part(row.row.record.as_ref(), simulated, name)
             })
         };
         let hashes: Vec<&str> =
@@ -164,8 +153,7 @@ struct Columns<'a> {
 impl<'a> Columns<'a> {
     /// A place or a datum may have the name of another column, which then has it.
     fn add(&mut self, name: &str, cells: ArrayRef) {
-        let reserved =
-            OWN.contains(&name) || name == "value" || name == "simulated" || name == "measured";
+        let reserved = OWN.contains(&name) || ["value", "simulated", "measured"].contains(&name);
         match self.found.iter().position(|(known, _)| known == name) {
             Some(at) if reserved => self.found[at].1 = cells,
             Some(_) => {}
@@ -182,20 +170,16 @@ impl<'a> Columns<'a> {
     }
 
     fn count(&mut self, name: &str, of: impl Fn(&Placed<'_>) -> usize) {
-        self.add(
-            name,
-            Arc::new(UInt64Array::from_iter_values(self.rows.iter().map(|row| of(row) as u64))),
-        );
+        let counts = self.rows.iter().map(|row| of(row) as u64);
+        self.add(name, Arc::new(UInt64Array::from_iter_values(counts)));
     }
 
     fn batch(self) -> Result<RecordBatch, ArrowError> {
         let field =
             |(name, cells): &(String, ArrayRef)| Field::new(name, cells.data_type().clone(), true);
         let schema = Schema::new(self.found.iter().map(field).collect::<Vec<_>>());
-        RecordBatch::try_new(
-            Arc::new(schema),
-            self.found.into_iter().map(|(_, cells)| cells).collect(),
-        )
+        let cells = self.found.into_iter().map(|(_, cells)| cells).collect();
+        RecordBatch::try_new(Arc::new(schema), cells)
     }
 }
 
@@ -225,6 +209,17 @@ pub fn into_sections(
     Ok(())
 }
 
+/// A column by its name, as an array of its kind.
+fn typed<'a, T>(
+    table: &'a RecordBatch,
+    name: &str,
+    kind: &str,
+    cast: impl Fn(&'a ArrayRef) -> Option<&'a T>,
+) -> Result<&'a T, String> {
+    let column = table.column_by_name(name).and_then(cast);
+    column.ok_or_else(|| format!("it has no column `{name}` of {kind}"))
+}
+
 /// The rows of one batch; `places` are those of the sections among `sections`, by name.
 fn add(
     plan: &Plan,
@@ -232,20 +227,11 @@ fn add(
     (before, table): (usize, &RecordBatch),
     sections: &mut [(usize, SectionValues)],
 ) -> Result<(), String> {
-    let texts = |name: &str| {
-        let found = table.column_by_name(name).and_then(|column| column.as_string_opt::<i32>());
-        found.ok_or_else(|| format!("it has no column `{name}` of texts"))
-    };
-    let numbers = |name: &str| {
-        let found =
-            table.column_by_name(name).and_then(|column| column.as_primitive_opt::<Float64Type>());
-        found.ok_or_else(|| format!("it has no column `{name}` of numbers"))
-    };
-    let counts = |name: &str| {
-        let found =
-            table.column_by_name(name).and_then(|column| column.as_primitive_opt::<UInt64Type>());
-        found.ok_or_else(|| format!("it has no column `{name}` of counts"))
-    };
+    let texts = |name| typed(table, name, "texts", |column| column.as_string_opt::<i32>());
+    let numbers =
+        |name| typed(table, name, "numbers", |column| column.as_primitive_opt::<Float64Type>());
+    let counts =
+        |name| typed(table, name, "counts", |column| column.as_primitive_opt::<UInt64Type>());
     let (quantities, names, signals) = (texts(QUANTITY)?, texts(SECTION)?, texts(SIGNAL)?);
     let (first, second) = (texts(RECORDS[0])?, texts(RECORDS[1])?);
     let (simulated, measured, values) =
@@ -254,36 +240,26 @@ fn add(
     for row in 0..table.num_rows() {
         let number = |numbers: &Float64Array| numbers.is_valid(row).then(|| numbers.value(row));
         let count = |counts: &UInt64Array| if counts.is_valid(row) { counts.value(row) } else { 0 };
+        let record = |names: &StringArray| names.is_valid(row).then(|| names.value(row).into());
         let [quantity, name, signal] = [quantities, names, signals]
             .map(|texts| if texts.is_valid(row) { texts.value(row) } else { "" });
-        let wrong = || {
-            format!(
-                "row {}: the protocol has no value of `{quantity}` at `{signal}`",
-                before + row + 1
-            )
-        };
+        let shown = before + row + 1;
+        let wrong =
+            || format!("row {shown}: the protocol has no value of `{quantity}` at `{signal}`");
         let index =
             plan.quantities.iter().position(|known| known.id == quantity).ok_or_else(wrong)?;
         let known = &plan.quantities[index];
-        let position = known
-            .positions
-            .iter()
-            .position(|position| position.name == signal)
-            .ok_or_else(wrong)?;
-        let which = usize::try_from(count(which)).map_err(|_| wrong())?;
-        let several = if let Evaluation::Values { values, .. } = known.evaluation.as_ref() {
-            values.len()
-        } else {
-            1
+        let position = known.positions.iter().position(|position| position.name == signal);
+        let position = position.ok_or_else(wrong)?;
+        let several = match known.evaluation.as_ref() {
+            Evaluation::Values { values, .. } => values.len(),
+            _ => 1,
         };
-        let value = number(values).ok_or_else(wrong)?;
-        if which >= several {
-            return Err(wrong());
-        }
-        let record = |names: &StringArray| names.is_valid(row).then(|| names.value(row).into());
-        let none =
-            || format!("row {}: the section `{name}` is not one of this part", before + row + 1);
-        let place = *places.get(name).ok_or_else(none)?;
+        let which = usize::try_from(count(which)).ok().filter(|which| *which < several);
+        let (value, which) = number(values).zip(which).ok_or_else(wrong)?;
+        let place = places.get(name);
+        let place = *place
+            .ok_or_else(|| format!("row {shown}: the section `{name}` is not one of this part"))?;
         sections[place].1.rows[index].push(Row {
             position,
             which,

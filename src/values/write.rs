@@ -1,5 +1,7 @@
 //! The bytes of a file of values: a Parquet table, with all else in the metadata of the file.
 
+use std::error::Error;
+
 use parquet::arrow::ArrowWriter;
 use parquet::basic::{Compression, ZstdLevel};
 use parquet::file::metadata::KeyValue;
@@ -9,7 +11,7 @@ use serde_json::json;
 use super::rows::table;
 use super::{FORM, Values, seal};
 use crate::check::plan::Plan;
-use crate::problem::Problem;
+use crate::problem::{Problem, problem};
 
 /// Keys of the metadata. What the file is, as JSON; the other contents are packed.
 pub const ABOUT: &str = "fishplate.values";
@@ -27,28 +29,26 @@ const LEVEL: i32 = 3;
 /// # Errors
 /// `write-failed`.
 pub fn write(plan: &Plan, values: &Values) -> Result<Vec<u8>, Problem> {
-    let failed = |error: &dyn std::fmt::Display| {
-        Problem::error("write-failed", format!("values cannot be written as Parquet: {error}"))
+    let written = || -> Result<Vec<u8>, Box<dyn Error>> {
+        let table = table(plan, values)?;
+        let properties = WriterProperties::builder()
+            // Without a version, so that a new one of the library does not change the bytes.
+            .set_created_by("fishplate".to_string())
+            .set_compression(Compression::ZSTD(ZstdLevel::try_new(LEVEL)?))
+            .set_statistics_enabled(EnabledStatistics::Chunk)
+            .build();
+        let mut bytes = Vec::new();
+        let mut writer = ArrowWriter::try_new(&mut bytes, table.schema(), Some(properties))?;
+        writer.write(&table)?;
+        for (key, value) in metadata(values)? {
+            writer.append_key_value_metadata(KeyValue::new(key.to_string(), value));
+        }
+        writer.close()?;
+        seal::close(&mut bytes);
+        Ok(bytes)
     };
-    let table = table(plan, values).map_err(|error| failed(&error))?;
-    let properties = WriterProperties::builder()
-        // Without a version, so that a new one of the library does not change the bytes.
-        .set_created_by("fishplate".to_string())
-        .set_compression(Compression::ZSTD(
-            ZstdLevel::try_new(LEVEL).map_err(|error| failed(&error))?,
-        ))
-        .set_statistics_enabled(EnabledStatistics::Chunk)
-        .build();
-    let mut bytes = Vec::new();
-    let mut writer = ArrowWriter::try_new(&mut bytes, table.schema(), Some(properties))
-        .map_err(|error| failed(&error))?;
-    writer.write(&table).map_err(|error| failed(&error))?;
-    for (key, value) in metadata(values).map_err(|error| failed(&error))? {
-        writer.append_key_value_metadata(KeyValue::new(key.to_string(), value));
-    }
-    writer.close().map_err(|error| failed(&error))?;
-    seal::close(&mut bytes);
-    Ok(bytes)
+    written()
+        .map_err(|error| problem!("write-failed", "values cannot be written as Parquet: {error}"))
 }
 
 /// The seal is the last.

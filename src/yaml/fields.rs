@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
 use super::{Key, Node, Value};
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, error, problem};
 use crate::source::{Span, Spanned};
 use crate::units::{Dimension, Unit, UnknownUnit, number};
 
@@ -50,7 +50,8 @@ pub trait FromNode<C>: Sized {
 /// ```
 ///
 /// `in` gives the type of [`Reader::with`], the text says what the map is. Of a key, `=` gives the
-/// value where it is missing or faulty, and `=>` tells that it must be there, and what it is. After
+/// value where it is missing or faulty, and `=>` tells that it must be there, and what it is. A
+/// function in brackets reads the value of an optional key, as [`FromNode::from_node`] would. After
 /// `also` stand fields that a function makes of the key and the value of the map. `or Free` after
 /// the text allows further keys.
 ///
@@ -63,7 +64,7 @@ macro_rules! fields {
         $crate::yaml::fields!(@all [C] [C] [$(#[$about])* $seen] $name $($rest)*);
     };
     (@all [$($free:ident)?] [$with:ty] [$(#[$about:meta])* $seen:vis] $name:ident $what:literal $(or $others:ident)? {
-        $($(#[$says:meta])* $key:literal $field:ident: $kind:ty $(= $default:expr)? $(=> $missing:literal)?,)*
+        $($(#[$says:meta])* $key:literal $field:ident $(($read:path))?: $kind:ty $(= $default:expr)? $(=> $missing:literal)?,)*
     } $(also { $($(#[$tells:meta])* $other:ident: $type:ty = $make:path,)* })?) => {
         $(#[$about])*
         // A key may be there only to be known: its value is read from the tree, or by others.
@@ -87,15 +88,20 @@ macro_rules! fields {
                 key: &$crate::yaml::Key,
                 node: &$crate::yaml::Node,
             ) -> Option<Self> {
-                let inner = [$(($key, <$kind as $crate::yaml::FromNode<$with>>::INNER),)*];
+                let inner = [$(($key, $crate::yaml::fields!(@inner [$with] [$($read)?] $kind)),)*];
                 let others = [$($crate::yaml::OtherKeys::$others,)? $crate::yaml::OtherKeys::Refused][0];
                 if !reader.keys(node, &$what.replace("{key}", &key.text), &inner, others) {
                     return None;
                 }
-                $(let $field = $crate::yaml::fields!(@value reader node $key $(= $default)? $(=> $missing)?);)*
+                $(let $field = $crate::yaml::fields!(@value reader node $key $(($read))? $(= $default)? $(=> $missing)?);)*
                 Some(Self { $($field: $field?,)* $($($other: $make(reader, key, node),)*)? })
             }
         }
+    };
+    (@inner [$with:ty] [] $kind:ty) => { <$kind as $crate::yaml::FromNode<$with>>::INNER };
+    (@inner [$with:ty] [$read:path] $kind:ty) => { &[] as &[&str] };
+    (@value $reader:ident $node:ident $key:literal ($read:path)) => {
+        Some($node.entry($key).and_then(|(key, node)| $read($reader, key, node)))
     };
     (@value $reader:ident $node:ident $key:literal = $default:expr) => {
         $reader.optional($node, $key).or_else(|| Some($default))
@@ -128,7 +134,7 @@ impl<C> Reader<'_, C> {
 
     /// Tells a problem at a place.
     pub fn fault(&mut self, code: &'static str, says: impl Into<String>, at: &Span) {
-        self.tell(Problem::error(code, says).at(at));
+        self.tell(error(code, says, at));
     }
 
     /// The value of a result; a problem is told.
@@ -157,8 +163,8 @@ impl<C> Reader<'_, C> {
         let absent = T::absent();
         if absent.is_none() || !what.is_empty() {
             let colon = if what.is_empty() { "" } else { ": " };
-            let says = format!("`{key}` is missing{colon}{what}");
-            let problem = Problem::error("key-missing", says).at(&map.span.part(0..0));
+            let problem =
+                problem!("key-missing", &map.span.part(0..0), "`{key}` is missing{colon}{what}");
             self.tell(problem.help(format!("write `{key}: ...`")));
         }
         absent
@@ -181,7 +187,7 @@ impl<C> Reader<'_, C> {
         for (key, value) in entries.iter().filter(|(key, _)| known().all(|known| known != key.text))
         {
             let name = key.text.as_str();
-            let problem = Problem::error("unknown-key", format!("{what} has no key `{name}`"));
+            let problem = problem!("unknown-key", "{what} has no key `{name}`");
             let problem = problem.at(&key.span);
             let lower = name.to_lowercase();
             let slip = known().find(|known| strsim::damerau_levenshtein(&lower, known) <= 1);
@@ -208,15 +214,13 @@ impl<C> Reader<'_, C> {
 impl Node {
     /// The problem that a value is of another kind: `what` must `be` something else.
     pub fn is_not(&self, what: &str, be: &str) -> Problem {
-        let says = format!("{what} must be {be}, not {}", self.kind_in_words());
-        Problem::error("wrong-kind", says).at(&self.span)
+        problem!("wrong-kind", &self.span, "{what} must be {be}, not {}", self.kind_in_words())
     }
 }
 
 /// The problem of a text that is no unit.
 pub fn unknown_unit(unknown: &UnknownUnit, at: &Span) -> Problem {
-    let says = format!("`{}` is not a known unit", unknown.word);
-    let problem = Problem::error("unknown-unit", says).at(at);
+    let problem = problem!("unknown-unit", at, "`{}` is not a known unit", unknown.word);
     match unknown.near {
         Some(near) => problem.meant(near),
         None => problem,
@@ -408,7 +412,7 @@ impl<C, T: Words> FromNode<C> for T {
         let text = String::from_node(reader, key, node)?;
         let value = T::from_word(&text);
         if value.is_none() {
-            let problem = Problem::error(T::CODE, format!("`{}` cannot be `{text}`", key.text));
+            let problem = problem!(T::CODE, "`{}` cannot be `{text}`", key.text);
             let known = T::WORDS.iter().map(|(word, _)| *word);
             reader.tell(problem.at(&node.span).suggest(&text, known));
         }
@@ -465,13 +469,12 @@ quantities! {
 /// The number of a text in SI. It states its unit, unless it has no dimension.
 fn quantity(key: &str, text: &str, at: &Span, unit: &Unit) -> Result<f64, Problem> {
     let read = number::read(text, unit).map_err(|refused| {
-        let says = format!("`{key}`: {}", refused.says);
-        Problem::error("wrong-number", says).at(at).help_if(refused.help)
+        problem!("wrong-number", at, "`{key}`: {}", refused.says).help_if(refused.help)
     })?;
     if read.unit_stated || unit.dimension == Dimension::ONE {
         return Ok(read.si);
     }
-    let says = format!("`{key}` has no unit; it is {}", unit.dimension.in_words());
     let help = format!("write `{text} {unit}`, if that is meant");
-    Err(Problem::error("unit-missing", says).at(at).help(help))
+    Err(problem!("unit-missing", at, "`{key}` has no unit; it is {}", unit.dimension.in_words())
+        .help(help))
 }

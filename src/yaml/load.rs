@@ -5,13 +5,12 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::ops::Range;
 use std::sync::Arc;
 
 use serde_saphyr::granit_parser::{self as yaml, ErrorKind, Event, Parser, ScalarStyle, ScanError};
 
 use super::{Key, Node, Value, scalar};
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, error, problem};
 use crate::source::{Source, Span};
 
 /// Limit of nodes: aliases can expand a small file to a very large tree. Real protocols and
@@ -47,7 +46,7 @@ fn read(source: &Arc<Source>, problems: &mut Problems, repeats: bool) -> Option<
     match loader.document() {
         Ok(node) => Some(node),
         Err(problem) => {
-            problems.push(*problem);
+            problems.push(problem);
             None
         }
     }
@@ -70,7 +69,7 @@ pub fn remarks(source: &Arc<Source>) -> Vec<Remark> {
         .map_while(Result::ok)
         .filter_map(|(event, place)| {
             let Event::Comment(text, _) = event else { return None };
-            let span = source.span(bytes(&place)?);
+            let span = source.span(place.byte_range()?);
             let line = source.text[..span.start].rfind('\n').map_or(0, |at| at + 1);
             let beside =
                 !source.text[line..span.start].trim_start_matches('\u{feff}').trim().is_empty();
@@ -82,9 +81,6 @@ pub fn remarks(source: &Arc<Source>) -> Vec<Remark> {
         })
         .collect()
 }
-
-/// Boxed, since a problem is large compared with the values returned.
-type Fault = Box<Problem>;
 
 struct Loader<'a> {
     source: &'a Arc<Source>,
@@ -100,54 +96,42 @@ struct Loader<'a> {
 }
 
 impl<'a> Loader<'a> {
-    fn document(&mut self) -> Result<Node, Fault> {
+    fn document(&mut self) -> Result<Node, Problem> {
         let mut root = None;
         while let Some((event, span)) = self.next()? {
             match event {
                 Event::StreamStart | Event::DocumentEnd => {}
                 Event::StreamEnd => break,
                 Event::DocumentStart(..) if root.is_some() => {
-                    return Err(Box::new(
-                        syntax("a second YAML document begins here", &span)
-                            .help("a file must contain one document"),
-                    ));
+                    return Err(syntax("a second YAML document begins here", &span)
+                        .help("a file must contain one document"));
                 }
                 Event::DocumentStart(..) => {}
                 event => root = Some(self.node(event, span)?),
             }
         }
-        Ok(root.unwrap_or_else(|| Node {
-            value: Value::Null,
-            span: self.source.whole(),
-            raw: String::new(),
-            exact: false,
-        }))
+        Ok(root.unwrap_or_else(|| whole(Value::Null, self.source.whole())))
     }
 
     /// The next event that is not a comment.
-    fn next(&mut self) -> Result<Option<(Event<'a>, Span)>, Fault> {
-        loop {
-            match self.events.next_event() {
-                None => return Ok(None),
-                Some(Ok((Event::Comment(..), _))) => {}
-                Some(Ok((event, place))) => {
-                    return Ok(Some((event, self.source.span(bytes(&place).unwrap_or(0..0)))));
-                }
-                Some(Err(error)) => return Err(Box::new(self.scan_error(&error))),
+    fn next(&mut self) -> Result<Option<(Event<'a>, Span)>, Problem> {
+        while let Some(next) = self.events.next_event() {
+            let (event, place) = next.map_err(|fault| self.scan_error(&fault))?;
+            if !matches!(event, Event::Comment(..)) {
+                return Ok(Some((event, self.source.span(place.byte_range().unwrap_or(0..0)))));
             }
         }
+        Ok(None)
     }
 
-    fn inside(&mut self) -> Result<(Event<'a>, Span), Fault> {
+    fn inside(&mut self) -> Result<(Event<'a>, Span), Problem> {
         self.next()?.ok_or_else(|| {
-            Box::new(syntax(
-                "the text ends inside a value",
-                &self.source.span(self.source.text.len()..self.source.text.len()),
-            ))
+            let end = self.source.text.len();
+            syntax("the text ends inside a value", &self.source.span(end..end))
         })
     }
 
-    fn node(&mut self, event: Event<'a>, span: Span) -> Result<Node, Fault> {
+    fn node(&mut self, event: Event<'a>, span: Span) -> Result<Node, Problem> {
         self.count(1, &span)?;
         let before = self.nodes;
         let (anchor, node) = match event {
@@ -156,10 +140,7 @@ impl<'a> Loader<'a> {
             }
             Event::Alias(anchor) => {
                 let Some((node, size)) = self.anchors.get(&anchor).cloned() else {
-                    return Err(Box::new(syntax(
-                        "this alias is inside the value it refers to",
-                        &span,
-                    )));
+                    return Err(syntax("this alias is inside the value it refers to", &span));
                 };
                 self.count(size, &span)?;
                 return Ok(node);
@@ -172,7 +153,7 @@ impl<'a> Loader<'a> {
                 self.tag(tag.as_deref(), &span);
                 (anchor, self.map(span)?)
             }
-            _ => return Err(Box::new(syntax("a value is missing here", &span))),
+            _ => return Err(syntax("a value is missing here", &span)),
         };
         if anchor != 0 {
             self.anchors.insert(anchor, (node.clone(), self.nodes - before + 1));
@@ -180,35 +161,27 @@ impl<'a> Loader<'a> {
         Ok(node)
     }
 
-    fn count(&mut self, nodes: usize, span: &Span) -> Result<(), Fault> {
+    fn count(&mut self, nodes: usize, span: &Span) -> Result<(), Problem> {
         self.nodes += nodes;
-        if self.nodes > NODES {
-            return Err(Box::new(
-                Problem::error(
-                    "yaml-too-large",
-                    format!("with its aliases written out, the file has more than {NODES} values"),
-                )
-                .at(span),
-            ));
+        if self.nodes <= NODES {
+            return Ok(());
         }
-        Ok(())
+        Err(problem!(
+            "yaml-too-large",
+            span,
+            "with its aliases written out, the file has more than {NODES} values"
+        ))
     }
 
-    fn deeper(&mut self, span: &Span) -> Result<(), Fault> {
+    fn deeper(&mut self, span: &Span) -> Result<(), Problem> {
         self.depth += 1;
-        if self.depth > DEPTH {
-            return Err(Box::new(
-                Problem::error(
-                    "yaml-too-deep",
-                    format!("values are nested more than {DEPTH} deep"),
-                )
-                .at(span),
-            ));
+        if self.depth <= DEPTH {
+            return Ok(());
         }
-        Ok(())
+        Err(problem!("yaml-too-deep", span, "values are nested more than {DEPTH} deep"))
     }
 
-    fn list(&mut self, start: Span) -> Result<Node, Fault> {
+    fn list(&mut self, start: Span) -> Result<Node, Problem> {
         self.deeper(&start)?;
         let mut items: Vec<Node> = Vec::new();
         let end = loop {
@@ -219,10 +192,10 @@ impl<'a> Loader<'a> {
         };
         self.depth -= 1;
         let span = around(&start, items.last().map(|item| &item.span), &end);
-        Ok(Node { value: Value::List(items), span, raw: String::new(), exact: false })
+        Ok(whole(Value::List(items), span))
     }
 
-    fn map(&mut self, start: Span) -> Result<Node, Fault> {
+    fn map(&mut self, start: Span) -> Result<Node, Problem> {
         self.deeper(&start)?;
         let mut entries: Vec<(Key, Node)> = Vec::new();
         // For repeated keys only; keeps the time linear for large maps.
@@ -237,25 +210,15 @@ impl<'a> Loader<'a> {
                     let (text, span, exact) = written(text, style, span);
                     Key { text, span, exact }
                 }
-                _ => {
-                    return Err(Box::new(
-                        Problem::error("yaml-key", "a key must be a single word or text").at(&span),
-                    ));
-                }
+                _ => return Err(error("yaml-key", "a key must be a single word or text", &span)),
             };
             let (event, span) = self.inside()?;
             let value = self.node(event, span)?;
-            if let Some(first) =
-                places.get(&key.text).filter(|_| !self.repeats).and_then(|at| entries.get(*at))
-            {
-                self.problems.push(
-                    Problem::error(
-                        "duplicate-key",
-                        format!("the key `{}` is given twice", key.text),
-                    )
-                    .at(&key.span)
-                    .also(&first.0.span, "first given here"),
-                );
+            let first = places.get(&key.text).filter(|_| !self.repeats);
+            if let Some((first, _)) = first.and_then(|at| entries.get(*at)) {
+                let problem =
+                    problem!("duplicate-key", &key.span, "the key `{}` is given twice", key.text);
+                self.problems.push(problem.also(&first.span, "first given here"));
             } else {
                 places.insert(key.text.clone(), entries.len());
                 entries.push((key, value));
@@ -263,7 +226,7 @@ impl<'a> Loader<'a> {
         };
         self.depth -= 1;
         let span = around(&start, entries.last().map(|(_, value)| &value.span), &end);
-        Ok(Node { value: Value::Map(entries), span, raw: String::new(), exact: false })
+        Ok(whole(Value::Map(entries), span))
     }
 
     fn scalar(
@@ -279,11 +242,8 @@ impl<'a> Loader<'a> {
             Value::Text(raw.clone())
         } else {
             scalar::resolve(&raw).unwrap_or_else(|number| {
-                let says = format!(
-                    "`{raw}` is {}",
-                    if number.is_nan() { "no number" } else { "no finite number" }
-                );
-                self.problems.push(Problem::error("not-finite", says).at(&span));
+                let what = if number.is_nan() { "no number" } else { "no finite number" };
+                self.problems.push(problem!("not-finite", &span, "`{raw}` is {what}"));
                 Value::Null
             })
         };
@@ -293,48 +253,37 @@ impl<'a> Loader<'a> {
     /// Whether the tag makes a scalar text. All other tags are unknown.
     fn tag(&mut self, tag: Option<&yaml::Tag>, span: &Span) -> bool {
         let Some(tag) = tag else { return false };
-        if tag.is_yaml_core_schema_tag("str") || tag.original() == "!" {
-            return true;
+        let text = tag.is_yaml_core_schema_tag("str") || tag.original() == "!";
+        if !text {
+            self.problems.push(problem!(
+                "yaml-tag",
+                span,
+                "the tag `{}` has no meaning here",
+                tag.original()
+            ));
         }
-        self.problems.push(
-            Problem::error("yaml-tag", format!("the tag `{}` has no meaning here", tag.original()))
-                .at(span),
-        );
-        false
+        text
     }
 
-    fn scan_error(&self, error: &ScanError) -> Problem {
-        let marker = error.marker();
+    fn scan_error(&self, fault: &ScanError) -> Problem {
+        let (kind, marker, text) = (fault.kind(), fault.marker(), &self.source.text);
         let at = marker.byte_offset().unwrap_or_else(|| {
-            self.source
-                .text
-                .char_indices()
-                .nth(marker.index())
-                .map_or(self.source.text.len(), |(at, _)| at)
+            text.char_indices().nth(marker.index()).map_or(text.len(), |(at, _)| at)
         });
-        let tab = is_tab(error.kind());
+        let tab = is_tab(kind);
         // The parser points to the value that contains the tab.
-        let at = self
-            .source
-            .text
-            .get(at..)
-            .and_then(|rest| rest.find('\t'))
-            .filter(|_| tab)
-            .map_or(at, |tab| at + tab);
-        let span = self.source.span(at..at);
-        let (says, help) = in_words(error.kind());
-        let help = self.begins_deeper(error.kind(), at).or_else(|| help.map(str::to_string));
-        let code = match error.kind() {
+        let to_tab = text.get(at..).and_then(|rest| rest.find('\t')).filter(|_| tab);
+        let at = at + to_tab.unwrap_or(0);
+        let (says, help) = in_words(kind);
+        let help = self.begins_deeper(kind, at).or_else(|| help.map(str::to_string));
+        let code = match kind {
             _ if tab => "tab-indentation",
             ErrorKind::RecursionLimitExceeded => "yaml-too-deep",
             _ => "yaml-syntax",
         };
-        let problem = Problem::error(code, says).at(&span);
-        problem.help_if(help)
+        error(code, says, &self.source.span(at..at)).help_if(help)
     }
-}
 
-impl Loader<'_> {
     /// `key: value` below a key that has its value already, and deeper: to the parser it goes on
     /// that value.
     fn begins_deeper(&self, kind: &ErrorKind, at: usize) -> Option<String> {
@@ -345,23 +294,22 @@ impl Loader<'_> {
         let above =
             lines.find(|line| !line.trim().is_empty() && !line.trim_start().starts_with('#'))?;
         let value = above.split_once(": ").is_some_and(|(_, value)| !value.trim().is_empty());
-        let first = this.matches(": ").count() == 0;
-        (matches!(kind, ErrorKind::MappingValueNotAllowed) && value && first && indent(this) > indent(above)).then(|| {
-            format!(
-                "this line begins in column {}; the key above has its value, and begins in column {}",
-                indent(this) + 1,
-                indent(above) + 1
-            )
+        let (here, there) = (indent(this), indent(above));
+        let meant = matches!(kind, ErrorKind::MappingValueNotAllowed) && value;
+        (meant && !this.contains(": ") && here > there).then(|| {
+            let (here, there) = (here + 1, there + 1);
+            format!("this line begins in column {here}; the key above has its value, and begins in column {there}")
         })
     }
 }
 
-fn syntax(says: impl Into<String>, span: &Span) -> Problem {
-    Problem::error("yaml-syntax", says).at(span)
+/// A value without a text of its own.
+fn whole(value: Value, span: Span) -> Node {
+    Node { value, span, raw: String::new(), exact: false }
 }
 
-fn bytes(place: &yaml::Span) -> Option<Range<usize>> {
-    place.byte_range()
+fn syntax(says: impl Into<String>, span: &Span) -> Problem {
+    error("yaml-syntax", says, span)
 }
 
 /// From the start of a list or map to its closing bracket, or to the end of its last element.

@@ -3,7 +3,7 @@
 use super::Value;
 
 /// The value of a plain scalar, or a number that is not finite.
-pub(super) fn resolve(text: &str) -> Result<Value, f64> {
+pub fn resolve(text: &str) -> Result<Value, f64> {
     Ok(match text {
         "" | "~" | "null" | "Null" | "NULL" => Value::Null,
         "true" | "True" | "TRUE" => Value::Bool(true),

@@ -44,7 +44,7 @@ fn source(path: &Path) -> Arc<Source> {
 }
 
 /// Shipped protocols, cases beside a case, and an endless line of ancestors.
-fn find(name: &str, from: &Source) -> Result<Arc<Source>, Box<Problem>> {
+fn find(name: &str, from: &Source) -> Result<Arc<Source>, Problem> {
     if let Some(number) =
         name.strip_prefix("ancestor-").and_then(|number| number.parse::<usize>().ok())
     {

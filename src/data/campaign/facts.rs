@@ -1,7 +1,7 @@
 //! Facts: what `campaign.yaml` says beyond the layout of the folder. They are printed.
 
-use super::opening::Layout;
-use crate::data::cells::name_and_unit;
+use super::layout::Layout;
+use crate::data::cells::name_and_unit_text;
 use crate::source::Span;
 use crate::yaml::{Key, Node, Value};
 
@@ -20,16 +20,13 @@ pub struct Fact {
 }
 
 /// Scalars at the top and one map below it, in the order written.
-pub(super) fn facts(tree: &Node) -> Vec<Fact> {
-    let mut facts = Vec::new();
-    for (key, node) in
-        tree.entries().iter().filter(|(key, _)| !Layout::KEYS.contains(&key.text.as_str()))
-    {
-        facts.extend(fact("", key, node));
-        facts
-            .extend(node.entries().iter().filter_map(|(inner, node)| fact(&key.text, inner, node)));
-    }
-    facts
+pub fn facts(tree: &Node) -> Vec<Fact> {
+    let free = |(key, _): &&(Key, Node)| !Layout::KEYS.contains(&key.text.as_str());
+    let below = |(key, node): &(Key, Node)| {
+        let inner = node.entries().iter().filter_map(|(inner, node)| fact(&key.text, inner, node));
+        fact("", key, node).into_iter().chain(inner).collect::<Vec<_>>()
+    };
+    tree.entries().iter().filter(free).flat_map(below).collect()
 }
 
 fn fact(group: &str, key: &Key, node: &Node) -> Option<Fact> {
@@ -40,13 +37,6 @@ fn fact(group: &str, key: &Key, node: &Node) -> Option<Fact> {
         }
         _ => node.scalar_text()?.to_string(),
     };
-    let (name, unit) = name_and_unit(&key.text);
-    let unit = unit.map(|range| key.text[range].trim().to_string());
-    Some(Fact {
-        group: group.to_string(),
-        name: name.to_string(),
-        unit,
-        text,
-        span: node.span.clone(),
-    })
+    let (name, unit) = name_and_unit_text(&key.text);
+    Some(Fact { group: group.to_string(), name, unit, text, span: node.span.clone() })
 }

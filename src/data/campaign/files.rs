@@ -2,20 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{CAMPAIGN_FILE, Campaign, RecordKind, Run};
-use crate::data::folder::Place;
+use indexmap::IndexSet;
+
+use super::members::RecordKind;
+use super::runs::Run;
+use super::{CAMPAIGN_FILE, Campaign};
+use crate::data::place::Place;
 use crate::data::text::unreadable;
 use crate::disk;
 use crate::problem::Problem;
-
-/// A file that was read, and its fingerprint.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ReadFile {
-    /// Inside the campaign, with `/`.
-    pub path: String,
-    pub sha256: String,
-    pub bytes: u64,
-}
 
 /// What a campaign is read from: absolute paths.
 #[derive(Clone, Debug)]
@@ -36,14 +31,10 @@ impl Campaign {
         };
         let all = RecordKind::ALL.into_iter().flat_map(|kind| self.records(kind));
         let folders = all.filter_map(|which| Some(real(&self.record_folder(which).ok()?.0)));
-        let named = self
-            .files
-            .iter()
-            .filter_map(|file| self.folder.place(&file.path, &self.tree.span.part(0..0)).ok());
+        let named = self.files.iter().filter_map(|file| self.inner(&file.path).ok());
         let of_run = |run: &Run| {
-            let files =
-                RecordKind::ALL.map(|kind| self.run_source(run, kind)?.file(&run.name.span));
-            files.into_iter().filter_map(Result::ok).collect::<Vec<_>>()
+            let file = |kind| self.run_source(run, kind)?.file(&run.name.span);
+            RecordKind::ALL.map(file).into_iter().filter_map(Result::ok).collect::<Vec<_>>()
         };
         let of_runs: Vec<Place> = self.runs.iter().flat_map(of_run).collect();
         let folder = self.folder.real().to_path_buf();
@@ -56,45 +47,25 @@ impl Campaign {
         Inputs { files: files.map(|place| real(&place)).collect(), folder, folders }
     }
 
+    /// A file of the campaign by its path inside, at the beginning of `campaign.yaml`.
+    pub(in crate::data) fn inner(&self, path: &str) -> Result<Place, Problem> {
+        self.folder.place(path, &self.tree.start())
+    }
+
     /// The same campaign, of which protocols that its own one extends are known: paths inside the
     /// campaign. A copy of it takes them along.
-    #[must_use]
     pub fn with_protocols(mut self, inside: Vec<String>) -> Self {
         self.protocols = inside;
         self
     }
 
-    /// Files of protocols that the campaign brings along; a shipped one is a name.
-    fn protocol_files(&self) -> Vec<Place> {
-        let named = self
-            .protocol
-            .iter()
-            .map(|protocol| &protocol.value)
-            .chain(&self.protocols)
-            .filter(|_| self.folder.on_disk());
-        let mut found: Vec<Place> = Vec::new();
-        for place in
-            named.filter_map(|path| self.folder.place(path, &self.tree.span.part(0..0)).ok())
-        {
-            if disk::is_file(&place.path).is_ok_and(|there| there) && !found.contains(&place) {
-                found.push(place);
-            }
-        }
-        found
-    }
-
-    /// Every file that the campaign is read from but its records, with its path inside.
+    /// Every file that the campaign is read from but its records, with its path inside and its
+    /// bytes.
     ///
     /// # Errors
-    /// A name leads outside.
-    pub fn plain_files(&self) -> Result<Vec<String>, Problem> {
-        let mut inside: Vec<String> = self.files.iter().map(|file| file.path.clone()).collect();
-        for place in self.vehicle_files()?.into_iter().chain(self.protocol_files()) {
-            if !inside.contains(&place.inside) {
-                inside.push(place.inside);
-            }
-        }
-        Ok(inside)
+    /// A name leads outside; a file cannot be read.
+    pub fn plain_files(&self) -> Result<Vec<(String, Vec<u8>)>, Problem> {
+        self.with_bytes(self.read_files().chain(self.named_files()?))
     }
 
     /// Every file that the campaign names but its `campaign.yaml` and the records of one kind, with
@@ -103,33 +74,42 @@ impl Campaign {
     /// # Errors
     /// A file cannot be read, or lies outside.
     pub fn other_files(&self, but: RecordKind) -> Result<Vec<(String, Vec<u8>)>, Problem> {
-        let mut inside: Vec<String> = self
-            .files
-            .iter()
-            .map(|file| file.path.clone())
-            .filter(|path| path != CAMPAIGN_FILE)
-            .collect();
+        let mut records = Vec::new();
         let others = RecordKind::ALL.into_iter().filter(|kind| *kind != but && self.has(*kind));
         for which in others.flat_map(|kind| self.records(kind)) {
             for name in &self.names {
-                let place = self.place_of(which, name)?;
-                // Sections of one run have one file.
-                if !inside.contains(&place.inside) {
-                    inside.push(place.inside);
-                }
+                records.push(self.place_of(which, name)?.inside);
             }
         }
-        for place in self.vehicle_files()?.into_iter().chain(self.protocol_files()) {
-            if !inside.contains(&place.inside) {
-                inside.push(place.inside);
-            }
-        }
+        let read = self.read_files().filter(|path| path != CAMPAIGN_FILE);
+        self.with_bytes(read.chain(records).chain(self.named_files()?))
+    }
+
+    /// Files that were read when the campaign was opened.
+    fn read_files(&self) -> impl Iterator<Item = String> {
+        self.files.iter().map(|file| file.path.clone())
+    }
+
+    /// Files that the vehicle names, and those of protocols that the campaign brings along; a
+    /// shipped one is a name.
+    fn named_files(&self) -> Result<Vec<String>, Problem> {
+        let own = self.protocol.iter().map(|protocol| &protocol.value);
+        let protocols = own.chain(&self.protocols).filter(|_| self.folder.on_disk());
+        let there = |place: &Place| disk::is_file(&place.path).is_ok_and(|there| there);
+        let protocols = protocols.filter_map(|path| self.inner(path).ok()).filter(there);
+        Ok(self.vehicle_files()?.into_iter().chain(protocols).map(|place| place.inside).collect())
+    }
+
+    /// Each file once, although sections of one run have one file.
+    fn with_bytes(
+        &self,
+        inside: impl Iterator<Item = String>,
+    ) -> Result<Vec<(String, Vec<u8>)>, Problem> {
         let read = |inside: String| {
-            let place = self.folder.place(&inside, &self.tree.span.part(0..0))?;
-            let bytes = self.folder.read_any(&place)?;
+            let bytes = self.folder.read_any(&self.inner(&inside)?)?;
             Ok((inside, bytes))
         };
-        inside.into_iter().map(read).collect()
+        inside.collect::<IndexSet<_>>().into_iter().map(read).collect()
     }
 
     /// Files that the vehicle names, as far as they are there.
@@ -140,21 +120,15 @@ impl Campaign {
         if !self.folder.on_disk() {
             return Ok(Vec::new());
         }
-        let mut named = vec!["profile.csv".to_string(), "profile_worn.csv".to_string()];
-        let maps = self
-            .vehicles
-            .iter()
-            .flat_map(|vehicle| vehicle.data.entries())
-            .flat_map(|(_, node)| node.entries());
-        named.extend(
-            maps.filter_map(|(_, node)| Some(node.scalar_text()?.to_string()))
-                .filter(|text| text.ends_with(".csv")),
-        );
+        let maps = self.vehicles.iter().flat_map(|vehicle| vehicle.data.entries());
+        let texts =
+            maps.flat_map(|(_, node)| node.entries()).filter_map(|(_, node)| node.scalar_text());
+        let named = texts.filter(|text| text.ends_with(".csv"));
         let mut found: Vec<Place> = Vec::new();
-        for written in named {
-            let place = self.folder.place(&written, &self.tree.span.part(0..0))?;
-            let unreadable = |error| unreadable(&place.shown, &error);
-            if disk::is_file(&place.path).map_err(unreadable)? && !found.contains(&place) {
+        for written in ["profile.csv", "profile_worn.csv"].into_iter().chain(named) {
+            let place = self.inner(written)?;
+            let there = disk::is_file(&place.path).map_err(unreadable(&place.shown))?;
+            if there && !found.contains(&place) {
                 found.push(place);
             }
         }

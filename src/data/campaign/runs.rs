@@ -3,18 +3,19 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::opening::Opening;
-use super::{Campaign, RecordKind};
-use crate::data::cells::name_and_unit;
+use super::Campaign;
+use super::members::RecordKind;
+use super::opening::{Opening, Reader};
+use crate::data::cells::name_and_unit_text;
 use crate::data::folder::{check_file_name, names_in};
 use crate::data::record::{Format, Held, Known, RecordSource};
 use crate::data::table::{Cell, Table};
 use crate::data::text::unreadable;
 use crate::disk;
-use crate::problem::{Problem, Problems};
+use crate::problem::{Problem, Problems, error, problem};
 use crate::source::{Span, Spanned};
 use crate::store;
-use crate::yaml::{FromNode, Key, Node, Reader, Value, Words, fields};
+use crate::yaml::{FromNode, Key, Node, Value, Words, fields};
 
 /// The key of the runs in `campaign.yaml`.
 pub const RUNS: &str = "runs";
@@ -77,9 +78,9 @@ impl Run {
 fields! {
     /// A run as it is written; all other keys are facts.
     struct Written in Opening<'_>: "a run" or Free {
-        "measurement" measurement: Option<RunFile>,
-        "simulation" simulation: Option<RunFile>,
-        "track" track: Option<RunFile>,
+        "measurement" measurement (run_file): Option<Spanned<String>>,
+        "simulation" simulation (run_file): Option<Spanned<String>>,
+        "track" track (run_file): Option<Spanned<String>>,
         "drift" drift: OnDrift = OnDrift::Tell,
     }
 }
@@ -88,57 +89,46 @@ fields! {
 ///
 /// Problems: `wrong-kind`, `no-records`, `name-invalid`, `unknown-key`, `unknown-choice`,
 /// `format-not-read`, and those of [`Folder::place`](crate::data::folder::Folder::place).
-#[derive(Clone, Debug, Default)]
-pub(super) struct Runs(pub Vec<Run>);
-
-impl FromNode<Opening<'_>> for Runs {
-    fn from_node(reader: &mut Reader<'_, Opening<'_>>, _: &Key, node: &Node) -> Option<Self> {
-        const EXAMPLE: &str = "for instance: `runs: {R1: {measurement: R1/measurement.parquet, simulation: R1/simulation.parquet}}`";
-        if node.entries().is_empty() {
-            let problem = node.is_not(&format!("`{RUNS}`"), "a map of names and runs");
-            reader.tell(problem.help(EXAMPLE));
-        }
-        let held = Held::default();
-        let mut runs = Vec::new();
-        for (key, node) in node.entries() {
-            let name = Spanned::new(key.text.trim().to_string(), key.span.clone());
-            if let Err(problem) = check_file_name(&name.value, &name.span) {
-                reader.tell(Problem { code: "name-invalid", ..problem });
-            } else if !matches!(&node.value, Value::Map(_)) {
-                let problem =
-                    node.is_not(&format!("the run `{}`", name.value), "a map of its files");
-                reader.tell(problem.help(EXAMPLE));
-            } else {
-                runs.extend(run(reader, name, key, node, &held));
-            }
-        }
-        Some(Self(runs))
+pub fn runs(reader: &mut Reader<'_, '_>, _: &Key, node: &Node) -> Option<Vec<Run>> {
+    const EXAMPLE: &str = "for instance: `runs: {R1: {measurement: R1/measurement.parquet, simulation: R1/simulation.parquet}}`";
+    if node.entries().is_empty() {
+        let problem = node.is_not(&format!("`{RUNS}`"), "a map of names and runs");
+        reader.tell(problem.help(EXAMPLE));
     }
+    let held = Held::default();
+    let mut runs = Vec::new();
+    for (key, node) in node.entries() {
+        let name = Spanned::new(key.text.trim().to_string(), key.span.clone());
+        if let Err(problem) = check_file_name(&name.value, &name.span) {
+            reader.tell(Problem { code: "name-invalid", ..problem });
+        } else if !matches!(&node.value, Value::Map(_)) {
+            let problem = node.is_not(&format!("the run `{}`", name.value), "a map of its files");
+            reader.tell(problem.help(EXAMPLE));
+        } else {
+            runs.extend(run(reader, name, (key, node), &held));
+        }
+    }
+    Some(runs)
 }
 
 fn run(
-    reader: &mut Reader<'_, Opening<'_>>,
+    reader: &mut Reader<'_, '_>,
     name: Spanned<String>,
-    key: &Key,
-    node: &Node,
+    (key, node): (&Key, &Node),
     held: &Held,
 ) -> Option<Run> {
     let before = reader.problems.errors();
     let written = Written::from_node(reader, key, node)?;
     let files = [written.measurement, written.simulation, written.track];
-    let files = files.map(|file| file.map(|file| file.0));
-    let mut facts = Vec::new();
-    for (key, _) in
-        node.entries().iter().filter(|(key, _)| !Written::KEYS.contains(&key.text.as_str()))
-    {
-        let Some(value) = reader.optional(node, &key.text) else { continue };
-        let (name, unit) = name_and_unit(&key.text);
-        let unit = unit.map(|range| key.text[range].trim().to_string());
-        facts.push(RunFact { name: name.to_string(), unit, value });
-    }
+    let free = |(key, _): &&(Key, Node)| !Written::KEYS.contains(&key.text.as_str());
+    let fact = |(key, node): &(Key, Node)| {
+        let value = Spanned::from_node(reader, key, node)?;
+        let (name, unit) = name_and_unit_text(&key.text);
+        Some(RunFact { name, unit, value })
+    };
+    let facts = node.entries().iter().filter(free).filter_map(fact).collect();
     if files.iter().all(Option::is_none) && reader.problems.errors() == before {
-        let says = format!("the run `{}` names no file", name.value);
-        let problem = Problem::error("no-records", says).at(&node.span);
+        let problem = problem!("no-records", &node.span, "the run `{}` names no file", name.value);
         reader.tell(problem.help("name its files: `measurement`, `simulation`, `track`"));
     }
     let known = std::array::from_fn(|_| Known::with(held));
@@ -148,46 +138,37 @@ fn run(
 
 /// A file of a run: inside the campaign, or an object in a store. Of an object only Parquet can be
 /// read in parts.
-#[derive(Clone, Debug)]
-struct RunFile(Spanned<String>);
-
-impl FromNode<Opening<'_>> for RunFile {
-    fn from_node(reader: &mut Reader<'_, Opening<'_>>, key: &Key, node: &Node) -> Option<Self> {
-        let written: Spanned<String> = Spanned::from_node(reader, key, node)?;
-        if !store::is_url(&written.value) {
-            let place = reader.with.folder.place(&written.value, &written.span);
-            reader.keep(place)?;
-        } else if Format::of(Path::new(&written.value)) != Format::Parquet {
-            let says = format!(
-                "`{}` is in a store and does not end in `.{}`",
-                written.value,
-                Format::Parquet.ending()
-            );
-            let problem = Problem::error("format-not-read", says).at(&written.span);
-            reader.tell(problem.help("write it as Parquet, or copy it to the campaign's folder"));
-            return None;
-        }
-        Some(Self(written))
+fn run_file(reader: &mut Reader<'_, '_>, key: &Key, node: &Node) -> Option<Spanned<String>> {
+    let written: Spanned<String> = Spanned::from_node(reader, key, node)?;
+    let Spanned { value, span } = &written;
+    if !store::is_url(value) {
+        let place = reader.with.folder.place(value, span);
+        reader.keep(place)?;
+    } else if Format::of(Path::new(value)) != Format::Parquet {
+        let ending = Format::Parquet.ending();
+        let problem = problem!(
+            "format-not-read",
+            span,
+            "`{value}` is in a store and does not end in `.{ending}`"
+        );
+        reader.tell(problem.help("write it as Parquet, or copy it to the campaign's folder"));
+        return None;
     }
+    Some(written)
 }
 
 /// Every run that the table of sections names is there.
 ///
 /// Problems: `unknown-run`, `no-runs`.
-pub(super) fn check_column(table: &Table, runs: &[Run], problems: &mut Problems) {
+pub fn check_column(table: &Table, runs: &[Run], problems: &mut Problems) {
     let Some(column) = table.column(RUN_COLUMN).filter(|_| !runs.is_empty()) else { return };
-    for row in 0..table.rows.len() {
-        let Some(cell) = table.cell(row, column).filter(|cell| !cell.value.trim().is_empty())
-        else {
-            continue;
-        };
-        let names = || runs.iter().map(|run| run.name.value.as_str());
-        if !names().any(|name| name == cell.value.trim()) {
-            let says = format!("the campaign has no run `{}`", cell.value.trim());
+    let names = || runs.iter().map(|run| run.name.value.as_str());
+    for cell in table.rows.iter().filter_map(|row| row.get(column)) {
+        let name = cell.value.trim();
+        if !name.is_empty() && names().all(|known| known != name) {
             problems.push(
-                Problem::error("unknown-run", says)
-                    .at(&cell.span)
-                    .suggest(cell.value.trim(), names()),
+                problem!("unknown-run", &cell.span, "the campaign has no run `{name}`")
+                    .suggest(name, names()),
             );
         }
     }
@@ -243,40 +224,40 @@ impl Campaign {
     /// `key-missing`, `path-outside`, `file-missing`; of an object `url-invalid`,
     /// `store-not-allowed`, `store-not-built`, `file-unreadable`.
     pub fn run_source(&self, run: &Run, kind: RecordKind) -> Result<RecordSource, Problem> {
-        let Some(file) = run.file(kind) else {
-            let says = format!("the run `{}` has no `{}`", run.name.value, kind.key());
-            return Err(Problem::error("key-missing", says).at(&run.name.span));
+        let Some(Spanned { value: file, span }) = run.file(kind) else {
+            return Err(problem!(
+                "key-missing",
+                &run.name.span,
+                "the run `{}` has no `{}`",
+                run.name.value,
+                kind.key()
+            ));
         };
-        if store::is_url(&file.value) {
-            return run.known(kind).stored(&file.value, &file.span).map(RecordSource::Object);
-        }
         let known = run.known(kind);
-        let place = known.place().map_or_else(
-            || self.folder.place(&file.value, &file.span),
-            |place| Ok(place.clone()),
-        )?;
-        if let Some(frame) = self.folder.memory().records.get(&place.inside) {
+        if store::is_url(file) {
+            return known.stored(file, span).map(RecordSource::Object);
+        }
+        let place = match known.place.get() {
+            Some(place) => place.clone(),
+            None => self.folder.place(file, span)?,
+        };
+        let inside = &place.inside;
+        if let Some(frame) = self.folder.memory().records.get(inside) {
             return Ok(RecordSource::Memory(Arc::clone(frame)));
         }
-        self.none_in_memory(&place.inside, &file.span)?;
-        let unreadable = |error| unreadable(&place.inside, &error).at(&file.span);
-        if known.place().is_some() || disk::is_file(&place.path).map_err(unreadable)? {
-            known.found(&place);
+        self.none_in_memory(inside, span)?;
+        let there = || disk::is_file(&place.path).map_err(unreadable(inside));
+        if known.place.get().is_some() || there().map_err(|problem| problem.at(span))? {
+            known.place.get_or_init(|| place.clone());
             return Ok(RecordSource::File(place));
         }
-        let problem =
-            Problem::error("file-missing", format!("there is no file `{}`", place.inside))
-                .at(&file.span);
+        let problem = problem!("file-missing", span, "there is no file `{inside}`");
         let others = place.path.parent().map(names_in).unwrap_or_default();
-        let folder =
-            file.value.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/"));
-        let others: Vec<String> =
-            others.into_iter().map(|name| format!("{folder}{name}")).collect();
-        Err(problem.suggest(&file.value, others.iter().map(String::as_str)))
+        let folder = file.rfind('/').map_or("", |at| &file[..=at]);
+        Err(problem.suggest(file, others.into_iter().map(|name| format!("{folder}{name}"))))
     }
 
     /// The campaign with a table of sections that was not read from a file of it.
-    #[must_use]
     pub fn with_sections(&self, table: Table) -> Self {
         let names = table.names().cloned().collect();
         Self { sections: Some(table), names, ..self.clone() }
@@ -290,18 +271,12 @@ impl Campaign {
             return Ok(());
         }
         let says = "the sections of this campaign are parts of runs, and a file for each section is needed here";
-        Err(Problem::error("section-in-run", says)
-            .at(&self.runs_span())
+        Err(error("section-in-run", says, &self.runs_span())
             .help("`fishplate sections CAMPAIGN --cut FOLDER` writes a campaign with such files"))
     }
 
     /// The place of the runs in `campaign.yaml`.
     pub fn runs_span(&self) -> Span {
-        self.tree.entry(RUNS).map_or_else(|| self.tree.span.part(0..0), |(key, _)| key.span.clone())
-    }
-
-    /// The names of the runs, for a protocol that evaluates whole records.
-    pub(super) fn run_names(&self) -> Vec<Cell> {
-        self.runs.iter().map(|run| run.name.clone()).collect()
+        self.tree.entry(RUNS).map_or_else(|| self.tree.start(), |(key, _)| key.span.clone())
     }
 }

@@ -4,13 +4,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
-use super::held::locked;
-use super::recent::Recent;
+use super::recent::{Recent, locked};
 
 /// Rows of a block: a row group with at most so many is one block, a longer one is parted, since
 /// some programs write a million rows in a group. At 200 Hz a block has 160 s; 24 channels of both
 /// sides take 13 MB.
-pub(super) const ROWS: usize = 1 << 15;
+pub const ROWS: usize = 1 << 15;
 /// Most bytes that are kept for each thread: two blocks of 24 channels of both sides and of the
 /// track, since a section may lie across the end of a block. It bounds the memory, whatever the
 /// length of a run and the number of runs.
@@ -18,11 +17,11 @@ const MOST: usize = 32 << 20;
 
 /// The numbers of a column in a block, SI; `None` if one of them is missing or not finite, or the
 /// block cannot be decoded.
-pub(super) type Numbers = Option<Arc<Vec<f64>>>;
+pub type Numbers = Option<Arc<Vec<f64>>>;
 
 /// Rows of a file that are decoded together.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Place {
+pub struct Place {
     pub file: PathBuf,
     pub first_row: usize,
 }
@@ -35,7 +34,7 @@ impl Place {
 
 /// The blocks that were used last; shared by all files of a campaign.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Decoded {
+pub struct Decoded {
     blocks: Arc<Mutex<Recent<Kept>>>,
     /// Columns of blocks that were decoded.
     #[cfg(test)]

@@ -1,13 +1,13 @@
 //! Slow parsing of an irregular row, with a description of its fault.
 
 use super::Column;
-use crate::data::cells::{self, StrayQuote};
+use crate::data::cells;
 use crate::data::faults::Faults;
-use crate::problem::Problem;
+use crate::problem::{error, problem};
 use crate::source::{Source, Span};
 
 /// A line of the file without its line break.
-pub(super) struct Line<'a> {
+pub struct Line<'a> {
     pub text: &'a str,
     /// From 1.
     pub number: usize,
@@ -23,28 +23,21 @@ impl Line<'_> {
     }
 }
 
+const CUT_OFF: &str = "the file may have been cut off; export or copy it again";
+
 /// Number of rows before the last one that determine the expected decimals of its last number.
-pub(super) const BEFORE: usize = 8;
+pub const BEFORE: usize = 8;
 
 /// Detects a file that was cut off inside its last number: it ends without a line break, and the
 /// number has fewer decimals than those above it, which all have the same number. If these vary,
 /// truncation cannot be detected.
-pub(super) fn cut_number(
-    rows: &str,
-    ended: bool,
-    line: usize,
-    shown: &str,
-    faults: &mut Faults<'_>,
-) {
+pub fn cut_number(rows: &str, ended: bool, line: usize, shown: &str, faults: &mut Faults<'_>) {
     let mut lines = rows.rsplit('\n').take(1 + BEFORE);
     let (false, Some(last)) = (ended, lines.next()) else { return };
     let decimals = |line: &str| {
         let cell = line.trim_end_matches('\r').rsplit(',').next().unwrap_or_default().trim();
-        if cell.contains(['e', 'E', '"']) {
-            None
-        } else {
-            Some(cell.split_once('.').map_or(0, |(_, decimals)| decimals.len()))
-        }
+        let plain = !cell.contains(['e', 'E', '"']);
+        plain.then(|| cell.split_once('.').map_or(0, |(_, decimals)| decimals.len()))
     };
     let before: Vec<Option<usize>> = lines.map(decimals).collect();
     let (Some(&Some(usual)), Some(found)) = (before.first(), decimals(last)) else { return };
@@ -53,36 +46,38 @@ pub(super) fn cut_number(
         faults.push(|| {
             let says = format!("the file ends without a line break, in a number with {found} decimals where the rows above have {usual}");
             let at = Source::excerpt(shown, last, line).span(start..last.len());
-            Problem::error("truncated-row", says).at(&at).help("the file may have been cut off; export or copy it again")
+            error("truncated-row", says, &at).help(CUT_OFF)
         });
     }
 }
 
 /// Parses a row with quotes or blanks, or reports its fault. After a fault, columns may have
 /// different lengths.
-pub(super) fn slow_row(
+pub fn slow_row(
     line: &Line<'_>,
     width: usize,
     columns: &mut [&mut Column],
     faults: &mut Faults<'_>,
 ) {
     if line.text.trim().is_empty() {
-        faults
-            .push(|| Problem::error("blank-line", "blank line between the rows").at(&line.span()));
+        faults.push(|| error("blank-line", "blank line between the rows", &line.span()));
         return;
     }
     let cells = match cells::split(line.text) {
         Ok(cells) => cells,
-        Err(StrayQuote(place)) => {
+        Err(place) => {
             return faults.push(|| cells::stray_quote(&line.span().part(place)));
         }
     };
     if cells.len() < width && line.last {
         return faults.push(|| {
-            let says = format!("the file ends inside a row: {} of {} values", cells.len(), width);
-            Problem::error("truncated-row", says)
-                .at(&line.span())
-                .help("the file may have been cut off; export or copy it again")
+            problem!(
+                "truncated-row",
+                &line.span(),
+                "the file ends inside a row: {} of {width} values",
+                cells.len()
+            )
+            .help(CUT_OFF)
         });
     }
     if cells.len() != width {
@@ -93,8 +88,7 @@ pub(super) fn slow_row(
         match cells::number(&cell.text) {
             Ok(number) => column.values.push(number * column.unit.factor),
             Err((code, says)) => faults.push(|| {
-                Problem::error(code, format!("`{}`: {says}", column.name))
-                    .at(&line.span().part(cell.place.clone()))
+                problem!(code, &line.span().part(cell.place.clone()), "`{}`: {says}", column.name)
             }),
         }
     }

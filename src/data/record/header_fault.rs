@@ -6,28 +6,26 @@ use std::path::Path;
 use super::Wanted;
 use crate::data::cells::{self, Heading};
 use crate::data::text::open_text;
-use crate::problem::Problem;
+use crate::problem::{Problem, error, nearest, problem};
 use crate::source::Source;
 use crate::units::Unit;
 
 /// One problem for all columns with the same fault: the header is shown once.
-pub(super) fn alike(wrong: Vec<(&Heading, Problem)>) -> Vec<Problem> {
+pub fn alike(wrong: Vec<(&Heading, Problem)>) -> Vec<Problem> {
     let unit = |heading: &Heading| heading.unit.as_ref().map(|unit| unit.text.clone());
-    let mut groups: Vec<(&Heading, Problem, Vec<&Heading>)> = Vec::new();
+    let mut groups: Vec<(&Heading, Problem, Vec<String>)> = Vec::new();
     for (heading, problem) in wrong {
         let same = groups
             .iter_mut()
-            .find(|(first, of, _)| of.code == problem.code && unit(first) == unit(heading));
+            .find(|(first, told, _)| told.code == problem.code && unit(first) == unit(heading));
         match same {
-            Some((_, _, others)) => others.push(heading),
+            Some((.., others)) => others.push(format!("`{}`", heading.name)),
             None => groups.push((heading, problem, Vec::new())),
         }
     }
-    let told = |(_, mut problem, others): (&Heading, Problem, Vec<&Heading>)| {
+    let told = |(_, mut problem, others): (&Heading, Problem, Vec<String>)| {
         if !others.is_empty() {
-            let names: Vec<String> =
-                others.iter().map(|heading| format!("`{}`", heading.name)).collect();
-            problem.says = format!("{}; the same of {}", problem.says, names.join(", "));
+            problem.says += &format!("; the same of {}", others.join(", "));
         }
         problem
     };
@@ -35,7 +33,7 @@ pub(super) fn alike(wrong: Vec<(&Heading, Problem)>) -> Vec<Problem> {
 }
 
 /// The header once more between the rows: files that were put one behind another.
-pub(super) fn repeated(path: &Path, shown: &str) -> Option<Problem> {
+pub fn repeated(path: &Path, shown: &str) -> Option<Problem> {
     let mut lines = open_text(path, shown).ok()?.lines().map_while(Result::ok).enumerate();
     let (_, first) = lines.next()?;
     let header = first.strip_prefix('\u{feff}').unwrap_or(&first).trim_end();
@@ -46,18 +44,17 @@ pub(super) fn repeated(path: &Path, shown: &str) -> Option<Problem> {
         1 => ", and once more".to_string(),
         more => format!(", and {more} times more"),
     };
-    let says = format!("the header stands between the rows again, in line {}{more}", at + 1);
-    let problem = Problem::error("header-repeated", says).at(&Source::excerpt(
-        shown,
-        line.trim_end(),
-        at + 1,
-    )
-    .whole());
+    let problem = problem!(
+        "header-repeated",
+        &Source::excerpt(shown, line.trim_end(), at + 1).whole(),
+        "the header stands between the rows again, in line {}{more}",
+        at + 1
+    );
     Some(problem.help("one file holds one record: give each its own file and section"))
 }
 
 /// Units that stand in the first row or in cells of their own.
-pub(super) fn units_elsewhere(row: &str, headings: &[Heading], shown: &str) -> Option<Problem> {
+pub fn units_elsewhere(row: &str, headings: &[Heading], shown: &str) -> Option<Problem> {
     units_in_row(row, headings, shown).or_else(|| cells::unit_in_cell(headings))
 }
 
@@ -76,11 +73,12 @@ fn units_in_row(line: &str, headings: &[Heading], shown: &str) -> Option<Problem
     let (name, unit) =
         (&headings.first()?.name, cells.first()?.text.trim_matches(['[', ']', '(', ')']));
     Some(
-        Problem::error("units-in-row", "the units stand in a row of their own")
-            .at(&Source::excerpt(shown, line, 2).whole())
-            .help(format!(
-                "write each unit behind its name, in one header line: `{name} [{unit}]`"
-            )),
+        error(
+            "units-in-row",
+            "the units stand in a row of their own",
+            &Source::excerpt(shown, line, 2).whole(),
+        )
+        .help(format!("write each unit behind its name, in one header line: `{name} [{unit}]`")),
     )
 }
 
@@ -93,50 +91,34 @@ fn unit_otherwise<'a>(heading: &'a str, name: &str) -> Option<&'a str> {
 
 /// One problem for all columns that the header lacks: it is shown once. A column that is wanted
 /// itself is not what was meant by another.
-pub(super) fn missing(
-    headings: &[Heading],
-    names: &[&str],
-    wanted: &[Wanted],
-    shown: &str,
-) -> Problem {
+pub fn missing(headings: &[Heading], names: &[&str], wanted: &[Wanted], shown: &str) -> Problem {
     let stranger =
         |name: &&str| !name.is_empty() && !wanted.iter().any(|wanted| wanted.name == *name);
     let known = || headings.iter().map(|heading| heading.name.as_str()).filter(stranger);
-    let problem = match names {
-        [name] => {
-            let problem =
-                Problem::error("unknown-channel", format!("`{shown}` has no column `{name}`"));
-            match known().find_map(|heading| Some((heading, unit_otherwise(heading, name)?))) {
-                Some((heading, unit)) => problem.help(format!(
-                    "the unit of `{heading}` goes into square brackets: `{name} [{unit}]`"
-                )),
-                None => problem.suggest(name, known()),
-            }
+    // A heading that has the unit of a wanted column written otherwise.
+    let otherwise =
+        |name: &str| known().find_map(|heading| Some((heading, unit_otherwise(heading, name)?)));
+    let lacks = |which: String| problem!("unknown-channel", "`{shown}` has no {which}");
+    let problem = if let [name] = names {
+        let problem = lacks(format!("column `{name}`"));
+        match otherwise(name) {
+            Some((heading, unit)) => problem.help(format!(
+                "the unit of `{heading}` goes into square brackets: `{name} [{unit}]`"
+            )),
+            None => problem.suggest(name, known()),
         }
-        _ => {
-            let list = names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-            let problem =
-                Problem::error("unknown-channel", format!("`{shown}` has no columns {list}"));
-            let slips = names.iter().filter_map(|name| {
-                let otherwise =
-                    known().find_map(|heading| Some((heading, unit_otherwise(heading, name)?)));
-                match otherwise {
-                    Some((heading, unit)) => Some(format!("`{name} [{unit}]` for `{heading}`")),
-                    None => crate::problem::nearest(name, known())
-                        .map(|near| format!("`{near}` for `{name}`")),
-                }
-            });
-            let slips: Vec<String> = slips.collect();
-            if slips.is_empty() {
-                problem
-            } else {
-                problem.help(format!("did you mean {}?", slips.join(", ")))
-            }
-        }
+    } else {
+        let list: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+        let slip = |name: &&str| match otherwise(name) {
+            Some((heading, unit)) => Some(format!("`{name} [{unit}]` for `{heading}`")),
+            None => Some(format!("`{}` for `{name}`", nearest(name, known())?)),
+        };
+        let slips: Vec<String> = names.iter().filter_map(slip).collect();
+        let help = (!slips.is_empty()).then(|| format!("did you mean {}?", slips.join(", ")));
+        lacks(format!("columns {}", list.join(", "))).help_if(help)
     };
-    match headings {
-        [first, .., last] => problem.at(&first.span.to(&last.span)),
-        [only] => problem.at(&only.span),
-        [] => problem,
+    match (headings.first(), headings.last()) {
+        (Some(first), Some(last)) => problem.at(&first.span.to(&last.span)),
+        _ => problem,
     }
 }

@@ -4,13 +4,13 @@
 use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use bytes::Bytes;
 
-use super::columnar::Layout;
 use super::decoded::Decoded;
-use super::recent::Recent;
+use super::layout::Layout;
+use super::recent::{Recent, locked};
 
 /// Most bytes that are kept in all: both sides and the track of a run of 60 km with 24 channels, or
 /// some row groups of longer ones. It bounds the memory of a worker, whatever the length of the
@@ -49,11 +49,6 @@ impl Part {
         (from <= to && to <= self.bytes.len() && self.file == file)
             .then(|| self.bytes.slice(from..to))
     }
-}
-
-/// Nothing is half-written under a lock, so a panic of another thread does no harm.
-pub(super) fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
-    of.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl fmt::Debug for Held {

@@ -2,12 +2,13 @@
 //! which part of the axis is.
 
 use std::ops::Range;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock};
 
-use super::held::{Held, locked};
-use super::stored::refused;
-use super::{Column, Stored};
-use crate::data::folder::Place;
+use super::Column;
+use super::held::Held;
+use super::recent::locked;
+use super::stored::{Stored, refused};
+use crate::data::place::Place;
 use crate::problem::Problem;
 use crate::source::Span;
 use crate::store::{Object, Refused};
@@ -18,8 +19,8 @@ pub struct Known {
     file: Arc<Mutex<Option<Arc<KnownFile>>>>,
     /// Of a record in a store: it is looked for once.
     object: Arc<OnceLock<Result<Object, Refused>>>,
-    /// Of a file that is there.
-    place: Arc<OnceLock<Place>>,
+    /// Where the file is, if it was found before.
+    pub place: Arc<OnceLock<Place>>,
     /// Parts of this file and others.
     pub held: Held,
 }
@@ -59,10 +60,8 @@ pub struct Mark {
 impl Mark {
     /// Of rows with this axis.
     pub fn of(first_row: usize, (from, to): (u64, u64), axis: &Column) -> Self {
-        let (low, high) =
-            axis.values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| {
-                (low.min(*at), high.max(*at))
-            });
+        let low = axis.values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = axis.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         Self { first_row, from, to, low, high }
     }
 
@@ -88,16 +87,6 @@ impl Known {
         }
     }
 
-    /// Where the file is, if it was found before.
-    pub fn place(&self) -> Option<&Place> {
-        self.place.get()
-    }
-
-    /// Keeps where the file was found.
-    pub fn found(&self, place: &Place) {
-        self.place.get_or_init(|| place.clone());
-    }
-
     /// What is known, if it is enough; otherwise what is computed now.
     ///
     /// # Errors
@@ -112,13 +101,6 @@ impl Known {
             Some(file) if enough(file) => Ok(Arc::clone(file)),
             _ => compute().map(|file| Arc::clone(known.insert(Arc::new(file)))),
         }
-    }
-
-    /// What is known, if no one else shares it.
-    pub fn taken(self) -> Option<KnownFile> {
-        let known =
-            Arc::into_inner(self.file)?.into_inner().unwrap_or_else(PoisonError::into_inner)?;
-        Arc::into_inner(known)
     }
 
     /// Keeps what was found in passing.

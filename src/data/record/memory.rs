@@ -9,13 +9,14 @@ use arrow_array::types::Float64Type;
 use arrow_array::{Array, RecordBatch};
 use arrow_schema::{DataType, Schema};
 
-use super::columnar::{append, headings_of, no_rows, not_numbers, numbers, value_at, wrong};
+use super::columnar::{append, no_rows, numbers, value_at, wrong};
+use super::layout::{headings_of, not_numbers};
 use super::stretch::{Run, Stretch, axis_of, values};
 use super::{Column, Wanted, find_columns};
-use crate::data::cells::Heading;
+use crate::data::cells::{Heading, names};
 use crate::data::faults::Faults;
 use crate::data::hash::Hasher;
-use crate::problem::Problem;
+use crate::problem::{Problem, problem};
 use crate::source::{Source, Span};
 
 /// Numbers hashed at a time where they do not lie as 64-bit numbers in memory; it does not change
@@ -27,8 +28,8 @@ const BLOCK: usize = 4096;
 pub struct Frame {
     /// The path inside the campaign that the record has, such as `measurement/S01`; with the ending
     /// of the file that it was read from.
-    name: String,
-    headings: Vec<Heading>,
+    pub name: String,
+    pub(super) headings: Vec<Heading>,
     batches: Vec<RecordBatch>,
     rows: usize,
     hash: OnceLock<String>,
@@ -62,22 +63,15 @@ impl Frame {
     /// `unit-conflict`, `duplicate-column`; `file-empty`: the table has no columns.
     pub fn new(name: &str, schema: &Schema, batches: Vec<RecordBatch>) -> Result<Self, Problem> {
         if schema.fields().is_empty() {
-            return Err(Problem::error("file-empty", format!("`{name}` has no columns")));
+            return Err(problem!("file-empty", "`{name}` has no columns"));
         }
         let headings = headings_of(schema, schema, name)?;
         let rows = batches.iter().map(RecordBatch::num_rows).sum();
-        Ok(Self {
-            name: name.to_string(),
-            headings,
-            batches,
-            rows,
-            hash: OnceLock::new(),
-            bytes: None,
-        })
+        let (name, hash) = (name.to_string(), OnceLock::new());
+        Ok(Self { name, headings, batches, rows, hash, bytes: None })
     }
 
     /// The same table, which was read from a file as it is: results then name the file.
-    #[must_use]
     pub fn read_from(self, file: ReadFrom) -> Self {
         Self {
             name: format!("{}.{}", self.name, file.ending),
@@ -87,24 +81,14 @@ impl Frame {
         }
     }
 
-    /// The path inside the campaign that the record has.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    pub(super) fn headings(&self) -> Vec<Heading> {
-        self.headings.clone()
-    }
-
     /// The wanted columns, with their numbers in SI units.
     pub(super) fn read(&self, wanted: &[Wanted]) -> Result<Run, Vec<Problem>> {
-        Ok(Run {
-            channels: self.headings.iter().map(|heading| heading.name.clone()).collect(),
-            rows: self.rows,
-            columns: self.columns(wanted)?,
-            sha256: self.sha256(),
-            bytes: self.bytes() as u64,
-        })
+        let columns = self.columns(wanted)?;
+        // Of the file, or of the numbers.
+        let numbers = self.rows.saturating_mul(self.headings.len()).saturating_mul(8);
+        let bytes = self.bytes.unwrap_or(numbers) as u64;
+        let (channels, sha256) = (names(&self.headings), self.sha256());
+        Ok(Run { channels, rows: self.rows, columns, sha256, bytes })
     }
 
     /// The rows whose axis lies in a range of SI units.
@@ -122,51 +106,37 @@ impl Frame {
 
     fn columns(&self, wanted: &[Wanted]) -> Result<Vec<Column>, Vec<Problem>> {
         let mut columns = find_columns(&self.headings, wanted, &self.name)?;
-        let kind = |column: &Column| {
-            Some(self.batches.first()?.schema_ref().field(column.position).data_type().clone())
-        };
         let other = |column: &Column| {
-            not_numbers(&kind(column)?, &column.name, &self.headings.get(column.position)?.span)
+            let schema = self.batches.first()?.schema_ref();
+            let (kind, at) = (schema.field(column.position).data_type(), column.position);
+            let problem = not_numbers(kind, &column.name, &self.headings.get(at)?.span)?;
+            Some(problem.help(CONVERT))
         };
-        let problems: Vec<Problem> =
-            columns.iter().filter_map(other).map(|problem| problem.help(CONVERT)).collect();
+        let problems: Vec<Problem> = columns.iter().filter_map(other).collect();
         if !problems.is_empty() {
             return Err(problems);
         }
         if self.rows == 0 {
-            return Err(vec![no_rows(&self.name)]);
+            return Err(no_rows(&self.name).into());
         }
         let mut faults = Faults::new(&self.name);
+        let mut fault = |row: usize, column: &Column, value: Option<f64>| {
+            let heading = &self.headings[column.position];
+            let label = format!("row {}", row + 1);
+            faults.push(|| wrong(&self.name, heading, row, value).label(label));
+        };
         for column in &mut columns {
             column.values.reserve_exact(self.rows);
             let mut first = 0;
             for batch in &self.batches {
-                let mut fault = |row: usize, column: &Column, value: Option<f64>| {
-                    faults.push(|| {
-                        wrong(&self.name, &self.headings[column.position], row, value)
-                            .label(format!("row {}", row + 1))
-                    });
-                };
-                let done =
-                    append(batch.column(column.position).as_ref(), column, first, &mut fault);
-                done.map_err(|why| {
-                    vec![
-                        Problem::error("not-a-number", format!("`{}`: {why}", self.name))
-                            .help(CONVERT),
-                    ]
+                let array = batch.column(column.position).as_ref();
+                append(array, column, first, &mut fault).map_err(|why| {
+                    problem!("not-a-number", "`{}`: {why}", self.name).help(CONVERT)
                 })?;
                 first += batch.num_rows();
             }
         }
         faults.finish(columns)
-    }
-
-    /// Bytes of the file, or of the numbers.
-    fn bytes(&self) -> usize {
-        if let Some(bytes) = self.bytes {
-            return bytes;
-        }
-        self.rows.saturating_mul(self.headings.len()).saturating_mul(8)
     }
 
     /// SHA-256 of the content, which does not depend on how it lies in memory: for each column its
@@ -190,9 +160,8 @@ impl Frame {
     /// The place of a sample, from 0, or of its value in a column.
     pub(super) fn place(&self, row: usize, column: Option<&Column>) -> Option<Span> {
         let Some(column) = column else {
-            return Some(
-                Source::excerpt(self.name.as_str(), format!("row {}", row + 1), row + 1).whole(),
-            );
+            let text = format!("row {}", row + 1);
+            return Some(Source::excerpt(self.name.as_str(), text, row + 1).whole());
         };
         let mut first = 0;
         for batch in &self.batches {
@@ -200,12 +169,8 @@ impl Frame {
                 let mut value = Vec::new();
                 let array = batch.column(column.position).slice(row - first, 1);
                 numbers(array.as_ref(), 1.0, &mut value)?;
-                return Some(value_at(
-                    &self.name,
-                    self.headings.get(column.position)?,
-                    row,
-                    &value.first()?.to_string(),
-                ));
+                let heading = self.headings.get(column.position)?;
+                return Some(value_at(&self.name, heading, row, &value.first()?.to_string()));
             }
             first += batch.num_rows();
         }
@@ -221,19 +186,19 @@ fn add(hash: &mut Hasher, array: &Arc<dyn Array>) {
     {
         return hash.add(numbers.values().inner().as_slice());
     }
-    let mut texts = |texts: &mut dyn Iterator<Item = Option<&str>>| {
-        texts.for_each(|text| {
-            [text.unwrap_or_default().as_bytes(), &[0]]
-                .into_iter()
-                .for_each(|bytes| hash.add(bytes))
-        });
+    let texts: &mut dyn Iterator<Item = Option<&str>> = match array.data_type() {
+        DataType::Utf8 => &mut array.as_string::<i32>().iter(),
+        DataType::LargeUtf8 => &mut array.as_string::<i64>().iter(),
+        DataType::Utf8View => &mut array.as_string_view().iter(),
+        _ => return add_numbers(hash, array),
     };
-    match array.data_type() {
-        DataType::Utf8 => return texts(&mut array.as_string::<i32>().iter()),
-        DataType::LargeUtf8 => return texts(&mut array.as_string::<i64>().iter()),
-        DataType::Utf8View => return texts(&mut array.as_string_view().iter()),
-        _ => {}
+    for text in texts {
+        hash.add(text.unwrap_or_default().as_bytes());
+        hash.add(&[0]);
     }
+}
+
+fn add_numbers(hash: &mut Hasher, array: &Arc<dyn Array>) {
     let mut values = Vec::new();
     if numbers(array.as_ref(), 1.0, &mut values).is_none() {
         // What is neither numbers nor text is never read.

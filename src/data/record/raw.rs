@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use super::{Format, columnar, fault, header};
-use crate::data::cells::{self, RawCell, StrayQuote};
+use super::text::no_rows;
+use super::{Format, columnar, fault, listed_headings};
+use crate::data::cells::{self, RawCell};
 use crate::data::faults::Faults;
 use crate::data::text::{LARGEST_RECORD, LONGEST_LINE, decode, long_line, read_bytes};
 use crate::data::write::{Digits, FileColumn, Values};
@@ -19,44 +20,37 @@ pub fn read_raw(path: &Path, shown: &str) -> Result<Vec<FileColumn>, Vec<Problem
     }
     let bytes = read_bytes(path, shown, LARGEST_RECORD)?;
     let text = decode(&bytes, shown)?;
-    if let Some((at, line)) =
-        text.split('\n').enumerate().find(|(_, line)| line.len() > LONGEST_LINE)
-    {
-        return Err(vec![long_line(line.as_bytes(), at + 1, shown)]);
+    let mut lines = text.split('\n').enumerate();
+    if let Some((at, line)) = lines.find(|(_, line)| line.len() > LONGEST_LINE) {
+        return Err(long_line(line.as_bytes(), at + 1, shown).into());
     }
-    let headings = header(text, shown)?;
+    let headings = listed_headings(text, shown)?;
     let rows = text.split_once('\n').map_or("", |(_, rows)| rows).trim_end();
     if rows.is_empty() {
-        return Err(vec![Problem::error(
-            "no-rows",
-            format!("`{shown}` has a header and no samples"),
-        )]);
+        return Err(no_rows(shown).into());
     }
-    let mut faults = Faults::new(shown);
     let mut columns: Vec<Numbers> = vec![Numbers::default(); headings.len()];
-    each_row(rows, shown, headings.len(), &mut faults, |_, cells| {
+    each_row(rows, shown, headings.len(), |_, cells| {
         columns.iter_mut().zip(cells).for_each(|(column, cell)| column.add(&cell.text));
-    });
-    faults.finish(())?;
+    })?;
     let mut texts: Vec<Vec<String>> = vec![Vec::new(); headings.len()];
     if columns.iter().any(|column| column.text || column.irregular) {
         // Only now it is known which columns are texts, and the most digits of the others.
-        let mut none = Faults::new(shown);
-        each_row(rows, shown, headings.len(), &mut none, |row, cells| {
+        each_row(rows, shown, headings.len(), |row, cells| {
             for ((column, texts), cell) in columns.iter_mut().zip(&mut texts).zip(cells) {
                 match column.text {
                     true => texts.push(cell.text),
                     false => column.compare(row, &cell.text),
                 }
             }
-        });
+        })?;
     }
     let made = headings.iter().zip(columns).zip(texts).map(|((heading, column), texts)| {
-        let heading = heading.unit.as_ref().map_or_else(
-            || heading.name.clone(),
-            |unit| format!("{} [{}]", heading.name, unit.text),
-        );
-        let digits = column.form();
+        let (name, digits) = (&heading.name, column.form());
+        let heading = match &heading.unit {
+            Some(unit) => format!("{name} [{}]", unit.text),
+            None => name.clone(),
+        };
         let values =
             if column.text { Values::Texts(texts) } else { Values::Numbers(column.values) };
         FileColumn { heading, values, digits }
@@ -68,18 +62,20 @@ fn each_row(
     rows: &str,
     shown: &str,
     width: usize,
-    faults: &mut Faults<'_>,
     mut each: impl FnMut(usize, Vec<RawCell>),
-) {
+) -> Result<(), Vec<Problem>> {
+    let mut faults = Faults::new(shown);
     for (row, line) in rows.split('\n').enumerate() {
-        let line =
-            fault::Line { text: line.trim_end_matches('\r'), number: row + 2, last: false, shown };
-        match cells::split(line.text) {
-            _ if line.text.trim().is_empty() => fault::slow_row(&line, width, &mut [], faults),
-            Ok(cells) if cells.len() == width => each(row, cells),
-            Ok(_) | Err(StrayQuote(_)) => fault::slow_row(&line, width, &mut [], faults),
+        let text = line.trim_end_matches('\r');
+        match cells::split(text) {
+            Ok(cells) if cells.len() == width && !text.trim().is_empty() => each(row, cells),
+            _ => {
+                let line = fault::Line { text, number: row + 2, last: false, shown };
+                fault::slow_row(&line, width, &mut [], &mut faults);
+            }
         }
     }
+    faults.finish(())
 }
 
 /// The numbers of a column, as long as each cell is one.
@@ -126,11 +122,9 @@ impl Numbers {
 
     /// The form of all cells.
     fn form(&self) -> Option<Digits> {
-        let forms = [
-            (!self.irregular).then(|| self.decimals.map(Digits::Decimals)).flatten(),
-            (!self.not_significant).then_some(Digits::Significant(self.significant)),
-            (!self.not_shortest).then_some(Digits::Shortest),
-        ];
-        forms.into_iter().flatten().next().filter(|_| !self.text)
+        let decimals = self.decimals.filter(|_| !self.irregular).map(Digits::Decimals);
+        let significant = (!self.not_significant).then_some(Digits::Significant(self.significant));
+        let shortest = (!self.not_shortest).then_some(Digits::Shortest);
+        decimals.or(significant).or(shortest).filter(|_| !self.text)
     }
 }

@@ -1,13 +1,19 @@
 //! What was used last, within a bound.
 
 use std::collections::VecDeque;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Values with their sizes; the one that was used last is the first.
 #[derive(Debug)]
-pub(super) struct Recent<V> {
+pub struct Recent<V> {
     values: VecDeque<(V, usize)>,
     /// Of all values.
     size: usize,
+}
+
+/// Nothing is half-written under a lock, so a panic of another thread does no harm.
+pub fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
+    of.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl<V> Default for Recent<V> {

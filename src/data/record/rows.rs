@@ -11,7 +11,7 @@ use crate::problem::Problem;
 ///
 /// # Errors
 /// `line-too-long`; what is wrong with a row is added to the faults.
-pub(super) fn read(
+pub fn read(
     text: &str,
     width: usize,
     columns: &mut [Column],

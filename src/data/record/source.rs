@@ -6,11 +6,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::columnar::{self, At};
+use super::known::Known;
 use super::memory::Frame;
-use super::{Block, Column, Format, Known, Record, Run, Stored, Wanted, text};
+use super::stored::Stored;
+use super::stretch::{Block, Run};
+use super::{Column, Format, Record, Wanted, text};
 use crate::data::cells::Heading;
-use crate::data::folder::Place;
-use crate::problem::Problem;
+use crate::data::place::Place;
+use crate::problem::{Problem, problem};
 use crate::source::Span;
 
 /// A record that can be read.
@@ -39,8 +42,8 @@ impl RecordSource {
     pub fn inside(&self) -> &str {
         match self {
             Self::File(place) => &place.inside,
-            Self::Object(stored) => stored.url(),
-            Self::Memory(frame) => frame.name(),
+            Self::Object(stored) => stored.object.url(),
+            Self::Memory(frame) => &frame.name,
         }
     }
 
@@ -71,7 +74,7 @@ impl RecordSource {
         match self.form() {
             Form::Text(path) => text::headings(path, self.inside()),
             Form::Parquet(at) => columnar::headings(at, self.inside()),
-            Form::Memory(frame) => Ok(frame.headings()),
+            Form::Memory(frame) => Ok(frame.headings.clone()),
         }
     }
 
@@ -93,7 +96,20 @@ impl RecordSource {
             Form::Parquet(at) => columnar::read(at, self.inside(), wanted),
             Form::Memory(frame) => frame.read(wanted),
         };
-        Ok(run?.record(0, self))
+        Ok(self.record(run?, 0))
+    }
+
+    fn record(&self, run: Run, first_row: usize) -> Record {
+        Record {
+            shown: self.inside().to_string(),
+            columns: run.columns,
+            channels: run.channels,
+            rows: run.rows,
+            first_row,
+            sha256: run.sha256,
+            bytes: usize::try_from(run.bytes).unwrap_or(usize::MAX),
+            from: self.clone(),
+        }
     }
 
     /// Reads the rows of a record whose axis lies in a range, in SI units with both ends, with the
@@ -118,7 +134,8 @@ impl RecordSource {
             Form::Parquet(at) => columnar::stretch(at, shown, wanted, part, known),
             Form::Memory(frame) => frame.stretch(wanted, part),
         }?;
-        stretch.record(run, self)
+        let (run, first_row) = stretch.end(run, shown, self.first_row())?;
+        Ok(self.record(run, first_row))
     }
 
     /// Reads the requested columns of a record of any length, block by block in the order of the
@@ -138,14 +155,18 @@ impl RecordSource {
     ) -> Result<Run, Vec<Problem>> {
         let shown = self.inside();
         match self.form() {
-            Form::Text(path) => text::stream_known(path, shown, wanted, (axis, known), &mut each),
+            Form::Text(path) => {
+                let (run, file) = text::stream_indexed(path, shown, wanted, axis, &mut each)?;
+                known.keep(file);
+                Ok(run)
+            }
             Form::Parquet(at) => columnar::stream(at, shown, wanted, known, &mut each),
-            Form::Memory(frame) => Err(vec![in_memory(frame)]),
+            Form::Memory(frame) => Err(in_memory(frame).into()),
         }
     }
 
     /// The place of sample `row`, from 0, or of its cell in a column. The file is read again.
-    pub(super) fn place(&self, row: usize, column: Option<&Column>) -> Option<Span> {
+    pub fn place(&self, row: usize, column: Option<&Column>) -> Option<Span> {
         match self.form() {
             Form::Text(path) => text::place(path, self.inside(), row, column),
             Form::Parquet(at) => columnar::place(at, self.inside(), row, column),
@@ -160,14 +181,14 @@ impl RecordSource {
     pub fn file(self, at: &Span) -> Result<Place, Problem> {
         match self {
             Self::File(place) => Ok(place),
-            Self::Object(stored) => {
-                let says = format!(
-                    "the record `{}` is in a store, and a file is needed here",
-                    stored.url()
-                );
-                Err(Problem::error("record-in-store", says)
-                    .at(at)
-                    .help("copy the records to the campaign's folder"))
+            Self::Object(_) => {
+                let inside = self.inside();
+                Err(problem!(
+                    "record-in-store",
+                    at,
+                    "the record `{inside}` is in a store, and a file is needed here"
+                )
+                .help("copy the records to the campaign's folder"))
             }
             Self::Memory(frame) => Err(in_memory(&frame).at(at)),
         }
@@ -175,6 +196,10 @@ impl RecordSource {
 }
 
 fn in_memory(frame: &Frame) -> Problem {
-    let says = format!("the record `{}` is in memory, and a file is needed here", frame.name());
-    Problem::error("record-in-memory", says).help("write the records to a campaign folder")
+    problem!(
+        "record-in-memory",
+        "the record `{}` is in memory, and a file is needed here",
+        frame.name
+    )
+    .help("write the records to a campaign folder")
 }

@@ -1,7 +1,7 @@
 //! Records in an object store, as Parquet.
 
 use super::held::Held;
-use crate::problem::Problem;
+use crate::problem::{Problem, error};
 use crate::source::Span;
 use crate::store::{Object, Refused};
 
@@ -9,22 +9,11 @@ use crate::store::{Object, Refused};
 /// wanted columns of the row groups that are needed are read, and nothing else.
 #[derive(Clone, Debug)]
 pub struct Stored {
-    pub(super) object: Object,
-    pub(super) held: Held,
-}
-
-impl Stored {
-    /// The name in messages and results.
-    pub fn url(&self) -> &str {
-        self.object.url()
-    }
+    pub object: Object,
+    pub held: Held,
 }
 
 /// Why an object is not read, as a problem at the place where its URL is written.
-pub(super) fn refused(why: &Refused, at: &Span) -> Problem {
-    let problem = Problem::error(why.code, why.says.clone()).at(at);
-    match &why.help {
-        Some(help) => problem.help(help.clone()),
-        None => problem,
-    }
+pub fn refused(why: &Refused, at: &Span) -> Problem {
+    error(why.code, why.says.as_str(), at).help_if(why.help.as_deref())
 }

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::{Column, Record, RecordSource};
-use crate::problem::Problem;
+use super::Column;
+use crate::problem::{Problem, problem};
 
 /// Consecutive rows of a record.
 #[derive(Debug)]
@@ -31,38 +31,21 @@ pub struct Run {
     pub bytes: u64,
 }
 
-impl Run {
-    /// As a record of its columns, which begin at a row.
-    pub(super) fn record(self, first_row: usize, from: &RecordSource) -> Record {
-        Record {
-            shown: from.inside().to_string(),
-            rows: self.rows,
-            columns: self.columns,
-            channels: self.channels,
-            first_row,
-            sha256: self.sha256,
-            bytes: usize::try_from(self.bytes).unwrap_or(usize::MAX),
-            from: from.clone(),
-        }
-    }
-}
-
 /// Index of the axis among the columns.
-pub(super) fn axis_of(columns: &[Column], axis: &str, shown: &str) -> Result<usize, Vec<Problem>> {
+pub fn axis_of(columns: &[Column], axis: &str, shown: &str) -> Result<usize, Problem> {
     columns.iter().position(|column| column.name == axis).ok_or_else(|| {
-        let problem =
-            Problem::error("unknown-channel", format!("`{shown}` has no column `{axis}`"));
-        vec![problem.suggest(axis, columns.iter().map(|column| column.name.as_str()))]
+        let problem = problem!("unknown-channel", "`{shown}` has no column `{axis}`");
+        problem.suggest(axis, columns.iter().map(|column| &column.name))
     })
 }
 
 /// The values of columns.
-pub(super) fn values(columns: &[Column]) -> Vec<&[f64]> {
+pub fn values(columns: &[Column]) -> Vec<&[f64]> {
     columns.iter().map(|column| column.values.as_slice()).collect()
 }
 
 /// The rows inside a range of the axis, collected block by block.
-pub(super) struct Stretch {
+pub struct Stretch {
     range: Range<f64>,
     axis: usize,
     columns: Vec<Column>,
@@ -75,15 +58,8 @@ pub(super) struct Stretch {
 
 impl Stretch {
     pub fn new(range: Range<f64>, axis: usize, columns: &[Column]) -> Self {
-        let empty = |column: &Column| Column { values: Vec::new(), ..column.clone() };
-        Self {
-            range,
-            axis,
-            columns: columns.iter().map(empty).collect(),
-            first_row: 0,
-            next: 0,
-            again: None,
-        }
+        let columns = columns.iter().map(Column::empty).collect();
+        Self { range, axis, columns, first_row: 0, next: 0, again: None }
     }
 
     /// Makes room for so many rows, so that no column is moved while it grows.
@@ -115,26 +91,29 @@ impl Stretch {
         }
     }
 
-    /// The record of these rows.
+    /// What was read of these rows, and the row of the file with which they begin. `header`: the
+    /// number of the first row in messages.
     ///
     /// # Errors
     /// `axis-not-increasing`, `outside-record`.
-    pub fn record(self, run: Run, from: &RecordSource) -> Result<Record, Vec<Problem>> {
-        let (axis, shown) = (&self.columns[self.axis], from.inside());
-        let number = |value: f64| format!("{}{}", axis.unit.from_si(value), axis.unit.suffix());
+    pub fn end(self, run: Run, shown: &str, header: usize) -> Result<(Run, usize), Problem> {
+        let Column { name, unit, values, .. } = &self.columns[self.axis];
+        let number = |value: f64| format!("{}{}", unit.from_si(value), unit.suffix());
         let (start, end) = (number(self.range.start), number(self.range.end));
-        let (name, rows) = (&axis.name, axis.values.len());
+        let rows = values.len();
         if let Some(row) = self.again {
-            let row = row + from.first_row();
+            let row = row + header;
             let says = format!(
                 "`{name}` enters the range from {start} to {end} again at row {row} of `{shown}`; it must increase"
             );
-            return Err(vec![Problem::error("axis-not-increasing", says)]);
+            return Err(Problem::error("axis-not-increasing", says));
         }
         if rows == 0 {
-            let says = format!("no sample of `{shown}` has a `{name}` from {start} to {end}");
-            return Err(vec![Problem::error("outside-record", says)]);
+            return Err(problem!(
+                "outside-record",
+                "no sample of `{shown}` has a `{name}` from {start} to {end}"
+            ));
         }
-        Ok(Run { rows, columns: self.columns, ..run }.record(self.first_row, from))
+        Ok((Run { rows, columns: self.columns, ..run }, self.first_row))
     }
 }

@@ -7,15 +7,15 @@ use std::path::Path;
 use super::columnar::MAGIC;
 use super::known::{Index, Known, KnownFile, Mark};
 use super::stretch::{Block, Run, Stretch, axis_of, values};
-use super::{Column, Wanted, fault, find_columns, header, header_fault, rows};
-use crate::data::cells::{self, Heading};
+use super::{Column, Wanted, fault, find_columns, header_fault, listed_headings, rows};
+use crate::data::cells::{self, Heading, names};
 use crate::data::faults::Faults;
 use crate::data::hash::Hasher;
 use crate::data::text::{
     self, LONGEST_LINE, decode_from, long_line, open_text, read_line_of, unreadable,
 };
 use crate::disk;
-use crate::problem::Problem;
+use crate::problem::{Problem, problem};
 use crate::source::{Source, Span};
 
 /// Bytes of text read at a time, and so what is read at least for a stretch: about 1200 rows of 24
@@ -23,12 +23,12 @@ use crate::source::{Source, Span};
 const BLOCK: usize = 1 << 18;
 
 /// The headings of a record.
-pub(super) fn headings(path: &Path, shown: &str) -> Result<Vec<Heading>, Vec<Problem>> {
+pub fn headings(path: &Path, shown: &str) -> Result<Vec<Heading>, Vec<Problem>> {
     Ok(Text::open(path, shown)?.headings)
 }
 
 /// The wanted columns of a record.
-pub(super) fn read(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Run, Vec<Problem>> {
+pub fn read(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Run, Vec<Problem>> {
     text::record_size(path, shown)?;
     let mut all: Vec<Vec<f64>> = vec![Vec::new(); wanted.len()];
     let mut run = stream(path, shown, wanted, &mut |block| {
@@ -42,7 +42,7 @@ pub(super) fn read(path: &Path, shown: &str, wanted: &[Wanted]) -> Result<Run, V
 
 /// Calls `each` with the wanted columns, block by block in the order of the file, up to the first
 /// block with a fault.
-pub(super) fn stream(
+fn stream(
     path: &Path,
     shown: &str,
     wanted: &[Wanted],
@@ -58,19 +58,20 @@ pub(super) fn stream(
     faults.finish(()).map_err(|problems| {
         header_fault::repeated(path, shown).map_or(problems, |problem| vec![problem])
     })?;
-    columns.iter_mut().for_each(|column| column.values = Vec::new());
-    let channels = text.headings.into_iter().map(|heading| heading.name).collect();
-    Ok(Run { channels, rows, columns, sha256: text.hash.finish(), bytes: text.bytes })
+    let columns = columns.iter().map(Column::empty).collect();
+    let (channels, sha256) = (names(&text.headings), text.hash.finish());
+    Ok(Run { channels, rows, columns, sha256, bytes: text.bytes })
 }
 
-/// The same; the index of an axis, one of the wanted columns, is kept in passing.
-pub(super) fn stream_known(
+/// The same, and what is known of the file then, with the index of an axis, one of the wanted
+/// columns.
+pub fn stream_indexed(
     path: &Path,
     shown: &str,
     wanted: &[Wanted],
-    (axis, known): (&str, &Known),
+    axis: &str,
     each: &mut dyn FnMut(&Block<'_>),
-) -> Result<Run, Vec<Problem>> {
+) -> Result<(Run, KnownFile), Vec<Problem>> {
     let mut marks = Vec::new();
     let run = stream(path, shown, wanted, &mut |block| {
         let column = block.columns.iter().find(|column| column.name == axis);
@@ -79,13 +80,13 @@ pub(super) fn stream_known(
     })?;
     axis_of(&run.columns, axis, shown)?;
     let index = Index { axis: axis.to_string(), rows: run.rows, marks };
-    known.keep(KnownFile { sha256: run.sha256.clone(), bytes: run.bytes, index: Some(index) });
-    Ok(run)
+    let known = KnownFile { sha256: run.sha256.clone(), bytes: run.bytes, index: Some(index) };
+    Ok((run, known))
 }
 
 /// The rows whose axis lies in a range. Without an index, the file is read once to its end for it;
 /// only the axis is then parsed.
-pub(super) fn stretch(
+pub fn stretch(
     path: &Path,
     shown: &str,
     wanted: &[Wanted],
@@ -96,12 +97,10 @@ pub(super) fn stretch(
     let build = || -> Result<KnownFile, Vec<Problem>> {
         let only: Vec<Wanted> =
             wanted.iter().filter(|wanted| wanted.name == axis).cloned().collect();
-        let found = Known::default();
-        stream_known(path, shown, &only, (axis, &found), &mut |_| {})?;
-        found.taken().ok_or_else(|| vec![no_rows(shown)])
+        Ok(stream_indexed(path, shown, &only, axis, &mut |_| {})?.1)
     };
     let known = known.or(has_index, build)?;
-    let index = known.index.as_ref().ok_or_else(|| vec![no_rows(shown)])?;
+    let index = known.index.as_ref().ok_or_else(|| no_rows(shown))?;
     let mut text = Text::open(path, shown)?;
     let mut columns = text.find(wanted)?;
     let mut stretch = Stretch::new(range.clone(), axis_of(&columns, axis, shown)?, &columns);
@@ -111,24 +110,21 @@ pub(super) fn stretch(
         faults.finish(())?;
         stretch.add(&values(&columns), mark.first_row);
     }
-    columns.iter_mut().for_each(|column| column.values = Vec::new());
-    let channels = text.headings.into_iter().map(|heading| heading.name).collect();
-    let (sha256, bytes) = (known.sha256.clone(), known.bytes);
-    Ok((Run { channels, rows: index.rows, columns, sha256, bytes }, stretch))
+    let (channels, sha256) = (names(&text.headings), known.sha256.clone());
+    Ok((Run { channels, rows: index.rows, columns, sha256, bytes: known.bytes }, stretch))
 }
 
 /// The place of a sample, from 0, or of its cell in a column. The file is read again.
-pub(super) fn place(path: &Path, shown: &str, row: usize, column: Option<&Column>) -> Option<Span> {
+pub fn place(path: &Path, shown: &str, row: usize, column: Option<&Column>) -> Option<Span> {
     // There are no blank lines between rows, so sample 0 is in line 2.
     let line = open_text(path, shown).ok()?.lines().nth(row + 1)?.ok()?;
     let whole = Source::excerpt(shown, line.as_str(), row + 2).whole();
-    let cell = column
-        .and_then(|column| Some(cells::split(&line).ok()?.get(column.position)?.place.clone()));
-    Some(cell.map_or(whole.clone(), |place| whole.part(place)))
+    let cell = column.and_then(|column| cells::split(&line).ok()?.into_iter().nth(column.position));
+    Some(cell.map_or(whole.clone(), |cell| whole.part(cell.place)))
 }
 
-fn no_rows(shown: &str) -> Problem {
-    Problem::error("no-rows", format!("`{shown}` has a header and no samples"))
+pub fn no_rows(shown: &str) -> Problem {
+    problem!("no-rows", "`{shown}` has a header and no samples")
 }
 
 /// An open text, of which the header was read.
@@ -147,7 +143,7 @@ impl<'a> Text<'a> {
         let mut file = open_text(path, shown)?;
         not_parquet(&mut file, shown)?;
         let first = read_line_of(&mut file, shown)?;
-        let headings = header(decode_from(&first, shown, 1, 0)?, shown)?;
+        let headings = listed_headings(decode_from(&first, shown, 1, 0)?, shown)?;
         let mut hash = Hasher::default();
         hash.add(&first);
         Ok(Self { shown, file, headings, hash, bytes: first.len() as u64, buffer: Vec::new() })
@@ -174,13 +170,11 @@ impl<'a> Text<'a> {
         let mut first_row = 0;
         loop {
             let kept = self.buffer.len();
-            (&mut self.file)
-                .take(BLOCK as u64)
-                .read_to_end(&mut self.buffer)
-                .map_err(|error| unreadable(shown, &error))?;
+            let mut part = (&mut self.file).take(BLOCK as u64);
+            let read = part.read_to_end(&mut self.buffer).map_err(unreadable(shown))?;
             self.hash.add(&self.buffer[kept..]);
-            self.bytes += (self.buffer.len() - kept) as u64;
-            let ended = self.buffer.len() - kept < BLOCK;
+            self.bytes += read as u64;
+            let ended = read < BLOCK;
             let end = if ended {
                 self.buffer.len()
             } else {
@@ -212,7 +206,7 @@ impl<'a> Text<'a> {
         self.file
             .seek(SeekFrom::Start(mark.from))
             .and_then(|_| (&mut self.file).take(mark.to - mark.from).read_to_end(buffer))
-            .map_err(|error| unreadable(shown, &error))?;
+            .map_err(unreadable(shown))?;
         let text = decode_from(buffer, shown, mark.first_row + 2, mark.from)?;
         rows::read(text, self.headings.len(), columns, (shown, mark.first_row), faults)?;
         Ok(())
@@ -231,8 +225,8 @@ fn not_parquet(file: &mut BufReader<disk::Reader>, shown: &str) -> Result<(), Pr
         file.rewind()?;
         Ok(end == *MAGIC)
     };
-    if both().map_err(|error| unreadable(shown, &error))? {
-        let problem = Problem::error("format-mislabelled", format!("`{shown}` is a Parquet file"));
+    if both().map_err(unreadable(shown))? {
+        let problem = problem!("format-mislabelled", "`{shown}` is a Parquet file");
         return Err(problem.help("its name must end in `.parquet`"));
     }
     Ok(())
@@ -251,9 +245,12 @@ fn whole_lines(bytes: &[u8], first_row: usize, shown: &str) -> Result<usize, Pro
     }
     let line = first_row + 2 + memchr::memchr_iter(b'\n', &bytes[..last]).count();
     if rest.iter().take(LONGEST_LINE).any(|byte| *byte == b'\n') {
-        let says = format!("blank lines from line {} of `{shown}` on", line + 1);
-        let at = Source::excerpt(shown, "", line + 1).whole();
-        return Err(Problem::error("blank-line", says).at(&at));
+        return Err(problem!(
+            "blank-line",
+            &Source::excerpt(shown, "", line + 1).whole(),
+            "blank lines from line {} of `{shown}` on",
+            line + 1
+        ));
     }
     Err(long_line(rest, line, shown))
 }
@@ -313,7 +310,8 @@ mod tests {
             .stretch(&wanted(), "x", 7_000.0..8_000.0, &known)
             .expect_err("outside");
         assert_eq!(none[0].code, "outside-record");
-        let index = known.taken().and_then(|file| file.index).expect("an index");
+        let file = known.or(|_| true, || Err(())).expect("kept");
+        let index = file.index.as_ref().expect("an index");
         assert!(index.rows == 60_000 && index.marks.len() >= 4, "{}", index.marks.len());
     }
 

@@ -1,7 +1,6 @@
 //! Records as Parquet files. The settings are fixed, so that the same numbers give the same bytes.
 
 use std::collections::HashMap;
-use std::fmt::Write as _;
 use std::io::{self, Write as _};
 use std::ops::Range;
 use std::sync::Arc;
@@ -15,8 +14,7 @@ use parquet::file::properties::{EnabledStatistics, WriterProperties, WriterPrope
 use parquet::schema::types::ColumnPath;
 
 use super::digits::Digits;
-use super::table_csv;
-use crate::problem::Problem;
+use crate::problem::{Problem, problem};
 
 /// Rows of a row group: 80 s at 200 Hz, so that the record of a section is one group, and a stretch
 /// of a long run needs one or two groups of 5 km at 60 m/s. With fewer rows, dictionaries and
@@ -77,7 +75,7 @@ pub struct FileColumn {
 /// What a column is in a Parquet file, by all its values.
 #[derive(Clone, Debug)]
 pub struct Layout {
-    heading: String,
+    pub heading: String,
     kind: DataType,
     digits: Option<Digits>,
     dictionary: bool,
@@ -85,10 +83,6 @@ pub struct Layout {
 }
 
 impl Layout {
-    pub fn heading(&self) -> &str {
-        &self.heading
-    }
-
     pub fn of(column: &FileColumn) -> Self {
         let (kind, dictionary, compressed) = match &column.values {
             Values::Numbers(values) => {
@@ -97,13 +91,8 @@ impl Layout {
             }
             Values::Texts(_) => (DataType::Utf8, true, true),
         };
-        Self {
-            heading: column.heading.clone(),
-            kind,
-            digits: column.digits,
-            dictionary,
-            compressed,
-        }
+        let (heading, digits) = (column.heading.clone(), column.digits);
+        Self { heading, kind, digits, dictionary, compressed }
     }
 }
 
@@ -119,10 +108,7 @@ pub fn parquet_in_groups(
     mut part: impl FnMut(Range<usize>) -> Result<Vec<Values>, Problem>,
     sink: impl io::Write + Send,
 ) -> Result<(), Problem> {
-    let failed = |error: &dyn std::fmt::Display| {
-        Problem::error("write-failed", format!("a record cannot be written as Parquet: {error}"))
-    };
-    let mut properties = properties().map_err(|error| failed(&error))?;
+    let mut properties = properties().map_err(failed)?;
     let mut fields = Vec::new();
     for layout in layouts {
         let path = ColumnPath::new(vec![layout.heading.clone()]);
@@ -130,16 +116,15 @@ pub fn parquet_in_groups(
         if !layout.compressed {
             properties = properties.set_column_compression(path, Compression::UNCOMPRESSED);
         }
-        let metadata =
-            layout.digits.map(Digits::metadata).map(|(key, value)| (key.to_string(), value));
-        fields.push(
-            Field::new(&layout.heading, layout.kind.clone(), false)
-                .with_metadata(metadata.into_iter().collect::<HashMap<_, _>>()),
-        );
+        let metadata = layout.digits.map(Digits::metadata).into_iter();
+        let metadata: HashMap<_, _> =
+            metadata.map(|(key, value)| (key.to_string(), value)).collect();
+        let field = Field::new(&layout.heading, layout.kind.clone(), false);
+        fields.push(field.with_metadata(metadata));
     }
     let schema = Arc::new(Schema::new(fields));
     let mut writer = ArrowWriter::try_new(sink, Arc::clone(&schema), Some(properties.build()))
-        .map_err(|error| failed(&error))?;
+        .map_err(failed)?;
     for start in (0..rows).step_by(GROUP) {
         let array = |values: Values| -> ArrayRef {
             match values {
@@ -148,12 +133,20 @@ pub fn parquet_in_groups(
             }
         };
         let arrays = part(start..rows.min(start + GROUP))?.into_iter().map(array).collect();
-        let batch =
-            RecordBatch::try_new(Arc::clone(&schema), arrays).map_err(|error| failed(&error))?;
-        writer.write(&batch).map_err(|error| failed(&error))?;
+        let batch = RecordBatch::try_new(Arc::clone(&schema), arrays).map_err(failed)?;
+        writer.write(&batch).map_err(failed)?;
     }
-    writer.close().map_err(|error| failed(&error))?;
+    writer.close().map_err(failed)?;
     Ok(())
+}
+
+fn failed(error: impl std::fmt::Display) -> Problem {
+    problem!("write-failed", "a record cannot be written as Parquet: {error}")
+}
+
+/// Rows of the longest column.
+pub fn rows_of(columns: &[FileColumn]) -> usize {
+    columns.iter().map(|column| column.values.len()).max().unwrap_or(0)
 }
 
 /// The bytes of a Parquet file.
@@ -162,58 +155,12 @@ pub fn parquet_in_groups(
 /// `write-failed`: columns of different length, or two of the same name.
 pub fn parquet(columns: &[FileColumn]) -> Result<Vec<u8>, Problem> {
     let layouts: Vec<Layout> = columns.iter().map(Layout::of).collect();
-    let rows = columns.iter().map(|column| column.values.len()).max().unwrap_or(0);
     let mut bytes = Vec::new();
     let part = |range: Range<usize>| {
         Ok(columns.iter().map(|column| column.values.part(range.clone())).collect())
     };
-    parquet_in_groups(&layouts, rows, part, &mut bytes)?;
+    parquet_in_groups(&layouts, rows_of(columns), part, &mut bytes)?;
     Ok(bytes)
-}
-
-/// The bytes of a text with the same columns.
-pub fn csv(columns: &[FileColumn]) -> Vec<u8> {
-    let headings: Vec<&str> = columns.iter().map(|column| column.heading.as_str()).collect();
-    (csv_header(&headings) + &csv_rows(columns)).into_bytes()
-}
-
-/// The first line of the text of a record.
-pub fn csv_header(headings: &[&str]) -> String {
-    table_csv(&[headings.to_vec()])
-}
-
-/// The other lines. Numbers have the form of their column, or else the fewest digits that give the
-/// same double again.
-pub fn csv_rows(columns: &[FileColumn]) -> String {
-    let rows = columns.iter().map(|column| column.values.len()).max().unwrap_or(0);
-    let mut text = String::new();
-    for row in 0..rows {
-        for (at, column) in columns.iter().enumerate() {
-            text.push_str(if at == 0 { "" } else { "," });
-            match &column.values {
-                Values::Numbers(values) => {
-                    text.push_str(&Digits::exact(
-                        column.digits,
-                        values.get(row).copied().unwrap_or(f64::NAN),
-                    ));
-                }
-                Values::Texts(texts) => {
-                    push_cell(&mut text, texts.get(row).map_or("", String::as_str))
-                }
-            }
-        }
-        text.push('\n');
-    }
-    text
-}
-
-/// Line breaks cannot stand in a cell of a record: they become blanks.
-fn push_cell(text: &mut String, cell: &str) {
-    if cell.contains([',', '"', '\n', '\r']) || cell.trim() != cell {
-        let _ = write!(text, "\"{}\"", cell.replace('"', "\"\"").replace(['\n', '\r'], " "));
-    } else {
-        text.push_str(cell);
-    }
 }
 
 /// How many different values a column has for each of its rows.

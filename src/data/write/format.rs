@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use super::columnar::{FileColumn, Values, parquet};
+use super::columnar::{FileColumn, Values, parquet, rows_of};
 use super::digits::Digits;
-use crate::data::record::Format;
-use crate::problem::Problem;
+use crate::data::format::Format;
+use crate::problem::{Problem, problem};
 use crate::units::Unit;
 use crate::yaml::{Node, Value};
 
@@ -18,21 +18,29 @@ pub struct OutColumn<'a> {
     pub decimals: usize,
 }
 
+impl OutColumn<'_> {
+    fn heading(&self) -> String {
+        format!("{} [{}]", self.name, self.unit)
+    }
+}
+
 /// A record with a header line `name [unit],...` and one line per sample of the shortest column.
 ///
 /// # Errors
 /// `not-finite`: the first value that is not finite, by column and row of the file.
 pub fn record_csv(columns: &[OutColumn<'_>]) -> Result<String, Problem> {
     let rows = columns.iter().map(|column| column.values.len()).min().unwrap_or(0);
-    let mut text = header(columns.iter().map(|column| (column.name, column.unit)));
+    let mut text = table_csv(&[columns.iter().map(OutColumn::heading).collect::<Vec<_>>()]);
     text.reserve(rows * columns.len() * 8);
     for row in 0..rows {
         for (at, column) in columns.iter().enumerate() {
             let value = column.unit.from_si(column.values[row]);
             if !value.is_finite() {
-                return Err(Problem::error(
+                return Err(problem!(
                     "not-finite",
-                    format!("the value of `{}` in row {} is not finite", column.name, row + 2),
+                    "the value of `{}` in row {} is not finite",
+                    column.name,
+                    row + 2
                 ));
             }
             text.push_str(if at == 0 { "" } else { "," });
@@ -49,26 +57,73 @@ pub fn record_csv(columns: &[OutColumn<'_>]) -> Result<String, Problem> {
 /// As [`record_csv`], and `write-failed`.
 pub fn record(format: Format, columns: &[OutColumn<'_>]) -> Result<Vec<u8>, Problem> {
     let text = record_csv(columns)?;
+    if format == Format::Csv {
+        return Ok(text.into_bytes());
+    }
+    let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
+    for line in text.lines().skip(1) {
+        let numbers = line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN));
+        values.iter_mut().zip(numbers).for_each(|(values, number)| values.push(number));
+    }
+    let file = |(column, values): (&OutColumn<'_>, Vec<f64>)| FileColumn {
+        heading: column.heading(),
+        values: Values::Numbers(values),
+        digits: Some(Digits::Decimals(column.decimals)),
+    };
+    parquet(&columns.iter().zip(values).map(file).collect::<Vec<_>>())
+}
+
+/// The bytes of a file with these columns.
+///
+/// # Errors
+/// As [`parquet`].
+pub fn in_format(format: Format, columns: &[FileColumn]) -> Result<Vec<u8>, Problem> {
     match format {
-        Format::Csv => Ok(text.into_bytes()),
-        Format::Parquet => {
-            let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
-            for line in text.lines().skip(1) {
-                let numbers = line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN));
-                values.iter_mut().zip(numbers).for_each(|(values, number)| values.push(number));
-            }
-            let file = |(column, values): (&OutColumn<'_>, Vec<f64>)| FileColumn {
-                heading: format!("{} [{}]", column.name, column.unit),
-                values: Values::Numbers(values),
-                digits: Some(Digits::Decimals(column.decimals)),
-            };
-            parquet(&columns.iter().zip(values).map(file).collect::<Vec<_>>())
-        }
+        Format::Csv => Ok(csv(columns)),
+        Format::Parquet => parquet(columns),
     }
 }
 
-fn header<'a>(columns: impl Iterator<Item = (&'a str, &'a Unit)>) -> String {
-    table_csv(&[columns.map(|(name, unit)| format!("{name} [{unit}]")).collect::<Vec<_>>()])
+/// The bytes of a text with these columns.
+pub fn csv(columns: &[FileColumn]) -> Vec<u8> {
+    let headings: Vec<&str> = columns.iter().map(|column| column.heading.as_str()).collect();
+    (csv_header(&headings) + &csv_rows(columns)).into_bytes()
+}
+
+/// The first line of the text of a record.
+pub fn csv_header(headings: &[&str]) -> String {
+    table_csv(&[headings])
+}
+
+/// The other lines. Numbers have the form of their column, or else the fewest digits that give the
+/// same double again.
+pub fn csv_rows(columns: &[FileColumn]) -> String {
+    let mut text = String::new();
+    for row in 0..rows_of(columns) {
+        for (at, column) in columns.iter().enumerate() {
+            text.push_str(if at == 0 { "" } else { "," });
+            match &column.values {
+                Values::Numbers(values) => {
+                    let value = values.get(row).copied().unwrap_or(f64::NAN);
+                    text.push_str(&Digits::exact(column.digits, value));
+                }
+                Values::Texts(texts) => {
+                    push_cell(&mut text, texts.get(row).map_or("", String::as_str));
+                }
+            }
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Line breaks cannot stand in a cell of a record: they become blanks.
+fn push_cell(text: &mut String, cell: &str) {
+    if cell.contains([',', '"', '\n', '\r']) || cell.trim() != cell {
+        let _ = write!(text, "\"{}\"", cell.replace('"', "\"\"").replace(['\n', '\r'], " "));
+    } else {
+        text.push_str(cell);
+    }
 }
 
 /// Writes a number, but never `-0.00`.
@@ -84,10 +139,10 @@ fn push_number(text: &mut String, value: f64, decimals: usize) {
 }
 
 /// Rows of cells as CSV, quoted where needed; the header is the first row.
-pub fn table_csv<S: AsRef<[u8]>>(rows: &[Vec<S>]) -> String {
+pub fn table_csv<S: AsRef<[u8]>>(rows: &[impl AsRef<[S]>]) -> String {
     let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(Vec::new());
     // Writing to memory and rows of different length cannot fail.
-    rows.iter().for_each(|row| drop(writer.write_record(row)));
+    rows.iter().for_each(|row| drop(writer.write_record(row.as_ref())));
     writer.into_inner().ok().and_then(|bytes| String::from_utf8(bytes).ok()).unwrap_or_default()
 }
 
@@ -104,17 +159,11 @@ pub enum Entry<'a> {
 pub fn campaign_yaml(entries: &[(&str, Entry<'_>)]) -> String {
     let mut text = String::new();
     for (key, entry) in entries {
-        push_text(&mut text, key);
+        text += &yaml_text(key);
         text.push(':');
         match entry {
-            Entry::Text(value) => {
-                text.push(' ');
-                push_text(&mut text, value);
-                text.push('\n');
-            }
-            Entry::Number(value) => {
-                let _ = writeln!(text, " {value}");
-            }
+            Entry::Text(value) => text += &format!(" {}\n", yaml_text(value)),
+            Entry::Number(value) => text += &format!(" {value}\n"),
             Entry::Node(node) => push_node(&mut text, node, 1),
         }
     }
@@ -130,46 +179,33 @@ pub fn campaign_yaml_with(tree: &Node, without: &[&str], new: &[(&str, Entry<'_>
 
 /// The value after a key or a dash, with its line break.
 fn push_node(text: &mut String, node: &Node, depth: usize) {
+    let indent = " ".repeat(2 * depth);
     match &node.value {
         Value::List(items) if items.is_empty() => text.push_str(" []\n"),
         Value::Map(entries) if entries.is_empty() => text.push_str(" {}\n"),
         Value::List(items) => {
             text.push('\n');
             for item in items {
-                let _ = write!(text, "{:1$}-", "", 2 * depth);
+                *text += &format!("{indent}-");
                 push_node(text, item, depth + 1);
             }
         }
         Value::Map(entries) => {
             text.push('\n');
             for (key, value) in entries {
-                let _ = write!(text, "{:1$}", "", 2 * depth);
-                push_text(text, &key.text);
-                text.push(':');
+                *text += &format!("{indent}{}:", yaml_text(&key.text));
                 push_node(text, value, depth + 1);
             }
         }
-        Value::Text(value) => {
-            text.push(' ');
-            push_text(text, value);
-            text.push('\n');
-        }
+        Value::Text(value) => *text += &format!(" {}\n", yaml_text(value)),
         Value::Null => text.push('\n'),
-        Value::Bool(_) | Value::Number(_) => {
-            let _ = writeln!(text, " {}", node.raw);
-        }
+        Value::Bool(_) | Value::Number(_) => *text += &format!(" {}\n", node.raw),
     }
 }
 
-/// A text as a YAML scalar that is read back as the same text.
+/// A text as a YAML scalar that is read back as the same text: plain if this is certain, else in
+/// double quotes.
 pub fn yaml_text(value: &str) -> String {
-    let mut text = String::new();
-    push_text(&mut text, value);
-    text
-}
-
-/// Plain if this is certainly read back as the same text, else in double quotes.
-fn push_text(text: &mut String, value: &str) {
     const WORDS: [&str; 10] = ["true", "false", "null", "yes", "no", "on", "off", "y", "n", "~"];
     // A unit in brackets may follow a word; `: ` and ` #` may not, so texts with colons and hashes
     // are quoted.
@@ -180,10 +216,9 @@ fn push_text(text: &mut String, value: &str) {
         && !value.ends_with(' ')
         && !WORDS.contains(&value.to_lowercase().as_str());
     if plain {
-        text.push_str(value);
-        return;
+        return value.to_string();
     }
-    text.push('"');
+    let mut text = String::from("\"");
     for letter in value.chars() {
         match letter {
             '"' => text.push_str("\\\""),
@@ -196,12 +231,13 @@ fn push_text(text: &mut String, value: &str) {
                     '\u{feff}' | '\u{2028}' | '\u{2029}' | '\u{fffe}' | '\u{ffff}'
                 ) =>
             {
-                let _ = write!(text, "\\U{:08x}", u32::from(letter));
+                text += &format!("\\U{:08x}", u32::from(letter));
             }
             _ => text.push(letter),
         }
     }
     text.push('"');
+    text
 }
 
 #[cfg(test)]

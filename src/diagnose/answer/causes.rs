@@ -11,6 +11,7 @@ use crate::diagnose::selection::stability::Stability;
 use crate::diagnose::settings::Settings;
 use crate::effects::Action;
 use crate::result::diagnosis::{Cause, NamedEffect, Value};
+use crate::yaml::Words;
 
 /// A set of effects as a cause.
 #[must_use]
@@ -188,7 +189,7 @@ fn named(inputs: &Inputs<'_>, found: &Found, member: &Fitted) -> NamedEffect {
         stability: stability_of(found, member).map(|stability| stability.first),
         added_by: match effect.map(|effect| &effect.action) {
             Some(Action::Signals(operator, _)) => {
-                format!("an operation on the signals: {}", operator.name())
+                format!("an operation on the signals: {}", operator.word())
             }
             Some(Action::Formulas(_)) => "expressions on the signals".into(),
             _ => inputs.simulator.map_or(String::new(), |simulator| {

@@ -7,6 +7,7 @@ use crate::diagnose::features::observations::Observations;
 use crate::effects::Operator;
 use crate::problem::Problem;
 use crate::simulate::{Plan, Simulator, Task};
+use crate::yaml::Words;
 
 /// Computed and failed simulations.
 #[derive(Clone, Debug, Default)]
@@ -107,7 +108,7 @@ impl Bench<'_> {
         let chains: Vec<Plan> = (0..each.len()).map(|at| self.chain(at)).collect();
         let operated = |chain: &Plan| {
             let of = |(operator, value, channels): &(Operator, f64, Vec<String>)| {
-                (format!("{} of {}", operator.name(), channels.join(", ")), *value)
+                (format!("{} of {}", operator.word(), channels.join(", ")), *value)
             };
             chain.operators.iter().map(of).collect::<Vec<_>>()
         };

@@ -232,7 +232,7 @@ fn effects(acts: &str) -> String {
     let found = catalogue.expect("right").effects;
     table(
         &["effect", "what it is", "parameters"],
-        found.iter().filter(|effect| effect.acts.in_words() == acts).map(row),
+        found.iter().filter(|effect| effect.acts.word() == acts).map(row),
     )
 }
 

@@ -15,12 +15,12 @@ use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::RowSelection;
 use parquet::arrow::push_decoder::{ParquetPushDecoderBuilder, PushBuffers};
 
-use super::layout::{damaged, guarded};
 use super::open::Opened;
 use super::{Column, Heading, guard, value_at};
 use crate::data::faults::Faults;
 use crate::data::record::decoded::Numbers;
-use crate::problem::Problem;
+use crate::data::record::layout::{Layout, damaged, guarded};
+use crate::problem::{Problem, problem};
 
 /// Rows decoded at a time: the numbers of twenty channels take 1 MB, which stays in the
 /// second-level cache.
@@ -28,29 +28,24 @@ const BATCH: usize = 1 << 13;
 
 /// Called after each batch with the columns and the row of the file with which the batch begins; it
 /// may empty the columns.
-pub(super) type Each<'e> = &'e mut dyn FnMut(&mut [Column], usize);
+pub type Each<'e> = &'e mut dyn FnMut(&mut [Column], usize);
 
 /// Takes the numbers of a batch into the columns; the last argument gives the place of each column
 /// in the batch.
 type Take<'t> = &'t mut dyn FnMut(&RecordBatch, &mut [Column], &[usize]) -> Result<(), String>;
 
-impl Opened<'_> {
-    /// Appends the numbers of a group to the columns, in SI units.
-    pub(super) fn group(
-        &mut self,
-        group: usize,
-        columns: &mut [Column],
-        faults: &mut Faults<'_>,
-        each: Each<'_>,
-    ) -> Result<(), Problem> {
-        let rows = self.layout.rows_of(group);
-        self.rows_in(group, rows, columns, faults, each)
-    }
+/// Rows of one group, with the bytes of the wanted columns.
+struct Chunks {
+    group: usize,
+    rows: Range<usize>,
+    bytes: PushBuffers,
+}
 
-    /// The same for some rows of the group, by their numbers in the file.
-    pub(super) fn rows_in(
+impl Opened<'_> {
+    /// Appends the numbers of rows of one group, numbered as in the file, to the columns, in SI
+    /// units.
+    pub fn rows(
         &mut self,
-        group: usize,
         rows: Range<usize>,
         columns: &mut [Column],
         faults: &mut Faults<'_>,
@@ -58,27 +53,20 @@ impl Opened<'_> {
     ) -> Result<(), Problem> {
         let (shown, layout) = (self.shown, Arc::clone(&self.layout));
         let mut fault = |row: usize, column: &Column, value: Option<f64>| {
-            let place = format!("row {}, in row group {}", row + 1, group + 1);
-            faults.push(|| {
-                wrong(shown, &layout.headings()[column.position], row, value).label(place)
-            });
+            let place = format!("row {}, in row group {}", row + 1, layout.group_of(row) + 1);
+            faults
+                .push(|| wrong(shown, &layout.headings[column.position], row, value).label(place));
         };
-        self.rows_told(group, rows, columns, &mut fault, each)
+        self.rows_told(rows, columns, &mut fault, each)
     }
 
-    /// The numbers of some columns in some rows of a group; `None` for a column with a fault there.
-    pub(super) fn block(
-        &mut self,
-        group: usize,
-        rows: Range<usize>,
-        columns: &[Column],
-    ) -> Vec<Numbers> {
-        let empty =
-            |column: &Column| Column { values: Vec::with_capacity(rows.len()), ..column.clone() };
-        let mut columns: Vec<Column> = columns.iter().map(empty).collect();
-        let mut faulty = vec![false; self.layout.headings().len()];
+    /// The numbers of some columns in rows of one group; `None` for a column with a fault there.
+    pub fn block(&mut self, rows: Range<usize>, columns: &[Column]) -> Vec<Numbers> {
+        let mut columns: Vec<Column> = columns.iter().map(Column::empty).collect();
+        columns.iter_mut().for_each(|column| column.values.reserve_exact(rows.len()));
+        let mut faulty = vec![false; self.layout.headings.len()];
         let mut fault = |_: usize, column: &Column, _: Option<f64>| faulty[column.position] = true;
-        let done = self.rows_told(group, rows, &mut columns, &mut fault, &mut |_, _| {});
+        let done = self.rows_told(rows, &mut columns, &mut fault, &mut |_, _| {});
         let good = |column: Column| {
             (done.is_ok() && !faulty[column.position]).then(|| Arc::new(column.values))
         };
@@ -87,7 +75,6 @@ impl Opened<'_> {
 
     fn rows_told(
         &mut self,
-        group: usize,
         rows: Range<usize>,
         columns: &mut [Column],
         fault: Fault<'_>,
@@ -96,9 +83,10 @@ impl Opened<'_> {
         if rows.is_empty() || columns.is_empty() {
             return Ok(());
         }
-        let chunks = self.chunks(group, columns)?;
+        let chunks = self.chunks(rows, columns)?;
+        let rows = &chunks.rows;
         let mut next = rows.start;
-        let decoded = self.decode(group, &rows, &chunks, columns, &mut |batch, columns, order| {
+        let decoded = self.decode(&chunks, columns, &mut |batch, columns, order| {
             for (array, at) in batch.columns().iter().zip(order) {
                 append(array.as_ref(), &mut columns[*at], next, fault)?;
             }
@@ -111,102 +99,77 @@ impl Opened<'_> {
             Ok(()) => format!("{} rows where {} are declared", next - rows.start, rows.len()),
             Err(why) => why,
         };
-        Err(self.where_damaged(group, &rows, &chunks, columns, &why))
+        Err(self.where_damaged(&chunks, columns, &why))
     }
 
     /// All values of a column of texts.
-    pub(super) fn texts(&mut self, column: &Column) -> Result<Vec<String>, Problem> {
+    pub fn texts(&mut self, column: &Column) -> Result<Vec<String>, Problem> {
         let mut texts: Vec<String> = Vec::new();
-        let columns = std::slice::from_ref(column);
-        for group in 0..self.layout.groups() {
-            let rows = self.layout.rows_of(group);
-            if rows.is_empty() {
-                continue;
-            }
-            let chunks = self.chunks(group, columns)?;
-            let mut one = [Column { values: Vec::new(), ..column.clone() }];
-            let decoded = self.decode(group, &rows, &chunks, &mut one, &mut |batch, _, _| {
+        for rows in self.layout.groups().into_iter().filter(|rows| !rows.is_empty()) {
+            let mut alone = [column.empty()];
+            let chunks = self.chunks(rows, &alone)?;
+            let decoded = self.decode(&chunks, &mut alone, &mut |batch, _, _| {
                 let array = batch.columns().first().and_then(|array| array.as_string_opt::<i32>());
                 let array = array.ok_or("an array of another type than its schema says")?;
                 texts.extend(array.iter().map(|text| text.unwrap_or_default().to_string()));
                 Ok(())
             });
-            decoded.map_err(|why| self.where_damaged(group, &rows, &chunks, columns, &why))?;
+            decoded.map_err(|why| self.where_damaged(&chunks, &alone, &why))?;
         }
         Ok(texts)
     }
 
-    /// The bytes of the wanted columns of a group, with checked sizes.
-    fn chunks(&mut self, group: usize, columns: &[Column]) -> Result<PushBuffers, Problem> {
-        let shown = self.shown;
-        let mut chunks = PushBuffers::default();
+    /// The bytes of the wanted columns in rows of a group, with checked sizes.
+    fn chunks(&mut self, rows: Range<usize>, columns: &[Column]) -> Result<Chunks, Problem> {
+        let (shown, layout, size) = (self.shown, Arc::clone(&self.layout), self.store.size());
+        let group = layout.group_of(rows.start);
+        let chunk = |column: &Column| layout.chunk(group, column.position);
+        let inside = |chunk| guard::range(chunk).filter(|range| range.end <= size);
+        let ahead: Vec<_> = columns.iter().filter_map(|column| inside(chunk(column)?)).collect();
+        self.store.ahead(&ahead, shown)?;
+        let mut bytes = PushBuffers::default();
         let mut memory = 0_u64;
-        self.store.ahead(&self.ranges(group, columns), shown)?;
         for column in columns {
-            let place = || format!("row group {}, column `{}`", group + 1, column.name);
-            let Some(leaf) = self.layout.leaf(column.position) else {
-                return Err(damaged(shown, &format!("{}: no values", place())));
-            };
-            let chunk = self.layout.metadata.metadata().row_group(group).column(leaf);
-            let range = guard::range(chunk).filter(|range| range.end <= self.store.size());
-            let range = range.ok_or_else(|| {
-                damaged(shown, &format!("{}: its values lie outside the file", place()))
-            })?;
+            let bad = |why: &str| damaged(shown, &in_column(group, column, why));
+            let chunk = chunk(column).ok_or_else(|| bad("no values"))?;
+            let range = inside(chunk).ok_or_else(|| bad("its values lie outside the file"))?;
             memory += range.end - range.start;
             self.within(memory, "a row group")?;
-            let bytes = self.store.read(range.clone(), shown)?;
-            let pages = guard::pages(&bytes, chunk)
-                .map_err(|why| damaged(shown, &format!("{}: {why}", place())))?;
-            chunks.push_range(range, bytes);
-            memory += pages.memory;
+            let read = self.store.read(range.clone(), shown)?;
+            memory += guard::pages(&read, chunk).map_err(|why| bad(&why))?;
+            bytes.push_range(range, read);
             self.within(memory, "a row group")?;
         }
-        Ok(chunks)
-    }
-
-    /// Where the wanted columns of a group are, as far as it lies inside the file.
-    fn ranges(&self, group: usize, columns: &[Column]) -> Vec<Range<u64>> {
-        let group = self.layout.metadata.metadata().row_group(group);
-        let leaves = columns.iter().filter_map(|column| self.layout.leaf(column.position));
-        leaves
-            .filter_map(|leaf| {
-                guard::range(group.column(leaf)).filter(|range| range.end <= self.store.size())
-            })
-            .collect()
+        Ok(Chunks { group, rows, bytes })
     }
 
     fn decode(
         &self,
-        group: usize,
-        rows: &Range<usize>,
-        chunks: &PushBuffers,
+        Chunks { group, rows, bytes }: &Chunks,
         columns: &mut [Column],
         take: Take<'_>,
     ) -> Result<(), String> {
+        let Layout { metadata, fields, .. } = self.layout.as_ref();
         // A batch has the columns in the order of the file.
         let mut order: Vec<usize> = (0..columns.len()).collect();
         order.sort_by_key(|at| columns[*at].position);
-        let leaves = columns.iter().filter_map(|column| self.layout.leaf(column.position));
-        let mask = ProjectionMask::leaves(self.layout.metadata.parquet_schema(), leaves);
-        let all = self.layout.rows_of(group);
-        let part = rows.start - all.start..rows.end - all.start;
+        let leaves = columns.iter().filter_map(|column| fields.get(column.position)?.leaf);
+        let mask = ProjectionMask::leaves(metadata.parquet_schema(), leaves);
+        let all = self.layout.groups()[*group].clone();
         guarded(|| {
-            let said = |error: parquet::errors::ParquetError| error.to_string();
-            let mut builder =
-                ParquetPushDecoderBuilder::new_with_metadata(self.layout.metadata.clone())
-                    .with_row_groups(vec![group])
-                    .with_projection(mask)
-                    .with_batch_size(BATCH)
-                    .with_buffers(chunks.clone());
+            let mut builder = ParquetPushDecoderBuilder::new_with_metadata(metadata.clone())
+                .with_row_groups(vec![*group])
+                .with_projection(mask)
+                .with_batch_size(BATCH)
+                .with_buffers(bytes.clone());
             if *rows != all {
-                builder = builder.with_row_selection(RowSelection::from_consecutive_ranges(
-                    [part].into_iter(),
-                    all.len(),
-                ));
+                let part = rows.start - all.start..rows.end - all.start;
+                let part = RowSelection::from_consecutive_ranges(std::iter::once(part), all.len());
+                builder = builder.with_row_selection(part);
             }
-            let mut decoder = builder.build().map_err(said)?;
+            let mut decoder = builder.build()?;
             loop {
-                match decoder.try_decode().map_err(said)? {
+                match decoder.try_decode()? {
                     DecodeResult::Data(batch) => take(&batch, columns, &order)?,
                     DecodeResult::Finished => return Ok(()),
                     DecodeResult::NeedsData(_) => {
@@ -218,18 +181,11 @@ impl Opened<'_> {
     }
 
     /// Which column is damaged: each is decoded alone.
-    fn where_damaged(
-        &self,
-        group: usize,
-        rows: &Range<usize>,
-        chunks: &PushBuffers,
-        columns: &[Column],
-        why: &str,
-    ) -> Problem {
+    fn where_damaged(&self, chunks: &Chunks, columns: &[Column], why: &str) -> Problem {
+        let Chunks { group, rows, .. } = chunks;
         for column in columns {
             let mut found = 0;
-            let mut one = [Column { values: Vec::new(), ..column.clone() }];
-            let alone = self.decode(group, rows, chunks, &mut one, &mut |batch, _, _| {
+            let alone = self.decode(chunks, &mut [column.empty()], &mut |batch, _, _| {
                 found += batch.num_rows();
                 Ok(())
             });
@@ -238,48 +194,37 @@ impl Opened<'_> {
                 Ok(()) => format!("{found} values where {} are declared", rows.len()),
                 Err(why) => why,
             };
-            let row = rows.start + found;
-            let problem = damaged(
-                self.shown,
-                &format!("row group {}, column `{}`: {why}", group + 1, column.name),
-            );
-            return problem.at(&value_at(
-                self.shown,
-                &self.layout.headings()[column.position],
-                row,
-                "?",
-            ));
+            let heading = &self.layout.headings[column.position];
+            let at = value_at(self.shown, heading, rows.start + found, "?");
+            return damaged(self.shown, &in_column(*group, column, &why)).at(&at);
         }
         damaged(self.shown, &format!("row group {}: {why}", group + 1))
     }
 }
 
+fn in_column(group: usize, column: &Column, why: &str) -> String {
+    format!("row group {}, column `{}`: {why}", group + 1, column.name)
+}
+
 /// A value that is missing or not finite.
-pub(in crate::data::record) fn wrong(
-    shown: &str,
-    heading: &Heading,
-    row: usize,
-    value: Option<f64>,
-) -> Problem {
-    let (code, says, text) = match value {
-        None => (
+pub fn wrong(shown: &str, heading: &Heading, row: usize, value: Option<f64>) -> Problem {
+    let name = &heading.name;
+    let at = |text: &str| value_at(shown, heading, row, text);
+    let Some(value) = value else {
+        return problem!(
             "not-a-number",
-            "the value is missing (null); expected a number".to_string(),
-            "null".to_string(),
-        ),
-        Some(value) => {
-            ("not-finite", format!("`{value}` is not a finite number"), value.to_string())
-        }
+            &at("null"),
+            "`{name}`: the value is missing (null); expected a number"
+        );
     };
-    Problem::error(code, format!("`{}`: {says}", heading.name))
-        .at(&value_at(shown, heading, row, &text))
+    problem!("not-finite", &at(&value.to_string()), "`{name}`: `{value}` is not a finite number")
 }
 
 /// Takes a faulty value: its row in the file, its column, and what stands there.
-pub(in crate::data::record) type Fault<'f> = &'f mut dyn FnMut(usize, &Column, Option<f64>);
+pub type Fault<'f> = &'f mut dyn FnMut(usize, &Column, Option<f64>);
 
 /// Appends the numbers of an array to a column, in SI units; `first` is the row of its first one.
-pub(in crate::data::record) fn append(
+pub fn append(
     array: &dyn Array,
     column: &mut Column,
     first: usize,

@@ -3,44 +3,40 @@
 //! | file | content |
 //! |---|---|
 //! | `mod` | record, headings, place of a sample |
-//! | `layout` | what the footer says |
 //! | `open` | the file and the wanted columns |
 //! | `groups` | the numbers of a row group |
 //! | `runs` | long records: block by block, or a stretch of them |
-//! | `guard` | declared sizes, checked before the decoder reserves memory for them |
+//!
+//! What the footer says is in `record/layout`; `record/guard` checks declared sizes before the
+//! decoder reserves memory for them.
 
 mod groups;
-pub(crate) mod guard;
-mod layout;
 mod open;
 mod runs;
 
 use std::path::Path;
 
 pub(crate) use groups::numbers;
-pub(super) use groups::{append, wrong};
-pub(super) use layout::Layout;
-pub(crate) use layout::guarded;
-pub(super) use layout::{headings_of, not_numbers};
-pub(super) use open::At;
+pub use groups::{append, wrong};
+pub use open::At;
 use open::{Opened, Store};
-pub(super) use runs::{stream, stretch};
+pub use runs::{stream, stretch};
 
-use super::{Column, Known, Run, Wanted, find_columns};
+use super::{Column, Known, Run, Wanted, find_columns, guard};
 use crate::data::cells::Heading;
 use crate::data::faults::Faults;
 use crate::data::hash::sha256;
 use crate::data::text::{LARGEST_RECORD, read_file};
 use crate::data::write::{FileColumn, Values};
-use crate::problem::Problem;
+use crate::problem::{Problem, problem};
 use crate::source::{Source, Span};
 use crate::units::Unit;
 
 /// First and last bytes of each Parquet file.
-pub(super) const MAGIC: &[u8; 4] = b"PAR1";
+pub const MAGIC: &[u8; 4] = b"PAR1";
 
 /// Reads the wanted columns of a record.
-pub(super) fn read(at: At<'_>, shown: &str, wanted: &[Wanted]) -> Result<Run, Vec<Problem>> {
+pub fn read(at: At<'_>, shown: &str, wanted: &[Wanted]) -> Result<Run, Vec<Problem>> {
     let (mut opened, hash) = match at {
         At::Disk(path) => {
             let bytes = read_file(path, shown, LARGEST_RECORD)?;
@@ -52,95 +48,71 @@ pub(super) fn read(at: At<'_>, shown: &str, wanted: &[Wanted]) -> Result<Run, Ve
     let mut columns = opened.find(wanted)?;
     let rows = opened.layout.rows();
     if rows == 0 {
-        return Err(vec![no_rows(shown)]);
+        return Err(no_rows(shown).into());
     }
-    opened.within((rows as u64).saturating_mul(8 * columns.len() as u64), "the record")?;
-    for column in &mut columns {
-        column.values.reserve_exact(rows);
-    }
-    let mut faults = Faults::new(shown);
-    for group in 0..opened.layout.groups() {
-        opened.group(group, &mut columns, &mut faults, &mut |_, _| {})?;
-    }
-    faults.finish(())?;
+    opened.numbers_within(columns.len())?;
+    columns.iter_mut().for_each(|column| column.values.reserve_exact(rows));
+    opened.all_rows(&mut columns)?;
     Ok(opened.run(columns, hash))
 }
 
-pub(super) fn no_rows(shown: &str) -> Problem {
-    Problem::error("no-rows", format!("`{shown}` has columns and no samples"))
+pub fn no_rows(shown: &str) -> Problem {
+    problem!("no-rows", "`{shown}` has columns and no samples")
 }
 
 /// Every column as it is in the file: numbers in the unit of the file, or texts.
-pub(super) fn raw(path: &Path, shown: &str) -> Result<Vec<FileColumn>, Vec<Problem>> {
+pub fn raw(path: &Path, shown: &str) -> Result<Vec<FileColumn>, Vec<Problem>> {
     let mut opened = open_file(At::Disk(path), shown)?;
-    let headings = opened.layout.headings().to_vec();
-    opened.within(
-        (opened.layout.rows() as u64).saturating_mul(8 * headings.len() as u64),
-        "the record",
-    )?;
-    let mut columns = Vec::new();
-    for (position, heading) in headings.iter().enumerate() {
-        let mut column = [Column {
-            name: heading.name.clone(),
-            unit: Unit::one(),
-            values: Vec::new(),
-            position,
-        }];
+    let headings = opened.layout.headings.clone();
+    opened.numbers_within(headings.len())?;
+    let raw = |(position, heading): (usize, Heading)| -> Result<FileColumn, Vec<Problem>> {
+        let (name, unit) = (heading.name, Unit::one());
+        let mut column = [Column { name, unit, values: Vec::new(), position }];
         if let Some(problem) = opened.other_codec(&column[0]) {
-            return Err(vec![problem]);
+            return Err(problem.into());
         }
-        let values = if opened.layout.is_text(position) {
+        let values = if opened.is_text(position) {
             Values::Texts(opened.texts(&column[0])?)
         } else {
             if let Some(problem) = opened.not_numbers(&column[0]) {
-                return Err(vec![problem]);
+                return Err(problem.into());
             }
-            let mut faults = Faults::new(shown);
-            for group in 0..opened.layout.groups() {
-                opened.group(group, &mut column, &mut faults, &mut |_, _| {})?;
-            }
-            faults.finish(())?;
+            opened.all_rows(&mut column)?;
             let [column] = column;
             Values::Numbers(column.values)
         };
-        columns.push(FileColumn {
-            heading: heading.span.text().to_string(),
-            values,
-            digits: opened.layout.digits(position),
-        });
-    }
-    Ok(columns)
+        let digits = opened.layout.fields.get(position).and_then(|field| field.digits);
+        Ok(FileColumn { heading: heading.span.text().to_string(), values, digits })
+    };
+    headings.into_iter().enumerate().map(raw).collect()
 }
 
 /// The headings of a record.
-pub(super) fn headings(at: At<'_>, shown: &str) -> Result<Vec<Heading>, Vec<Problem>> {
-    let opened = open_file(at, shown)?;
-    Ok(opened.layout.headings().to_vec())
+pub fn headings(at: At<'_>, shown: &str) -> Result<Vec<Heading>, Vec<Problem>> {
+    Ok(open_file(at, shown)?.layout.headings.clone())
 }
 
-fn open_file<'a>(at: At<'_>, shown: &'a str) -> Result<Opened<'a>, Vec<Problem>> {
-    Store::at(at, shown)
-        .and_then(|store| Opened::open(store, shown))
-        .map_err(|problem| vec![problem])
+fn open_file<'a>(at: At<'_>, shown: &'a str) -> Result<Opened<'a>, Problem> {
+    Opened::open(Store::at(at, shown)?, shown)
 }
 
 /// The place of a sample, from 0, or of its value in a column.
-pub(super) fn place(at: At<'_>, shown: &str, row: usize, column: Option<&Column>) -> Option<Span> {
+pub fn place(at: At<'_>, shown: &str, row: usize, column: Option<&Column>) -> Option<Span> {
     let Some(column) = column else {
         return Some(Source::excerpt(shown, format!("row {}", row + 1), row + 1).whole());
     };
     let mut opened = open_file(at, shown).ok()?;
-    let (group, first) = opened.layout.group_of(row)?;
-    let mut one = [Column { values: Vec::new(), ..column.clone() }];
-    let mut faults = Faults::new(shown);
-    opened.group(group, &mut one, &mut faults, &mut |_, _| {}).ok()?;
-    let value = column.unit.from_si(*one[0].values.get(row - first)?);
-    Some(value_at(shown, &opened.layout.headings()[column.position], row, &value.to_string()))
+    let group = opened.layout.groups().into_iter().find(|rows| rows.contains(&row))?;
+    let first = group.start;
+    let mut alone = [column.empty()];
+    opened.rows(group, &mut alone, &mut Faults::new(shown), &mut |_, _| {}).ok()?;
+    let value = column.unit.from_si(*alone[0].values.get(row - first)?);
+    Some(value_at(shown, &opened.layout.headings[column.position], row, &value.to_string()))
 }
 
 /// A Parquet file has no text: the place shows `name [unit] = value`, in the line with the number
 /// of the row, from 1.
-pub(super) fn value_at(shown: &str, heading: &Heading, row: usize, value: &str) -> Span {
+pub fn value_at(shown: &str, heading: &Heading, row: usize, value: &str) -> Span {
     let name = format!("{} = ", heading.span.text());
     let from = name.len();
     let text = name + value;

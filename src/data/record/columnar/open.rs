@@ -5,17 +5,19 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use arrow_schema::DataType;
 use bytes::Bytes;
 use parquet::basic::Compression;
 
-use super::layout::{Layout, damaged, not_numbers};
 use super::{Column, MAGIC, Wanted, find_columns, guard};
 use crate::data::cells::shortened;
-use crate::data::record::Stored;
+use crate::data::faults::Faults;
 use crate::data::record::held::Held;
-use crate::data::text::{LARGEST_RECORD, plain_size, unreadable};
+use crate::data::record::layout::{Layout, damaged, not_numbers};
+use crate::data::record::stored::Stored;
+use crate::data::text::{LARGEST_RECORD, empty, plain_size, unreadable};
 use crate::disk;
-use crate::problem::Problem;
+use crate::problem::{Problem, problem};
 use crate::source::Source;
 
 /// Maximum size of a footer in bytes: a hundred channels in a thousand row groups take 10 MB.
@@ -31,13 +33,13 @@ const FREE: u64 = guard::LARGEST_PAGE;
 
 /// Where a Parquet file is.
 #[derive(Clone, Copy)]
-pub(in crate::data::record) enum At<'a> {
+pub enum At<'a> {
     Disk(&'a Path),
     Object(&'a Stored),
 }
 
 /// Where the bytes are.
-pub(super) enum Store {
+pub enum Store {
     /// The whole file: its parts are used where they lie, without a copy.
     Memory(Bytes),
     Disk {
@@ -53,24 +55,16 @@ pub(super) enum Store {
 impl Store {
     pub fn at(at: At<'_>, shown: &str) -> Result<Self, Problem> {
         match at {
-            At::Disk(path) => Self::disk(path, shown),
+            At::Disk(path) => Self::disk(path, shown, None),
             At::Object(stored) => Ok(Self::Object(stored.clone())),
         }
     }
 
-    fn disk(path: &Path, shown: &str) -> Result<Self, Problem> {
+    /// A file; of one of which several stretches are read, parts are kept.
+    pub fn disk(path: &Path, shown: &str, held: Option<Held>) -> Result<Self, Problem> {
         let size = plain_size(path, shown)?;
-        let file = disk::open(path).map_err(|error| unreadable(shown, &error))?;
-        Ok(Self::Disk { file, path: path.to_path_buf(), size, held: None })
-    }
-
-    /// As [`Self::disk`], of a file of which several stretches are read.
-    pub fn held(path: &Path, shown: &str, kept: &Held) -> Result<Self, Problem> {
-        let mut store = Self::disk(path, shown)?;
-        if let Self::Disk { held, .. } = &mut store {
-            *held = Some(kept.clone());
-        }
-        Ok(store)
+        let file = disk::open(path).map_err(unreadable(shown))?;
+        Ok(Self::Disk { file, path: path.to_path_buf(), size, held })
     }
 
     pub fn size(&self) -> u64 {
@@ -93,13 +87,11 @@ impl Store {
     /// Parts that are read soon: those of an object are asked for together.
     pub fn ahead(&self, ranges: &[Range<u64>], shown: &str) -> Result<(), Problem> {
         let Self::Object(Stored { object, held }) = self else { return Ok(()) };
-        let name = Path::new(object.url());
+        let name = self.name();
         let lacking: Vec<Range<u64>> =
             ranges.iter().filter(|range| held.get(name, range).is_none()).cloned().collect();
-        let read = object.read(&lacking).map_err(|why| unreadable(shown, &why))?;
-        for (range, bytes) in lacking.iter().zip(read) {
-            held.keep(name, range.start, bytes);
-        }
+        let read = object.read(&lacking).map_err(unreadable(shown))?;
+        lacking.iter().zip(read).for_each(|(range, bytes)| held.keep(name, range.start, bytes));
         Ok(())
     }
 
@@ -124,13 +116,12 @@ impl Store {
                 let mut bytes = vec![0; at(range.end - range.start)?];
                 file.seek(SeekFrom::Start(range.start))
                     .and_then(|_| file.read_exact(&mut bytes))
-                    .map_err(|error| unreadable(shown, &error))?;
+                    .map_err(unreadable(shown))?;
                 bytes.into()
             }
             Self::Object(stored) => {
                 let read = stored.object.read(std::slice::from_ref(&range));
-                let read = read.map_err(|why| unreadable(shown, &why))?;
-                read.into_iter().next().unwrap_or_default()
+                read.map_err(unreadable(shown))?.into_iter().next().unwrap_or_default()
             }
         };
         if let Some(held) = held {
@@ -141,10 +132,10 @@ impl Store {
 }
 
 /// An open file.
-pub(super) struct Opened<'a> {
-    pub(super) store: Store,
-    pub(super) shown: &'a str,
-    pub(super) layout: Arc<Layout>,
+pub struct Opened<'a> {
+    pub store: Store,
+    pub shown: &'a str,
+    pub layout: Arc<Layout>,
 }
 
 impl<'a> Opened<'a> {
@@ -163,6 +154,21 @@ impl<'a> Opened<'a> {
         Ok(opened)
     }
 
+    /// Appends the numbers of all rows to the columns, in SI units.
+    pub fn all_rows(&mut self, columns: &mut [Column]) -> Result<(), Vec<Problem>> {
+        let mut faults = Faults::new(self.shown);
+        for rows in self.layout.groups() {
+            self.rows(rows, columns, &mut faults, &mut |_, _| {})?;
+        }
+        faults.finish(())
+    }
+
+    /// Refuses a record whose numbers in so many columns need too much memory.
+    pub fn numbers_within(&self, columns: usize) -> Result<(), Problem> {
+        let rows = self.layout.rows() as u64;
+        self.within(rows.saturating_mul(8 * columns as u64), "the record")
+    }
+
     /// Refuses a part of the file that needs too much memory.
     pub fn within(&self, memory: u64, what: &str) -> Result<(), Problem> {
         let most = LARGEST_RECORD
@@ -170,19 +176,19 @@ impl<'a> Opened<'a> {
         if memory <= most {
             return Ok(());
         }
-        let says = format!(
+        Err(problem!(
+            "file-too-large",
             "{what} of `{}` needs {} MB for the wanted columns; the maximum is {} MB",
             self.shown,
             memory >> 20,
             most >> 20
-        );
-        Err(Problem::error("file-too-large", says)
-            .help("split the record, or write it with row groups of 10 000 to 100 000 rows"))
+        )
+        .help("split the record, or write it with row groups of 10 000 to 100 000 rows"))
     }
 
     /// The wanted columns, which must hold numbers.
     pub fn find(&self, wanted: &[Wanted]) -> Result<Vec<Column>, Vec<Problem>> {
-        let columns = find_columns(self.layout.headings(), wanted, self.shown)?;
+        let columns = find_columns(&self.layout.headings, wanted, self.shown)?;
         let mut problems: Vec<Problem> =
             columns.iter().filter_map(|column| self.not_numbers(column)).collect();
         problems.extend(columns.iter().find_map(|column| self.other_codec(column)));
@@ -190,53 +196,54 @@ impl<'a> Opened<'a> {
     }
 
     /// A problem for a column that does not hold numbers.
-    pub(super) fn not_numbers(&self, column: &Column) -> Option<Problem> {
-        let (field, heading) = (
-            self.layout.fields.get(column.position)?,
-            self.layout.headings().get(column.position)?,
-        );
-        let problem = not_numbers(&field.kind, &column.name, &heading.span)?;
+    pub fn not_numbers(&self, column: &Column) -> Option<Problem> {
+        let Layout { fields, headings, .. } = self.layout.as_ref();
+        let (kind, at) = (&fields.get(column.position)?.kind, &headings.get(column.position)?.span);
+        let problem = not_numbers(kind, &column.name, at)?;
         Some(problem.help("convert the column to float64 where the file is written"))
     }
 
+    /// Whether a column holds texts.
+    pub fn is_text(&self, position: usize) -> bool {
+        let field = self.layout.fields.get(position);
+        field.is_some_and(|field| field.kind == DataType::Utf8 && field.leaf.is_some())
+    }
+
     /// A problem for a column with a compression that is not read.
-    pub(super) fn other_codec(&self, column: &Column) -> Option<Problem> {
-        let leaf = self.layout.leaf(column.position)?;
-        let codecs = self
-            .layout
-            .metadata
-            .metadata()
-            .row_groups()
-            .iter()
-            .map(|group| group.column(leaf).compression());
-        let other = codecs.into_iter().find(|codec| {
-            !matches!(codec, Compression::UNCOMPRESSED | Compression::SNAPPY | Compression::ZSTD(_))
-        })?;
-        let name: String = other
-            .to_string()
-            .chars()
-            .take_while(|c| c.is_ascii_alphanumeric() || *c == '_')
-            .collect();
-        let says = format!("the column `{}` is compressed with {name}", column.name);
-        let problem = Problem::error("format-not-read", says).at(&self
-            .layout
-            .headings()
-            .get(column.position)?
-            .span);
+    pub fn other_codec(&self, column: &Column) -> Option<Problem> {
+        let groups = 0..self.layout.groups().len();
+        let other = groups
+            .filter_map(|group| Some(self.layout.chunk(group, column.position)?.compression()))
+            .find(|codec| {
+                use Compression::{SNAPPY, UNCOMPRESSED, ZSTD};
+                !matches!(codec, UNCOMPRESSED | SNAPPY | ZSTD(_))
+            })?;
+        let name = other.to_string();
+        let end = name.find(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        let name = &name[..end.unwrap_or(name.len())];
+        let problem = problem!(
+            "format-not-read",
+            &self.layout.headings.get(column.position)?.span,
+            "the column `{}` is compressed with {name}",
+            column.name
+        );
         Some(problem.help("write the file with `zstd` or `snappy`, or without compression"))
     }
 }
 
 /// The bytes of the footer.
-pub(super) fn footer(store: &mut Store, shown: &str) -> Result<Bytes, Problem> {
+pub fn footer(store: &mut Store, shown: &str) -> Result<Bytes, Problem> {
     let size = store.size();
     if size == 0 {
-        return Err(Problem::error("file-empty", format!("`{shown}` is empty")));
+        return Err(empty(shown));
     }
     let head = store.read(0..size.min(4), shown)?;
     if *head == *b"PARE" {
-        let says = format!("`{shown}` is an encrypted Parquet file, which is not read");
-        return Err(Problem::error("format-not-read", says).help("export it without encryption"));
+        return Err(problem!(
+            "format-not-read",
+            "`{shown}` is an encrypted Parquet file, which is not read"
+        )
+        .help("export it without encryption"));
     }
     if *head != *MAGIC {
         return Err(mislabelled(&store.read(0..size.min(512), shown)?, shown));
@@ -248,37 +255,30 @@ pub(super) fn footer(store: &mut Store, shown: &str) -> Result<Bytes, Problem> {
     }
     let length = tail.first_chunk::<4>().map_or(0, |length| u64::from(u32::from_le_bytes(*length)));
     if length > size - 4 - TAIL {
-        return Err(damaged(
-            shown,
-            &format!("it declares a footer of {length} bytes in a file of {size}"),
-        ));
+        let says = format!("it declares a footer of {length} bytes in a file of {size}");
+        return Err(damaged(shown, &says));
     }
     if length > LARGEST_FOOTER {
-        let says = format!(
+        return Err(problem!(
+            "file-too-large",
             "`{shown}` has a footer of {} MB; the maximum is {} MB",
             length >> 20,
             LARGEST_FOOTER >> 20
-        );
-        return Err(Problem::error("file-too-large", says)
-            .help("write fewer columns, or larger row groups"));
+        )
+        .help("write fewer columns, or larger row groups"));
     }
     store.read(size - TAIL - length..size - TAIL, shown)
 }
 
 fn mislabelled(start: &[u8], shown: &str) -> Problem {
+    let problem = problem!("format-mislabelled", "`{shown}` is not a Parquet file");
     let line = start.split(|byte| *byte == b'\n').next().unwrap_or_default();
-    let text = std::str::from_utf8(line)
-        .ok()
-        .filter(|line| !line.chars().any(|c| c.is_control() && !matches!(c, '\r' | '\t')));
-    let problem = Problem::error("format-mislabelled", format!("`{shown}` is not a Parquet file"));
-    match text {
-        Some(text) => {
-            let line = Source::excerpt(shown, shortened(text.trim_end()), 1).whole();
-            problem
-                .at(&line)
-                .label("it begins with this text")
-                .help("if it is a CSV file, its name must end in `.csv`")
-        }
-        None => problem.help("its first bytes are not those of Parquet; export it again"),
+    let odd = |c: char| c.is_control() && !matches!(c, '\r' | '\t');
+    match std::str::from_utf8(line) {
+        Ok(text) if !text.contains(odd) => problem
+            .at(&Source::excerpt(shown, shortened(text.trim_end()), 1).whole())
+            .label("it begins with this text")
+            .help("if it is a CSV file, its name must end in `.csv`"),
+        _ => problem.help("its first bytes are not those of Parquet; export it again"),
     }
 }

@@ -1,5 +1,6 @@
 //! Long records: one block after the other, or a stretch of them.
 
+use std::io;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -7,19 +8,21 @@ use parquet::file::statistics::Statistics;
 
 use super::open::{At, Opened, Store, footer};
 use super::{Column, no_rows};
+use crate::data::cells::names;
 use crate::data::faults::Faults;
 use crate::data::hash::{Hasher, sha256};
+use crate::data::record::Wanted;
 use crate::data::record::decoded::{self, Place};
 use crate::data::record::held::Held;
 use crate::data::record::known::{Known, KnownFile};
+use crate::data::record::stored::Stored;
 use crate::data::record::stretch::{Block, Run, Stretch, axis_of, values};
-use crate::data::record::{Stored, Wanted};
 use crate::data::text::unreadable;
 use crate::disk;
 use crate::problem::Problem;
 
 /// Calls `each` with the wanted columns, batch by batch in the order of the file.
-pub(crate) fn stream(
+pub fn stream(
     at: At<'_>,
     shown: &str,
     wanted: &[Wanted],
@@ -29,20 +32,15 @@ pub(crate) fn stream(
     let (mut opened, sha256) = open(at, shown, known)?;
     let mut columns = opened.find(wanted)?;
     if opened.layout.rows() == 0 {
-        return Err(vec![no_rows(shown)]);
+        return Err(no_rows(shown).into());
     }
     let mut faults = Faults::new(shown);
-    for group in 0..opened.layout.groups() {
-        let done = opened.group(group, &mut columns, &mut faults, &mut |columns, first_row| {
-            each(&Block {
-                first_row,
-                rows: columns.first().map_or(0, |column| column.values.len()),
-                columns,
-                bytes: (0, 0),
-            });
+    for rows in opened.layout.groups() {
+        opened.rows(rows, &mut columns, &mut faults, &mut |columns, first_row| {
+            let rows = columns.first().map_or(0, |column| column.values.len());
+            each(&Block { first_row, rows, columns, bytes: (0, 0) });
             columns.iter_mut().for_each(|column| column.values.clear());
-        });
-        done?;
+        })?;
         if !faults.is_empty() {
             return Err(faults.into_vec());
         }
@@ -53,7 +51,7 @@ pub(crate) fn stream(
 /// The rows whose axis lies in a range. Row groups whose statistics exclude the range are not
 /// decoded; of the others, the blocks that lie in it, once for all stretches that follow each other
 /// along the run.
-pub(crate) fn stretch(
+pub fn stretch(
     at: At<'_>,
     shown: &str,
     wanted: &[Wanted],
@@ -63,41 +61,37 @@ pub(crate) fn stretch(
     let (mut opened, sha256) = open(at, shown, known)?;
     let mut columns = opened.find(wanted)?;
     let place = axis_of(&columns, axis, shown)?;
+    let axis = &columns[place];
     let mut faults = Faults::new(shown);
     let mut parts = Vec::new();
-    for group in 0..opened.layout.groups() {
-        if opened.without(group, &columns[place], range) {
+    for rows in opened.layout.groups() {
+        if opened.without(rows.start, axis, range) {
             continue;
         }
-        for rows in blocks(opened.layout.rows_of(group)) {
-            match opened.inside(group, &rows, &columns[place], range, known, &mut faults) {
-                Ok(Some(part)) if faults.is_empty() => parts.push((group, rows, part)),
-                Ok(None) if faults.is_empty() => {}
-                Ok(_) => return Err(faults.into_vec()),
-                Err(problem) => return Err(vec![problem]),
+        for block in blocks(rows) {
+            let inside = opened.inside(&block, axis, range, known, &mut faults)?;
+            if !faults.is_empty() {
+                return Err(faults.into_vec());
             }
+            parts.extend(inside.map(|part| (block, part)));
         }
     }
     let mut stretch = Stretch::new(range.clone(), place, &columns);
-    stretch.reserve(parts.iter().map(|(_, _, part)| part.len()).sum());
-    for (group, rows, part) in parts {
-        let first = rows.start + part.start;
-        if let Some(numbers) = opened.numbers(group, &rows, &columns, known) {
-            stretch.add(
-                &numbers.iter().map(|column| &column[part.clone()]).collect::<Vec<_>>(),
-                first,
-            );
+    stretch.reserve(parts.iter().map(|(_, part)| part.len()).sum());
+    for (block, part) in parts {
+        let first = block.start + part.start;
+        if let Some(numbers) = opened.numbers(block, &columns, known) {
+            let part: Vec<&[f64]> = numbers.iter().map(|column| &column[part.clone()]).collect();
+            stretch.add(&part, first);
             continue;
         }
         // Not all numbers of the block are sound: those outside the range do not concern the
         // stretch.
         let part = first..first + part.len();
-        let done =
-            opened.rows_in(group, part, &mut columns, &mut faults, &mut |columns, first_row| {
-                stretch.add(&values(columns), first_row);
-                columns.iter_mut().for_each(|column| column.values.clear());
-            });
-        done?;
+        opened.rows(part, &mut columns, &mut faults, &mut |columns, first_row| {
+            stretch.add(&values(columns), first_row);
+            columns.iter_mut().for_each(|column| column.values.clear());
+        })?;
         if !faults.is_empty() {
             return Err(faults.into_vec());
         }
@@ -112,32 +106,23 @@ fn blocks(rows: Range<usize>) -> impl Iterator<Item = Range<usize>> {
 
 impl Opened<'_> {
     /// What is known of the file and the columns that were read.
-    pub(super) fn run(&self, columns: Vec<Column>, sha256: String) -> Run {
-        let headings = self.layout.headings().iter();
-        Run {
-            channels: headings.map(|heading| heading.name.clone()).collect(),
-            rows: self.layout.rows(),
-            columns,
-            sha256,
-            bytes: self.store.size(),
-        }
+    pub fn run(&self, columns: Vec<Column>, sha256: String) -> Run {
+        let (rows, bytes) = (self.layout.rows(), self.store.size());
+        Run { channels: names(&self.layout.headings), rows, columns, sha256, bytes }
     }
 
     /// The numbers of columns in a block; `None` if not all are sound.
     fn numbers(
         &mut self,
-        group: usize,
-        rows: &Range<usize>,
+        rows: Range<usize>,
         columns: &[Column],
         known: &Known,
     ) -> Option<Vec<Arc<Vec<f64>>>> {
         let positions: Vec<usize> = columns.iter().map(|column| column.position).collect();
         let place = Place::new(self.store.name(), rows.start);
         let numbers = known.held.decoded.get(place, &positions, |lacking| {
-            let of = |position: &usize| {
-                columns.iter().find(|column| column.position == *position).cloned()
-            };
-            self.block(group, rows.clone(), &lacking.iter().filter_map(of).collect::<Vec<_>>())
+            let lacks = |column: &&Column| lacking.contains(&column.position);
+            self.block(rows, &columns.iter().filter(lacks).cloned().collect::<Vec<_>>())
         });
         numbers.into_iter().collect()
     }
@@ -146,7 +131,6 @@ impl Opened<'_> {
     /// range.
     fn inside(
         &mut self,
-        group: usize,
         rows: &Range<usize>,
         axis: &Column,
         range: &Range<f64>,
@@ -157,27 +141,23 @@ impl Opened<'_> {
         let ends = |values: &[f64]| {
             Some(values.iter().position(inside)?..values.iter().rposition(inside)? + 1)
         };
-        if let Some(numbers) = self.numbers(group, rows, std::slice::from_ref(axis), known) {
+        if let Some(numbers) = self.numbers(rows.clone(), std::slice::from_ref(axis), known) {
             return Ok(numbers.first().and_then(|values| ends(values)));
         }
-        let mut alone = [Column { values: Vec::new(), ..axis.clone() }];
-        self.rows_in(group, rows.clone(), &mut alone, faults, &mut |_, _| {})?;
+        let mut alone = [axis.empty()];
+        self.rows(rows.clone(), &mut alone, faults, &mut |_, _| {})?;
         Ok(ends(&alone[0].values))
     }
 
-    /// Whether the statistics of a group say that no value of a column lies in a range of SI units.
-    /// They are trusted.
-    fn without(&self, group: usize, column: &Column, range: &Range<f64>) -> bool {
-        let statistics = self.layout.leaf(column.position).and_then(|leaf| {
-            self.layout.metadata.metadata().row_group(group).column(leaf).statistics()
-        });
-        let ends = match statistics {
+    /// Whether the statistics of the group of a row say that no value of a column lies in a range
+    /// of SI units. They are trusted.
+    fn without(&self, row: usize, column: &Column, range: &Range<f64>) -> bool {
+        let chunk = self.layout.chunk(self.layout.group_of(row), column.position);
+        let ends = match chunk.and_then(|chunk| chunk.statistics()) {
             Some(Statistics::Double(of)) => of.min_opt().copied().zip(of.max_opt().copied()),
-            Some(Statistics::Float(of)) => of
-                .min_opt()
-                .copied()
-                .zip(of.max_opt().copied())
-                .map(|(min, max)| (min.into(), max.into())),
+            Some(Statistics::Float(of)) => {
+                of.min_opt().map(|min| f64::from(*min)).zip(of.max_opt().map(|max| f64::from(*max)))
+            }
             _ => None,
         };
         let factor = column.unit.factor;
@@ -187,16 +167,12 @@ impl Opened<'_> {
 
 /// The file and its hash. A small file is read once, and kept for the stretches that follow. A
 /// larger one is read to its end for the hash, and the row groups that are needed once more.
-fn open<'a>(
-    at: At<'_>,
-    shown: &'a str,
-    known: &Known,
-) -> Result<(Opened<'a>, String), Vec<Problem>> {
+fn open<'a>(at: At<'_>, shown: &'a str, known: &Known) -> Result<(Opened<'a>, String), Problem> {
     let path = match at {
         At::Disk(path) => path,
-        At::Object(stored) => return open_object(stored, shown, known).map_err(Vec::from),
+        At::Object(stored) => return open_object(stored, shown, known),
     };
-    let store = Store::held(path, shown, &known.held)?;
+    let store = Store::disk(path, shown, Some(known.held.clone()))?;
     let compute = || {
         if Held::takes_whole(store.size()) {
             let whole = disk::read(path, store.size())?;
@@ -205,35 +181,30 @@ fn open<'a>(
             return Ok(file);
         }
         let mut hash = Hasher::default();
-        let mut file = disk::open(path)?;
-        let bytes = hash.add_all(&mut file)?;
+        let bytes = hash.add_all(&mut disk::open(path)?)?;
         Ok(KnownFile { sha256: hash.finish(), bytes, index: None })
     };
-    let file = known
-        .or(|_| true, compute)
-        .map_err(|error: std::io::Error| vec![unreadable(shown, &error)])?;
-    let opened = Opened::again(store, shown, &known.held)?;
-    Ok((opened, file.sha256.clone()))
+    let file = known.or(|_| true, compute).map_err(unreadable::<io::Error>(shown))?;
+    Ok((Opened::again(store, shown, &known.held)?, file.sha256.clone()))
 }
 
 /// An object, and a hash that stands for it. Its bytes are not all read: the hash is that of its
 /// size, of its version in the store and of its footer, which has the place, the size and the
 /// extremes of each part.
-pub(super) fn open_object<'a>(
+pub fn open_object<'a>(
     stored: &Stored,
     shown: &'a str,
     known: &Known,
 ) -> Result<(Opened<'a>, String), Problem> {
+    let object = &stored.object;
     let mut store = Store::at(At::Object(stored), shown)?;
-    let file = known.or(
-        |_| true,
-        || {
-            let mut hash = Hasher::default();
-            hash.add(format!("{}\n{}\n", stored.object.size(), stored.object.version()).as_bytes());
-            hash.add(&footer(&mut store, shown)?);
-            Ok(KnownFile { sha256: hash.finish(), bytes: stored.object.size(), index: None })
-        },
-    )?;
+    let compute = || {
+        let mut hash = Hasher::default();
+        hash.add(format!("{}\n{}\n", object.size(), object.version()).as_bytes());
+        hash.add(&footer(&mut store, shown)?);
+        Ok(KnownFile { sha256: hash.finish(), bytes: object.size(), index: None })
+    };
+    let file = known.or(|_| true, compute)?;
     Ok((Opened::again(store, shown, &known.held)?, file.sha256.clone()))
 }
 

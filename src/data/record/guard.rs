@@ -19,7 +19,7 @@ const DEEPEST: usize = 16;
 const MOST_ELEMENTS: usize = 1 << 20;
 /// Maximum size of a page in bytes after decompression: eight million numbers. Writers make pages
 /// of 1 MB.
-pub(super) const LARGEST_PAGE: u64 = 64 << 20;
+pub const LARGEST_PAGE: u64 = 64 << 20;
 
 const STOP: u8 = 0;
 /// The schema in a footer, and the number of children in one of its elements.
@@ -58,6 +58,11 @@ impl<'a> Walk<'a> {
         Ok(byte)
     }
 
+    /// Bytes that are still to come.
+    fn left(&self) -> u64 {
+        (self.bytes.len() - self.at) as u64
+    }
+
     fn variable(&mut self) -> Checked<u64> {
         let mut number = 0_u64;
         for shift in (0..64).step_by(7) {
@@ -77,7 +82,7 @@ impl<'a> Walk<'a> {
     }
 
     fn skip(&mut self, count: u64) -> Checked<()> {
-        let left = (self.bytes.len() - self.at) as u64;
+        let left = self.left();
         if count > left {
             return Err(format!("it declares {count} bytes where {left} follow"));
         }
@@ -85,10 +90,15 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    fn structure(&mut self) -> Checked<()> {
+    fn bounded(&self) -> Checked<()> {
         if self.path.len() > DEEPEST {
             return Err(format!("its structures are nested more than {DEEPEST} deep"));
         }
+        Ok(())
+    }
+
+    fn structure(&mut self) -> Checked<()> {
+        self.bounded()?;
         let mut id = 0_i64;
         loop {
             let head = self.byte()?;
@@ -132,7 +142,7 @@ impl<'a> Walk<'a> {
         let head = self.byte()?;
         let count = if head >> 4 == 15 { self.variable()? } else { u64::from(head >> 4) };
         // An element has one byte at least.
-        let left = (self.bytes.len() - self.at) as u64;
+        let left = self.left();
         if count > left {
             return Err(format!("it declares {count} elements where {left} bytes follow"));
         }
@@ -142,9 +152,7 @@ impl<'a> Walk<'a> {
         }
         let schema = self.open.is_some() && self.path == SCHEMA;
         self.path.push(0);
-        if self.path.len() > DEEPEST {
-            return Err(format!("its structures are nested more than {DEEPEST} deep"));
-        }
+        self.bounded()?;
         for index in 0..count {
             self.value(head & 15, false)?;
             if schema {
@@ -188,26 +196,20 @@ impl<'a> Walk<'a> {
 }
 
 /// Checks the lengths in a footer.
-pub(crate) fn footer(bytes: &[u8]) -> Checked<()> {
+pub fn footer(bytes: &[u8]) -> Checked<()> {
     Walk { open: Some(Vec::new()), ..Walk::new(bytes, 0) }.structure()
 }
 
-/// What is declared of the pages of a column chunk.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Pages {
-    /// Bytes of the largest page and of the dictionary, which are in memory at the same time.
-    pub memory: u64,
-}
-
 /// Where the bytes of a column of a row group are declared to be.
-pub(crate) fn range(chunk: &ColumnChunkMetaData) -> Option<Range<u64>> {
+pub fn range(chunk: &ColumnChunkMetaData) -> Option<Range<u64>> {
     let start = chunk.dictionary_page_offset().filter(|at| *at > 0);
     let start = u64::try_from(start.unwrap_or(chunk.data_page_offset())).ok()?;
     Some(start..start.checked_add(u64::try_from(chunk.compressed_size()).ok()?)?)
 }
 
-/// Checks the headers of the pages of a column of a row group, which are in these bytes.
-pub(crate) fn pages(bytes: &[u8], chunk: &ColumnChunkMetaData) -> Checked<Pages> {
+/// Checks the headers of the pages of a column of a row group, which are in these bytes. Gives the
+/// bytes of the largest page and of the dictionary, which are in memory at the same time.
+pub fn pages(bytes: &[u8], chunk: &ColumnChunkMetaData) -> Checked<u64> {
     let width = match chunk.column_type() {
         Type::DOUBLE | Type::INT64 => 8,
         Type::FLOAT | Type::INT32 => 4,
@@ -218,7 +220,7 @@ pub(crate) fn pages(bytes: &[u8], chunk: &ColumnChunkMetaData) -> Checked<Pages>
 }
 
 /// The same of a column of `values` numbers of `width` bytes.
-fn pages_of(chunk: &[u8], values: u64, width: u64) -> Checked<Pages> {
+fn pages_of(chunk: &[u8], values: u64, width: u64) -> Checked<u64> {
     let (mut largest, mut dictionary, mut at) = (0, 0, 0);
     while at < chunk.len() {
         let mut walk = Walk::new(&chunk[at..], 2);
@@ -229,11 +231,8 @@ fn pages_of(chunk: &[u8], values: u64, width: u64) -> Checked<Pages> {
         };
         let (inflated, stored) = (size(2)?, size(3)?);
         if inflated > LARGEST_PAGE {
-            return Err(format!(
-                "a page of {} MB, where {} MB are the maximum",
-                inflated >> 20,
-                LARGEST_PAGE >> 20
-            ));
+            let (size, most) = (inflated >> 20, LARGEST_PAGE >> 20);
+            return Err(format!("a page of {size} MB, where {most} MB are the maximum"));
         }
         // Fields 5, 7 and 8 are the headers of data pages, dictionary pages and data pages of
         // version 2.
@@ -264,7 +263,7 @@ fn pages_of(chunk: &[u8], values: u64, width: u64) -> Checked<Pages> {
         }
         at += usize::try_from(stored).map_err(|_| "a page is too large")?;
     }
-    Ok(Pages { memory: largest + dictionary })
+    Ok(largest + dictionary)
 }
 
 #[cfg(test)]
@@ -316,7 +315,7 @@ mod tests {
             [&[0x15, 0, 0x15][..], inflated, &[0x15, 8, 0x2c, 0x15, 2 * count, 0, 0], &[0; 4]]
                 .concat()
         };
-        assert_eq!(pages_of(&page(&[80], 10), 10, 8), Ok(Pages { memory: 40 }));
+        assert_eq!(pages_of(&page(&[80], 10), 10, 8), Ok(40));
         assert!(
             pages_of(&page(&[0x80, 0x80, 0x80, 0x80, 0x08], 10), 10, 8)
                 .is_err_and(|why| why.contains("1024 MB"))
