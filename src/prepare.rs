@@ -42,7 +42,7 @@ const IN_MEMORY: &str = "protocol.fp";
 
 /// A protocol and its ancestors, by name or path.
 pub fn load(name: &str, problems: &mut Problems) -> Option<Family> {
-    let source = library::find(name, None).map_err(|problem| problems.push(problem)).ok()?;
+    let source = problems.value(library::find(name, None))?;
     Some(family::read(&source, &library::parent, problems))
 }
 
@@ -56,22 +56,17 @@ pub fn for_diagnosis(
     catalogue: &str,
     problems: &mut Problems,
 ) -> Option<(Catalogue, Settings, Vec<Section>)> {
-    campaign.file_for_each_section().map_err(|problem| problems.push(problem)).ok()?;
+    problems.value(campaign.file_for_each_section())?;
     let catalogue = load_catalogue(catalogue, problems)?;
     let settings = Settings::read(&catalogue, problems)?;
     let sections = sections(campaign, problems)?;
-    campaign
-        .one_of_each()
-        .and_then(|()| campaign.one_vehicle())
-        .map_err(|problem| problems.push(problem))
-        .ok()?;
+    problems.value(campaign.one_of_each().and_then(|()| campaign.one_vehicle()))?;
     Some((catalogue, settings, sections))
 }
 
 /// A catalogue of effects, by path or name.
 pub fn load_catalogue(name: &str, problems: &mut Problems) -> Option<Catalogue> {
-    let source =
-        library::find_catalogue(name, None).map_err(|problem| problems.push(problem)).ok()?;
+    let source = problems.value(library::find_catalogue(name, None))?;
     effects::read(&source, &library::parent_catalogue, &model_parameters(), problems)
 }
 
@@ -321,7 +316,7 @@ fn campaign_protocol(
             }
         })
     };
-    let source = inside(named).map_err(|problem| problems.push(problem)).ok()?;
+    let source = problems.value(inside(named))?;
     let parent = |name: &str, from: &Source| {
         if let Some(shipped) = library::shipped(name) {
             return Ok(shipped);

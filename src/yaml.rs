@@ -54,13 +54,6 @@ pub struct Key {
     pub exact: bool,
 }
 
-impl Key {
-    /// The span of a part of the text, as precise as possible.
-    pub fn place(&self, range: Range<usize>) -> Span {
-        if self.exact { self.span.part(range) } else { self.span.clone() }
-    }
-}
-
 impl Node {
     /// The entries of a map; empty for any other value.
     pub fn entries(&self) -> &[(Key, Node)] {

@@ -102,7 +102,7 @@ impl Campaign {
         let named = path.file_name().is_some_and(|name| name == CAMPAIGN_FILE)
             && !disk::is_folder(path).unwrap_or(false);
         let folder = if named { disk::folder_of(path) } else { path };
-        let folder = Folder::open(folder).map_err(|problem| problems.push(problem)).ok()?;
+        let folder = problems.value(Folder::open(folder))?;
         Self::in_folder(folder, path, problems)
     }
 
@@ -116,7 +116,7 @@ impl Campaign {
         problems: &mut Problems,
     ) -> Option<Self> {
         let at = match folder {
-            Some(folder) => Folder::open(folder).map_err(|problem| problems.push(problem)).ok()?,
+            Some(folder) => problems.value(Folder::open(folder))?,
             None => Folder::nowhere(),
         };
         Self::in_folder(at.with(memory), folder.unwrap_or(Path::new("the campaign")), problems)
@@ -135,8 +135,7 @@ impl Campaign {
     fn in_folder(folder: Folder, path: &Path, problems: &mut Problems) -> Option<Self> {
         let before = problems.errors();
         let nowhere = Source::new(path.display().to_string(), "").whole();
-        let place =
-            folder.place(CAMPAIGN_FILE, &nowhere).map_err(|problem| problems.push(problem)).ok()?;
+        let place = problems.value(folder.place(CAMPAIGN_FILE, &nowhere))?;
         let on_disk = !folder.memory().texts.contains_key(CAMPAIGN_FILE);
         if on_disk && disk::is_folder(&folder.real().join(disk::UNFINISHED)).unwrap_or(false) {
             let problem = problem!(
@@ -236,15 +235,10 @@ impl Campaign {
         self.names = match &self.sections {
             Some(table) => table.names().cloned().collect(),
             None if !self.runs.is_empty() => self.runs.iter().map(|run| run.name.clone()).collect(),
-            None => match self.measured() {
-                Ok(names) => names,
-                Err(problem) => return problems.push(problem),
-            },
+            None => problems.value(self.measured()).unwrap_or_default(),
         };
         for name in &self.names {
-            if let Err(problem) = check_file_name(&name.value, &name.span) {
-                problems.push(problem);
-            }
+            problems.value(check_file_name(&name.value, &name.span));
         }
     }
 

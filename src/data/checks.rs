@@ -177,7 +177,6 @@ pub fn steps(times: &[f64], factor: f64) -> Steps {
     let rounding = if unusual * 100 < steps.len() { 0.0 } else { resolution };
     let longest = (GAP * usual).max(usual + 1.5 * rounding);
     let gaps = (0..steps.len()).filter(|row| steps[*row] > longest).collect();
-    #[expect(clippy::cast_precision_loss, reason = "a record has far fewer than 2^52 samples")]
     let rate = steps.len() as f64 / (times[steps.len()] - times[0]);
     let mean = 1.0 / rate;
     let allowed = (JITTER * mean).max(resolution * (1.0 + 1e-6));

@@ -43,8 +43,7 @@ impl Table {
         key: Option<&str>,
         problems: &mut Problems,
     ) -> Option<Self> {
-        let read = read_text(path, shown).map_err(|problem| problems.push(problem));
-        let (source, sha256) = read.ok()?;
+        let (source, sha256) = problems.value(read_text(path, shown))?;
         Self::parse(source, sha256, key, problems)
     }
 
@@ -97,7 +96,7 @@ impl Table {
     ///
     /// Problems: `unknown-column`; `name-missing`, `duplicate-name`.
     pub fn named_by(mut self, column: &str, problems: &mut Problems) -> Option<Self> {
-        self.key = Some(self.need_column(column).map_err(|problem| problems.push(problem)).ok()?);
+        self.key = Some(problems.value(self.need_column(column))?);
         let file = self.source.name.clone();
         self.with_names(Faults::new(&file), problems)
     }

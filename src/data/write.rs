@@ -4,7 +4,7 @@ mod columnar;
 mod digits;
 mod format;
 
-pub use columnar::{FileColumn, Layout, Values, parquet, parquet_in_groups};
+pub use columnar::{FileColumn, Layout, Values, parquet, parquet_in_groups, properties};
 pub use digits::Digits;
 pub use format::{
     Entry, OutColumn, campaign_yaml, campaign_yaml_with, csv, csv_header, csv_rows, in_format,

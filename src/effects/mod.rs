@@ -1,7 +1,5 @@
 //! Effects that a simulation may lack, declared in a text file, and how each is added.
 
-#![allow(clippy::cast_precision_loss)]
-
 mod catalogue;
 mod choose;
 mod expression;

@@ -24,7 +24,7 @@ impl NotWritten {
     pub fn new(mapping: &Mapping, problems: &mut Problems) -> Option<Self> {
         let before = problems.errors();
         tracks(mapping, problems);
-        let files = small_files(mapping).map_err(|problem| problems.push(problem)).ok()?;
+        let files = problems.value(small_files(mapping))?;
         let names: Vec<(String, String)> = files
             .iter()
             .map(|file| (file.inside.clone(), mapping.place(&file.written.value).1))

@@ -63,7 +63,7 @@ pub fn channels(headings: &[Heading], problems: &mut Problems) -> Vec<Channel> {
     let mut keep = |heading: &Heading| {
         let found =
             channel(heading).and_then(|name| Ok(Channel { name, unit: heading.unit(None)? }));
-        found.map_err(|problem| problems.push(problem)).ok()
+        problems.value(found)
     };
     headings.iter().filter_map(&mut keep).collect()
 }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::allowances::Allowance;
 use super::records::Roles;
-use super::scales::{Of, Scales};
+use super::scales::{Scales, scale_of};
 use super::windows::{Cut, two_digits};
 use crate::init::protocol::identifier;
 use crate::problem::{Problem, Problems, problem};
@@ -104,12 +104,14 @@ pub fn entries(
         };
         let (range, neutral, default) = ((low, high), effect.neutral, effect.default);
         let Some(operator) = effect.operator else {
-            let of = Of::named(&effect.of).ok_or_else(|| wrong("an unknown `of`"))?;
-            let scaled = all.iter().map(|scales| (scales, of.of(scales)));
-            let scaled = scaled.filter(|(_, (_, scale))| scale.is_finite() && *scale > 0.0);
-            found.extend(scaled.map(|(scales, (unit, scale))| {
-                sized(of_machine(&entry, scales, unit), range, 0.0, default, scale)
-            }));
+            for scales in all {
+                let scale = scale_of(&effect.of, scales);
+                let (unit, scale) = scale.ok_or_else(|| wrong("an unknown `of`"))?;
+                if scale.is_finite() && scale > 0.0 {
+                    let entry = of_machine(&entry, scales, unit);
+                    found.push(sized(entry, range, 0.0, default, scale));
+                }
+            }
             continue;
         };
         let entry = Entry {

@@ -1,8 +1,6 @@
 //! The first campaign of a machine, from pairs of simulated and measured records: campaign,
 //! protocol, catalogue, and a stub of a simulator.
 
-#![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-
 pub mod allowances;
 pub mod catalogue;
 pub mod records;

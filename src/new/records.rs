@@ -111,10 +111,7 @@ impl Pair {
         told: &mut Vec<String>,
         problems: &mut Problems,
     ) -> Option<Self> {
-        let mut one = |path: &Path| {
-            let read = series(path, told);
-            read.map_err(|found| problems.add(found)).ok()
-        };
+        let mut one = |path: &Path| problems.value(series(path, told));
         let (simulated, measured) = (one(simulated), one(measured));
         let (mut simulated, measured) = (simulated?, measured?);
         let (step, wanted) = (simulated.step(), measured.step());

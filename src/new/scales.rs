@@ -152,43 +152,17 @@ fn rms(pairs: &[Pair], name: &str, unit: &Unit) -> f64 {
     (channels().map(square).sum::<f64>() / count.max(1) as f64).sqrt()
 }
 
-/// What a parameter multiplies, as `of` in the list of effects.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Of {
-    Force,
-    Position,
-    Damping,
-    Mass,
-    Stiffness,
-    Quadratic,
-    Cubic,
-}
-
-impl Of {
-    pub fn named(text: &str) -> Option<Self> {
-        Some(match text {
-            "F" => Self::Force,
-            "X" => Self::Position,
-            "F/V" => Self::Damping,
-            "F/A" => Self::Mass,
-            "F/X" => Self::Stiffness,
-            "F/X^2" => Self::Quadratic,
-            "F/X^3" => Self::Cubic,
-            _ => return None,
-        })
-    }
-
-    /// Unit and scale of the parameter.
-    pub fn of(self, scales: &Scales) -> (String, f64) {
-        let ((force, size), (position, amplitude)) = (&scales.force, &scales.position);
-        match self {
-            Self::Force => (force.clone(), *size),
-            Self::Position => (position.clone(), *amplitude),
-            Self::Damping => (format!("{force} s/{position}"), size / scales.speed),
-            Self::Mass => (format!("{force} s^2/{position}"), size / scales.acceleration),
-            Self::Stiffness => (format!("{force}/{position}"), size / amplitude),
-            Self::Quadratic => (format!("{force}/{position}^2"), size / amplitude.powi(2)),
-            Self::Cubic => (format!("{force}/{position}^3"), size / amplitude.powi(3)),
-        }
-    }
+/// Unit and scale of a parameter by what it multiplies, as `of` in the list of effects.
+pub fn scale_of(of: &str, scales: &Scales) -> Option<(String, f64)> {
+    let ((force, size), (position, amplitude)) = (&scales.force, &scales.position);
+    Some(match of {
+        "F" => (force.clone(), *size),
+        "X" => (position.clone(), *amplitude),
+        "F/V" => (format!("{force} s/{position}"), size / scales.speed),
+        "F/A" => (format!("{force} s^2/{position}"), size / scales.acceleration),
+        "F/X" => (format!("{force}/{position}"), size / amplitude),
+        "F/X^2" => (format!("{force}/{position}^2"), size / amplitude.powi(2)),
+        "F/X^3" => (format!("{force}/{position}^3"), size / amplitude.powi(3)),
+        _ => return None,
+    })
 }

@@ -34,9 +34,10 @@ const RETRIES: (usize, Duration) = (3, Duration::from_secs(60));
 const REQUEST: Duration = Duration::from_secs(60);
 
 /// An object of which parts can be read.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Object(Arc<Found>);
 
+#[derive(Debug)]
 struct Found {
     url: String,
     store: Box<dyn ObjectStore>,
@@ -44,12 +45,6 @@ struct Found {
     size: u64,
     tag: Option<String>,
     version: String,
-}
-
-impl fmt::Debug for Object {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Object").field(&self.0.url).finish()
-    }
 }
 
 impl Object {

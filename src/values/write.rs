@@ -3,14 +3,13 @@
 use std::error::Error;
 
 use parquet::arrow::ArrowWriter;
-use parquet::basic::{Compression, ZstdLevel};
 use parquet::file::metadata::KeyValue;
-use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use serde_json::json;
 
 use super::rows::table;
 use super::{FORM, Values, seal};
 use crate::check::plan::Plan;
+use crate::data::write::properties;
 use crate::problem::{Problem, problem};
 
 /// Keys of the metadata. What the file is, as JSON; the other contents are packed.
@@ -21,9 +20,6 @@ pub const MARKS: &str = "fishplate.marks";
 pub const TRACES: &str = "fishplate.traces";
 const SEAL: &str = "fishplate.seal";
 
-/// Level of compression of the table, as of records.
-const LEVEL: i32 = 3;
-
 /// The bytes of a file. The same values give the same bytes.
 ///
 /// # Errors
@@ -31,14 +27,9 @@ const LEVEL: i32 = 3;
 pub fn write(plan: &Plan, values: &Values) -> Result<Vec<u8>, Problem> {
     let written = || -> Result<Vec<u8>, Box<dyn Error>> {
         let table = table(plan, values)?;
-        let properties = WriterProperties::builder()
-            // Without a version, so that a new one of the library does not change the bytes.
-            .set_created_by("fishplate".to_string())
-            .set_compression(Compression::ZSTD(ZstdLevel::try_new(LEVEL)?))
-            .set_statistics_enabled(EnabledStatistics::Chunk)
-            .build();
         let mut bytes = Vec::new();
-        let mut writer = ArrowWriter::try_new(&mut bytes, table.schema(), Some(properties))?;
+        let mut writer =
+            ArrowWriter::try_new(&mut bytes, table.schema(), Some(properties()?.build()))?;
         writer.write(&table)?;
         for (key, value) in metadata(values)? {
             writer.append_key_value_metadata(KeyValue::new(key.to_string(), value));

@@ -139,7 +139,7 @@ impl<C> Reader<'_, C> {
 
     /// The value of a result; a problem is told.
     pub fn keep<T>(&mut self, result: Result<T, Problem>) -> Option<T> {
-        result.map_err(|problem| self.tell(problem)).ok()
+        self.problems.value(result)
     }
 
     /// A whole file, of which nothing stands above.

@@ -22,7 +22,7 @@ use tempfile::TempDir;
 /// A protocol, by name or path, over a campaign, with parameters set as `name=value`.
 pub fn certified(campaign: &Path, protocol: &str, set: &[&str]) -> Result<Certification, Problems> {
     let mut problems = Problems::default();
-    let source = library::find(protocol, None).map_err(|problem| Problems(vec![*problem]))?;
+    let source = library::find(protocol, None).map_err(Problems::from)?;
     let family = family::read(&source, &library::parent, &mut problems);
     let mut overrides = Overrides::new();
     for set in set {

@@ -7,8 +7,7 @@ use indexmap::IndexSet;
 use super::members::RecordKind;
 use super::runs::Run;
 use super::{CAMPAIGN_FILE, Campaign};
-use crate::data::place::Place;
-use crate::data::text::unreadable;
+use crate::data::{place::Place, text::unreadable};
 use crate::disk;
 use crate::problem::Problem;
 

@@ -7,9 +7,11 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use serde::{Deserialize, Serialize};
 
 use super::opening::Reader;
-use crate::data::folder::Folder;
-use crate::data::place::Place;
-use crate::data::record::{Format, Held, Known, Stored};
+use crate::data::{
+    folder::Folder,
+    place::Place,
+    record::{Format, Held, Known, Stored},
+};
 use crate::problem::{Problem, problem};
 use crate::source::{Span, Spanned};
 use crate::store;

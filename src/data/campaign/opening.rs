@@ -2,9 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::data::folder::Folder;
-use crate::data::place::Place;
-use crate::data::table::Table;
+use crate::data::{folder::Folder, place::Place, table::Table};
 use crate::problem::Problems;
 use crate::source::{Source, Span, Spanned};
 use crate::yaml::{self, FromNode, Key, Node};

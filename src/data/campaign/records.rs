@@ -10,11 +10,13 @@ use super::Campaign;
 use super::members::{self, RecordFolder, RecordKind, WhichRecord};
 use super::opening::ReadFile;
 use super::runs::Part;
-use crate::data::folder::{check_file_name, names_in};
-use crate::data::place::Place;
-use crate::data::record::{Format, Record, RecordSource, Wanted};
-use crate::data::table::Cell;
-use crate::data::text::{other_format, unreadable};
+use crate::data::{
+    folder::{check_file_name, names_in},
+    place::Place,
+    record::{Format, Record, RecordSource, Wanted},
+    table::Cell,
+    text::{other_format, unreadable},
+};
 use crate::disk;
 use crate::problem::{Problem, error, nearest, problem};
 use crate::source::{Span, Spanned};

@@ -6,11 +6,13 @@ use std::sync::Arc;
 use super::Campaign;
 use super::members::RecordKind;
 use super::opening::{Opening, Reader};
-use crate::data::cells::name_and_unit_text;
-use crate::data::folder::{check_file_name, names_in};
-use crate::data::record::{Format, Held, Known, RecordSource};
-use crate::data::table::{Cell, Table};
-use crate::data::text::unreadable;
+use crate::data::{
+    cells::name_and_unit_text,
+    folder::{check_file_name, names_in},
+    record::{Format, Held, Known, RecordSource},
+    table::{Cell, Table},
+    text::unreadable,
+};
 use crate::disk;
 use crate::problem::{Problem, Problems, error, problem};
 use crate::source::{Span, Spanned};

@@ -1,7 +1,8 @@
 //! Decoded numbers that neighbouring stretches have in common: decoded once, and kept for the next
 //! stretch within a bound.
 
-use std::path::{Path, PathBuf};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 
 use super::recent::{Recent, locked};
@@ -19,18 +20,8 @@ const MOST: usize = 32 << 20;
 /// block cannot be decoded.
 pub type Numbers = Option<Arc<Vec<f64>>>;
 
-/// Rows of a file that are decoded together.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
-    pub file: PathBuf,
-    pub first_row: usize,
-}
-
-impl Place {
-    pub fn new(file: &Path, first_row: usize) -> Self {
-        Self { file: file.to_path_buf(), first_row }
-    }
-}
+/// Rows of a file that are decoded together: the file, and the first row.
+pub type Place = (PathBuf, usize);
 
 /// The blocks that were used last; shared by all files of a campaign.
 #[derive(Clone, Debug, Default)]
@@ -46,7 +37,7 @@ type Kept = (Place, Arc<Block>);
 /// Columns of a block by their position in the file. Who decodes holds the lock, so that others
 /// wait instead of decoding the same.
 #[derive(Debug, Default)]
-struct Block(Mutex<Vec<(usize, Numbers)>>);
+struct Block(Mutex<BTreeMap<usize, Numbers>>);
 
 impl Decoded {
     /// The numbers of some columns of a block, given by their positions in the file. `decode` gives
@@ -68,26 +59,17 @@ impl Decoded {
             })
         };
         let mut columns = locked(&block.0);
-        let known = |columns: &[(usize, Numbers)], position: usize| {
-            columns.iter().position(|(known, _)| *known == position)
-        };
-        let lacking: Vec<usize> = positions
-            .iter()
-            .copied()
-            .filter(|position| known(&columns, *position).is_none())
-            .collect();
+        let lacks = |position: &usize| !columns.contains_key(position);
+        let lacking: Vec<usize> = positions.iter().copied().filter(lacks).collect();
         if !lacking.is_empty() {
             let new = decode(&lacking);
             let bytes = new.iter().flatten().map(|numbers| numbers.len() * size_of::<f64>()).sum();
-            columns.extend(lacking.iter().copied().zip(new));
             #[cfg(test)]
             self.made.fetch_add(lacking.len(), std::sync::atomic::Ordering::Relaxed);
+            columns.extend(lacking.into_iter().zip(new));
             locked(&self.blocks).grow(|(_, kept)| Arc::ptr_eq(kept, &block), bytes, most);
         }
-        positions
-            .iter()
-            .map(|&position| known(&columns, position).and_then(|at| columns[at].1.clone()))
-            .collect()
+        positions.iter().map(|position| columns.get(position).cloned().flatten()).collect()
     }
 
     /// Columns of blocks that were decoded so far.
@@ -108,7 +90,7 @@ mod tests {
     #[test]
     fn each_column_of_a_block_is_decoded_once() {
         let decoded = Decoded::default();
-        let place = || Place::new(Path::new("a"), 0);
+        let place = || (PathBuf::from("a"), 0);
         let mut asked = Vec::new();
         for positions in [&[3, 1][..], &[1, 2], &[2, 3, 1], &[1]] {
             let found = decoded.get(place(), positions, |lacking| {
@@ -119,13 +101,13 @@ mod tests {
             assert_eq!(lengths, positions);
         }
         assert_eq!(asked, [vec![3, 1], vec![2]]);
-        let other = decoded.get(Place::new(Path::new("a"), 1), &[1], |_| vec![None]);
+        let other = decoded.get((PathBuf::from("a"), 1), &[1], |_| vec![None]);
         assert_eq!(
             (other, decoded.made()),
             (vec![None], 4),
             "what cannot be used is not decoded again either"
         );
-        decoded.get(Place::new(Path::new("a"), 1), &[1], |_| panic!("known"));
+        decoded.get((PathBuf::from("a"), 1), &[1], |_| panic!("known"));
     }
 
     #[test]
@@ -135,10 +117,9 @@ mod tests {
             for _ in 0..8 {
                 scope.spawn(|| {
                     for row in 0..50 {
-                        let found =
-                            decoded.get(Place::new(Path::new("a"), row), &[0, 1], |lacking| {
-                                vec![numbers(row); lacking.len()]
-                            });
+                        let found = decoded.get((PathBuf::from("a"), row), &[0, 1], |lacking| {
+                            vec![numbers(row); lacking.len()]
+                        });
                         assert!(found.iter().flatten().all(|numbers| numbers.len() == row));
                     }
                 });
@@ -154,7 +135,7 @@ mod tests {
         let quarter = most / 4 / size_of::<f64>();
         let get = |row: usize| {
             let mut new = false;
-            decoded.get(Place::new(Path::new("a"), row), &[0], |_| {
+            decoded.get((PathBuf::from("a"), row), &[0], |_| {
                 new = true;
                 vec![numbers(quarter)]
             });
@@ -167,9 +148,7 @@ mod tests {
             let (count, bytes) = locked(&decoded.blocks).extent();
             assert!(bytes <= most && count <= 4, "{bytes} bytes of {most}");
         }
-        decoded.get(Place::new(Path::new("a"), 99), &[0], |_| {
-            vec![numbers(most / size_of::<f64>() + 1)]
-        });
+        decoded.get((PathBuf::from("a"), 99), &[0], |_| vec![numbers(most / size_of::<f64>() + 1)]);
         assert!(locked(&decoded.blocks).extent().1 <= most, "one that is too large is not kept");
     }
 }

@@ -1,8 +1,7 @@
 //! Slow parsing of an irregular row, with a description of its fault.
 
 use super::Column;
-use crate::data::cells;
-use crate::data::faults::Faults;
+use crate::data::{cells, faults::Faults};
 use crate::problem::{error, problem};
 use crate::source::{Source, Span};
 

@@ -75,7 +75,7 @@ impl<'a> Walk<'a> {
         Err("a number has more than 64 bits".into())
     }
 
-    #[expect(clippy::cast_possible_wrap, reason = "the zigzag form of a signed number")]
+    /// A signed number in zigzag form.
     fn signed(&mut self) -> Checked<i64> {
         let number = self.variable()?;
         Ok((number >> 1) as i64 ^ -((number & 1) as i64))

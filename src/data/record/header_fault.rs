@@ -4,8 +4,10 @@ use std::io::BufRead;
 use std::path::Path;
 
 use super::Wanted;
-use crate::data::cells::{self, Heading};
-use crate::data::text::open_text;
+use crate::data::{
+    cells::{self, Heading},
+    text::open_text,
+};
 use crate::problem::{Problem, error, nearest, problem};
 use crate::source::Source;
 use crate::units::Unit;

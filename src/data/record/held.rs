@@ -1,7 +1,6 @@
 //! Bytes of files that neighbouring stretches have in common: read once, and kept for the next
 //! stretch within a bound.
 
-use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -25,7 +24,7 @@ const FOOTERS: usize = 4;
 
 /// The parts of files that were read last, and what was decoded last; shared by all files of a
 /// campaign.
-#[derive(Clone, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Held {
     parts: Arc<Mutex<Recent<Part>>>,
     /// Footers of Parquet files.
@@ -36,6 +35,7 @@ pub struct Held {
 /// What the footer of a file says.
 type Footer = (PathBuf, Arc<Layout>);
 
+#[derive(Debug)]
 struct Part {
     file: PathBuf,
     start: u64,
@@ -48,12 +48,6 @@ impl Part {
         let to = usize::try_from(range.end.checked_sub(self.start)?).ok()?;
         (from <= to && to <= self.bytes.len() && self.file == file)
             .then(|| self.bytes.slice(from..to))
-    }
-}
-
-impl fmt::Debug for Held {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Held").finish_non_exhaustive()
     }
 }
 

@@ -12,8 +12,10 @@ use parquet::arrow::parquet_to_arrow_schema;
 use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData, ParquetMetaDataReader};
 
 use super::guard;
-use crate::data::cells::{Heading, duplicates, name_and_unit, shortened};
-use crate::data::write::Digits;
+use crate::data::{
+    cells::{Heading, duplicates, name_and_unit, shortened},
+    write::Digits,
+};
 use crate::problem::{Problem, error, problem};
 use crate::source::{Source, Span};
 use crate::units::Unit;

@@ -1,6 +1,5 @@
 //! A record in memory: columns as Arrow arrays, which are not copied.
 
-use std::fmt;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
@@ -13,9 +12,11 @@ use super::columnar::{append, no_rows, numbers, value_at, wrong};
 use super::layout::{headings_of, not_numbers};
 use super::stretch::{Run, Stretch, axis_of, values};
 use super::{Column, Wanted, find_columns};
-use crate::data::cells::{Heading, names};
-use crate::data::faults::Faults;
-use crate::data::hash::Hasher;
+use crate::data::{
+    cells::{Heading, names},
+    faults::Faults,
+    hash::Hasher,
+};
 use crate::problem::{Problem, problem};
 use crate::source::{Source, Span};
 
@@ -25,6 +26,7 @@ const BLOCK: usize = 4096;
 
 /// A table that is used as a record. The unit of a column stands in brackets after its name, or in
 /// the metadata of its field under `unit`.
+#[derive(Debug)]
 pub struct Frame {
     /// The path inside the campaign that the record has, such as `measurement/S01`; with the ending
     /// of the file that it was read from.
@@ -48,15 +50,6 @@ pub struct ReadFrom {
 
 /// Why a table in memory has no numbers, and what mends it.
 const CONVERT: &str = "convert the column to float64";
-
-impl fmt::Debug for Frame {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Frame")
-            .field("name", &self.name)
-            .field("rows", &self.rows)
-            .finish_non_exhaustive()
-    }
-}
 
 impl Frame {
     /// # Errors

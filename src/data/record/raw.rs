@@ -4,10 +4,12 @@ use std::path::Path;
 
 use super::text::no_rows;
 use super::{Format, columnar, fault, listed_headings};
-use crate::data::cells::{self, RawCell};
-use crate::data::faults::Faults;
-use crate::data::text::{LARGEST_RECORD, LONGEST_LINE, decode, long_line, read_bytes};
-use crate::data::write::{Digits, FileColumn, Values};
+use crate::data::{
+    cells::{self, RawCell},
+    faults::Faults,
+    text::{LARGEST_RECORD, LONGEST_LINE, decode, long_line, read_bytes},
+    write::{Digits, FileColumn, Values},
+};
 use crate::problem::Problem;
 
 /// Reads all columns: numbers in the unit of the file, or texts if a cell is not a number.

@@ -25,9 +25,8 @@ impl<V> Default for Recent<V> {
 impl<V> Recent<V> {
     /// What is looked for in the values; the value that has it is then the one used last.
     pub fn find<T>(&mut self, looked_for: impl Fn(&V) -> Option<T>) -> Option<T> {
-        let values = self.values.iter().enumerate();
-        let (at, found) =
-            values.into_iter().find_map(|(at, (value, _))| Some((at, looked_for(value)?)))?;
+        let mut values = self.values.iter().enumerate();
+        let (at, found) = values.find_map(|(at, (value, _))| Some((at, looked_for(value)?)))?;
         let used = self.values.remove(at)?;
         self.values.push_front(used);
         Some(found)

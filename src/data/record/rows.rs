@@ -1,8 +1,10 @@
 //! The rows of a text as numbers.
 
 use super::{Column, fault};
-use crate::data::faults::Faults;
-use crate::data::text::{LONGEST_LINE, long_line};
+use crate::data::{
+    faults::Faults,
+    text::{LONGEST_LINE, long_line},
+};
 use crate::problem::Problem;
 
 /// Replaces the values of the columns by those of a text of whole rows; returns the number of rows.

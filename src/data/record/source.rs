@@ -11,8 +11,7 @@ use super::memory::Frame;
 use super::stored::Stored;
 use super::stretch::{Block, Run};
 use super::{Column, Format, Record, Wanted, text};
-use crate::data::cells::Heading;
-use crate::data::place::Place;
+use crate::data::{cells::Heading, place::Place};
 use crate::problem::{Problem, problem};
 use crate::source::Span;
 

@@ -8,11 +8,11 @@ use super::columnar::MAGIC;
 use super::known::{Index, Known, KnownFile, Mark};
 use super::stretch::{Block, Run, Stretch, axis_of, values};
 use super::{Column, Wanted, fault, find_columns, header_fault, listed_headings, rows};
-use crate::data::cells::{self, Heading, names};
-use crate::data::faults::Faults;
-use crate::data::hash::Hasher;
-use crate::data::text::{
-    self, LONGEST_LINE, decode_from, long_line, open_text, read_line_of, unreadable,
+use crate::data::{
+    cells::{self, Heading, names},
+    faults::Faults,
+    hash::Hasher,
+    text::{self, LONGEST_LINE, decode_from, long_line, open_text, read_line_of, unreadable},
 };
 use crate::disk;
 use crate::problem::{Problem, problem};

@@ -10,6 +10,7 @@ use arrow_schema::{DataType, Field, Schema};
 use flate2::write::DeflateEncoder;
 use parquet::arrow::ArrowWriter;
 use parquet::basic::{Compression, ZstdLevel};
+use parquet::errors::ParquetError;
 use parquet::file::properties::{EnabledStatistics, WriterProperties, WriterPropertiesBuilder};
 use parquet::schema::types::ColumnPath;
 
@@ -108,7 +109,8 @@ pub fn parquet_in_groups(
     mut part: impl FnMut(Range<usize>) -> Result<Vec<Values>, Problem>,
     sink: impl io::Write + Send,
 ) -> Result<(), Problem> {
-    let mut properties = properties().map_err(failed)?;
+    let properties = properties().map_err(failed)?;
+    let mut properties = properties.set_max_row_group_row_count(Some(GROUP));
     let mut fields = Vec::new();
     for layout in layouts {
         let path = ColumnPath::new(vec![layout.heading.clone()]);
@@ -181,12 +183,15 @@ fn saved(values: &[f64]) -> f64 {
     1.0 - size as f64 / bytes.len().max(1) as f64
 }
 
-fn properties() -> Result<WriterPropertiesBuilder, parquet::errors::ParquetError> {
+/// How Parquet files are written.
+///
+/// # Errors
+/// None of this level of compression.
+pub fn properties() -> Result<WriterPropertiesBuilder, ParquetError> {
     Ok(WriterProperties::builder()
         // Without a version, so that a new one of the library does not change the bytes.
         .set_created_by("fishplate".to_string())
         .set_compression(Compression::ZSTD(ZstdLevel::try_new(LEVEL)?))
-        .set_max_row_group_row_count(Some(GROUP))
         // Of row groups: readers skip by them. Those of pages would be as large as some columns.
         .set_statistics_enabled(EnabledStatistics::Chunk))
 }

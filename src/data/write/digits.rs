@@ -47,14 +47,10 @@ impl Digits {
             Self::Decimals(count) => format!("{value:.count$}"),
             Self::Significant(count) => {
                 let (mantissa, exponent) = split(&format!("{value:.*e}", count - 1));
-                match usize::try_from(exponent) {
-                    Ok(whole) if whole < count => {
-                        without_zeros(&format!("{value:.*}", count - 1 - whole))
+                match (count - 1).checked_add_signed(-exponent) {
+                    Some(decimals) if exponent >= -4 => {
+                        without_zeros(&format!("{value:.decimals$}"))
                     }
-                    Err(_) if exponent >= -4 => without_zeros(&format!(
-                        "{value:.*}",
-                        count.saturating_add_signed(-exponent) - 1
-                    )),
                     _ => scientific(&without_zeros(&mantissa), exponent),
                 }
             }

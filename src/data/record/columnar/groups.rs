@@ -17,9 +17,11 @@ use parquet::arrow::push_decoder::{ParquetPushDecoderBuilder, PushBuffers};
 
 use super::open::Opened;
 use super::{Column, Heading, guard, value_at};
-use crate::data::faults::Faults;
-use crate::data::record::decoded::Numbers;
-use crate::data::record::layout::{Layout, damaged, guarded};
+use crate::data::{
+    faults::Faults,
+    record::decoded::Numbers,
+    record::layout::{Layout, damaged, guarded},
+};
 use crate::problem::{Problem, problem};
 
 /// Rows decoded at a time: the numbers of twenty channels take 1 MB, which stays in the

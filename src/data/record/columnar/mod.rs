@@ -23,11 +23,13 @@ use open::{Opened, Store};
 pub use runs::{stream, stretch};
 
 use super::{Column, Known, Run, Wanted, find_columns, guard};
-use crate::data::cells::Heading;
-use crate::data::faults::Faults;
-use crate::data::hash::sha256;
-use crate::data::text::{LARGEST_RECORD, read_file};
-use crate::data::write::{FileColumn, Values};
+use crate::data::{
+    cells::Heading,
+    faults::Faults,
+    hash::sha256,
+    text::{LARGEST_RECORD, read_file},
+    write::{FileColumn, Values},
+};
 use crate::problem::{Problem, problem};
 use crate::source::{Source, Span};
 use crate::units::Unit;

@@ -10,12 +10,14 @@ use bytes::Bytes;
 use parquet::basic::Compression;
 
 use super::{Column, MAGIC, Wanted, find_columns, guard};
-use crate::data::cells::shortened;
-use crate::data::faults::Faults;
-use crate::data::record::held::Held;
-use crate::data::record::layout::{Layout, damaged, not_numbers};
-use crate::data::record::stored::Stored;
-use crate::data::text::{LARGEST_RECORD, empty, plain_size, unreadable};
+use crate::data::{
+    cells::shortened,
+    faults::Faults,
+    record::held::Held,
+    record::layout::{Layout, damaged, not_numbers},
+    record::stored::Stored,
+    text::{LARGEST_RECORD, empty, plain_size, unreadable},
+};
 use crate::disk;
 use crate::problem::{Problem, problem};
 use crate::source::Source;

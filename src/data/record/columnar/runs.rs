@@ -8,16 +8,18 @@ use parquet::file::statistics::Statistics;
 
 use super::open::{At, Opened, Store, footer};
 use super::{Column, no_rows};
-use crate::data::cells::names;
-use crate::data::faults::Faults;
-use crate::data::hash::{Hasher, sha256};
-use crate::data::record::Wanted;
-use crate::data::record::decoded::{self, Place};
-use crate::data::record::held::Held;
-use crate::data::record::known::{Known, KnownFile};
-use crate::data::record::stored::Stored;
-use crate::data::record::stretch::{Block, Run, Stretch, axis_of, values};
-use crate::data::text::unreadable;
+use crate::data::{
+    cells::names,
+    faults::Faults,
+    hash::{Hasher, sha256},
+    record::Wanted,
+    record::decoded,
+    record::held::Held,
+    record::known::{Known, KnownFile},
+    record::stored::Stored,
+    record::stretch::{Block, Run, Stretch, axis_of, values},
+    text::unreadable,
+};
 use crate::disk;
 use crate::problem::Problem;
 
@@ -119,7 +121,7 @@ impl Opened<'_> {
         known: &Known,
     ) -> Option<Vec<Arc<Vec<f64>>>> {
         let positions: Vec<usize> = columns.iter().map(|column| column.position).collect();
-        let place = Place::new(self.store.name(), rows.start);
+        let place = (self.store.name().to_path_buf(), rows.start);
         let numbers = known.held.decoded.get(place, &positions, |lacking| {
             let lacks = |column: &&Column| lacking.contains(&column.position);
             self.block(rows, &columns.iter().filter(lacks).cloned().collect::<Vec<_>>())
