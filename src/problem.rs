@@ -114,6 +114,14 @@ impl Problem {
         self
     }
 
+    /// Adds a further place if there is one.
+    pub fn also_if(self, place: Option<impl Located>, text: impl Into<String>) -> Self {
+        match place {
+            Some(place) => self.also(&place, text),
+            None => self,
+        }
+    }
+
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.help = Some(text.into());
         self

@@ -23,10 +23,9 @@ impl Checker<'_> {
         let mut last: Option<Expr> = None;
         let mut values: Vec<Expr> = Vec::new();
         let mut ok = true;
-        let always = (otherwise.into_iter()).map(|value| (value, None));
-        for (value, condition) in
-            arms.iter().map(|(value, condition)| (value, Some(condition))).chain(always)
-        {
+        let always = otherwise.map(|value| (value, None));
+        let arms = arms.iter().map(|(value, condition)| (value, Some(condition)));
+        for (value, condition) in arms.chain(always) {
             let before = scope.asked();
             let condition = condition.map(|condition| match scope.samples {
                 true => self.condition(condition, &mut Scope::section()),
@@ -119,11 +118,8 @@ impl Checker<'_> {
             return Some(());
         }
         let (a, b) = (first.ty.in_words(), other.ty.in_words());
-        self.refuse(
-            error("unit-mismatch", format!("one case is {a}, another {b}"), &other.span)
-                .label(b)
-                .also(&first.span, a),
-        )
+        let says = format!("one case is {a}, another {b}");
+        self.refuse(error("unit-mismatch", says, other).label(b).also(first, a))
     }
 
     /// `a is b`, of words, conditions or numbers.
@@ -165,27 +161,26 @@ impl Checker<'_> {
 
     /// The word with which a word is compared: one of its choices.
     fn compared_word(&mut self, left: &Expr, choices: &[String], right: &Phrase) -> Option<String> {
-        let at = right.place();
         let word = match &right.node {
             Node::Path(word) | Node::Quoted(word) => word.clone(),
             Node::Number(Number { value, unit: None }) => value.to_string(),
             _ => {
                 let says =
                     format!("`{}` is a word and can only be compared with a word", words(left));
-                return self.refuse(error("not-a-word", says, &at).also(&left.span, "a word"));
+                return self.refuse(error("not-a-word", says, right).also(left, "a word"));
             }
         };
         // A choice parameter stands for its value, unless a word with its name is among the choices.
         let meant = choices.contains(&word) || matches!(right.node, Node::Quoted(_));
-        let word = if meant { word } else { self.choice_word(&word, &at)? };
+        let word = if meant { word } else { self.choice_word(&word, &right.place())? };
         let is_campaign = matches!(left.kind, Kind::Column(index) if self.names.columns[index].kind == DatumKind::Campaign);
         if is_campaign {
-            self.campaigns.push(Spanned::new(word.clone(), at));
+            self.campaigns.push(Spanned::new(word.clone(), right.place()));
         } else if !choices.contains(&word) {
             let says = format!("`{}` cannot be `{word}`", words(left));
             return self.refuse(
-                error("unknown-choice", says, &at)
-                    .also(&left.span, format!("one of {}", choices.join(", ")))
+                error("unknown-choice", says, right)
+                    .also(left, format!("one of {}", choices.join(", ")))
                     .suggest(&word, choices),
             );
         }

@@ -2,89 +2,57 @@
 //! and not at their first use.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 use super::Checker;
 use super::functions::is_signal_function;
 use super::names::Assignment;
-use super::scope::{Group, Scope};
+use super::plan::Origin;
+use super::scope::Scope;
 use crate::catalog::{MetricEntry, Reducer, Statistic};
-use crate::syntax::document::Text;
-use crate::syntax::phrase::{At, Node, Phrase};
+use crate::syntax::phrase::{Node, Phrase};
 use crate::units::Dimension;
 
 impl Checker<'_> {
     /// Checks aliases, signals, estimates and definitions that nothing uses.
     pub fn unused_parts(&mut self) {
-        let aliases = self.names.places.values().flat_map(|place| &place.aliases);
-        let conditions: Vec<Phrase> = aliases
-            .flat_map(|alias| alias.cases.iter().map(|(_, condition)| condition.clone()))
-            .collect();
-        for condition in conditions {
-            self.condition(&condition, &mut Scope::section());
+        let names = self.names.clone();
+        for alias in names.places.values().flat_map(|place| &place.aliases) {
+            for (_, condition) in &alias.cases {
+                self.condition(condition, &mut Scope::section());
+            }
         }
-        let signals: Vec<_> = self
-            .names
-            .signals
-            .iter()
-            .map(|(name, signal)| (name.clone(), signal.clone()))
-            .collect();
-        for (name, signal) in signals {
+        for (name, signal) in names.signals.iter().filter(|(_, signal)| signal.is.is_some()) {
             let at = self.first_position(&signal.places);
-            let text = Text { text: String::new(), span: signal.span.clone(), exact: false };
-            let text = Arc::new(text);
-            self.signal(&At { node: Node::Path(name), text, range: 0..0 }, &at);
+            let span = Origin { span: signal.span.of_which(0..0), words: "".into() };
+            self.samples_named(name, &span, &mut Scope::samples(&at, None));
         }
-        let estimates: Vec<_> = self
-            .names
-            .estimates
-            .iter()
-            .map(|(name, written)| (name.clone(), written.clone()))
-            .collect();
-        for (name, written) in estimates {
+        for (name, written) in &names.estimates {
             if self.used_defines.contains(&format!("estimate {name}")) {
                 continue;
             }
             // The dimension of the values of an unused estimate is not known. Mismatches of units
             // are therefore not reported.
             let before = self.problems.0.len();
-            let mut scope = Scope {
-                group: Some(Group { values: Some(Dimension::ONE), taken: Vec::new() }),
-                ..Scope::vehicle()
-            };
-            self.inside("estimate", &name, &written.text.span, |checker| {
-                checker.expr(&written, &mut scope)
+            let mut scope = Scope::vehicle().of_group(Some(Dimension::ONE));
+            self.inside("estimate", name, &written.text.span, |checker| {
+                checker.expr(written, &mut scope)
             });
             let told = self.problems.0.split_off(before);
             self.problems
                 .0
                 .extend(told.into_iter().filter(|problem| problem.code != "unit-mismatch"));
         }
-        let defines: Vec<_> = self
-            .names
-            .defines
-            .iter()
-            .map(|(name, define)| (name.clone(), define.clone()))
-            .collect();
-        for (name, define) in defines {
-            if self.used_defines.contains(&name) {
+        let places: Vec<String> = names.places.keys().cloned().collect();
+        for (name, define) in &names.defines {
+            let meaning = self.stands_for(define, &mut BTreeSet::new());
+            if self.used_defines.contains(name) || meaning == Meaning::Open {
                 continue;
             }
-            match self.stands_for(&define, &mut BTreeSet::new()) {
-                Meaning::Closed => {
-                    drop(self.inside("define", &name, &define.text.span, |checker| {
-                        checker.expr(&define, &mut Scope::section())
-                    }))
-                }
-                Meaning::Signal => {
-                    let places: Vec<String> = self.names.places.keys().cloned().collect();
-                    let at = self.first_position(&places);
-                    drop(self.inside("define", &name, &define.text.span, |checker| {
-                        checker.signal(&define, &at)
-                    }));
-                }
-                Meaning::Open => {}
-            }
+            let at = self.first_position(&places);
+            self.inside("define", name, &define.text.span, |checker| match meaning {
+                Meaning::Signal => checker.signal(define, &at),
+                _ => checker.expr(define, &mut Scope::section()),
+            });
         }
     }
 
@@ -119,12 +87,7 @@ impl Checker<'_> {
             {
                 Meaning::Open
             }
-            Node::Path(path)
-                if self.names.channels.contains_key(path)
-                    || self.names.signals.contains_key(path) =>
-            {
-                Meaning::Signal
-            }
+            Node::Path(path) if self.is_signal(path) => Meaning::Signal,
             Node::Path(path) => match self.names.defines.get(path) {
                 Some(define) if seen.insert(path.clone()) => self.stands_for(&define, seen),
                 _ => Meaning::Closed,

@@ -8,7 +8,7 @@ use super::values::{Nothing, Values};
 use crate::metrics::rounded;
 use crate::problem::error;
 use crate::result::Reason;
-use crate::source::Span;
+use crate::source::Located;
 
 /// Number of sets of inputs that are tried. Arithmetic that gives the same for three sets without a
 /// simple ratio is the same for all.
@@ -93,7 +93,13 @@ fn has_steps(expr: &Expr) -> bool {
 
 impl Checker<'_> {
     /// A metric, or a value (`what`), that no record can change.
-    pub fn can_vary(&mut self, what: &str, expr: &Expr, inputs: &[Input], at: &Span) -> Option<()> {
+    pub fn can_vary(
+        &mut self,
+        what: &str,
+        expr: &Expr,
+        inputs: &[Input],
+        at: &impl Located,
+    ) -> Option<()> {
         let code = "constant-value";
         let help = if what == "metric" {
             "a metric uses metrics or the samples of both sides: `correlation`, `rms of (simulated - measured)`"

@@ -1,13 +1,14 @@
 //! Checks blocks that declare the content of records, of the vehicle file and of the table of
 //! sections: places, data, channels, signals.
 
-use super::names::{Channel, Place, SignalDef, normalised};
+use super::names::{Place, Signal, normalised};
 use super::plan::{Datum, DatumKind, DatumRange, Scalar};
+use super::positions::{is_each, joined};
 use super::{Checker, if_written};
 use crate::problem::error;
-use crate::source::Span;
+use crate::source::{Located, Span};
 use crate::syntax::document::{Block, Field};
-use crate::syntax::phrase::{At, Pick};
+use crate::syntax::phrase::Pick;
 use crate::syntax::{families, from_pest};
 
 /// Largest number of positions of a place: the wheels of a train of sixty vehicles. A signal at
@@ -22,17 +23,12 @@ impl Checker<'_> {
         let field = self.required(block, "members")?;
         let written = from_pest::list(&field.value, self.problems)?;
         if written.len() > MOST_MEMBERS {
-            return self.refuse(
-                error(
-                    "too-large",
-                    format!(
-                        "`{name}` has {} positions; there can be at most {MOST_MEMBERS}",
-                        written.len()
-                    ),
-                    field,
-                )
-                .help("declare the positions that are compared; put the others into another place"),
+            let says = format!(
+                "`{name}` has {} positions; there can be at most {MOST_MEMBERS}",
+                written.len()
             );
+            let help = "declare the positions that are compared; put the others into another place";
+            return self.refuse(error("too-large", says, field).help(help));
         }
         let mut members: Vec<String> = Vec::new();
         for member in written {
@@ -65,7 +61,7 @@ impl Checker<'_> {
                         ),
                         &alias.name,
                     )
-                    .also(&block.span().clone(), "the members"),
+                    .also(block, "the members"),
                 );
             }
             for (member, _) in &alias.cases {
@@ -93,27 +89,18 @@ impl Checker<'_> {
         key: &str,
         standard_key: String,
     ) -> Option<Datum> {
-        let title = block.title_in_words();
         let kind = match (block.field("in"), block.field("one of")) {
             (Some(unit), None) => DatumKind::Number(self.unit(&unit.value)?),
             (None, Some(words)) => {
-                let mut words: Vec<String> = from_pest::list(&words.value, self.problems)?
-                    .into_iter()
-                    .map(|word| word.node)
-                    .collect();
+                let words = from_pest::list(&words.value, self.problems)?;
+                let mut words: Vec<String> = words.into_iter().map(|word| word.node).collect();
                 // The names of the zone blocks. A further zone then needs one block and no change
                 // of a list.
                 if words == ["zones"] {
                     words.clone_from(&self.zone_names);
                 }
-                if words.len() == 2
-                    && words.contains(&"true".to_string())
-                    && words.contains(&"false".to_string())
-                {
-                    DatumKind::Flag
-                } else {
-                    DatumKind::Words(words)
-                }
+                let flag = words == ["true", "false"] || words == ["false", "true"];
+                if flag { DatumKind::Flag } else { DatumKind::Words(words) }
             }
             _ => {
                 return self.refuse(
@@ -128,16 +115,15 @@ impl Checker<'_> {
         };
         let key =
             block.field(key).map_or(standard_key, |field| field.value.text.trim().to_string());
-        let (range, may_be_absent) = (None, false);
         Some(Datum {
             name: name.to_string(),
-            title,
+            title: block.title_in_words(),
             key,
             kind,
             default: None,
-            range,
-            may_be_absent,
-            span: block.span().clone(),
+            range: None,
+            may_be_absent: false,
+            span: block.place(),
         })
     }
 
@@ -264,12 +250,9 @@ impl Checker<'_> {
     /// Adds a channel to the names.
     pub fn channel(&mut self, name: &str, block: &Block) -> Option<()> {
         let unit = self.required(block, "in").and_then(|field| self.unit(&field.value));
-        let places = block.field("at").map_or(Some(Vec::new()), |field| self.place_names(field));
+        let places = self.places_of(block);
         let (unit, places) = (unit?, places?);
-        let column = block
-            .field("column")
-            .map_or_else(|| self.standard_pattern(name, &places), |field| field.value.text.clone());
-        self.check_pattern(&column, &places, block, "column");
+        let pattern = self.pattern(name, &places, block, "column");
         let track = match block.field("record").map(|field| (field.value.text.trim(), field)) {
             None => false,
             Some(("track", _)) => true,
@@ -281,40 +264,39 @@ impl Checker<'_> {
                 false
             }
         };
-        self.names.channels.insert(
-            name.to_string(),
-            Channel { places, unit, column, track, span: block.span().clone() },
-        );
+        let span = block.place();
+        let channel = Signal { places, is: None, unit: Some(unit), pattern, track, span };
+        self.names.signals.insert(name.to_string(), channel);
         Some(())
     }
 
-    /// Adds a computed signal to the names.
-    pub fn signal_def(&mut self, name: &str, block: &Block) -> Option<()> {
+    /// Adds a computed signal to the names; a channel of the same name goes before it.
+    pub fn computed_signal(&mut self, name: &str, block: &Block) -> Option<()> {
         let is = self.required(block, "is").and_then(|field| self.written(field));
-        let places = block.field("at").map_or(Some(Vec::new()), |field| self.place_names(field));
+        let places = self.places_of(block);
         let unit = block.field("in").map(|field| self.unit(&field.value));
-        let (is, places, unit) = (is?, places?, if_written(unit)?);
-        let named = block
-            .field("named")
-            .map_or_else(|| self.standard_pattern(name, &places), |field| field.value.text.clone());
-        self.check_pattern(&named, &places, block, "named");
-        self.names.signals.insert(
-            name.to_string(),
-            SignalDef { places, is, unit, named, span: block.span().clone() },
-        );
+        let (is, places, unit) = (Some(is?), places?, if_written(unit)?);
+        let pattern = self.pattern(name, &places, block, "named");
+        let signal = Signal { places, is, unit, pattern, track: false, span: block.place() };
+        self.names.signals.entry(name.to_string()).or_insert(signal);
         Some(())
     }
 
-    /// Default pattern of the column names, such as `ay_{running_gear}`.
-    fn standard_pattern(&self, name: &str, places: &[String]) -> String {
-        let braces: String = places.iter().map(|place| format!("{{{place}}}")).collect();
-        if braces.is_empty() { name.to_string() } else { format!("{name}_{braces}") }
+    fn places_of(&mut self, block: &Block) -> Option<Vec<String>> {
+        block.field("at").map_or(Some(Vec::new()), |field| self.place_names(field))
     }
 
-    /// Every place must occur in the pattern; otherwise two positions would have the same column.
-    fn check_pattern(&mut self, pattern: &str, places: &[String], block: &Block, key: &str) {
-        let span =
-            block.field(key).map_or_else(|| block.span().clone(), |field| field.value.span.clone());
+    /// The names of the positions, as the block states or such as `ay_{running_gear}`. Every place
+    /// must occur in it; otherwise two positions would have the same column.
+    fn pattern(&mut self, name: &str, places: &[String], block: &Block, key: &str) -> String {
+        let field = block.field(key);
+        let braces: String = places.iter().map(|place| format!("{{{place}}}")).collect();
+        let pattern = match field {
+            Some(field) => field.value.text.clone(),
+            None if braces.is_empty() => name.to_string(),
+            None => format!("{name}_{braces}"),
+        };
+        let span = field.map_or_else(|| block.place(), Field::place);
         for place in places {
             if !pattern.contains(&format!("{{{place}}}")) {
                 self.problems.push(
@@ -340,30 +322,22 @@ impl Checker<'_> {
                 );
             }
         }
+        pattern
     }
 
     /// The place names of a field such as `each wheelset and side`.
     fn place_names(&mut self, field: &Field) -> Option<Vec<String>> {
         let picks = from_pest::places(&field.value, self.problems)?;
         let mut found = Vec::new();
-        for pick in picks {
-            let Pick { words, more } = pick;
-            let mut groups = vec![words];
-            groups.extend(more.into_iter().map(|word| vec![word]));
-            for group in groups {
-                let words: Vec<At<String>> = group
-                    .into_iter()
-                    .filter(|word| !matches!(word.node.as_str(), "each" | "every" | "all"))
-                    .collect();
-                match self.place_called(
-                    &words.iter().map(|word| word.node.as_str()).collect::<Vec<_>>().join("_"),
-                ) {
-                    Some(place) => found.push(place),
-                    None => {
-                        self.unknown_place(&words, field);
-                        return None;
-                    }
-                }
+        for Pick { words, more } in picks {
+            let more = more.into_iter().map(|word| vec![word]);
+            for mut words in std::iter::once(words).chain(more) {
+                words.retain(|word| !is_each(&word.node));
+                let Some(place) = self.place_called(&joined(&words)) else {
+                    self.unknown_place(&words, field);
+                    return None;
+                };
+                found.push(place);
             }
         }
         Some(found)

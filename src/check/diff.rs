@@ -5,13 +5,12 @@ use crate::result::Deviation;
 use crate::syntax::document::{Block, Document, Field, Text};
 use crate::syntax::from_pest;
 use crate::syntax::keys::{self, Sort};
-use crate::syntax::phrase::{
-    Alias, At, Domain, Limit, Minimum, Phrase, Pick, Report, Step, Verdict,
-};
+use crate::syntax::phrase::Pick;
 use crate::units::{Dimension, Unit};
 
 use super::names::normalised;
 use super::overlay::slot;
+use super::positions::is_each;
 
 /// Rules added, removed or changed from the first document to the second, in the order of the
 /// second.
@@ -24,30 +23,18 @@ pub fn changes(before: &Document, after: &Document) -> Vec<Change> {
     let mut found = Vec::new();
     for (at, block) in after.blocks.iter().enumerate() {
         match before.blocks.iter().find(|old| same(old, block)) {
-            None => found.push(Change {
-                deviation: Deviation {
-                    rule: head(block),
-                    before: None,
-                    after: Some(in_words(block)),
-                },
-                edit: Edit::Add {
-                    block: Box::new(block.clone()),
-                    after: after.blocks[..at].to_vec(),
-                },
-            }),
+            None => {
+                let after = after.blocks[..at].to_vec();
+                let edit = Edit::Add { block: Box::new(block.clone()), after };
+                found.push(Change::new(head(block), None, Some(in_words(block)), edit));
+            }
             Some(old) => fields(old, block, &mut found),
         }
     }
     for block in &before.blocks {
         if !after.blocks.iter().any(|new| same(block, new)) {
-            found.push(Change {
-                deviation: Deviation {
-                    rule: head(block),
-                    before: Some(in_words(block)),
-                    after: None,
-                },
-                edit: Edit::Remove(Box::new(block.clone())),
-            });
+            let edit = Edit::Remove(Box::new(block.clone()));
+            found.push(Change::new(head(block), Some(in_words(block)), None, edit));
         }
     }
     found
@@ -94,6 +81,10 @@ enum Edit {
 }
 
 impl Change {
+    fn new(rule: String, before: Option<String>, after: Option<String>, edit: Edit) -> Self {
+        Self { deviation: Deviation { rule, before, after }, edit }
+    }
+
     /// A document with this change alone.
     #[must_use]
     pub fn applied(&self, document: &Document) -> Document {
@@ -163,15 +154,8 @@ fn fields(old: &Block, new: &Block, found: &mut Vec<Change>) {
     }
     let title = |block: &Block| block.title.as_ref().map(|title| normalised(&title.text));
     if title(old) != title(new) {
-        let deviation = Deviation {
-            rule: format!("{}, title", head(new)),
-            before: title(old),
-            after: title(new),
-        };
-        found.push(Change {
-            deviation,
-            edit: Edit::Title { of: Box::new(new.clone()), title: new.title.clone() },
-        });
+        let edit = Edit::Title { of: Box::new(new.clone()), title: new.title.clone() };
+        found.push(Change::new(format!("{}, title", head(new)), title(old), title(new), edit));
     }
     for key in keys::of_block(new).map_or(&[][..], |kind| kind.keys) {
         let olds: Vec<&Field> = old.fields_named(key.word).collect();
@@ -238,84 +222,60 @@ fn one(
     };
     if differs {
         let words = |field: Option<&Field>| field.map(|field| normalised(&field.value.text));
-        let deviation = Deviation {
-            rule: format!("{}, {rule}", head(block)),
-            before: words(old),
-            after: words(new),
+        let edit = Edit::Field {
+            of: Box::new(block.clone()),
+            old: old.cloned().map(Box::new),
+            new: new.cloned().map(Box::new),
         };
-        found.push(Change {
-            deviation,
-            edit: Edit::Field {
-                of: Box::new(block.clone()),
-                old: old.cloned().map(Box::new),
-                new: new.cloned().map(Box::new),
-            },
-        });
+        let rule = format!("{}, {rule}", head(block));
+        found.push(Change::new(rule, words(old), words(new), edit));
     }
 }
 
 fn equal(kind: &str, a: &Field, b: &Field) -> bool {
-    normalised(&a.value.text) == normalised(&b.value.text)
-        || meaning(kind, a).is_some_and(|meant| meaning(kind, b) == Some(meant))
+    let (key, a, b) = (&a.key.text, &a.value, &b.value);
+    a == b || same_meaning(kind, key, a, b)
 }
 
-/// What a field means, independent of how it is written.
-#[derive(PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "there are few at a time")]
-enum Meaning {
-    Expression(Phrase),
-    Limit(Limit),
-    Report(Report),
-    Minimum(Minimum),
-    Domain(Domain),
-    Range(Phrase, Phrase),
-    Alias(Alias),
-    Chain(Vec<At<Step>>),
-    Verdict(Verdict),
-    List(Vec<At<String>>),
-    /// The signal, its positions and the condition.
-    Places(String, String, Option<Phrase>),
-    /// The name of an axis, and its unit.
-    Unit(String, f64, Dimension),
+/// Whether both fields can be read, and mean the same however they are written.
+fn alike<T: PartialEq>(a: &Text, b: &Text, read: fn(&Text, &mut Problems) -> Option<T>) -> bool {
+    let read = |text: &Text| read(text, &mut Problems::default());
+    read(a).is_some_and(|meant| read(b).is_some_and(|other| meant == other))
 }
 
-/// The meaning of a field; `None` for prose and for text that cannot be parsed.
-fn meaning(kind: &str, field: &Field) -> Option<Meaning> {
-    let kind_of = keys::kind(kind)?;
-    let key = [true, false]
-        .into_iter()
-        .find_map(|named| kind_of.with_name(named).key(&field.key.text))?;
-    if key.sort != Sort::Phrase {
-        return None;
-    }
-    let quiet = &mut Problems::default();
-    let text: &Text = &field.value;
-    let unit = |name: &str, unit: &str| {
-        let unit = Unit::parse(unit).ok()?;
-        Some(Meaning::Unit(name.to_string(), unit.factor, unit.dimension))
-    };
+/// Whether two values of a field mean the same; not so for prose and for text that cannot be parsed.
+fn same_meaning(kind: &str, key: &str, a: &Text, b: &Text) -> bool {
+    let key = keys::kind(kind).and_then(|kind| {
+        [true, false].into_iter().find_map(|named| kind.with_name(named).key(key))
+    });
+    let Some(key) = key.filter(|key| key.sort == Sort::Phrase) else { return false };
     match key.word {
-        "over" => from_pest::domain(text, quiet).map(Meaning::Domain),
-        "limit" if kind == "quantity" => from_pest::limit(text, quiet).map(Meaning::Limit),
-        "report" => from_pest::report(text, quiet).map(Meaning::Report),
-        "minimum pairs" => from_pest::minimum(text, quiet).map(Meaning::Minimum),
-        "filter" | "step" | "metric" => from_pest::chain(text, quiet).map(Meaning::Chain),
-        "of" if kind == "verdict" => from_pest::list(text, quiet).map(Meaning::List),
-        "one of" | "members" => from_pest::list(text, quiet).map(Meaning::List),
-        "validated" | "holds" => from_pest::verdict(text, quiet).map(Meaning::Verdict),
-        "of" => from_pest::of_places(text, quiet)
-            .map(|of| Meaning::Places(of.signal.node, picks(&of.picks), of.when)),
-        "at" => from_pest::places(text, quiet)
-            .map(|at| Meaning::Places(String::new(), picks(&at), None)),
-        "in" => unit("", &text.text),
-        "axis" | "time" => {
-            let (name, written) = from_pest::axis(text, quiet)?;
-            unit(&name.node, &written.node)
-        }
-        "range" => from_pest::range(text, quiet).map(|(low, high)| Meaning::Range(low, high)),
-        "alias" => from_pest::alias(text, quiet).map(Meaning::Alias),
-        _ => from_pest::expression(text, quiet).map(Meaning::Expression),
+        "over" => alike(a, b, from_pest::domain),
+        "limit" if kind == "quantity" => alike(a, b, from_pest::limit),
+        "report" => alike(a, b, from_pest::report),
+        "minimum pairs" => alike(a, b, from_pest::minimum),
+        "filter" | "step" | "metric" => alike(a, b, from_pest::chain),
+        "of" if kind == "verdict" => alike(a, b, from_pest::list),
+        "one of" | "members" => alike(a, b, from_pest::list),
+        "validated" | "holds" => alike(a, b, from_pest::verdict),
+        "of" => alike(a, b, |text, problems| {
+            let of = from_pest::of_places(text, problems)?;
+            Some((of.signal, picks(&of.picks), of.when))
+        }),
+        "at" => alike(a, b, |text, problems| Some(picks(&from_pest::places(text, problems)?))),
+        "in" => alike(a, b, |text, _| unit(&text.text)),
+        "axis" | "time" => alike(a, b, |text, problems| {
+            let (name, written) = from_pest::axis(text, problems)?;
+            Some((name, unit(&written.node)?))
+        }),
+        "range" => alike(a, b, from_pest::range),
+        "alias" => alike(a, b, from_pest::alias),
+        _ => alike(a, b, from_pest::expression),
     }
+}
+
+fn unit(text: &str) -> Option<(f64, Dimension)> {
+    Unit::parse(text).ok().map(|unit| (unit.factor, unit.dimension))
 }
 
 /// Positions such as `at wheelsets 1, 3 and side L`; singular and plural have the same meaning.
@@ -323,7 +283,7 @@ fn picks(picks: &[Pick]) -> String {
     let one = |pick: &Pick| {
         let words = pick.words.iter().chain(&pick.more).map(|word| word.node.as_str());
         words
-            .filter(|word| !matches!(*word, "each" | "every" | "all"))
+            .filter(|word| !is_each(word))
             .map(|word| word.strip_suffix('s').unwrap_or(word))
             .collect::<Vec<_>>()
             .join(" ")

@@ -1,10 +1,10 @@
 //! Checks domains: what spans them, and by what sections are told apart.
 
-use super::Checker;
-use super::plan::{Coordinate, DatumKind, Domain, Expr, Kind, OnFault};
+use super::plan::{Coordinate, DatumKind, Domain, Expr, Kind};
 use super::scope::Scope;
+use super::{Checker, all};
 use crate::problem::error;
-use crate::source::Span;
+use crate::source::Located;
 use crate::syntax::document::Block;
 use crate::syntax::from_pest;
 use crate::syntax::phrase::{At, Phrase};
@@ -14,19 +14,12 @@ impl Checker<'_> {
     pub fn domain(&mut self, block: &Block) -> Option<Domain> {
         let field = self.required(block, "over")?;
         let written = from_pest::domain(&field.value, self.problems)?;
-        let over: Vec<Option<Coordinate>> =
-            written.over.iter().map(|(of, unit)| self.coordinate(of, unit.as_ref())).collect();
-        let each: Vec<Option<usize>> =
-            written.each.iter().map(|key| self.domain_key(&key.node, &key.place())).collect();
-        let over = over.into_iter().collect::<Option<Vec<_>>>();
-        let mut each = each.into_iter().collect::<Option<Vec<_>>>()?;
+        let over = all(written.over.iter().map(|(of, unit)| self.coordinate(of, unit.as_ref())));
+        let mut each = all(written.each.iter().map(|key| self.domain_key(key)))?;
         each.dedup();
-        let otherwise = match block.field("otherwise") {
-            Some(_) => self.on_fault(block, "otherwise", &["note", "not assessable"])?,
-            None => OnFault::Note,
-        };
+        let otherwise = self.on_fault(block, "otherwise", &["note", "not assessable"])?;
         Some(Domain {
-            name: block.name_text().to_string(),
+            name: block.own_name(),
             title: block.title_in_words(),
             over: over?,
             each,
@@ -34,7 +27,7 @@ impl Checker<'_> {
             clause: block.text("clause"),
             source: block.text("source"),
             notes: block.notes(),
-            span: block.span().clone(),
+            span: block.place(),
         })
     }
 
@@ -81,18 +74,19 @@ impl Checker<'_> {
             (false, false) => format!("`{words}` is the same for every section"),
         };
         self.refuse(
-            error("domain-over", says, &expr.span)
+            error("domain-over", says, expr)
                 .help("let it be section data, or an expression of them"),
         )
     }
 
     /// A section column of words.
-    fn domain_key(&mut self, name: &str, at: &Span) -> Option<usize> {
-        let index = self.column_called("column", name, at)?;
+    fn domain_key(&mut self, key: &At<String>) -> Option<usize> {
+        let name = &key.node;
+        let index = self.column_called("column", name, key)?;
         if matches!(self.names.columns[index].kind, DatumKind::Number(_)) {
             let says = format!("`{name}` is a number, and groups are told apart by words");
             return self.refuse(
-                error("not-a-word", says, at).help("let it be one of those that span the domain"),
+                error("not-a-word", says, key).help("let it be one of those that span the domain"),
             );
         }
         Some(index)

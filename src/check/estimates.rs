@@ -1,31 +1,15 @@
 //! Checks estimates: expressions over the values of a group of rows and over the data of its
 //! sections.
 
-use super::plan::{
-    DataReducer, Estimate, EstimateKind, Expr, Fit, Kind, OfGroup, Origin, Taking, Type,
-};
+use super::plan::{DataReducer, Estimate, EstimateKind, Expr, Kind, OfGroup, Origin, Taking, Type};
 use super::scope::Scope;
 use super::{Checker, if_written};
 use crate::catalog::{STATISTICS, Statistic};
-use crate::metrics::rounded;
 use crate::problem::error;
-use crate::source::Span;
-use crate::syntax::document::{Block, Text};
-use crate::syntax::phrase::{At, Fit as WrittenFit, Node, Phrase};
+use crate::source::{Located, Span};
+use crate::syntax::document::{Block, Field};
+use crate::syntax::phrase::{At, Node, Phrase};
 use crate::units::Dimension;
-
-/// Largest number of regressors. With more, the number of sections of usual tests is too small for
-/// a regression.
-const MOST_REGRESSORS: usize = 8;
-
-/// Confidence levels that a bootstrap of 2000 draws can resolve: 10 draws lie beyond each of these
-/// limits.
-const DRAWN: (f64, f64) = (0.005, 0.995);
-
-/// Smallest confidence level. Below it, the upper end of a one-sided interval lies below the
-/// estimate: `upper 5 %` would accept more than no confidence at all, and is usually an error
-/// probability.
-const LEAST_CONFIDENCE: f64 = 0.5;
 
 /// Name of the number of independent units of a group.
 const COUNT: &str = "n";
@@ -40,11 +24,6 @@ pub fn has_weights(statistic: Statistic) -> bool {
         Statistic::Percentile(_) => true,
         Statistic::Named(entry) => WITH_WEIGHTS.contains(&entry.name),
     }
-}
-
-/// Whether it is the arithmetic mean.
-pub fn is_mean(statistic: Statistic) -> bool {
-    matches!(statistic, Statistic::Named(entry) if entry.name == "mean")
 }
 
 /// The name of a statistic as written: `p95`, `mean`.
@@ -109,17 +88,15 @@ impl Checker<'_> {
         })
     }
 
-    fn of_statistic(&self, statistic: Statistic) -> Estimate {
+    pub fn of_statistic(&self, statistic: Statistic) -> Estimate {
         let kind = match statistic {
             Statistic::Each => EstimateKind::Each,
             statistic => {
                 let source = crate::source::Source::new("statistic", statistic.name());
                 let span = Origin { span: source.whole(), words: statistic.name().into() };
-                let expr = Expr { kind: Kind::Input(0), ty: Type::Number(Dimension::ONE), span };
-                EstimateKind::Of(Box::new(OfGroup {
-                    expr,
-                    taken: vec![Taking::Statistic(statistic, self.ddof)],
-                }))
+                let expr = Expr::number(Kind::Input(0), Dimension::ONE, &span);
+                let taken = vec![Taking::Statistic(statistic, self.ddof)];
+                EstimateKind::Of(Box::new(OfGroup { expr, taken }))
             }
         };
         Estimate {
@@ -132,7 +109,7 @@ impl Checker<'_> {
     }
 
     /// An expression over the values of a group. It must have the dimension of the values.
-    fn of_values(
+    pub fn of_values(
         &mut self,
         phrase: &Phrase,
         dimension: Dimension,
@@ -146,8 +123,7 @@ impl Checker<'_> {
     /// A number that uses something of a group.
     pub fn of_something(&mut self, found: OfGroup, says: &str, help: &str) -> Option<OfGroup> {
         if found.taken.is_empty() {
-            let at = &found.expr.span;
-            return self.refuse(error("estimate-of-nothing", says, at).help(help));
+            return self.refuse(error("estimate-of-nothing", says, &found.expr).help(help));
         }
         self.number_type(&found.expr)?;
         Some(found)
@@ -169,25 +145,30 @@ impl Checker<'_> {
     pub fn statistic(&mut self, written: &At<String>) -> Option<Statistic> {
         let found = Statistic::named(&written.node);
         if found.is_none() && !self.is_failed(&written.node) {
-            let (name, span) = (&written.node, written.place());
+            let name = &written.node;
             if let Some(percent) = name.strip_prefix('p').and_then(|percent| percent.parse().ok()) {
-                self.is_percentage(percent, &span)?;
+                self.is_percentage(percent, written)?;
             }
             let known = STATISTICS.iter().map(|entry| entry.name).chain(["each"]);
             let known = known.chain(self.names.estimates.keys().map(String::as_str));
             let says = format!("`{name}` is not a statistic");
-            self.problems.push(error("unknown-statistic", says, &span).suggest(name, known));
+            self.problems.push(error("unknown-statistic", says, written).suggest(name, known));
         }
         found
     }
 
     /// A statistic of many values. `each` is none: it stands for every single value.
-    fn not_each(&mut self, statistic: Statistic, of: &str, span: &Span) -> Option<Statistic> {
+    pub fn not_each(
+        &mut self,
+        statistic: Statistic,
+        of: &str,
+        at: &impl Located,
+    ) -> Option<Statistic> {
         if statistic != Statistic::Each {
             return Some(statistic);
         }
         let says = format!("`each` stands for every single value and is not a statistic of a {of}");
-        self.refuse(error("each-value", says, span))
+        self.refuse(error("each-value", says, at))
     }
 
     /// A name with a meaning in a group: a statistic, `n`, an estimate.
@@ -259,8 +240,8 @@ impl Checker<'_> {
                 Some(self.weight(by, scope)?)
             }
             (Some(_), _) => {
-                return self
-                    .no_weight(&format!("the {} of section data", reducer_name(reducer)), span);
+                let what = format!("the {} of section data", reducer_name(reducer));
+                return self.no_weight(&what, span);
             }
         };
         let of = self.expr(of, &mut scope.of_section())?;
@@ -277,14 +258,8 @@ impl Checker<'_> {
             (_, Some(statistic)) => return Some(DataReducer::Statistic(statistic, self.ddof)),
         }
         let known = STATISTICS.iter().map(|entry| entry.name).chain(["total"]);
-        self.refuse(
-            error(
-                "unknown-statistic",
-                format!("`{name} of` cannot be computed over {from}"),
-                reducer,
-            )
-            .suggest(&name, known),
-        )
+        let says = format!("`{name} of` cannot be computed over {from}");
+        self.refuse(error("unknown-statistic", says, reducer).suggest(&name, known))
     }
 
     /// The quantity `NAME` in `p80 of NAME`, as its index and the index of its block. Only where
@@ -299,32 +274,28 @@ impl Checker<'_> {
             return None;
         }
         let blocks = self.blocks.iter().enumerate();
-        let mut named = blocks
-            .filter(|(_, block)| block.kind.text == "quantity")
-            .enumerate()
-            .filter(|(_, (_, block))| block.name_text() == name);
-        named.next().map(|(number, (at, _))| (number, at))
+        let quantities = blocks.filter(|(_, block)| block.kind.text == "quantity");
+        let mut numbered = quantities.enumerate();
+        let found = numbered.find(|(_, (_, block))| block.name_text() == name);
+        found.map(|(number, (at, _))| (number, at))
     }
 
     /// Whether a limit or an estimate uses a value of the quantity. The quantity then has an effect
     /// without a limit of its own.
     pub fn is_referred_to(&self, quantity: &str) -> bool {
-        let refers = |text: &Text| {
-            let words: Vec<&str> = text
-                .text
-                .split(|c: char| c.is_whitespace() || "()".contains(c))
-                .filter(|word| !word.is_empty())
-                .collect();
+        let refers = |field: &Field| {
+            let words = field.value.text.split(|c: char| c.is_whitespace() || "()".contains(c));
+            let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
             words.windows(2).any(|pair| pair == ["of", quantity])
         };
-        let of_block = |block: &Block| {
-            let fields = block
-                .fields_named("limit")
-                .chain(block.fields_named("report"))
-                .chain(block.fields_named("is").filter(|_| block.kind.text == "estimate"));
-            fields.into_iter().any(|field| refers(&field.value))
+        let is_estimate = |block: &Block, field: &Field| match field.key.text.as_str() {
+            "limit" | "report" => true,
+            "is" => block.kind.text == "estimate",
+            _ => false,
         };
-        self.blocks.iter().any(of_block)
+        self.blocks.iter().any(|block| {
+            block.fields.iter().any(|field| is_estimate(block, field) && refers(field))
+        })
     }
 
     /// In a condition on one value, `p80 of ...` must name another quantity.
@@ -357,80 +328,13 @@ impl Checker<'_> {
         let statistic = self.not_each(statistic, "quantity", span)?;
         let block = self.blocks.get(block)?.clone();
         let dimension = self.dimension_of(&block)?;
-        let taking = Taking::Other {
-            quantity,
-            id: block.name_text().to_string(),
-            statistic,
-            ddof: self.ddof,
-        };
+        let taking = Taking::Other { quantity, id: block.own_name(), statistic, ddof: self.ddof };
         if scope.group.is_some() {
             return scope.take(taking, dimension, span);
         }
         scope.others.push(taking);
         // Input 0 is the value itself.
-        let kind = Kind::Input(scope.others.len());
-        Some(Expr { kind, ty: Type::Number(dimension), span: span.clone() })
-    }
-
-    /// An end of a confidence interval: `upper 95 % of std`.
-    pub fn group_bound(
-        &mut self,
-        (upper, confidence, bootstrap): (bool, f64, bool),
-        of: &Phrase,
-        span: &Origin,
-        scope: &mut Scope,
-    ) -> Option<Expr> {
-        let Some(dimension) = scope.values() else { return self.no_values(span) };
-        self.confidence(confidence, span)?;
-        let name = match &of.node {
-            Node::Path(path) => path.clone(),
-            Node::Percentile(percent) => format!("p{percent}"),
-            _ => bare(&of.words()),
-        };
-        let plain = matches!(of.node, Node::Path(_) | Node::Percentile(_))
-            && !self.names.estimates.contains_key(&name);
-        let estimate = if plain {
-            let statistic = self.statistic(&of.with(name))?;
-            let statistic = self.not_each(statistic, "group", span)?;
-            self.of_statistic(statistic)
-        } else {
-            let kind = self.of_values(of, dimension, scope.zone.clone().as_deref())?;
-            if kind.taken.iter().any(|taking| matches!(taking, Taking::Bound { .. })) {
-                return self.refuse(error(
-                    "interval-of-interval",
-                    "the end of a confidence interval has no confidence interval of its own",
-                    span,
-                ));
-            }
-            Estimate {
-                title: name.clone(),
-                name,
-                kind: EstimateKind::Of(Box::new(kind)),
-                of_scatter: false,
-                unit: None,
-            }
-        };
-        let weighted = estimate.weighted().map(|(statistic, ..)| statistic);
-        let of_scatter = estimate.of_scatter || weighted.is_some_and(Statistic::of_scatter);
-        let closed = match estimate.statistic() {
-            Some((Statistic::Named(entry), ddof)) => {
-                entry.name == "mean" || entry.name == "std" && ddof == 1
-            }
-            _ => weighted.is_some_and(is_mean),
-        };
-        let estimate = Estimate { of_scatter, ..estimate };
-        if (bootstrap || !closed) && !(DRAWN.0..=DRAWN.1).contains(&confidence) {
-            return self.refuse(error(
-                "out-of-range",
-                "a bootstrap of 2000 draws cannot give a bound outside 0.5 % to 99.5 %",
-                span,
-            ));
-        }
-        let dimension = match &estimate.kind {
-            EstimateKind::Of(of) if estimate.statistic().is_none() => of.expr.dimension(),
-            _ => dimension,
-        };
-        scope.take(Taking::Bound { of: estimate, upper, confidence, bootstrap }, dimension, span)
+        Some(Expr::number(Kind::Input(scope.others.len()), dimension, span))
     }
 
     /// A share of the values: `share where value <= 1`.
@@ -455,105 +359,6 @@ impl Checker<'_> {
         let by = if_written(by.map(|by| self.weight(by, scope)))?;
         let taking = Taking::Share { condition, of_sections, others: of_row.others, by };
         scope.take(taking, Dimension::ONE, span)
-    }
-
-    /// A regression or prediction: `prediction over cant_deficiency at 143 mm, confidence 99 %`.
-    pub fn group_fit(
-        &mut self,
-        written: &WrittenFit,
-        span: &Origin,
-        scope: &mut Scope,
-    ) -> Option<Expr> {
-        let Some(dimension) = scope.values() else { return self.no_values(span) };
-        if written.over.len() > MOST_REGRESSORS {
-            return self.refuse(error(
-                "too-large",
-                format!(
-                    "{} regressors; there can be at most {MOST_REGRESSORS}",
-                    written.over.len()
-                ),
-                span,
-            ));
-        }
-        if written.over.len() != written.at.len() {
-            return self.refuse(error("arguments", format!(
-                "a regression over {} regressors needs as many values after `at`; there are {}",
-                written.over.len(),
-                written.at.len()
-            ), span)
-                    .help("write for instance `prediction over a, b at 1, 2`"));
-        }
-        let confidence = written.confidence.as_ref().map(|share| (share.node, share.place()));
-        if let Some((share, place)) = &confidence {
-            self.confidence(*share, place)?;
-        }
-        if written.prediction && confidence.is_none() {
-            return self.refuse(error("missing-confidence", "a prediction bound needs a confidence level", span).help(
-                "add `, confidence 99 %`; the fitted value itself is `regression over ... at ...`",
-            ));
-        }
-        let (mut over, mut at, mut ok) = (Vec::new(), Vec::new(), true);
-        for (regressor, target) in written.over.iter().zip(&written.at) {
-            let regressor = self.expr(regressor, &mut scope.of_section());
-            let target = self.of_group(target, None, scope);
-            let (Some(regressor), Some(target)) = (regressor, target) else {
-                ok = false;
-                continue;
-            };
-            let (Some(of), Some(read)) =
-                (self.number_type(&regressor), self.number_type(&target.expr))
-            else {
-                ok = false;
-                continue;
-            };
-            if of != read {
-                self.problems.push(
-                    error(
-                        "unit-mismatch",
-                        format!(
-                            "the regressor is {}, the value after `at` is {}",
-                            of.in_words(),
-                            target.expr.ty.in_words()
-                        ),
-                        &target.expr.span,
-                    )
-                    .also(&regressor.span, of.in_words()),
-                );
-                ok = false;
-            }
-            over.push(regressor);
-            at.push(target);
-        }
-        if !ok {
-            return None;
-        }
-        let fit = Fit {
-            prediction: written.prediction,
-            over,
-            at,
-            confidence: confidence.map(|(share, _)| share),
-            one_sided: written.one_sided,
-            lower: written.lower,
-        };
-        scope.take(Taking::Fit(Box::new(fit)), dimension, span)
-    }
-
-    fn confidence(&mut self, share: f64, at: &Span) -> Option<()> {
-        if (LEAST_CONFIDENCE..1.0).contains(&share) {
-            return Some(());
-        }
-        self.refuse(
-            error("out-of-range", "a confidence level must be at least 50 % and below 100 %", at)
-                .help(if share > 0.0 && share < LEAST_CONFIDENCE {
-                    format!(
-                        "an error probability of {0} % is a confidence of {1} %",
-                        rounded(100.0 * share),
-                        rounded(100.0 * (1.0 - share))
-                    )
-                } else {
-                    "write it as a percentage: `95 %`".into()
-                }),
-        )
     }
 
     /// Reports an estimate where there are no values.

@@ -1,13 +1,13 @@
 //! One walk over phrases that gives typed expressions: of numbers, words and conditions, of values of
 //! a group, and of samples. Where an expression stands decides which names it can use ([`Scope`]).
 
-use super::Checker;
 use super::evaluate::{evaluate, number};
 use super::functions::{function, is_signal_function};
 use super::names::normalised;
 use super::plan::{Expr, Kind, Operator, Origin, Scalar, Type};
 use super::scope::Scope;
 use super::values::Nothing;
+use super::{Checker, all};
 use crate::catalog::{FUNCTIONS, Function, MetricEntry, Reducer, SIGNAL_FUNCTIONS, Signature};
 use crate::problem::{Problem, error};
 use crate::source::Span;
@@ -135,9 +135,7 @@ impl Checker<'_> {
             }
             Node::Call(name, arguments) => {
                 let function = self.function(name, arguments.len())?;
-                let arguments: Vec<Option<Expr>> =
-                    arguments.iter().map(|argument| self.expr(argument, scope)).collect();
-                let arguments = arguments.into_iter().collect::<Option<Vec<_>>>()?;
+                let arguments = all(arguments.iter().map(|argument| self.expr(argument, scope)))?;
                 for argument in &arguments {
                     self.number_type(argument)?;
                 }
@@ -283,15 +281,16 @@ impl Checker<'_> {
         };
         let (number, other) = if bare(left) { (left, right) } else { (right, left) };
         let written = number.span.text();
-        match other.ty {
+        let help = match other.ty {
             Type::Number(dimension)
                 if done == "compared" && bare(number) && written.parse::<f64>().is_ok() =>
             {
                 let unit = self.own_unit("", dimension);
-                self.refuse(problem.help(format!("a number has its unit: `{written} {unit}`")))
+                Some(format!("a number has its unit: `{written} {unit}`"))
             }
-            _ => self.refuse(problem),
-        }
+            _ => None,
+        };
+        self.refuse(problem.help_if(help))
     }
 
     /// Replaces an expression of constants by its value, except among samples; a problem where there
@@ -317,7 +316,7 @@ impl Checker<'_> {
             return Some(dimension);
         }
         let says = format!("expected a number, this is {}", expr.ty.in_words());
-        self.refuse(error("not-a-number", says, &expr.span))
+        self.refuse(error("not-a-number", says, expr))
     }
 
     /// Whether it is a condition; a problem if not.
@@ -327,16 +326,14 @@ impl Checker<'_> {
         }
         let says = format!("expected a condition, this is {}", expr.ty.in_words());
         self.refuse(
-            error("not-a-condition", says, &expr.span)
-                .help("compare it: `... is ...`, `... <= ...`"),
+            error("not-a-condition", says, expr).help("compare it: `... is ...`, `... <= ...`"),
         )
     }
 
     fn function(&mut self, name: &At<String>, count: usize) -> Option<&'static Function> {
-        let span = name.place();
         let Some(found) = function(&name.node) else {
             let problem =
-                error("unknown-function", format!("`{}` is not a function", name.node), &span);
+                error("unknown-function", format!("`{}` is not a function", name.node), name);
             return self.refuse(if MetricEntry::called(&name.node).is_some() {
                 problem.help("it is a metric, which compares two signals: use it in the `metric` of a quantity")
             } else if is_signal_function(&name.node) {
@@ -351,7 +348,7 @@ impl Checker<'_> {
                 "wrong number of arguments of `{}`: expected {needed}, found {count}",
                 found.name
             );
-            return self.refuse(error("arguments", says, &span));
+            return self.refuse(error("arguments", says, name));
         }
         Some(found)
     }
@@ -384,9 +381,8 @@ impl Checker<'_> {
                 (says, second?)
             }
         };
-        let problem = error("unit-mismatch", says, &at.span);
-        let pair = function.signature == Signature::PairSame;
-        self.refuse(if pair { problem.also(&first.span, of.in_words()) } else { problem })
+        let pair = (function.signature == Signature::PairSame).then_some(first);
+        self.refuse(error("unit-mismatch", says, at).also_if(pair, of.in_words()))
     }
 }
 

@@ -6,10 +6,11 @@ use super::plan::{
     Datum, DatumKind, Expr, Find, FindCondition, FoundDatum, Input, Keep, Kind, OfSignals,
     SectionRules, Taken, Type,
 };
+use super::quantities::{MOST_COUNTED, is_whole};
 use super::scope::Scope;
-use super::{Checker, if_written};
+use super::{Checker, all, if_written};
 use crate::problem::{error, warning};
-use crate::source::Span;
+use crate::source::{Located, Span};
 use crate::syntax::document::{Block, Field, Text};
 use crate::units::Dimension;
 
@@ -28,8 +29,8 @@ impl Checker<'_> {
         zones: usize,
     ) -> Option<Find> {
         let blocks = self.blocks.clone();
-        let conditions: Vec<&Block> =
-            blocks.iter().filter(|block| block.kind.text == "find").collect();
+        let of = |kind: &'static str| blocks.iter().filter(move |block| block.kind.text == kind);
+        let conditions: Vec<&Block> = of("find").collect();
         let used = block
             .and_then(|block| block.field("use"))
             .filter(|field| normalised(&field.value.text) == FOUND_SECTIONS);
@@ -44,14 +45,11 @@ impl Checker<'_> {
         let block = block?;
         let step = match block.field("step") {
             Some(field) => self.along_axis(field, true),
-            None => self.refuse(
-                error(
-                    "missing-field",
-                    "`sections` has no `step`: where sections are looked for",
-                    used,
-                )
-                .help("add the distance between two places that are tried: `step 1 m`"),
-            ),
+            None => {
+                let says = "`sections` has no `step`: where sections are looked for";
+                let help = "add the distance between two places that are tried: `step 1 m`";
+                self.refuse(error("missing-field", says, used).help(help))
+            }
         };
         let length = block.field("length").map(|field| self.found_length(field));
         if length.is_none() && (rules.zone.is_none() || zones == 0) {
@@ -61,9 +59,7 @@ impl Checker<'_> {
             );
         }
         if length.is_none() && rules.zone.is_some() {
-            for zone in blocks.iter().filter(|block| {
-                block.kind.text == "zone" && block.field("minimum length").is_none()
-            }) {
+            for zone in of("zone").filter(|block| block.field("minimum length").is_none()) {
                 let says = format!("a found section of zone {} has no length", zone.name_text());
                 let help = "give the zone a `minimum length`, or `sections` a `length`";
                 self.problems.push(error("missing-field", says, zone).help(help));
@@ -76,14 +72,13 @@ impl Checker<'_> {
                 self.of_signals(field, &[]).filter(|of| self.number_type(&of.expr).is_some())
             });
         let data = self.found_data(&blocks, rules);
-        let conditions: Vec<Option<FindCondition>> =
-            conditions.into_iter().map(|block| self.find_condition(block)).collect();
+        let conditions = all(conditions.into_iter().map(|block| self.find_condition(block)));
         Some(Find {
             step: step?,
             length: if_written(length)?,
             prefer: if_written(prefer)?,
             data: data?,
-            conditions: conditions.into_iter().collect::<Option<_>>()?,
+            conditions: conditions?,
         })
     }
 
@@ -99,21 +94,11 @@ impl Checker<'_> {
         if found == axis {
             return Some(expr);
         }
-        let problem = error(
-            "unit-mismatch",
-            format!(
-                "the length of a section is {}, this is {}",
-                axis.in_words(),
-                expr.ty.in_words()
-            ),
-            field,
-        );
-        self.refuse(match (&self.axis, found) {
-            (Some(axis), Dimension::ONE) => {
-                problem.help(format!("write its unit, such as {}", axis.unit))
-            }
-            _ => problem,
-        })
+        let says =
+            format!("the length of a section is {}, this is {}", axis.in_words(), found.in_words());
+        let axis = self.axis.as_ref().filter(|_| found == Dimension::ONE);
+        let help = axis.map(|axis| format!("write its unit, such as {}", axis.unit));
+        self.refuse(error("unit-mismatch", says, field).help_if(help))
     }
 
     fn find_condition(&mut self, block: &Block) -> Option<FindCondition> {
@@ -123,12 +108,12 @@ impl Checker<'_> {
             |key: &str| block.field(key).map_or(Some(0.0), |field| self.along_axis(field, false));
         let (lead, tail) = (reach("lead"), reach("tail"));
         Some(FindCondition {
-            name: block.name_text().to_string(),
+            name: block.own_name(),
             title: block.title_in_words(),
             require: require?,
             lead: lead?,
             tail: tail?,
-            span: block.span().clone(),
+            span: block.place(),
         })
     }
 
@@ -156,10 +141,7 @@ impl Checker<'_> {
             false => "a signal that depends on the section cannot be used to find sections",
         };
         let problem = error("find-signal", says, &input.span);
-        self.refuse(match needs {
-            Some(at) => problem.also(&at, "this is known only when the section is found"),
-            None => problem,
-        })
+        self.refuse(problem.also_if(needs, "this is known only when the section is found"))
     }
 
     /// The fields `found` of section data, in an order in which each needs only those before it.
@@ -168,11 +150,9 @@ impl Checker<'_> {
         let mut sound = true;
         for block in blocks.iter().filter(|block| block.kind.text == "section") {
             let Some(field) = block.field("found") else { continue };
-            let Some(column) =
-                self.names.columns.iter().position(|datum| datum.name == block.name_text())
-            else {
-                continue;
-            };
+            let columns = &self.names.columns;
+            let named = columns.iter().position(|datum| datum.name == block.name_text());
+            let Some(column) = named else { continue };
             if rules.zone == Some(column) {
                 self.problems.push(
                     error("found-zone", "the zone of a found section follows from the conditions `where` of the zones", &field.key).help("remove the line"),
@@ -261,11 +241,8 @@ impl Checker<'_> {
         let says = if dimension != axis {
             format!("`{}` is {}, this is {}", field.key.text, axis.in_words(), dimension.in_words())
         } else if value < 0.0 || (above_zero && value == 0.0) {
-            format!(
-                "`{}` must {}",
-                field.key.text,
-                if above_zero { "be above zero" } else { "not be below zero" }
-            )
+            let must = if above_zero { "be above zero" } else { "not be below zero" };
+            format!("`{}` must {must}", field.key.text)
         } else {
             return Some(value);
         };
@@ -296,7 +273,7 @@ impl Checker<'_> {
             }
         };
         let (most, dimension) = self.constant(&part(count.trim()))?;
-        if dimension != Dimension::ONE || most.fract() != 0.0 || !(1.0..=1e6).contains(&most) {
+        if dimension != Dimension::ONE || !is_whole(most, 1.0..=MOST_COUNTED) {
             return wrong(self, format!("`{}` is not a number of sections", count.trim()));
         }
         let mut each = Vec::new();

@@ -1,10 +1,10 @@
 //! Checks which rows a limit, a minimum or a report is of, and by what keys they form groups.
 
-use super::Checker;
 use super::plan::{DatumKind, Key, Kind, Scope};
 use super::scope::Scope as Names;
+use super::{Checker, if_written};
 use crate::problem::error;
-use crate::source::Span;
+use crate::source::Located;
 use crate::syntax::document::Block;
 use crate::syntax::phrase::{At, Scope as Written};
 
@@ -57,52 +57,42 @@ impl Checker<'_> {
         let zones = self.limit_zones(&written.zones);
         let (mut each_zone, mut each, mut ok) = (false, Vec::new(), true);
         for key in &written.each {
-            let place = key.place();
-            if matches!(key.node.as_str(), "zone" | "zones") {
-                ok &= !each_zone || self.key_twice(&key.node, &place);
+            if is_zone(key) {
+                ok &= !each_zone || self.key_twice(&key.node, key);
                 if self.zone_names.is_empty() {
-                    self.problems.push(error("unknown-zone", "the protocol has no zones", &place));
+                    self.problems.push(error("unknown-zone", "the protocol has no zones", key));
                     ok = false;
                 }
                 each_zone = true;
                 continue;
             }
-            match self.key(&key.node, &place) {
+            match self.key(key) {
                 Some(found) if !each.contains(&found) => each.push(found),
-                Some(_) => ok = self.key_twice(&key.node, &place),
+                Some(_) => ok = self.key_twice(&key.node, key),
                 None => ok = false,
             }
         }
-        let condition = match &written.condition {
-            None => None,
-            Some(condition) => {
-                let words = condition.words();
-                let condition = self.condition(condition, &mut Names::section());
-                ok &= condition.is_some();
-                condition.map(|condition| (condition, words))
-            }
-        };
-        let zones = zones.filter(|_| ok)?;
-        Some((Scope { zones, each, condition }, each_zone))
+        let condition = if_written(written.condition.as_ref().map(|condition| {
+            Some((self.condition(condition, &mut Names::section())?, condition.words()))
+        }));
+        let (zones, condition) = (zones?, condition?);
+        ok.then_some((Scope { zones, each, condition }, each_zone))
     }
 
     fn limit_zones(&mut self, zones: &[At<String>]) -> Option<Vec<String>> {
         let mut found: Vec<String> = Vec::new();
         let mut ok = true;
         for zone in zones {
-            let place = zone.place();
             if !self.zone_names.contains(&zone.node) {
-                let known = self.zone_names.clone();
-                let problem =
-                    error("unknown-zone", format!("there is no zone {}", zone.node), &place);
-                self.problems.push(if known.is_empty() {
-                    problem.help("the protocol has no zones")
-                } else {
-                    problem.help(format!("known zones: {}", known.join(", ")))
-                });
+                let help = match self.zone_names.join(", ") {
+                    known if known.is_empty() => "the protocol has no zones".into(),
+                    known => format!("known zones: {known}"),
+                };
+                let says = format!("there is no zone {}", zone.node);
+                self.problems.push(error("unknown-zone", says, zone).help(help));
                 ok = false;
             } else if found.contains(&zone.node) {
-                ok = self.key_twice(&format!("zone {}", zone.node), &place);
+                ok = self.key_twice(&format!("zone {}", zone.node), zone);
             } else {
                 found.push(zone.node.clone());
             }
@@ -110,18 +100,16 @@ impl Checker<'_> {
         ok.then_some(found)
     }
 
-    fn key_twice(&mut self, key: &str, at: &Span) -> bool {
-        self.problems.push(error(
-            "duplicate-name",
-            format!("`{key}` is named twice in the scope"),
-            at,
-        ));
+    fn key_twice(&mut self, key: &str, at: &impl Located) -> bool {
+        let says = format!("`{key}` is named twice in the scope");
+        self.problems.push(error("duplicate-name", says, at));
         false
     }
 
     /// A key by which rows are grouped: section, site, record, a place of the signal, or a section
     /// column of words.
-    fn key(&mut self, name: &str, span: &Span) -> Option<Key> {
+    fn key(&mut self, key: &At<String>) -> Option<Key> {
+        let name = key.node.as_str();
         let Grouped { what, places } = self.grouped.clone();
         match name {
             "section" => return Some(Key::Section),
@@ -136,12 +124,12 @@ impl Checker<'_> {
         {
             return Some(Key::Place(place.clone()));
         }
-        if let Some(index) = self.campaign_column(name, span) {
+        if let Some(index) = self.campaign_column(name, &key.place()) {
             if matches!(self.names.columns[index].kind, DatumKind::Number(_)) {
                 let says = format!("`{name}` is a number; only a column of words can form groups");
                 let help =
                     "declare the column with `one of ...`, or use it in an estimate: `mean of ...`";
-                return self.refuse(error("not-a-word", says, span).help(help));
+                return self.refuse(error("not-a-word", says, key).help(help));
             }
             return Some(Key::Column(index));
         }
@@ -150,21 +138,22 @@ impl Checker<'_> {
         let columns = words.map(|datum| datum.name.as_str()).filter(|name| !KEYS.contains(name));
         let of_all = KEYS.into_iter().filter(|key| places.is_some() || *key != "record");
         let known = of_all.chain(places.iter().flatten().map(String::as_str)).chain(columns);
-        self.refuse(
-            error("unknown-key", format!("{what} cannot be grouped by `{name}`"), span)
-                .suggest(name, known),
-        )
+        let says = format!("{what} cannot be grouped by `{name}`");
+        self.refuse(error("unknown-key", says, key).suggest(name, known))
     }
 
     /// A key inside an estimate: there the zone is one like others.
     pub fn group_key(&mut self, key: &At<String>) -> Option<Key> {
-        let place = key.place();
-        if !matches!(key.node.as_str(), "zone" | "zones") {
-            return self.key(&key.node, &place);
+        if !is_zone(key) {
+            return self.key(key);
         }
         match self.zone.as_ref().map(|zone| &zone.kind) {
             Some(Kind::Column(index)) => Some(Key::Column(*index)),
-            _ => self.refuse(error("unknown-zone", "the protocol has no zones", &place)),
+            _ => self.refuse(error("unknown-zone", "the protocol has no zones", key)),
         }
     }
+}
+
+fn is_zone(key: &At<String>) -> bool {
+    matches!(key.node.as_str(), "zone" | "zones")
 }

@@ -10,7 +10,7 @@ use crate::catalog::Statistic;
 use crate::metrics::rounded;
 use crate::problem::{Problem, error, warning};
 use crate::result::Reason;
-use crate::source::Span;
+use crate::source::{Located, Span};
 use crate::syntax::document::Block;
 
 /// Statistics that are never negative, beside those of scatter.
@@ -23,7 +23,7 @@ impl Checker<'_> {
         const TRIED: [(f64, f64); 3] = [(1.0, -1.7), (2.9, 1.0), (-1.7, 2.9)];
         let mut found = TRIED
             .iter()
-            .map(|&(simulated, measured)| number(difference, &Apart { simulated, measured }));
+            .map(|&(simulated, measured)| number(difference, &Pair { simulated, measured }));
         let Some(Ok(first)) = found.next() else { return Some(()) };
         if !found.all(|other| other == Ok(first)) {
             return Some(());
@@ -65,16 +65,9 @@ impl Checker<'_> {
         if value <= 1.0 || !is_share(estimate) {
             return Some(());
         }
-        let problem = error(
-            "out-of-range",
-            format!("a share is at most 1; `{}` is above it", words(bound)),
-            &bound.span,
-        );
-        self.refuse(if value <= 100.0 {
-            problem.help(format!("write `{} %`", rounded(value)))
-        } else {
-            problem
-        })
+        let says = format!("a share is at most 1; `{}` is above it", words(bound));
+        let help = (value <= 100.0).then(|| format!("write `{} %`", rounded(value)));
+        self.refuse(error("out-of-range", says, bound).help_if(help))
     }
 
     /// The estimate of a whole quantity with a bound from the same values: the two grow together.
@@ -94,7 +87,7 @@ impl Checker<'_> {
 
     /// `mean + 3 * std` of differences: its magnitude is small where the mean is negative, so a bad
     /// model can pass.
-    pub fn signed_estimate(&mut self, estimate: &Estimate, at: &Span) {
+    pub fn signed_estimate(&mut self, estimate: &Estimate, at: &impl Located) {
         let EstimateKind::Of(of) = &estimate.kind else { return };
         let Kind::Binary(Operator::Add, left, right) = &of.expr.kind else { return };
         let (mut signed, mut scatter) = (false, false);
@@ -118,7 +111,7 @@ impl Checker<'_> {
             let help = "write it with the magnitude of the mean: `(|mean| + 3 * std)`";
             // A limit for each zone is checked once for each.
             let told = |problem: &Problem| {
-                problem.code == "signed-estimate" && problem.at.as_ref() == Some(at)
+                problem.code == "signed-estimate" && problem.at.as_ref() == Some(&at.place())
             };
             if !self.problems.0.iter().any(told) {
                 self.problems.push(warning("signed-estimate", says, at).help(help));
@@ -128,12 +121,12 @@ impl Checker<'_> {
 }
 
 /// A pair of values; nothing else is known.
-struct Apart {
-    simulated: f64,
-    measured: f64,
+pub struct Pair {
+    pub simulated: f64,
+    pub measured: f64,
 }
 
-impl Values for Apart {
+impl Values for Pair {
     fn sides(&self) -> Result<(f64, f64), Reason> {
         Ok((self.simulated, self.measured))
     }

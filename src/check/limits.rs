@@ -9,7 +9,7 @@ use super::plan::{
 use super::resolve::LIMITS_NOT_VALUES;
 use super::scope::Scope;
 use super::values::Values;
-use super::{Checker, overlap, printed};
+use super::{Checker, all, if_written, overlap, printed};
 use crate::catalog::Best;
 use crate::metrics::rounded;
 use crate::problem::{Problems, error};
@@ -59,14 +59,10 @@ impl Checker<'_> {
         }
         let common = Common { block, unit, best, names };
         self.grouped = Grouped::values(block, places);
-        let mut limits = Vec::new();
-        let mut ok = true;
-        for field in fields {
-            match self.limit(&field.value, &common) {
-                Some(found) => limits.extend(found),
-                None => ok = false,
-            }
-        }
+        let found: Vec<Option<Vec<Limit>>> =
+            fields.iter().map(|field| self.limit(&field.value, &common)).collect();
+        let ok = found.iter().all(Option::is_some);
+        let mut limits: Vec<Limit> = found.into_iter().flatten().flatten().collect();
         say_unconfirmed(&mut limits, self.to_be_confirmed());
         let zone = self.zone.clone();
         overlap::find(&limits, zone.as_ref(), block, self.problems);
@@ -128,40 +124,29 @@ impl Checker<'_> {
             }
             let signed = matches!(common.best, Some((Best::Near(best), _)) if *best == 0.0);
             if signed && !written.at_least {
-                self.signed_estimate(estimate, &written.statistic.place());
+                self.signed_estimate(estimate, &written.statistic);
             }
             let expr = self.suitable_bound(bound.expr, written.at_least, of, common)?;
             self.share_above_one(estimate, &expr)?;
             Some(OfGroup { expr: self.on_its_side(expr, written, estimate, common)?, ..bound })
         });
-        let mut factors = Vec::new();
-        let mut ok = true;
-        for (factor, condition) in &written.factors {
+        let factors = all(written.factors.iter().map(|(factor, condition)| {
             let factor =
                 self.expr(factor, &mut scope()).and_then(|factor| self.plain_factor(factor));
-            let condition = self.condition(condition, &mut scope());
-            match factor.zip(condition) {
-                Some(found) => factors.push(found),
-                None => ok = false,
-            }
-        }
-        let only_when = match &written.only_when {
-            None => None,
-            Some(condition) => {
-                let condition = self.condition(condition, &mut Scope::zone(zone.as_deref()));
-                ok &= condition.is_some();
-                condition
-            }
-        };
-        let bound = bound.filter(|_| ok)?;
+            factor.zip(self.condition(condition, &mut scope()))
+        }));
+        let only_when = written.only_when.as_ref();
+        let only_when = if_written(
+            only_when.map(|when| self.condition(when, &mut Scope::zone(zone.as_deref()))),
+        );
         let words = self.with_values(&normalised(&text.text[written.statistic.range.end..]));
         let printed = printed::naming_limit(&words, &others);
         Some(Limit {
             estimate: estimate.clone(),
             at_least: written.at_least,
-            bound,
-            factors,
-            only_when,
+            bound: bound?,
+            factors: factors?,
+            only_when: only_when?,
             scope: applies,
             words,
             printed,
@@ -225,7 +210,7 @@ impl Checker<'_> {
                 format!("write the limit in {unit}")
             };
             return self.refuse(
-                error("unit-mismatch", says, &bound.span)
+                error("unit-mismatch", says, &bound)
                     .label(found.in_words())
                     .also(from, wanted)
                     .help(help),
@@ -233,11 +218,8 @@ impl Checker<'_> {
         }
         match bound.kind {
             Kind::Constant(Scalar::Number(value)) if value <= 0.0 && !at_least => {
-                self.refuse(error(
-                    "out-of-range",
-                    format!("a limit must be above zero; `{}` is not", words(&bound)),
-                    &bound.span,
-                ))
+                let says = format!("a limit must be above zero; `{}` is not", words(&bound));
+                self.refuse(error("out-of-range", says, &bound))
             }
             _ => Some(bound),
         }
@@ -273,43 +255,34 @@ impl Checker<'_> {
             return Some(bound);
         }
         let (name, words) = (&written.statistic.node, words(&bound));
-        let (of, is) = if scatter {
-            (format!("the {}", estimate.title), best.in_words())
+        let is = best.in_words();
+        let of = if scatter {
+            format!("the {}", estimate.title)
         } else {
-            (format!("the values of `{}`", common.block.name_text()), best.in_words())
+            format!("the values of `{}`", common.block.name_text())
         };
         let problem = error(
             "wrong-side",
             format!("this limit is on the wrong side: for {of}, the best value is {is}"),
             &written.statistic.to(&written.bound, ()),
         );
-        let problem = match from {
-            Some(from) => problem.also(from, format!("best value {is}")),
-            None => problem,
-        };
-        self.refuse(match (best, written.at_least) {
+        let problem = problem.also_if(from, format!("best value {is}"));
+        self.refuse(problem.help(match (best, written.at_least) {
             (Best::Greatest(best), true) => {
-                problem.help(format!("no value is above {best}, so the limit must not be either"))
+                format!("no value is above {best}, so the limit must not be either")
             }
-            (Best::Greatest(_), false) => {
-                problem.help(format!("write `limit {name} at least {words}`"))
-            }
+            (Best::Greatest(_), false) => format!("write `limit {name} at least {words}`"),
             (Best::Least(_), _) => {
-                problem.help(format!("write `limit {name} {words}`: values up to it are accepted"))
+                format!("write `limit {name} {words}`: values up to it are accepted")
             }
-            (Best::Near(best), true)
-                if constant.is_some_and(|value| value > 0.0) && best == 0.0 =>
-            {
-                problem
-                    .help(format!("write `limit {name} {words}`: magnitudes up to it are accepted"))
+            (Best::Near(0.0), true) if constant.is_some_and(|value| value > 0.0) => {
+                format!("write `limit {name} {words}`: magnitudes up to it are accepted")
             }
             (Best::Near(best), at_least) => {
                 let side = if at_least { "not above" } else { "not below" };
-                problem.help(format!(
-                    "the limit must admit the best value: write a limit {side} {best}"
-                ))
+                format!("the limit must admit the best value: write a limit {side} {best}")
             }
-        })
+        }))
     }
 
     fn plain_factor(&mut self, factor: Expr) -> Option<Expr> {
@@ -317,11 +290,8 @@ impl Checker<'_> {
         if dimension == Dimension::ONE {
             return Some(factor);
         }
-        self.refuse(error(
-            "unit-mismatch",
-            format!("a factor must be a plain number, this is {}", factor.ty.in_words()),
-            &factor.span,
-        ))
+        let says = format!("a factor must be a plain number, this is {}", factor.ty.in_words());
+        self.refuse(error("unit-mismatch", says, &factor))
     }
 
     /// A limit that refers to other limits and is a constant must be above zero.
@@ -329,13 +299,8 @@ impl Checker<'_> {
         for limit in limits.iter().filter(|limit| !limit.at_least) {
             let names = referred(&limit.bound.expr);
             let Some((name, place)) = names.first() else { continue };
-            let Ok(value) = number(&limit.bound.expr, &Others { limits, of: limit, depth: 0 })
-            else {
-                continue;
-            };
-            if value > 0.0 {
-                continue;
-            }
+            let value = number(&limit.bound.expr, &Others { limits, of: limit, depth: 0 });
+            let Some(value) = value.ok().filter(|value| *value <= 0.0) else { continue };
             let shown = unit.map_or_else(
                 || value.to_string(),
                 |unit| format!("{}{}", rounded(unit.from_si(value)), unit.suffix()),
@@ -346,9 +311,7 @@ impl Checker<'_> {
                 "in a limit, `{name}` stands for the limit of the {name}, not for its value"
             );
             self.problems.push(
-                error("out-of-range", says, &limit.bound.expr.span)
-                    .also(place, "a limit")
-                    .help(help),
+                error("out-of-range", says, &limit.bound.expr).also(place, "a limit").help(help),
             );
         }
     }
@@ -365,18 +328,12 @@ impl Checker<'_> {
         for limit in limits {
             for (name, span) in refers(limit) {
                 if target(limit, &name).is_none() {
-                    let problem = error(
-                        "no-such-limit",
-                        format!("no limit of `{name}` applies to the same sections"),
-                        &span,
-                    );
+                    let says = format!("no limit of `{name}` applies to the same sections");
                     let other = limits.iter().find(|other| other.estimate.name == name);
-                    self.problems.push(match other {
-                        Some(other) => {
-                            problem.also(&other.span, "this one applies to other sections")
-                        }
-                        None => problem,
-                    });
+                    self.problems.push(error("no-such-limit", says, &span).also_if(
+                        other.map(|other| &other.span),
+                        "this one applies to other sections",
+                    ));
                 }
             }
         }

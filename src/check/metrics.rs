@@ -3,17 +3,19 @@
 
 use std::collections::BTreeSet;
 
-use super::Checker;
+use super::compared::Compared;
 use super::expressions::whole;
 use super::names::{Assignment, bare_word, normalised};
 use super::plan::{
     Axis, AxisOperation, Evaluation, Expr, Input, InputSide, Kind, Origin, Pairing, Position, Side,
     Step, Taken,
 };
-use super::quantities::Compared;
+use super::quantities::is_whole;
 use super::scope::{Reduce, Scope};
-use super::steps::{after, fits, item_phrase, show_number};
-use crate::catalog::{Asked, METRICS, Metric, MetricEntry, Part, Reducer};
+use super::steps::{after, show_number};
+use super::wordings::{fits, item_phrase};
+use super::{Checker, if_written};
+use crate::catalog::{Asked, Form, METRICS, Metric, MetricEntry, Part, Reducer};
 use crate::problem::{Problems, error};
 use crate::source::Span;
 use crate::syntax::document::{Field, Text};
@@ -31,7 +33,7 @@ impl Checker<'_> {
         &mut self,
         field: &Field,
         compare: Option<&Field>,
-        positions: Option<&[(Position, Assignment)]>,
+        positions: Option<&[Position]>,
         chain: Option<&[Step]>,
     ) -> Option<Compared> {
         let of_pairs = compare
@@ -61,13 +63,8 @@ impl Checker<'_> {
         let mut unheard = Problems::default();
         let step = from_pest::step_alone(text, &mut unheard);
         if let Some(step) = &step {
-            let step =
-                self.with_choices(step.node.clone(), METRICS.iter().map(|entry| &entry.form));
-            if step
-                .parts
-                .first()
-                .is_some_and(|items| METRICS.iter().any(|entry| fits(&entry.form, items)))
-            {
+            let step = self.with_choices(step.node.clone(), forms());
+            if step.parts.first().is_some_and(|items| forms().any(|form| fits(form, items))) {
                 return true;
             }
         }
@@ -86,7 +83,7 @@ impl Checker<'_> {
     fn by_wording(
         &mut self,
         field: &Field,
-        positions: Option<&[(Position, Assignment)]>,
+        positions: Option<&[Position]>,
         chain: Option<&[Step]>,
     ) -> Option<Compared> {
         let (metric, over) = self.metric(&field.value)?;
@@ -99,7 +96,7 @@ impl Checker<'_> {
         metric: Metric,
         over: Option<Phrase>,
         field: &Field,
-        positions: &[(Position, Assignment)],
+        positions: &[Position],
         chain: &[Step],
     ) -> Option<Compared> {
         let over_name = over.as_ref().and_then(|over| bare_word(&over)).map(str::to_string);
@@ -107,7 +104,7 @@ impl Checker<'_> {
             None => Vec::new(),
             Some(over) => positions
                 .iter()
-                .map(|(_, at)| self.signal_where(&over, at, &whole(&over.text)))
+                .map(|position| self.signal_where(&over, &position.places, &whole(&over.text)))
                 .collect::<Option<Vec<_>>>()?,
         };
         self.samples_are_kept(Taken::Compared(metric), chain, &field.value.span)?;
@@ -117,7 +114,7 @@ impl Checker<'_> {
             span: field.value.span.clone(),
         });
         let words = self.with_values(&normalised(&field.value.text));
-        let (first, _) = positions.first()?;
+        let first = positions.first()?;
         Some(Compared {
             evaluation: Evaluation::Metric { metric, over, over_axis, pairing: Pairing::SIDES },
             dimension: (metric.0.gives)(
@@ -152,7 +149,7 @@ impl Checker<'_> {
     fn by_expression(
         &mut self,
         field: &Field,
-        positions: Option<&[(Position, Assignment)]>,
+        positions: Option<&[Position]>,
         chain: Option<&[Step]>,
     ) -> Option<Compared> {
         let phrase = self.metric_expression(&field.value)?;
@@ -166,17 +163,13 @@ impl Checker<'_> {
         for input in inputs {
             if let (Taken::Reduced(reducer), InputSide::Own) = (input.taken, input.side) {
                 let words = normalised(input.span.text());
-                let problem = error(
-                    "side",
-                    format!("`{words}` does not say which side it is computed from"),
-                    &input.span,
-                );
-                let simple = reducer.in_words() == words;
-                return self.refuse(if simple {
-                    problem.help(format!("write `{words} of measured` or `{words} of simulated`"))
+                let says = format!("`{words}` does not say which side it is computed from");
+                let help = if reducer.in_words() == words {
+                    format!("write `{words} of measured` or `{words} of simulated`")
                 } else {
-                    problem.help(format!("write `measured({words})` or `simulated({words})`"))
-                });
+                    format!("write `measured({words})` or `simulated({words})`")
+                };
+                return self.refuse(error("side", says, &input.span).help(help));
             }
             self.samples_are_kept(input.taken, chain, &input.span)?;
         }
@@ -206,16 +199,11 @@ impl Checker<'_> {
             .iter()
             .filter(|entry| entry.form.head.len() > 1)
             .find(|entry| words.contains(&leading_words(entry)));
-        for problem in problems.0 {
-            self.problems.push(match spelt {
-                Some(entry) => problem.help(format!(
-                    "in an expression `{}` is written `{}`",
-                    entry.form.in_words(),
-                    entry.call_in_words()
-                )),
-                None => problem,
-            });
-        }
+        let help = spelt.map(|entry| {
+            let (form, call) = (entry.form.in_words(), entry.call_in_words());
+            format!("in an expression `{form}` is written `{call}`")
+        });
+        self.problems.add(problems.0.into_iter().map(|problem| problem.help_if(help.as_deref())));
         found
     }
 
@@ -223,18 +211,11 @@ impl Checker<'_> {
     fn metric(&mut self, text: &Text) -> Option<(Metric, Option<Phrase>)> {
         let step = from_pest::step_alone(text, self.problems)?;
         let span = step.place();
-        let step = step
-            .with(self.with_choices(step.node.clone(), METRICS.iter().map(|entry| &entry.form)));
-        let index =
-            self.find_form(&step.node, &span, "metric", METRICS.iter().map(|entry| &entry.form))?;
+        let step = step.with(self.with_choices(step.node.clone(), forms()));
+        let index = self.find_form(&step.node, &span, "metric", forms())?;
         let entry = &METRICS[index];
-        if let Some(extra) = step
-            .node
-            .parts
-            .get(1)
-            .and_then(|part| part.first())
-            .filter(|_| entry.form.numbers.is_empty())
-        {
+        let extra = step.node.parts.get(1).and_then(|part| part.first());
+        if let Some(extra) = extra.filter(|_| entry.form.numbers.is_empty()) {
             return self.refuse(error("unknown-option", "this metric has no option", extra));
         }
         if let Some(condition) = &step.node.when {
@@ -260,19 +241,18 @@ impl Checker<'_> {
         };
         let filled = self.fill_form(&entry.form, step, span)?;
         let points = filled.options.first().copied().flatten().map(|(points, _)| points);
-        if let Some(points) = points.filter(|points| {
-            points.fract() != 0.0 || !(LEAST_POINTS..=MOST_POINTS).contains(points)
-        }) {
-            return self.refuse(error("out-of-range", format!(
+        if let Some(points) = points.filter(|points| !is_whole(*points, LEAST_POINTS..=MOST_POINTS))
+        {
+            let says = format!(
                 "the number of points must be a whole number from {LEAST_POINTS} to {MOST_POINTS}, this is {points}"
-            ), span));
+            );
+            return self.refuse(error("out-of-range", says, span));
         }
         let mut asked = Asked { points: points.map(|points| points as usize), band: None };
         if let [(low, of_low, at_low), (high, of_high, at_high)] = filled.numbers.as_slice() {
             let in_time = self.has_time
                 || self.axis.as_ref().is_some_and(|axis| axis.unit.dimension == Dimension::TIME);
-            let wanted =
-                if in_time { Dimension::FREQUENCY } else { Dimension::ONE / Dimension::LENGTH };
+            let wanted = if in_time { Dimension::FREQUENCY } else { Dimension::PER_LENGTH };
             for (found, at) in [(of_low, at_low), (of_high, at_high)] {
                 let of = if in_time {
                     "a frequency in Hz"
@@ -341,11 +321,7 @@ impl Checker<'_> {
             ));
         };
         let (metric, over) = self.metric_filled(entry, &WrittenStep { parts, when: None }, span)?;
-        let at = scope.at.clone();
-        let over = match over {
-            None => None,
-            Some(over) => Some(self.signal(&over, &at)?),
-        };
+        let over = if_written(over.map(|over| self.signal(&over, &scope.at)))?;
         self.metric_input(metric, over, span, scope)
     }
 
@@ -394,20 +370,12 @@ impl Checker<'_> {
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        let place = value.place();
-        let reducer = bare_word(value).and_then(Reducer::named);
-        let Some(reducer) = reducer else {
-            return self.refuse(
-                error(
-                    "unknown-reducer",
-                    "only a slope can be computed over another signal",
-                    &place,
-                )
-                .help("write `slope over SIGNAL` or `slope of SIGNAL over SIGNAL`"),
-            );
+        let Some(reducer) = bare_word(value).and_then(Reducer::named) else {
+            let says = "only a slope can be computed over another signal";
+            let help = "write `slope over SIGNAL` or `slope of SIGNAL over SIGNAL`";
+            return self.refuse(error("unknown-reducer", says, value).help(help));
         };
-        let at = scope.at.clone();
-        let over = self.slope_axis(reducer, over, &place, &at)?;
+        let over = self.slope_axis(reducer, over, value, &scope.at)?;
         let Some(Reduce { own: Some(dimension), side, .. }) = scope.reduce else {
             return self.own_reducer(reducer, span.clone(), scope);
         };
@@ -421,21 +389,14 @@ impl Checker<'_> {
         &mut self,
         reducer: Reducer,
         over: &Phrase,
-        place: &Span,
+        place: &Phrase,
         at: &Assignment,
     ) -> Option<Expr> {
-        if reducer.in_words() != "slope" {
-            return self.refuse(
-                error(
-                    "unknown-reducer",
-                    format!(
-                        "`{}` cannot be computed over another signal; only a slope can",
-                        reducer.in_words()
-                    ),
-                    place,
-                )
-                .help("write `slope over SIGNAL`"),
-            );
+        let name = reducer.in_words();
+        if name != "slope" {
+            let says = format!("`{name}` cannot be computed over another signal; only a slope can");
+            let help = "write `slope over SIGNAL`";
+            return self.refuse(error("unknown-reducer", says, place).help(help));
         }
         self.signal(over, at)
     }
@@ -483,7 +444,7 @@ impl Checker<'_> {
         let mut samples = Scope::samples(&scope.at, own.filter(|_| metrics));
         let signal = self.expr(signal, &mut samples)?;
         if let Some(other) = not_of_both(&signal) {
-            return self.refuse(error("mixed-records", "samples of both sides can only be combined with numbers: other signals and filters have other samples", &other.span).help("write filters in the field `filter`; `shifted` can only be applied to `simulated` and `measured`"));
+            return self.refuse(error("mixed-records", "samples of both sides can only be combined with numbers: other signals and filters have other samples", other).help("write filters in the field `filter`; `shifted` can only be applied to `simulated` and `measured`"));
         }
         let dimension = reducer.gives(signal.dimension(), axis);
         let own = Input::own(Taken::OfBoth(reducer), InputSide::Own, span);
@@ -515,6 +476,11 @@ fn not_of_both(expr: &Expr) -> Option<&Expr> {
         Kind::Channel { .. } | Kind::Filtered(..) | Kind::Cases(..) => Some(expr),
         _ => expr.parts().into_iter().find_map(not_of_both),
     }
+}
+
+/// The wordings of all metrics.
+fn forms() -> impl Iterator<Item = &'static Form> + Clone {
+    METRICS.iter().map(|entry| &entry.form)
 }
 
 /// The words of a wording before its first slot: `theil inequality`, `coherence from`.

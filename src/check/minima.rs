@@ -4,14 +4,9 @@ use super::Checker;
 use super::groups::Grouped;
 use super::plan::MinimumOfGroups;
 use crate::problem::{Problems, error};
-use crate::source::Span;
 use crate::syntax::document::{Block, Field};
 use crate::syntax::from_pest;
-use crate::syntax::phrase::{Phrase, Scope};
-use crate::units::Dimension;
-
-/// The largest number that a protocol may require.
-const MOST: f64 = 1e6;
+use crate::syntax::phrase::Scope;
 
 /// The fields `minimum pairs` of a block.
 #[derive(Debug, Default)]
@@ -26,7 +21,7 @@ impl Checker<'_> {
     /// The fields `minimum pairs` of a block: the number in all, and those of groups.
     pub fn minima(&mut self, block: &Block) -> Minima {
         let mut found = Minima::default();
-        let mut seen: Vec<(Scope, Span)> = Vec::new();
+        let mut seen: Vec<(Scope, &Field)> = Vec::new();
         for field in block.fields_named("minimum pairs") {
             let Some(written) = from_pest::minimum(&field.value, self.problems) else {
                 found.all.get_or_insert(None);
@@ -44,9 +39,9 @@ impl Checker<'_> {
                 );
                 continue;
             }
-            seen.push((groups, field.value.span.clone()));
+            seen.push((groups, field));
             if written.scope.is_all() {
-                found.all = Some(self.pairs(&written.count, field));
+                found.all = Some(self.whole_number(&written.count, field));
             } else {
                 found.of_groups.push(field.clone());
             }
@@ -69,7 +64,7 @@ impl Checker<'_> {
                 continue;
             };
             let before = self.problems.0.len();
-            let needed = self.pairs(&written.count, field);
+            let needed = self.whole_number(&written.count, field);
             let scope = self.scope_of(&written.scope);
             let (Some(needed), true) = (needed, scope.is_some()) else {
                 ok = false;
@@ -92,15 +87,5 @@ impl Checker<'_> {
         {
             self.problems.0.truncate(before);
         }
-    }
-
-    fn pairs(&mut self, count: &Phrase, field: &Field) -> Option<usize> {
-        let (value, dimension) = self.constant_phrase(count)?;
-        if dimension == Dimension::ONE && value.fract() == 0.0 && (0.0..=MOST).contains(&value) {
-            return Some(value as usize);
-        }
-        let words = count.words();
-        self.no_count(&field.key.text, &words, (value, dimension), &field.value.span);
-        None
     }
 }

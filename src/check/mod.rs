@@ -5,6 +5,7 @@
 
 mod cases;
 mod closed;
+mod compared;
 mod conditions;
 pub mod constant;
 mod declared;
@@ -15,9 +16,11 @@ pub mod evaluate;
 mod expressions;
 pub mod family;
 mod find;
+mod finish;
 mod functions;
 mod groups;
 mod idle;
+mod intervals;
 mod like;
 mod limits;
 mod metrics;
@@ -45,6 +48,7 @@ mod transfer;
 pub mod values;
 mod verdicts;
 mod weights;
+mod wordings;
 
 pub use names::normalised;
 
@@ -52,12 +56,12 @@ use std::collections::BTreeSet;
 
 use indexmap::IndexMap;
 
-use crate::catalog::{Reducer, Statistic};
 use crate::problem::{Problem, Problems, error};
 use crate::source::{Span, Spanned};
 use crate::syntax::document::{Block, Document, Field, Text};
 use crate::syntax::from_pest;
 use crate::units::Dimension;
+use finish::{in_reading_order, name_after_number, rule_count, set_outside, written_rules};
 use groups::Grouped;
 use names::Names;
 use plan::{Axis, Expr, NamedFilter, Parameter, Plan, SetBy, Step};
@@ -125,6 +129,11 @@ fn if_written<T>(checked: Option<Option<T>>) -> Option<Option<T>> {
     checked.map_or(Some(None), |checked| checked.map(Some))
 }
 
+/// All of them, each of which is looked at; nothing where one has an error.
+fn all<T>(found: impl IntoIterator<Item = Option<T>>) -> Option<Vec<T>> {
+    found.into_iter().collect::<Vec<_>>().into_iter().collect()
+}
+
 /// The plan of a protocol with its parameters set; `None` after a problem of severity error.
 pub fn check(
     family: &family::Family,
@@ -139,10 +148,7 @@ pub fn check(
         .parent
         .iter()
         .flat_map(|parent| {
-            parent
-                .blocks
-                .iter()
-                .map(|block| (block.kind.text.clone(), block.name_text().to_string()))
+            parent.blocks.iter().map(|block| (block.kind.text.clone(), block.own_name()))
         })
         .collect();
     let mut checker = Checker {
@@ -155,7 +161,7 @@ pub fn check(
             .blocks
             .iter()
             .filter(|block| block.kind.text == "zone")
-            .map(|block| block.name_text().to_string())
+            .map(|block| block.own_name())
             .collect(),
         zone: None,
         parent_names,
@@ -200,92 +206,6 @@ pub fn check(
     if problems.any_error() { None } else { plan }
 }
 
-/// Better help where the unknown unit after a number is a name, which the parser does not know: `3
-/// std`.
-fn name_after_number(problem: &mut Problem, names: &Names) {
-    let Some(word) = problem.at.as_ref().filter(|_| problem.code == "unknown-unit").map(Span::text)
-    else {
-        return;
-    };
-    let is_name = Reducer::named(word).is_some()
-        || Statistic::named(word).is_some()
-        || names.parameter_blocks.contains_key(word)
-        || names.defines.contains_key(word)
-        || names.estimates.contains_key(word)
-        || names.vehicle.iter().chain(&names.columns).any(|datum| datum.name == word);
-    if is_name && problem.near.take().is_some() {
-        problem.help = Some(format!("a product is written with its sign: `... * {word}`"));
-    }
-}
-
-/// Problems of a value; others do not depend on what a parameter is set to.
-const OF_VALUES: [&str; 2] = ["not-a-count", "out-of-range"];
-
-/// Where the text of a wrong value names a parameter set from outside the protocol, the place where
-/// it was set.
-fn set_outside(problem: &mut Problem, overrides: &Overrides) {
-    let Some(at) = problem.at.as_ref().filter(|_| OF_VALUES.contains(&problem.code)) else {
-        return;
-    };
-    let named: BTreeSet<&str> =
-        at.text().split(|c: char| !c.is_alphanumeric() && c != '_').collect();
-    let given = overrides
-        .iter()
-        .filter(|(name, given)| named.contains(name.as_str()) && given.text.span != *at);
-    problem.also.extend(given.map(|(_, given)| (given.text.span.clone(), "set here".to_owned())));
-}
-
-/// Sorts the problems from the given index on by their places, text by text.
-fn in_reading_order(problems: &mut Problems, from: usize) {
-    let mut sources: Vec<String> = Vec::new();
-    for problem in &problems.0[from..] {
-        if let Some(at) = problem.at.as_ref().filter(|at| !sources.contains(&at.source.name)) {
-            sources.push(at.source.name.clone());
-        }
-    }
-    let place = |problem: &Problem| {
-        problem
-            .at
-            .as_ref()
-            .map(|at| (sources.iter().position(|name| *name == at.source.name), at.start))
-    };
-    problems.0[from..].sort_by_key(place);
-}
-
-fn written_rules(block: &Block) -> usize {
-    match block.kind.text.as_str() {
-        "zone" | "check" | "filter" | "domain" => 1,
-        "plausibility" => block.fields_named("of").count().max(1),
-        "quantity" => {
-            1 + block.fields_named("limit").count() + block.fields_named("report").count()
-        }
-        "sections" => block.fields_named("report").count(),
-        "verdict" => usize::from(block.name.is_some()),
-        _ => 0,
-    }
-}
-
-fn rule_count(plan: &Plan) -> usize {
-    // One for each zone is written once.
-    fn written<'a>(spans: impl Iterator<Item = &'a Span>) -> usize {
-        let mut written: Vec<&Span> = spans.collect();
-        written.dedup();
-        written.len()
-    }
-    let of_quantity = |quantity: &plan::Quantity| {
-        1 + written(quantity.limits.iter().map(|limit| &limit.span))
-            + written(quantity.reports.iter().map(|report| &report.span))
-    };
-    plan.zones.len()
-        + plan.checks.len()
-        + plan.plausibility.len()
-        + plan.filters.len()
-        + plan.domains.len()
-        + plan.verdicts.iter().filter(|verdict| verdict.name.is_some()).count()
-        + written(plan.sections.reports.iter().map(|report| &report.span))
-        + plan.quantities.iter().map(of_quantity).sum::<usize>()
-}
-
 impl Checker<'_> {
     /// Reports a problem; there is no result.
     fn refuse<T>(&mut self, problem: Problem) -> Option<T> {
@@ -297,6 +217,15 @@ impl Checker<'_> {
     fn expression(&mut self, text: &Text, scope: &mut Scope) -> Option<Expr> {
         let phrase = from_pest::expression(text, self.problems)?;
         self.expr(&phrase, scope)
+    }
+
+    /// Looks at what is evaluated only where a condition holds.
+    fn assuming<T>(&mut self, condition: Option<Expr>, look: impl FnOnce(&mut Self) -> T) -> T {
+        let known = self.assumed.len();
+        self.assumed.extend(condition);
+        let found = look(self);
+        self.assumed.truncate(known);
+        found
     }
 
     /// Checks one level deeper; `None` after a problem if that is too deep or too much.
@@ -455,7 +384,7 @@ impl Checker<'_> {
             })
             .collect();
         let why = |block: &Block| {
-            Some((block.name_text().to_string(), block.field("unconfirmed")?.value.text.clone()))
+            Some((block.own_name(), block.field("unconfirmed")?.value.text.clone()))
         };
         let of_zones = of("zone").filter_map(why).map(|(name, why)| (format!("zone {name}"), why));
         let others = of("quantity").filter_map(why).chain(of_zones);
@@ -466,8 +395,8 @@ impl Checker<'_> {
             .chain(others)
             .collect();
         Some(Plan {
-            name: head.name_text().to_string(),
-            title: head.title_text().unwrap_or_else(|| head.name_text().to_string()),
+            name: head.own_name(),
+            title: head.title_or_name(),
             edition: head.text("edition"),
             source: head.text("source"),
             scope: head.text("scope"),
@@ -496,7 +425,7 @@ impl Checker<'_> {
         let steps = self.filter_named(block.name_text(), block.span())?;
         let title = block.title_text().unwrap_or_default();
         let source = block.field("source").map(|field| field.value.text.clone());
-        Some(NamedFilter { name: block.name_text().to_string(), title, steps, source })
+        Some(NamedFilter { name: block.own_name(), title, steps, source })
     }
 
     fn unknown_overrides(&mut self, head: &Block) {

@@ -9,7 +9,7 @@ use super::Checker;
 use super::plan::{Datum, DeclaredRecord, Scalar, SetBy, Type};
 use crate::catalog::{Reducer, Statistic};
 use crate::problem::{error, warning};
-use crate::source::Span;
+use crate::source::{Located, Span};
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
 use crate::syntax::phrase::{Alias, Node, Phrase};
@@ -39,23 +39,18 @@ pub struct Place {
     pub aliases: Vec<Alias>,
 }
 
-/// A channel, with a column of the records for each position.
+/// A channel, or a signal that is computed from others: one for each position.
 #[derive(Clone, Debug)]
-pub struct Channel {
+pub struct Signal {
     pub places: Vec<String>,
-    pub unit: Unit,
-    pub column: String,
-    pub track: bool,
-    pub span: Span,
-}
-
-/// A signal that is computed from others.
-#[derive(Clone, Debug)]
-pub struct SignalDef {
-    pub places: Vec<String>,
-    pub is: Phrase,
+    /// How a computed signal follows from others; `None` for a channel.
+    pub is: Option<Phrase>,
+    /// The unit that is stated; a channel always has one.
     pub unit: Option<Unit>,
-    pub named: String,
+    /// The column of a channel, or the name of a computed signal, with the places in braces.
+    pub pattern: String,
+    /// Whether it is a channel of the track record.
+    pub track: bool,
     pub span: Span,
 }
 
@@ -69,8 +64,8 @@ pub struct Names {
     pub vehicle: Vec<Datum>,
     pub columns: Vec<Datum>,
     pub records: Vec<DeclaredRecord>,
-    pub channels: IndexMap<String, Channel>,
-    pub signals: IndexMap<String, SignalDef>,
+    /// Channels, then the signals that are computed from them.
+    pub signals: IndexMap<String, Signal>,
     pub defines: IndexMap<String, Phrase>,
     /// Definitions with a number that is to be confirmed, and why.
     pub unconfirmed: IndexMap<String, String>,
@@ -89,62 +84,64 @@ impl Checker<'_> {
     pub fn gather_names(&mut self) {
         let blocks = self.blocks.clone();
         for block in &blocks {
-            let name = block.name_text().to_string();
+            let name = block.own_name();
             self.usable_name(block);
-            match block.kind.text.as_str() {
+            let gathered = match block.kind.text.as_str() {
                 "parameter" => {
-                    self.names.parameter_blocks.insert(name, block.clone());
+                    self.names.parameter_blocks.insert(name.clone(), block.clone());
+                    Some(())
                 }
                 "filter" => {
-                    self.names.filters.insert(name, block.clone());
+                    self.names.filters.insert(name.clone(), block.clone());
+                    Some(())
                 }
-                "place" => match self.place(&name, block) {
-                    Some(place) => drop(self.names.places.insert(name, place)),
-                    None => drop(self.names.failed.insert(name)),
-                },
-                kind @ ("define" | "estimate") => {
-                    match self.required(block, "is").and_then(|field| self.written(field)) {
-                        Some(is) => {
-                            let why = block.text("unconfirmed");
-                            self.names.unconfirmed.extend(why.map(|why| (name.clone(), why)));
-                            let known = match kind {
-                                "define" => &mut self.names.defines,
-                                _ => &mut self.names.estimates,
-                            };
-                            known.insert(name, is);
-                        }
-                        None => drop(self.names.failed.insert(name)),
-                    }
+                "place" => self.place(&name, block).map(|place| {
+                    self.names.places.insert(name.clone(), place);
+                }),
+                kind @ ("define" | "estimate") => self.expression_named(kind, &name, block),
+                "record" => {
+                    self.declared_record(&name, block).map(|record| self.names.records.push(record))
                 }
-                "record" => match self.declared_record(&name, block) {
-                    Some(record) => self.names.records.push(record),
-                    None => drop(self.names.failed.insert(name)),
-                },
-                "vehicle" => match self.datum(&name, block, "key", name.clone()) {
-                    Some(datum) => self.names.vehicle.push(datum),
-                    None => drop(self.names.failed.insert(name)),
-                },
-                "section" => match self.datum(&name, block, "column", name.replace('_', " ")) {
-                    Some(datum) => self.names.columns.push(datum),
-                    None => drop(self.names.failed.insert(name)),
-                },
-                _ => {}
+                "vehicle" => self
+                    .datum(&name, block, "key", name.clone())
+                    .map(|datum| self.names.vehicle.push(datum)),
+                "section" => self
+                    .datum(&name, block, "column", name.replace('_', " "))
+                    .map(|datum| self.names.columns.push(datum)),
+                _ => Some(()),
+            };
+            if gathered.is_none() {
+                self.names.failed.insert(name);
             }
         }
         for block in &blocks {
-            let name = block.name_text().to_string();
+            let name = block.own_name();
             let found = match block.kind.text.as_str() {
                 "parameter" => self.parameter(&name, block.span()).map(drop),
                 "vehicle" | "section" => self.datum_default(&name, block),
                 "channel" => self.channel(&name, block),
-                "signal" => self.signal_def(&name, block),
+                "signal" => self.computed_signal(&name, block),
                 _ => Some(()),
             };
             if found.is_none() {
                 self.names.failed.insert(name);
             }
         }
+        self.names.signals.sort_by(|_, a, _, b| a.is.is_some().cmp(&b.is.is_some()));
         self.clashes(&blocks);
+    }
+
+    /// A definition or an estimate.
+    fn expression_named(&mut self, kind: &str, name: &str, block: &Block) -> Option<()> {
+        let is = self.required(block, "is").and_then(|field| self.written(field))?;
+        let why = block.text("unconfirmed");
+        self.names.unconfirmed.extend(why.map(|why| (name.to_string(), why)));
+        let known = match kind {
+            "define" => &mut self.names.defines,
+            _ => &mut self.names.estimates,
+        };
+        known.insert(name.to_string(), is);
+        Some(())
     }
 
     /// Reports a name that an expression could not use or would read as something else.
@@ -184,14 +181,9 @@ impl Checker<'_> {
             None
         };
         if let Some(what) = taken {
-            self.problems.push(
-                error(
-                    "reserved-name",
-                    format!("`{name}` is {what}, so this {kind} needs another name"),
-                    block,
-                )
-                .help(format!("for instance `{name}_1`, or a longer name")),
-            );
+            let says = format!("`{name}` is {what}, so this {kind} needs another name");
+            let help = format!("for instance `{name}_1`, or a longer name");
+            self.problems.push(error("reserved-name", says, block).help(help));
         } else if let Some(sign) = name
             .chars()
             .find(|c| !c.is_ascii_alphanumeric() && *c != '_')
@@ -228,19 +220,18 @@ impl Checker<'_> {
         let mut seen: IndexMap<&str, &Block> = IndexMap::new();
         for block in blocks.iter().filter(|block| ROLES.contains(&block.kind.text.as_str())) {
             let name = block.name_text();
-            if let Some(first) = seen.get(name) {
-                let (a, b) = (first.kind.text.as_str(), block.kind.text.as_str());
-                // `vehicle.speed` and `section.speed` distinguish these.
-                if a != b
-                    && !(matches!(a, "vehicle" | "section") && matches!(b, "vehicle" | "section"))
-                {
-                    self.problems.push(
-                        error("name-clash", format!("`{name}` is a {a} and a {b}"), block)
-                            .also(first, format!("the {a}")),
-                    );
-                }
-            } else {
+            let Some(first) = seen.get(name) else {
                 seen.insert(name, block);
+                continue;
+            };
+            let (a, b) = (first.kind.text.as_str(), block.kind.text.as_str());
+            // `vehicle.speed` and `section.speed` distinguish these.
+            let data = |kind: &str| matches!(kind, "vehicle" | "section");
+            if a != b && !(data(a) && data(b)) {
+                self.problems.push(
+                    error("name-clash", format!("`{name}` is a {a} and a {b}"), block)
+                        .also(first, format!("the {a}")),
+                );
             }
         }
     }
@@ -287,7 +278,7 @@ impl Checker<'_> {
     }
 
     /// The section column of a name; a problem where there is none.
-    pub fn column_called(&mut self, what: &str, name: &str, at: &Span) -> Option<usize> {
+    pub fn column_called(&mut self, what: &str, name: &str, at: &impl Located) -> Option<usize> {
         let columns = &self.names.columns;
         let found = columns.iter().position(|datum| datum.name == name);
         if found.is_none() {
@@ -300,22 +291,16 @@ impl Checker<'_> {
 
     /// The unit of a text; a problem if it is not known.
     pub fn unit(&mut self, text: &Text) -> Option<Unit> {
-        match Unit::parse(&text.text) {
-            Ok(unit) => Some(unit),
-            Err(unknown) => {
-                let problem = error(
-                    "unknown-unit",
-                    format!("`{}` is not a known unit", unknown.word),
-                    &text.span,
-                );
-                self.refuse(match unknown.near {
-                    Some(near) => problem.help(format!("did you mean `{near}`?")),
-                    None => problem.help(
-                        "units are written like kN, m/s^2, km/h, mrad, `-` for a plain number",
-                    ),
-                })
-            }
-        }
+        let unknown = match Unit::parse(&text.text) {
+            Ok(unit) => return Some(unit),
+            Err(unknown) => unknown,
+        };
+        let says = format!("`{}` is not a known unit", unknown.word);
+        let help = match unknown.near {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => "units are written like kN, m/s^2, km/h, mrad, `-` for a plain number".into(),
+        };
+        self.refuse(error("unknown-unit", says, text).help(help))
     }
 }
 

@@ -5,7 +5,7 @@ use super::evaluate::words;
 use super::names::{ParameterDef, normalised};
 use super::plan::{Kind, Scalar, SetBy, Type};
 use super::scope::Scope;
-use super::{Checker, Override};
+use super::{Checker, Override, all};
 use crate::problem::error;
 use crate::syntax::document::{Block, Field, Text};
 use crate::syntax::from_pest;
@@ -16,17 +16,13 @@ impl Checker<'_> {
     /// The parameter of a name. It is checked when it is first used, as its default may use
     /// parameters further down.
     pub fn parameter(&mut self, name: &str, at: &crate::source::Span) -> Option<ParameterDef> {
-        let known = self.names.parameters.get(name).cloned();
-        let found = match known {
-            Some(found) => found,
-            None => {
-                let block = self.names.parameter_blocks.get(name)?.clone();
-                let found = self
-                    .inside("parameter", name, at, |checker| checker.parameter_of(name, &block))?;
-                self.names.parameters.insert(name.to_string(), found.clone());
-                found
-            }
-        };
+        if !self.names.parameters.contains_key(name) {
+            let block = self.names.parameter_blocks.get(name)?.clone();
+            let found =
+                self.inside("parameter", name, at, |checker| checker.parameter_of(name, &block))?;
+            self.names.parameters.insert(name.to_string(), found);
+        }
+        let found = self.names.parameters.get(name)?.clone();
         self.unconfirmed |= found.unconfirmed.is_some();
         Some(found)
     }
@@ -41,26 +37,16 @@ impl Checker<'_> {
             None => (default.value.clone(), SetBy::Default),
         };
         // Who sets a value answers for it: the protocol says nothing about that number.
-        let unconfirmed = (set_by == SetBy::Default)
-            .then(|| block.field("unconfirmed").map(|why| why.value.text.clone()))
-            .flatten();
-        if let Some(place) = block.field("at") {
-            let selects = self.selection(name, place, &default.value, &source)?;
-            let (value, ty) = (Scalar::Word(selects.1.join(", ")), Type::Word(Vec::new()));
-            let value_words = normalised(&source.text);
-            return Some(ParameterDef {
-                title,
-                value,
-                ty,
-                value_words,
-                default_words,
-                set_by,
-                unconfirmed,
-                selects: Some(selects),
-            });
-        }
-        let (value, ty) = match block.field("one of") {
-            Some(choices) => {
+        let unconfirmed = block.text("unconfirmed").filter(|_| set_by == SetBy::Default);
+        let mut selects = None;
+        let (value, ty) = match (block.field("at"), block.field("one of")) {
+            (Some(place), _) => {
+                let selected = self.selection(name, place, &default.value, &source)?;
+                let words = selected.1.join(", ");
+                selects = Some(selected);
+                (Scalar::Word(words), Type::Word(Vec::new()))
+            }
+            (None, Some(choices)) => {
                 if let Some(range) = block.field("range") {
                     self.problems.push(
                         error(
@@ -73,7 +59,9 @@ impl Checker<'_> {
                 }
                 self.choice(name, choices, &default.value, &source)?
             }
-            None => self.number(name, block, &default.value, given.is_some().then_some(&source))?,
+            (None, None) => {
+                self.number(name, block, &default.value, given.is_some().then_some(&source))?
+            }
         };
         let value_words = normalised(&source.text);
         Some(ParameterDef {
@@ -84,7 +72,7 @@ impl Checker<'_> {
             default_words,
             set_by,
             unconfirmed,
-            selects: None,
+            selects,
         })
     }
 
@@ -95,26 +83,17 @@ impl Checker<'_> {
         default: &Text,
         source: &Text,
     ) -> Option<(Scalar, Type)> {
-        let choices: Vec<String> = from_pest::list(&choices.value, self.problems)?
-            .into_iter()
-            .map(|choice| choice.node)
-            .collect();
-        let mut ok = true;
-        for text in [default, source] {
+        let choices = from_pest::list(&choices.value, self.problems)?;
+        let choices: Vec<String> = choices.into_iter().map(|choice| choice.node).collect();
+        let words = all([default, source].map(|text| {
             let word = text.text.trim();
-            if !choices.iter().any(|choice| choice == word) {
-                self.problems.push(
-                    error(
-                        "unknown-choice",
-                        format!("`{word}` is not one of the choices of `{name}`"),
-                        &text.span,
-                    )
-                    .suggest(word, &choices),
-                );
-                ok = false;
+            if choices.iter().any(|choice| choice == word) {
+                return Some(word);
             }
-        }
-        ok.then(|| (Scalar::Word(source.text.trim().to_string()), Type::Word(choices)))
+            let says = format!("`{word}` is not one of the choices of `{name}`");
+            self.refuse(error("unknown-choice", says, text).suggest(word, &choices))
+        }))?;
+        Some((Scalar::Word(words.last()?.to_string()), Type::Word(choices)))
     }
 
     /// Positions of a place: checks the default and the given value.
@@ -137,10 +116,12 @@ impl Checker<'_> {
             let mut positions: Vec<String> = Vec::new();
             for word in from_pest::list(text, self.problems)? {
                 if !members.contains(&word.node) {
-                    return self.refuse(error("unknown-place", format!(
+                    let says = format!(
                         "`{}` is not a position of `{place_name}`; `{name}` selects such positions",
                         word.node
-                    ), &word).suggest(&word.node, &members));
+                    );
+                    let problem = error("unknown-place", says, &word);
+                    return self.refuse(problem.suggest(&word.node, &members));
                 }
                 if !positions.contains(&word.node) {
                     positions.push(word.node);
@@ -171,24 +152,20 @@ impl Checker<'_> {
         let Some((text, set)) = set else { return as_default };
         let (value, found) = set?;
         if found != dimension {
-            let problem = error(
-                "unit-mismatch",
-                format!(
-                    "parameter `{name}` is {}, the given value is {}",
-                    dimension.in_words(),
-                    found.in_words()
-                ),
-                &text.span,
-            )
-            .label(found.in_words())
-            .also(&default.span, "its default");
-            return self.refuse(match found {
-                Dimension::ONE => problem.help(format!(
-                    "write its unit, as its default does: `{}`",
-                    default.text.trim()
-                )),
-                _ => problem,
-            });
+            let says = format!(
+                "parameter `{name}` is {}, the given value is {}",
+                dimension.in_words(),
+                found.in_words()
+            );
+            let default_words = default.text.trim();
+            let help = (found == Dimension::ONE)
+                .then(|| format!("write its unit, as its default does: `{default_words}`"));
+            return self.refuse(
+                error("unit-mismatch", says, text)
+                    .label(found.in_words())
+                    .also(default, "its default")
+                    .help_if(help),
+            );
         }
         match block.field("range") {
             // The rules are checked on with the default: what would follow from a wrong value is
@@ -212,14 +189,11 @@ impl Checker<'_> {
         };
         let inside = (ends[0]..=ends[1]).contains(&value);
         if !inside {
+            let says = format!("`{}` is outside the range of `{name}`", normalised(&source.text));
             self.problems.push(
-                error(
-                    "out-of-range",
-                    format!("`{}` is outside the range of `{name}`", normalised(&source.text)),
-                    &source.span,
-                )
-                .also(range, "the range")
-                .help(format!("allowed: {}", normalised(&range.value.text))),
+                error("out-of-range", says, source)
+                    .also(range, "the range")
+                    .help(format!("allowed: {}", normalised(&range.value.text))),
             );
         }
         inside
@@ -240,12 +214,8 @@ impl Checker<'_> {
             if of != dimension {
                 let says =
                     format!("`{name}` is {}, its range is {}", dimension.in_words(), of.in_words());
-                let at = phrase.place();
-                let problem = error("unit-mismatch", says, &at).label(of.in_words());
-                return self.refuse(match of_value {
-                    Some(source) => problem.also(&source.span, dimension.in_words()),
-                    None => problem,
-                });
+                let problem = error("unit-mismatch", says, &phrase).label(of.in_words());
+                return self.refuse(problem.also_if(of_value, dimension.in_words()));
             }
             *end = found;
         }
@@ -266,7 +236,7 @@ impl Checker<'_> {
             return Some((value, dimension));
         }
         self.refuse(
-            error("not-constant", format!("`{}` is not a constant", words(&expr)), &expr.span)
+            error("not-constant", format!("`{}` is not a constant", words(&expr)), &expr)
                 .help("write a number with its unit, a parameter or an expression of these"),
         )
     }

@@ -3,13 +3,14 @@
 use super::names::normalised;
 use super::near::Near;
 use super::plan::{
-    Comparison, Distinct, Exchanged, Expr, Input, InputSide, Looks, OnFault, Plausibility,
+    Comparison, Distinct, Exchanged, Expr, Input, InputSide, Looks, Plausibility, Position,
     Requirement, Step, Taken, Test,
 };
 use super::scope::Scope;
 use super::steps::after;
 use super::{Checker, if_written};
 use crate::problem::error;
+use crate::source::Located;
 use crate::syntax::document::{Block, Field};
 use crate::syntax::from_pest;
 use crate::units::{Dimension, Unit};
@@ -27,23 +28,17 @@ impl Checker<'_> {
             (block.field("require"), block.field("distinct"), block.field("exchanged"));
         let tests: Vec<&Field> = [require, distinct, exchanged].into_iter().flatten().collect();
         if let [first, second, ..] = tests[..] {
-            return self.refuse(
-                error(
-                    "require-and-distinct",
-                    "a plausibility rule has one of `require`, `distinct` and `exchanged`",
-                    &second.key,
-                )
-                .also(&first.key, "the first of them")
-                .help("write two rules"),
-            );
+            let says = "a plausibility rule has one of `require`, `distinct` and `exchanged`";
+            let problem = error("require-and-distinct", says, &second.key);
+            return self
+                .refuse(problem.also(&first.key, "the first of them").help("write two rules"));
         }
         if distinct.or(exchanged).is_none() {
             self.required(block, "require")?;
         } else {
             self.required(block, "of")?;
         }
-        let chain =
-            block.field("filter").map_or(Some(Vec::new()), |field| self.chain(&field.value));
+        let chain = self.chain_of(block);
         let mut all: Vec<Of> = Vec::new();
         let mut whole = true;
         for field in block.fields_named("of") {
@@ -56,7 +51,8 @@ impl Checker<'_> {
             all.push((Vec::new(), None));
         }
         let unless = if_written(block.field("unless").map(|field| self.section_condition(field)))?;
-        let otherwise = self.consequence(block);
+        let treatments = ["note", "not used", "not assessable", "stop"];
+        let otherwise = self.on_fault(block, "otherwise", &treatments);
         let chain = chain.filter(|_| whole)?;
         let mut rules = Vec::new();
         for (signals, unit) in all {
@@ -78,15 +74,15 @@ impl Checker<'_> {
                 }
             }
             rules.push(Plausibility {
-                name: block.name_text().to_string(),
+                name: block.own_name(),
                 title: block.title_in_words(),
                 signals,
                 chain: chain.clone(),
                 test,
                 unless: unless.clone(),
                 otherwise,
-                cause: block.field("cause").map(|field| field.value.text.clone()),
-                span: block.span().clone(),
+                cause: block.text("cause"),
+                span: block.place(),
             });
         }
         Some(rules)
@@ -97,8 +93,9 @@ impl Checker<'_> {
         let name = from_pest::of_places(&field.value, self.problems)?.signal.node;
         let unit = signals
             .first()
-            .map(|(_, signal, _)| self.own_unit(&name, after(chain, signal.dimension())));
-        Some((signals.into_iter().map(|(name, signal, _)| (name, signal)).collect(), unit))
+            .map(|first| self.own_unit(&name, after(chain, first.signal.dimension())));
+        let named = |position: Position| (position.name, position.signal);
+        Some((signals.into_iter().map(named).collect(), unit))
     }
 
     fn requirement(
@@ -190,13 +187,6 @@ impl Checker<'_> {
             );
         }
         found
-    }
-
-    fn consequence(&mut self, block: &Block) -> Option<OnFault> {
-        if block.field("otherwise").is_none() {
-            return Some(OnFault::Note);
-        }
-        self.on_fault(block, "otherwise", &["note", "not used", "not assessable", "stop"])
     }
 }
 

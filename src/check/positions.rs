@@ -158,15 +158,11 @@ impl Checker<'_> {
 
     /// All positions of a selection, in the order of the signal's places.
     pub fn positions(&mut self, signal: &At<String>, picks: &[Pick]) -> Option<Vec<Assignment>> {
-        let places =
-            match (self.names.channels.get(&signal.node), self.names.signals.get(&signal.node)) {
-                (Some(channel), _) => channel.places.clone(),
-                (_, Some(signal)) => signal.places.clone(),
-                _ => {
-                    self.unknown_signal(&signal.node, &signal.place());
-                    return None;
-                }
-            };
+        let Some(declared) = self.names.signals.get(&signal.node) else {
+            self.unknown_signal(&signal.node, &signal.place());
+            return None;
+        };
+        let places = declared.places.clone();
         let mut chosen: IndexMap<String, Vec<String>> = IndexMap::new();
         let mut ok = true;
         for pick in picks {
@@ -217,12 +213,8 @@ impl Checker<'_> {
         places: &[String],
         chosen: &mut IndexMap<String, Vec<String>>,
     ) -> Option<()> {
-        let words: Vec<At<String>> = pick
-            .words
-            .iter()
-            .filter(|word| !matches!(word.node.as_str(), "each" | "every" | "all"))
-            .cloned()
-            .collect();
+        let mut words = pick.words.clone();
+        words.retain(|word| !is_each(&word.node));
         let named = (1..=words.len())
             .rev()
             .find_map(|end| self.place_called(&joined(&words[..end])).map(|place| (place, end)));
@@ -275,8 +267,13 @@ impl Checker<'_> {
     }
 }
 
-fn joined(words: &[At<String>]) -> String {
+pub fn joined(words: &[At<String>]) -> String {
     words.iter().map(|word| word.node.as_str()).collect::<Vec<_>>().join("_")
+}
+
+/// Whether a word says that all positions are meant.
+pub fn is_each(word: &str) -> bool {
+    matches!(word, "each" | "every" | "all")
 }
 
 /// From the first word to the last.

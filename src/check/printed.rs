@@ -64,13 +64,8 @@ impl Checker<'_> {
 
     /// The unit of a channel or signal if its dimension agrees, else the SI unit.
     pub fn own_unit(&self, name: &str, dimension: Dimension) -> Unit {
-        let channel = self.names.channels.get(name).map(|channel| channel.unit.clone());
-        let own =
-            channel.or_else(|| self.names.signals.get(name).and_then(|signal| signal.unit.clone()));
-        match own {
-            Some(unit) if unit.dimension == dimension => unit,
-            _ => Unit::si(dimension),
-        }
+        let own = self.names.signals.get(name).and_then(|signal| signal.unit.clone());
+        own.filter(|unit| unit.dimension == dimension).unwrap_or_else(|| Unit::si(dimension))
     }
 }
 

@@ -3,8 +3,8 @@
 use super::Checker;
 use super::names::normalised;
 use super::plan::{Center, Chosen, DeclaredRecord, Pairing, Side};
-use crate::problem::{Problem, error};
-use crate::source::{Span, Spanned};
+use crate::problem::error;
+use crate::source::{Located, Span, Spanned};
 use crate::syntax::document::{Block, Field, Text};
 
 /// Which records are compared.
@@ -23,28 +23,18 @@ impl Checker<'_> {
     pub fn declared_record(&mut self, name: &str, block: &Block) -> Option<DeclaredRecord> {
         let field = self.required(block, "is")?;
         if ["repeats", "originals"].contains(&name) {
-            return self.refuse(
-                error(
-                    "reserved-name",
-                    format!(
-                        "`{name}` is a word of the language and cannot be the name of this record"
-                    ),
-                    block,
-                )
-                .help(format!("for instance `{name}_1`")),
-            );
+            let says =
+                format!("`{name}` is a word of the language and cannot be the name of this record");
+            let help = format!("for instance `{name}_1`");
+            return self.refuse(error("reserved-name", says, block).help(help));
         }
         let text = &field.value.text;
         let start = text.len() - text.trim_start().len();
         let end = text[start..].find(char::is_whitespace).map_or(text.len(), |at| start + at);
         let word = &text[start..end];
         let Some(side) = Side::named(word) else {
-            let problem = Problem::error(
-                "unknown-record",
-                format!("a record is simulated or measured, and not `{word}`"),
-            );
-            let problem = problem
-                .at(&field.value.place(start..end))
+            let says = format!("a record is simulated or measured, and not `{word}`");
+            let problem = error("unknown-record", says, &field.value.place(start..end))
                 .suggest(word, Side::ALL.map(Side::in_words));
             return self.refuse(match problem.help {
                 Some(_) => problem,
@@ -75,14 +65,8 @@ impl Checker<'_> {
             }
             members.push(Spanned::new(member.to_string(), place));
         }
-        let title = block.title_in_words();
-        Some(DeclaredRecord {
-            name: name.to_string(),
-            title,
-            side,
-            members,
-            span: block.span().clone(),
-        })
+        let (name, title, span) = (name.to_string(), block.title_in_words(), block.place());
+        Some(DeclaredRecord { name, title, side, members, span })
     }
 
     /// `simulated`, `measured`, or the name of a record.
@@ -127,12 +111,11 @@ impl Checker<'_> {
         match self.compare(field)? {
             Compare::Pairs(pairing) => Some(pairing),
             Compare::With(..) => {
-                let problem = Problem::error(
-                    "metric-and-spread",
-                    "a metric compares two signals; a mean of several signals is not available",
-                );
+                let says =
+                    "a metric compares two signals; a mean of several signals is not available";
+                let problem = error("metric-and-spread", says, field).also(metric, "the metric");
                 let help = "use `value` and `difference`, or compare `simulated with measured` or `repeats with originals`";
-                self.refuse(problem.at(field).also(metric, "the metric").help(help))
+                self.refuse(problem.help(help))
             }
         }
     }
@@ -142,6 +125,9 @@ impl Checker<'_> {
     pub fn compare(&mut self, field: &Field) -> Option<Compare> {
         let words = normalised(&field.value.text);
         let all: Vec<&str> = words.split(' ').collect();
+        let refuse = |checker: &mut Self, says: &str, help: &str| {
+            checker.refuse(error("unknown-comparison", says, field).help(help))
+        };
         match all.as_slice() {
             ["repeats", "with", "originals"] => Some(Compare::Pairs(Pairing::Repeats)),
             [of, "with", "each", "other"] => {
@@ -154,14 +140,8 @@ impl Checker<'_> {
                 let (of, among) = (of?, self.chosen(among, &part(&field.value, among))?);
                 self.several(among, &field.value.span)?;
                 if of.side != among.side {
-                    return self.refuse(
-                        error(
-                            "unknown-comparison",
-                            "records are compared with the mean or median of their own side",
-                            field,
-                        )
-                        .help(WAYS),
-                    );
+                    let says = "records are compared with the mean or median of their own side";
+                    return refuse(self, says, WAYS);
                 }
                 Some(Compare::With(
                     of,
@@ -173,57 +153,33 @@ impl Checker<'_> {
                 let one = self.chosen(first, &part(&field.value, first));
                 let (one, other) = (one?, self.chosen(second, &part(&field.value, second))?);
                 if (one.side, other.side) == (Side::Measured, Side::Simulated) {
-                    return self.refuse(
-                        error(
-                            "unknown-comparison",
-                            "simulated records are compared with measured ones",
-                            field,
-                        )
-                        .help(format!("the other way round: `{second} with {first}`")),
-                    );
+                    let says = "simulated records are compared with measured ones";
+                    let help = format!("the other way round: `{second} with {first}`");
+                    return refuse(self, says, &help);
                 }
                 if one == other {
-                    return self.refuse(
-                        error(
-                            "unknown-comparison",
-                            format!("`{words}` compares records with themselves"),
-                            field,
-                        )
-                        .help(format!(
-                            "`{first} with each other`, or `{first} with mean of {first}`"
-                        )),
-                    );
+                    let says = format!("`{words}` compares records with themselves");
+                    let help =
+                        format!("`{first} with each other`, or `{first} with mean of {first}`");
+                    return refuse(self, &says, &help);
                 }
                 Some(Compare::Pairs(Pairing::Each(one, other)))
             }
-            _ => self.refuse(
-                error(
-                    "unknown-comparison",
-                    format!("`{words}` does not say which records are compared"),
-                    field,
-                )
-                .help(WAYS),
-            ),
+            _ => {
+                let says = format!("`{words}` does not say which records are compared");
+                refuse(self, &says, WAYS)
+            }
         }
     }
 
     /// One record cannot be compared with others of its own.
     fn several(&mut self, of: Chosen, at: &Span) -> Option<()> {
-        let Some(record) = of
-            .record
-            .map(|index| &self.names.records[index])
-            .filter(|record| record.members.len() == 1)
-        else {
+        let record = of.record.map(|index| &self.names.records[index]);
+        let Some(record) = record.filter(|record| record.members.len() == 1) else {
             return Some(());
         };
-        self.refuse(
-            error(
-                "one-record",
-                format!("`{}` is one record, and several are compared", record.name),
-                at,
-            )
-            .also(&record.span, "declared here"),
-        )
+        let says = format!("`{}` is one record, and several are compared", record.name);
+        self.refuse(error("one-record", says, at).also(&record.span, "declared here"))
     }
 
     /// The words of a comparison with what stands in a row in place of `simulated` and `measured`.

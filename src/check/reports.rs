@@ -9,7 +9,6 @@ use super::plan::{Estimate, Report};
 use super::scope::Scope;
 use crate::catalog::Statistic;
 use crate::problem::error;
-use crate::source::Span;
 use crate::syntax::document::{Block, Field};
 use crate::syntax::from_pest;
 use crate::syntax::phrase::{At, Node, Phrase, Report as Written};
@@ -46,7 +45,7 @@ impl Checker<'_> {
     fn reports_of(&mut self, block: &Block, of: Of) -> Option<Vec<Report>> {
         let unconfirmed = block.field("unconfirmed").is_some();
         let mut reports: Vec<Report> = Vec::new();
-        let mut seen: Vec<(Written, Span)> = Vec::new();
+        let mut seen: Vec<(Written, &Field)> = Vec::new();
         let mut ok = true;
         for field in block.fields_named("report") {
             let written = from_pest::report(&field.value, &mut Default::default());
@@ -57,7 +56,7 @@ impl Checker<'_> {
                 ok = false;
                 continue;
             }
-            seen.extend(written.map(|written| (written, field.value.span.clone())));
+            seen.extend(written.map(|written| (written, field)));
             match self.report(field, of, unconfirmed) {
                 Some(found) => reports.extend(found),
                 None => ok = false,
@@ -127,16 +126,13 @@ impl Checker<'_> {
         if found.dimension == dimension {
             return Some(found);
         }
-        self.refuse(error(
-            "unit-mismatch",
-            format!(
-                "this estimate is {}, `{}` is a unit of {}",
-                dimension.in_words(),
-                unit.node,
-                found.dimension.in_words()
-            ),
-            unit,
-        ))
+        let says = format!(
+            "this estimate is {}, `{}` is a unit of {}",
+            dimension.in_words(),
+            unit.node,
+            found.dimension.in_words()
+        );
+        self.refuse(error("unit-mismatch", says, unit))
     }
 
     /// A choice parameter in place of an estimate stands for the statistic that it names.

@@ -3,17 +3,15 @@
 
 use std::collections::BTreeSet;
 
-use super::Checker;
-use super::names::bare_word;
 use super::plan::{
-    Datum, DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Side, Step, Taken,
-    Type,
+    Datum, DatumKind, Expr, Input, InputSide, Kind, Operator, Origin, Scalar, Side, Taken, Type,
 };
 use super::scope::{Reduce, Scope};
 use super::steps::after;
+use super::{Checker, if_written};
 use crate::catalog::{METRICS, MetricEntry, REDUCERS, Reducer, STATISTICS, Statistic};
 use crate::problem::error;
-use crate::source::Span;
+use crate::source::{Located, Span};
 use crate::syntax::phrase::{At, Node, Phrase};
 use crate::units::Unit;
 
@@ -40,40 +38,37 @@ impl Checker<'_> {
         let Some(Reduce { own: Some(dimension), axis, side, .. }) = scope.reduce else {
             let what = reducer.in_words();
             let says = format!("`{what}` needs a signal, and there is none here");
-            let problem = error("no-signal", says, &span);
             let of_sections =
                 scope.group.is_some() && scope.values().is_none() && scope.limits.is_none();
-            return self.refuse(if of_sections {
-                problem.help(format!(
+            let help = if of_sections {
+                Some(format!(
                     "of the sections there are only data: `{what} of speed`, `{what} of length`"
                 ))
-            } else if scope.reduce.is_some() {
-                problem.help(format!("name the signal: `{what} of ...`"))
             } else {
-                problem
-            });
+                scope.reduce.map(|_| format!("name the signal: `{what} of ...`"))
+            };
+            return self.refuse(error("no-signal", says, &span).help_if(help));
         };
         let input = Input::own(Taken::Reduced(reducer), side, &span);
         Some(scope.input(input, reducer.gives(dimension, axis), &span))
     }
 
-    fn percentile_range(&mut self, reducer: Reducer, span: &Span) -> Option<()> {
+    fn percentile_range(&mut self, reducer: Reducer, at: &impl Located) -> Option<()> {
         let Reducer::Percentile(percent) = reducer else { return Some(()) };
-        self.is_percentage(percent, span)
+        self.is_percentage(percent, at)
     }
 
     /// Whether a percentile is one from 0 to 100.
-    pub fn is_percentage(&mut self, percent: f64, span: &Span) -> Option<()> {
+    pub fn is_percentage(&mut self, percent: f64, at: &impl Located) -> Option<()> {
         if (0.0..=100.0).contains(&percent) {
             return Some(());
         }
         let says = format!("a percentile must be from 0 to 100, this is {percent}");
-        self.refuse(error("out-of-range", says, span))
+        self.refuse(error("out-of-range", says, at))
     }
 
     /// The reducer of `NAME of signal`.
     pub fn reducer(&mut self, reducer: &Phrase, of_records: bool) -> Option<Reducer> {
-        let place = reducer.place();
         let found = match &reducer.node {
             Node::Percentile(percent) => Some(Reducer::Percentile(*percent)),
             Node::Path(name) => Reducer::named(name),
@@ -87,11 +82,11 @@ impl Checker<'_> {
                 let known = reducers.chain(numbers.map(String::as_str));
                 let says =
                     format!("`{word} of` is neither a value of a signal nor a share of a number");
-                self.problems.push(error("unknown-reducer", says, &place).suggest(word, known));
+                self.problems.push(error("unknown-reducer", says, reducer).suggest(word, known));
             }
             return None;
         };
-        self.percentile_range(found, &place)?;
+        self.percentile_range(found, reducer)?;
         Some(found)
     }
 
@@ -103,22 +98,17 @@ impl Checker<'_> {
         span: &Origin,
         scope: &mut Scope,
     ) -> Option<Expr> {
-        let place = reducer.place();
         let found = self.reducer(reducer, scope.reduce.is_some())?;
         let Some(Reduce { axis, side, .. }) = scope.reduce else {
-            return self.refuse(error(
-                "no-records",
-                format!(
-                    "`{} of ...` needs the records of a section, which are not available here",
-                    found.in_words()
-                ),
-                span,
-            ));
+            let says = format!(
+                "`{} of ...` needs the records of a section, which are not available here",
+                found.in_words()
+            );
+            return self.refuse(error("no-records", says, span));
         };
         if self.names_side(signal, &mut BTreeSet::new()) {
             return self.of_both(found, signal, span, scope);
         }
-        let at = scope.at.clone();
         // `slope of A over B` is parsed as `slope of (A over B)`.
         let (signal, over) = match &signal.node {
             Node::Over(signal, over) => (signal.as_ref(), Some(over.as_ref())),
@@ -126,29 +116,22 @@ impl Checker<'_> {
         };
         let (signal, chain) = match &signal.node {
             Node::Through(inner, filter) if over.is_none() => {
-                (inner.as_ref(), self.window_of(filter)?)
+                let steps = self.filter_named(&filter.node, &filter.place())?;
+                self.step_order(&steps, false)?;
+                // A filter that stands last before a number is taken may have windows.
+                (inner.as_ref(), steps)
             }
             _ => (signal, Vec::new()),
         };
-        let signal = self.signal(signal, &at);
-        let over = match over {
-            None => None,
-            Some(over) => Some(self.slope_axis(found, over, &place, &at)?),
-        };
+        let at = &scope.at;
+        let signal = self.signal(signal, at);
+        let over = if_written(over.map(|over| self.slope_axis(found, over, reducer, at)))?;
         let signal = signal?;
         let axis = over.as_ref().map_or(axis, Expr::dimension);
         let dimension = found.gives(after(&chain, signal.dimension()), axis);
         let own = Input::own(Taken::Reduced(found), side, span);
         let input = Input { signal: Some(signal), chain, over, ..own };
         Some(scope.input(input, dimension, span))
-    }
-
-    /// The steps of a filter that stands last before a number is taken: there, windows may be among
-    /// them.
-    fn window_of(&mut self, filter: &At<String>) -> Option<Vec<Step>> {
-        let steps = self.filter_named(&filter.node, &filter.place())?;
-        self.step_order(&steps, false)?;
-        Some(steps)
     }
 
     /// The value of a fixed side, such as `measured(p99.85)`, whichever side is evaluated.
@@ -175,6 +158,7 @@ impl Checker<'_> {
     /// What a name stands for in an expression of numbers, words and conditions.
     pub fn path(&mut self, path: &str, span: &Origin, scope: &mut Scope) -> Option<Expr> {
         let expr = |kind, ty| Some(Expr { kind, ty, span: span.clone() });
+        let number = |kind, dimension| Some(Expr::number(kind, dimension, span));
         if scope.words.iter().any(|word| word == path) {
             return expr(
                 Kind::Constant(Scalar::Word(path.to_string())),
@@ -182,10 +166,10 @@ impl Checker<'_> {
             );
         }
         if let (Some(pair), Some(side)) = (scope.pair, Side::named(path)) {
-            return expr(Kind::Side(side), Type::Number(pair));
+            return number(Kind::Side(side), pair);
         }
         if let (Some(dimension), "value") = (scope.value, path) {
-            return expr(Kind::Input(0), Type::Number(dimension));
+            return number(Kind::Input(0), dimension);
         }
         if let Some(found) = self.group_path(path, span, scope) {
             return found;
@@ -193,20 +177,14 @@ impl Checker<'_> {
         if let Some((dimension, names)) = &scope.limits
             && names.iter().any(|name| name == path)
         {
-            return expr(Kind::LimitOf(path.to_string()), Type::Number(*dimension));
+            return number(Kind::LimitOf(path.to_string()), *dimension);
         }
         if let Some(statistic) = Statistic::named(path).filter(|_| scope.limits.is_some()) {
-            return self.refuse(
-                error(
-                    "no-such-limit",
-                    format!(
-                        "there is no other limit of the {} that this could refer to",
-                        statistic.title(self.ddof)
-                    ),
-                    span,
-                )
-                .help(LIMITS_NOT_VALUES),
+            let says = format!(
+                "there is no other limit of the {} that this could refer to",
+                statistic.title(self.ddof)
             );
+            return self.refuse(error("no-such-limit", says, span).help(LIMITS_NOT_VALUES));
         }
         if let Some(reducer) = Reducer::named(path) {
             return self.own_reducer(reducer, span.clone(), scope);
@@ -235,7 +213,7 @@ impl Checker<'_> {
         }
         let signal = self.is_signal(path) || self.is_failed(path);
         if let Some(unit) = Unit::parse(path).ok().filter(|_| !signal) {
-            return expr(Kind::Constant(Scalar::Number(unit.factor)), Type::Number(unit.dimension));
+            return number(Kind::Constant(Scalar::Number(unit.factor)), unit.dimension);
         }
         self.unknown_name(path, span, scope);
         None
@@ -253,11 +231,8 @@ impl Checker<'_> {
         if let Some(side) = Side::named(name).filter(|_| !self.is_signal(name)) {
             return self.side_of_own(side, span, scope);
         }
-        if let Some(channel) = self.names.channels.get(name).cloned() {
-            return self.channel_at(name, &channel, span, &scope.at);
-        }
-        if let Some(signal) = self.names.signals.get(name).cloned() {
-            return self.signal_at(name, &signal, span, scope);
+        if self.is_signal(name) {
+            return self.signal_at(name, span, scope);
         }
         if self.names.defines.contains_key(name) {
             return self.defined(name, span, scope);
@@ -280,7 +255,7 @@ impl Checker<'_> {
     /// these names.
     fn extent_path(&self, path: &str, span: &Origin, scope: &Scope) -> Option<Expr> {
         let axis = self.axis.as_ref().filter(|_| scope.section)?.unit.dimension;
-        let number = |kind| Expr { kind, ty: Type::Number(axis), span: span.clone() };
+        let number = |kind| Expr::number(kind, axis, span);
         match path {
             "start" => Some(number(Kind::Start)),
             "end" => Some(number(Kind::End)),
@@ -397,18 +372,17 @@ impl Checker<'_> {
         }
         if self.is_signal(path) {
             let says = format!("expected a number, `{path}` is a signal");
-            let problem = error("signal-not-number", says, span);
-            self.problems.push(problem.help(format!("take a number from it: `mean of {path}`")));
+            let help = format!("take a number from it: `mean of {path}`");
+            self.problems.push(error("signal-not-number", says, span).help(help));
             return;
         }
         let digits = path.find(|c: char| !c.is_ascii_digit()).unwrap_or(0);
         if digits > 0 {
             let (number, unit) = path.split_at(digits);
-            let problem = error("unknown-unit", format!("`{unit}` is not a known unit"), span);
-            self.problems.push(match Unit::parse(unit).err().and_then(|unknown| unknown.near) {
-                Some(near) => problem.help(format!("did you mean `{number} {near}`?")),
-                None => problem,
-            });
+            let near = Unit::parse(unit).err().and_then(|unknown| unknown.near);
+            let help = near.map(|near| format!("did you mean `{number} {near}`?"));
+            let says = format!("`{unit}` is not a known unit");
+            self.problems.push(error("unknown-unit", says, span).help_if(help));
             return;
         }
         let mut known: Vec<String> =
@@ -443,10 +417,8 @@ impl Checker<'_> {
                 known.push(format!("vehicle.{}", datum.name));
             }
         }
-        self.problems.push(
-            error("unknown-name", format!("nothing is called `{path}` here"), span)
-                .suggest(path, &known),
-        );
+        let says = format!("nothing is called `{path}` here");
+        self.problems.push(error("unknown-name", says, span).suggest(path, &known));
     }
 
     /// The choice that a bare word stands for: the word itself, or the value of the choice
@@ -459,12 +431,6 @@ impl Checker<'_> {
             Scalar::Word(choice) => Some(choice),
             _ => Some(word.to_string()),
         }
-    }
-
-    /// As [`Self::choice_word`], for a phrase that is a bare word.
-    pub fn choice_phrase(&mut self, phrase: &Phrase) -> Option<String> {
-        let word = bare_word(phrase)?;
-        self.choice_word(word, &phrase.place())
     }
 }
 

@@ -11,6 +11,7 @@ use super::scope::Scope;
 use super::{Checker, if_written};
 use crate::metrics::percentile::Method;
 use crate::problem::error;
+use crate::source::Located;
 use crate::syntax::document::{Block, Field};
 use crate::syntax::from_pest;
 use crate::units::Dimension;
@@ -22,16 +23,10 @@ impl Checker<'_> {
         let text = unit.to_text();
         let unit = self.unit(&text)?;
         if !allowed.contains(&unit.dimension) {
-            return self.refuse(
-                error(
-                    "unit-mismatch",
-                    format!("`{}` cannot be {}", field.key.text, unit.dimension.in_words()),
-                    &text.span,
-                )
-                .help(
-                    "write for instance `axis distance in m` or `axis time in s`; `time time in s`",
-                ),
-            );
+            let says = format!("`{}` cannot be {}", field.key.text, unit.dimension.in_words());
+            let help =
+                "write for instance `axis distance in m` or `axis time in s`; `time time in s`";
+            return self.refuse(error("unit-mismatch", says, &text).help(help));
         }
         Some(Axis { column: name.node, unit, span: field.value.span.clone() })
     }
@@ -49,24 +44,22 @@ impl Checker<'_> {
         let minimum_length = match block.field("minimum length") {
             None => None,
             Some(field) => {
-                self.assumed.extend(condition.clone());
-                let mut scope =
-                    Scope { zone: Some(block.name_text().to_string()), ..Scope::section() };
-                let expr = self.expression(&field.value, &mut scope);
-                self.assumed.clear();
-                let expr = expr?;
+                let mut scope = Scope { zone: Some(block.own_name()), ..Scope::section() };
+                let expr = self.assuming(condition.clone(), |checker| {
+                    checker.expression(&field.value, &mut scope)
+                })?;
                 Some(self.length_of_section(expr, field)?)
             }
         };
         let minimum_sections = self.count(block, "minimum sections", 0)?;
         Some(Zone {
-            name: block.name_text().to_string(),
+            name: block.own_name(),
             title: block.title_text().unwrap_or_default(),
             condition,
             condition_words,
             minimum_sections,
             minimum_length,
-            span: block.span().clone(),
+            span: block.place(),
         })
     }
 
@@ -86,14 +79,14 @@ impl Checker<'_> {
         let unless = if_written(block.field("unless").map(|field| self.section_condition(field)))?;
         let otherwise = self.on_fault(block, "otherwise", &["not used", "stop", "note"])?;
         Some(Check {
-            name: block.name_text().to_string(),
+            name: block.own_name(),
             title: block.title_in_words(),
             require,
             inputs: scope.inputs,
             unless,
             words: normalised(&field.value.text),
             otherwise,
-            span: block.span().clone(),
+            span: block.place(),
         })
     }
 
@@ -116,22 +109,37 @@ impl Checker<'_> {
         )
     }
 
-    /// What is done with a fault: one of the treatments that the field allows; by default the
-    /// section is not used.
+    /// What is done with a fault: one of the treatments that the field allows, by default the
+    /// first.
     pub fn on_fault(&mut self, block: &Block, key: &str, treatments: &[&str]) -> Option<OnFault> {
-        let Some(field) = block.field(key) else { return Some(OnFault::NotUsed) };
+        let treatments: Vec<(&str, OnFault)> = treatments
+            .iter()
+            .map(|word| match *word {
+                "not used" => (*word, OnFault::NotUsed),
+                "note" => (*word, OnFault::Note),
+                "not assessable" => (*word, OnFault::NotAssessable),
+                _ => (*word, OnFault::Stop),
+            })
+            .collect();
+        let Some(field) = block.field(key) else {
+            return treatments.first().map(|(_, by_default)| *by_default);
+        };
+        self.one_of(field, &treatments, |word| format!("`{word}` is not a treatment of faults"))
+    }
+
+    /// What the word of a field stands for; a problem that says why where it is none of them.
+    fn one_of<T: Copy>(
+        &mut self,
+        field: &Field,
+        choices: &[(&str, T)],
+        says: fn(&str) -> String,
+    ) -> Option<T> {
         let word = self.choice_field(field)?;
-        match word.as_str() {
-            word if !treatments.contains(&word) => {}
-            "not used" => return Some(OnFault::NotUsed),
-            "note" => return Some(OnFault::Note),
-            "not assessable" => return Some(OnFault::NotAssessable),
-            _ => return Some(OnFault::Stop),
+        if let Some((_, found)) = choices.iter().find(|(known, _)| *known == word) {
+            return Some(*found);
         }
-        self.refuse(
-            error("unknown-choice", format!("`{word}` is not a treatment of faults"), field)
-                .suggest(&word, treatments.iter().copied()),
-        )
+        let known = choices.iter().map(|(known, _)| *known);
+        self.refuse(error("unknown-choice", says(&word), field).suggest(&word, known))
     }
 
     /// The block `sections`, but for found sections and reports.
@@ -151,17 +159,10 @@ impl Checker<'_> {
         };
         let Some(block) = block else { return rules };
         if let Some(field) = block.field("use") {
-            match self.choice_field(field).as_deref().unwrap_or("sections") {
-                // How they are found is looked at when all names are known.
-                "sections" | FOUND_SECTIONS => {}
-                "whole records" => rules.whole_records = true,
-                other => {
-                    self.problems.push(
-                        error("unknown-choice", format!("`use` cannot be `{other}`"), field)
-                            .suggest(other, ["sections", FOUND_SECTIONS, "whole records"]),
-                    );
-                }
-            }
+            // How sections are found is looked at when all names are known.
+            let uses = [("sections", false), (FOUND_SECTIONS, false), ("whole records", true)];
+            let whole = self.one_of(field, &uses, |word| format!("`use` cannot be `{word}`"));
+            rules.whole_records = whole == Some(true);
         }
         if let Some(field) = block.field("zone") {
             let name = normalised(&field.value.text);
@@ -180,21 +181,10 @@ impl Checker<'_> {
         rules.margin = block.field("margin").and_then(|field| self.along_axis(field, false));
         rules.keep = block.field("keep").and_then(|field| self.keep(field));
         if let Some(field) = block.field("percentiles") {
-            let word =
-                self.choice_field(field).unwrap_or_else(|| Method::Linear.name().to_string());
-            match Method::from_name(&word) {
-                Some(method) => rules.percentiles = method,
-                None => {
-                    self.problems.push(
-                        error(
-                            "unknown-choice",
-                            format!("`{word}` is not a percentile rule"),
-                            field,
-                        )
-                        .suggest(&word, Method::NAMES.iter().map(|(_, name)| *name)),
-                    );
-                }
-            }
+            let methods = Method::ALL.map(|method| (method.name(), method));
+            let method =
+                self.one_of(field, &methods, |word| format!("`{word}` is not a percentile rule"));
+            rules.percentiles = method.unwrap_or(Method::Linear);
         }
         rules
     }
@@ -213,14 +203,9 @@ impl Checker<'_> {
             "n-1" => 1,
             "n" => 0,
             other => {
-                self.problems.push(
-                    error(
-                        "unknown-choice",
-                        format!("`{other}` is not a divisor of the variance"),
-                        field,
-                    )
-                    .help("write `n-1` or `n`"),
-                );
+                let says = format!("`{other}` is not a divisor of the variance");
+                let problem = error("unknown-choice", says, field).help("write `n-1` or `n`");
+                self.problems.push(problem);
                 1
             }
         }
@@ -252,14 +237,9 @@ impl Checker<'_> {
     pub fn zones_match(&mut self, rules: &SectionRules) {
         let Some(index) = rules.zone else {
             if let Some(block) = self.blocks.iter().find(|block| block.kind.text == "zone") {
-                self.problems.push(
-                    error(
-                        "no-zone-column",
-                        "there are zones, but no section column states the zone of a section",
-                        block,
-                    )
-                    .help("add to `sections`: `zone zone`"),
-                );
+                let says = "there are zones, but no section column states the zone of a section";
+                let help = "add to `sections`: `zone zone`";
+                self.problems.push(error("no-zone-column", says, block).help(help));
             }
             return;
         };

@@ -2,8 +2,8 @@
 //! expressions, operations along the axis.
 
 use super::Checker;
-use super::names::{Assignment, Channel, SignalDef};
-use super::plan::{AxisOperation, Expr, Kind, Origin, Side, Type};
+use super::names::{Assignment, Signal};
+use super::plan::{AxisOperation, Expr, Kind, Origin, Side};
 use super::scope::Scope;
 use super::steps::after;
 use crate::problem::error;
@@ -34,9 +34,9 @@ impl Checker<'_> {
             return self
                 .refuse(error("window-in-signal", says, filter).also(&window.span, "this step"));
         }
-        let dimension = after(&steps, inner.dimension());
-        let ty = Type::Samples { dimension, track: inner.track() };
-        Some(Expr { kind: Kind::Filtered(Box::new(inner), steps), ty, span })
+        let (dimension, track) = (after(&steps, inner.dimension()), inner.track());
+        let kind = Kind::Filtered(Box::new(inner), steps);
+        Some(Expr::samples(kind, dimension, track, &span))
     }
 
     /// An operation along the axis: `shifted(X, 2 m)`, `derivative(X)`, `integral(X, time)`.
@@ -101,8 +101,9 @@ impl Checker<'_> {
             AxisOperation::Derivative { .. } => signal.dimension() / along,
             AxisOperation::Integral { .. } => signal.dimension() * along,
         };
-        let ty = Type::Samples { dimension, track: signal.track() };
-        Some(Expr { kind: Kind::OverAxis(operation, Box::new(signal)), ty, span })
+        let track = signal.track();
+        let kind = Kind::OverAxis(operation, Box::new(signal));
+        Some(Expr::samples(kind, dimension, track, &span))
     }
 
     /// `mean of Y` among samples: the number of the section, taken from each of them.
@@ -116,13 +117,13 @@ impl Checker<'_> {
         let reducer = self.reducer(reducer, true)?;
         let of = self.expr(of, scope)?;
         let dimension = reducer.gives(of.dimension(), self.axis_dimension());
-        let ty = Type::Samples { dimension, track: of.track() };
-        Some(Expr { kind: Kind::Level(reducer, Box::new(of)), ty, span })
+        let track = of.track();
+        Some(Expr::samples(Kind::Level(reducer, Box::new(of)), dimension, track, &span))
     }
 
     /// Whether a channel or signal has this name.
     pub fn is_signal(&self, name: &str) -> bool {
-        self.names.channels.contains_key(name) || self.names.signals.contains_key(name)
+        self.names.signals.contains_key(name)
     }
 
     /// The samples of one side: `simulated`, `measured`.
@@ -136,8 +137,7 @@ impl Checker<'_> {
                 "elsewhere an expression is evaluated for simulation and measurement alike",
             ));
         };
-        let ty = Type::Samples { dimension, track: false };
-        Some(Expr { kind: Kind::Side(side), ty, span: span.clone() })
+        Some(Expr::samples(Kind::Side(side), dimension, false, span))
     }
 
     /// Reports a name of no channel or signal.
@@ -154,54 +154,36 @@ impl Checker<'_> {
                 let members = names.places.get(*place).map(|known| &known.members);
                 members.is_some_and(|members| members.iter().any(|own| own == member))
             };
-            let place = names.channels.get(channel)?.places.iter().find(has)?;
+            let known = names.signals.get(channel).filter(|known| known.is.is_none())?;
+            let place = known.places.iter().find(has)?;
             Some(format!("`{channel}` at a position: `{channel} at {place} {member}`"))
         });
         self.problems.push(match column {
             Some(help) => problem.help(help),
-            None => problem.suggest(name, names.channels.keys().chain(names.signals.keys())),
+            None => problem.suggest(name, names.signals.keys()),
         });
     }
 
-    /// The samples of a channel at a position.
-    pub fn channel_at(
-        &mut self,
-        name: &str,
-        channel: &Channel,
-        span: &Origin,
-        at: &Assignment,
-    ) -> Option<Expr> {
-        let column = self.fill(name, &channel.column, &channel.places, &channel.span, span, at)?;
-        let Channel { unit, track, .. } = channel.clone();
-        let ty = Type::Samples { dimension: unit.dimension, track };
-        let kind = Kind::Channel { column, channel: name.to_string(), unit };
-        Some(Expr { kind, ty, span: span.clone() })
-    }
-
-    /// The samples of a computed signal at a position.
-    pub fn signal_at(
-        &mut self,
-        name: &str,
-        signal: &SignalDef,
-        span: &Span,
-        scope: &Scope,
-    ) -> Option<Expr> {
-        let at = &scope.at;
-        self.fill(name, &signal.named, &signal.places, &signal.span, span, at)?;
-        let own: Assignment = signal
-            .places
-            .iter()
-            .filter_map(|place| at.get(place).map(|member| (place.clone(), member.clone())))
-            .collect();
+    /// The samples of a channel or of a computed signal at a position.
+    pub fn signal_at(&mut self, name: &str, span: &Origin, scope: &Scope) -> Option<Expr> {
+        let signal = self.names.signals.get(name)?.clone();
+        let column = self.fill(name, &signal, span, &scope.at)?;
+        let Some(is) = &signal.is else {
+            let unit = signal.unit?;
+            let dimension = unit.dimension;
+            let kind = Kind::Channel { column, channel: name.to_string(), unit };
+            return Some(Expr::samples(kind, dimension, signal.track, span));
+        };
+        let of_place = |place: &String| Some((place.clone(), scope.at.get(place)?.clone()));
+        let own: Assignment = signal.places.iter().filter_map(of_place).collect();
         let found = self.inside("signal", name, span, |checker| {
-            let mut scope = Scope::samples(&own, scope.own_of_both);
-            checker.expr(&signal.is, &mut scope)
+            checker.expr(is, &mut Scope::samples(&own, scope.own_of_both))
         })?;
         match &signal.unit {
             Some(unit) if unit.dimension != found.dimension() => {
                 let words = found.dimension().in_words();
                 let says = format!("signal `{name}` is declared in {unit}, but is {words}");
-                self.refuse(error("unit-mismatch", says, &signal.span).also(&found.span, words))
+                self.refuse(error("unit-mismatch", says, &signal.span).also(&found, words))
             }
             _ => Some(found),
         }
@@ -211,20 +193,18 @@ impl Checker<'_> {
     pub fn fill(
         &mut self,
         name: &str,
-        pattern: &str,
-        places: &[String],
-        defined: &Span,
+        signal: &Signal,
         used: &Span,
         at: &Assignment,
     ) -> Option<String> {
-        let mut filled = pattern.to_string();
-        for place in places {
+        let mut filled = signal.pattern.clone();
+        for place in &signal.places {
             let Some(member) = at.get(place) else {
                 let says =
                     format!("`{name}` has a position for each {place}; the {place} is not stated");
                 return self.refuse(
                     error("open-place", says, used)
-                        .also(defined, format!("at each {place}"))
+                        .also(&signal.span, format!("at each {place}"))
                         .help(format!("write `{name} at {place} ...`")),
                 );
             };

@@ -2,7 +2,8 @@
 
 use super::Checker;
 use super::plan::StepSpec;
-use super::steps::{Filled, phase};
+use super::steps::phase;
+use super::wordings::Filled;
 use crate::catalog::{Part, StepEntry};
 use crate::metrics::filter::{Roots, TransferFunction, Warping};
 use crate::problem::error;

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use super::Checker;
 use super::names::normalised;
 use super::plan::{Decision, Evaluation, Over, Quantity, Records, Rule, Side, VerdictRule};
+use super::quantities::is_whole;
+use super::{Checker, all};
 use crate::problem::{error, warning};
-use crate::source::Span;
+use crate::source::{Located, Span};
 use crate::syntax::document::{Block, Field};
 use crate::syntax::from_pest;
 use crate::syntax::phrase::{At, OverVerdicts, Phrase, Verdict as Written};
@@ -39,10 +40,7 @@ impl Checker<'_> {
         let blocks: Vec<Block> =
             self.blocks_of("verdict").filter(|block| block.name.is_some()).cloned().collect();
         let first = usize::from(unnamed.is_some() || blocks.is_empty());
-        let names = Names {
-            names: blocks.iter().map(|block| block.name_text().to_string()).collect(),
-            first,
-        };
+        let names = Names { names: blocks.iter().map(|block| block.own_name()).collect(), first };
         let mut verdicts = Vec::new();
         if first == 1 {
             verdicts.push(self.without_name(unnamed, head, quantities, &names));
@@ -50,7 +48,7 @@ impl Checker<'_> {
         verdicts.extend(blocks.iter().map(|block| self.with_name(block, quantities, &names)));
         let mut done = BTreeSet::new();
         for (at, block) in blocks.iter().enumerate() {
-            self.follow(first + at, &verdicts, &block.span().clone(), &mut done);
+            self.follow(first + at, &verdicts, &block.place(), &mut done);
         }
         self.without_verdict(quantities, &verdicts);
         verdicts
@@ -64,15 +62,10 @@ impl Checker<'_> {
         names: &Names,
     ) -> VerdictRule {
         let all: Vec<usize> = (0..quantities.len()).collect();
-        let (words, own_words) = block.map_or_else(
-            || (VALIDATED.map(String::from), false),
-            |block| self.verdict_words(block, VALIDATED),
-        );
+        let (words, own_words) = self.verdict_words(block, VALIDATED);
         let field = block.and_then(|block| block.field("validated"));
-        let rule = field.map_or_else(
-            || "when every limit holds".to_string(),
-            |field| normalised(&field.value.text),
-        );
+        let rule =
+            field.map_or("when every limit holds".into(), |field| normalised(&field.value.text));
         let decision = match field {
             Some(field) => self.decision(field, all, None, quantities, names),
             None => Decision::Limits { rule: Rule::EveryLimit, quantities: all },
@@ -87,12 +80,12 @@ impl Checker<'_> {
             clause: None,
             source: None,
             notes: block.map_or_else(Vec::new, Block::notes),
-            span: block.map_or_else(|| head.span().clone(), |block| block.span().clone()),
+            span: block.unwrap_or(head).place(),
         }
     }
 
     fn with_name(&mut self, block: &Block, quantities: &[Quantity], names: &Names) -> VerdictRule {
-        let (words, own_words) = self.verdict_words(block, HOLDS);
+        let (words, own_words) = self.verdict_words(Some(block), HOLDS);
         let (holds, person, of) =
             (block.field("holds"), block.field("judged by"), block.field("of"));
         let about = self.about(of, quantities);
@@ -111,23 +104,18 @@ impl Checker<'_> {
                 Decision::Person(person)
             }
             (holds, _) => {
-                let says = match holds {
-                    None => format!(
-                        "verdict `{}` has neither `holds` nor `judged by`",
-                        block.name_text()
-                    ),
-                    Some(_) => {
-                        format!("verdict `{}` has both `holds` and `judged by`", block.name_text())
-                    }
+                let has = match holds {
+                    None => "neither `holds` nor `judged by`",
+                    Some(_) => "both `holds` and `judged by`",
                 };
-                self.problems.push(
-                    error("verdict-rule", says, block).help("write one of `holds` and `judged by`"),
-                );
+                let says = format!("verdict `{}` has {has}", block.name_text());
+                let help = "write one of `holds` and `judged by`";
+                self.problems.push(error("verdict-rule", says, block).help(help));
                 Decision::Limits { rule: Rule::EveryLimit, quantities: about }
             }
         };
         VerdictRule {
-            name: Some(block.name_text().to_string()),
+            name: Some(block.own_name()),
             title: block.title_in_words(),
             decision,
             words,
@@ -136,13 +124,14 @@ impl Checker<'_> {
             clause: block.text("clause"),
             source: block.text("source"),
             notes: block.notes(),
-            span: block.span().clone(),
+            span: block.place(),
         }
     }
 
     /// The two words of a verdict, and whether the protocol states them.
-    fn verdict_words(&mut self, block: &Block, default: [&str; 2]) -> ([String; 2], bool) {
-        let Some(field) = block.field("words") else { return (default.map(String::from), false) };
+    fn verdict_words(&mut self, block: Option<&Block>, default: [&str; 2]) -> ([String; 2], bool) {
+        let default = (default.map(String::from), false);
+        let Some(field) = block.and_then(|block| block.field("words")) else { return default };
         let parts: Vec<String> = field
             .value
             .text
@@ -163,10 +152,9 @@ impl Checker<'_> {
             self.problems.push(
                 error("verdict-words", says, field).help("write the word if it holds and the word if it does not, separated by a comma: `accepted, not accepted`"),
             );
-            return (default.map(String::from), false);
+            return default;
         }
-        let mut words = parts.into_iter();
-        (std::array::from_fn(|_| words.next().unwrap_or_default()), true)
+        <[String; 2]>::try_from(parts).map_or(default, |words| (words, true))
     }
 
     /// The quantities that a verdict uses, each once, in their order; all where it has no `of`.
@@ -174,12 +162,10 @@ impl Checker<'_> {
         let all = || (0..quantities.len()).collect();
         let Some(field) = of else { return all() };
         let Some(items) = from_pest::list(&field.value, self.problems) else { return all() };
-        let known: Vec<String> =
-            self.blocks_of("quantity").map(|block| block.name_text().to_string()).collect();
+        let known: Vec<String> = self.blocks_of("quantity").map(|block| block.own_name()).collect();
         let mut found = BTreeSet::new();
         for item in &items {
             let name = item.node.as_str();
-            let at = item.place();
             if known.iter().any(|known| known == name) {
                 // A quantity that is not in the plan has an error that is reported elsewhere.
                 found.extend(quantities.iter().position(|quantity| quantity.id == name));
@@ -187,15 +173,16 @@ impl Checker<'_> {
                 let before = found.len();
                 found.extend((0..quantities.len()).filter(|&at| kind(&quantities[at]) == name));
                 if found.len() == before && !self.problems.any_error() {
-                    self.problems.push(error(
-                        "unknown-quantity",
-                        format!("no quantity is {}", of_kind(name)),
-                        &at,
-                    ));
+                    let of_kind = match name {
+                        "compared" => "a comparison".into(),
+                        side => format!("`from {side}`"),
+                    };
+                    let says = format!("no quantity is {of_kind}");
+                    self.problems.push(error("unknown-quantity", says, item));
                 }
             } else {
                 self.problems.push(
-                    error("unknown-quantity", format!("there is no quantity `{name}`"), &at)
+                    error("unknown-quantity", format!("there is no quantity `{name}`"), item)
                         .suggest(name, known.iter().map(String::as_str).chain(KINDS)),
                 );
             }
@@ -241,41 +228,29 @@ impl Checker<'_> {
             (false, Some(_)) => (about.len(), "quantities"),
             (false, None) => (self.blocks_of("quantity").count(), "quantities"),
         };
-        match self.how_many(&count, there, what) {
-            Some(wanted) if of_limits => {
-                Decision::Limits { rule: Rule::AtLeastLimits(wanted), quantities: about }
-            }
-            Some(wanted) => {
-                Decision::Limits { rule: Rule::AtLeastQuantities(wanted), quantities: about }
-            }
-            None => every(about),
-        }
+        let rule = match self.how_many(&count, there, what) {
+            Some(wanted) if of_limits => Rule::AtLeastLimits(wanted),
+            Some(wanted) => Rule::AtLeastQuantities(wanted),
+            None => Rule::EveryLimit,
+        };
+        Decision::Limits { rule, quantities: about }
     }
 
     /// A whole number, not larger than the number of things there are.
     fn how_many(&mut self, count: &Phrase, there: usize, what: &str) -> Option<usize> {
         let (wanted, dimension) = self.constant_phrase(count)?;
-        if dimension != Dimension::ONE || wanted < 1.0 || wanted.fract() != 0.0 {
+        if dimension != Dimension::ONE || !is_whole(wanted, 1.0..=f64::INFINITY) {
             return self.refuse(error("not-a-count", "expected a whole number above zero", count));
         }
         let wanted = wanted as usize;
         if wanted > there && !self.problems.any_error() {
-            self.problems.push(error(
-                "out-of-range",
-                format!("the rule needs {wanted} {what}, there are {there}"),
-                count,
-            ));
+            let says = format!("the rule needs {wanted} {what}, there are {there}");
+            self.problems.push(error("out-of-range", says, count));
         }
         Some(wanted)
     }
 
     fn over(&mut self, over: &OverVerdicts, names: &Names) -> Option<Over> {
-        // All parts are checked, so that all unknown names are reported.
-        let all = |checker: &mut Self, parts: &[OverVerdicts]| {
-            let found: Vec<Option<Over>> =
-                parts.iter().map(|part| checker.over(part, names)).collect();
-            found.into_iter().collect::<Option<Vec<_>>>()
-        };
         Some(match over {
             OverVerdicts::Holds(name) => Over::Holds(self.verdict_named(name, names)?),
             OverVerdicts::Same(one, other) => {
@@ -284,16 +259,18 @@ impl Checker<'_> {
                 Over::Same(one?, other?)
             }
             OverVerdicts::AtLeast { count, of } => {
-                let found: Vec<Option<usize>> =
-                    of.iter().map(|name| self.verdict_named(name, names)).collect();
-                let mut found = found.into_iter().collect::<Option<Vec<usize>>>()?;
+                let mut found = all(of.iter().map(|name| self.verdict_named(name, names)))?;
                 found.sort_unstable();
                 found.dedup();
                 Over::AtLeast(self.how_many(count, found.len(), "verdicts")?, found)
             }
             OverVerdicts::Not(inner) => Over::Not(Box::new(self.over(inner, names)?)),
-            OverVerdicts::All(parts) => Over::All(all(self, parts)?),
-            OverVerdicts::Any(parts) => Over::Any(all(self, parts)?),
+            OverVerdicts::All(parts) => {
+                Over::All(all(parts.iter().map(|part| self.over(part, names)))?)
+            }
+            OverVerdicts::Any(parts) => {
+                Over::Any(all(parts.iter().map(|part| self.over(part, names)))?)
+            }
         })
     }
 
@@ -339,18 +316,11 @@ impl Checker<'_> {
         let about = |at: usize| {
             verdicts.iter().any(|verdict| matches!(&verdict.decision, Decision::Limits { quantities, .. } if quantities.contains(&at)))
         };
-        for (at, quantity) in
-            quantities.iter().enumerate().filter(|(_, quantity)| !quantity.limits.is_empty())
-        {
-            if !about(at) {
-                self.problems.push(warning(
-                    "quantity-without-verdict",
-                    format!(
-                        "no verdict uses quantity `{}`: its limits have no effect",
-                        quantity.id
-                    ),
-                    &quantity.span,
-                ));
+        for (at, quantity) in quantities.iter().enumerate() {
+            if !quantity.limits.is_empty() && !about(at) {
+                let id = &quantity.id;
+                let says = format!("no verdict uses quantity `{id}`: its limits have no effect");
+                self.problems.push(warning("quantity-without-verdict", says, &quantity.span));
             }
         }
     }
@@ -365,8 +335,4 @@ fn kind(quantity: &Quantity) -> &'static str {
         Evaluation::Values { records: Records::Of(_), .. } => "simulated",
         _ => "compared",
     }
-}
-
-fn of_kind(word: &str) -> String {
-    if word == "compared" { "a comparison".into() } else { format!("`from {word}`") }
 }

@@ -1,8 +1,10 @@
 //! Builds the graph from a plan. It cannot fail: every rule of a plan has an operation.
 
-use indexmap::IndexMap;
+mod signals;
 
 use std::sync::Arc;
+
+use indexmap::IndexMap;
 
 use super::{
     FindNodes, Graph, InputNode, Joint, Label, LimitNodes, Node, NodeId, Operation,
@@ -10,14 +12,19 @@ use super::{
 };
 use crate::check::evaluate::{shape, words};
 use crate::check::plan::{
-    AxisOperation, Decision, Evaluation, Expr, Input, Key, Kind, Limit, OfSignals, Operator, Plan,
-    Plausibility, Position, Quantity, Report, Scope, Step, StepSpec, Taken, Test, Valued,
+    Decision, Evaluation, Expr, Input, Key, Kind, Limit, OfSignals, Plan, Plausibility, Position,
+    Quantity, Report, Scope, Step, Taken, Test, Valued,
 };
 use crate::source::Span;
 use crate::units::Dimension;
 
 pub fn from_plan(plan: &Plan) -> Graph {
-    let mut builder = Builder { axis: plan.axis.unit.dimension, ..Builder::default() };
+    let mut builder = Builder {
+        axis: plan.axis.unit.dimension,
+        nodes: Vec::new(),
+        known: IndexMap::new(),
+        classes: IndexMap::new(),
+    };
     let checks = plan
         .checks
         .iter()
@@ -49,17 +56,6 @@ struct Builder {
     /// The nodes built so far, by operation and inputs as text.
     known: IndexMap<String, NodeId>,
     classes: IndexMap<String, usize>,
-}
-
-impl Default for Builder {
-    fn default() -> Self {
-        Self {
-            axis: Dimension::LENGTH,
-            nodes: Vec::new(),
-            known: IndexMap::new(),
-            classes: IndexMap::new(),
-        }
-    }
 }
 
 /// The own signal of a rule: filtered over the record, processed in the section.
@@ -131,230 +127,9 @@ impl Builder {
         self.nodes.len() - 1
     }
 
-    /// The node of a signal, or of a number that is constant along the record.
-    fn signal(&mut self, signal: &Expr) -> NodeId {
-        let (dimension, from) = (signal.dimension(), &signal.span);
-        match &signal.kind {
-            Kind::Channel { column, channel, .. } => {
-                let record = if signal.track() { "track" } else { "record" };
-                self.add(
-                    Operation::Read { column: column.clone() },
-                    Vec::new(),
-                    dimension,
-                    from,
-                    column.clone(),
-                    format!("{record} {channel}"),
-                )
-            }
-            Kind::Binary(operator, left, right) => {
-                let inputs = vec![self.signal(left), self.signal(right)];
-                let label = self.arithmetic_label(*operator, inputs[0], inputs[1]);
-                self.add(
-                    Operation::Arithmetic(*operator),
-                    inputs,
-                    dimension,
-                    from,
-                    label,
-                    format!("{operator:?}"),
-                )
-            }
-            Kind::Negative(inner) => {
-                let inner = self.signal(inner);
-                let label = format!("-{}", self.grouped(inner));
-                self.add(
-                    Operation::Negative,
-                    vec![inner],
-                    dimension,
-                    from,
-                    label,
-                    "negative".into(),
-                )
-            }
-            Kind::Power(inner, exponent) => {
-                let inner = self.signal(inner);
-                let label = format!("{}^{exponent}", self.grouped(inner));
-                self.add(
-                    Operation::Power(*exponent),
-                    vec![inner],
-                    dimension,
-                    from,
-                    label,
-                    format!("power {exponent}"),
-                )
-            }
-            Kind::Call(function, arguments) => {
-                let inputs: Vec<NodeId> =
-                    arguments.iter().map(|argument| self.signal(argument)).collect();
-                let label = format!("{}({})", function.name, self.joined(&inputs, ", "));
-                self.add(
-                    Operation::Apply(function),
-                    inputs,
-                    dimension,
-                    from,
-                    label,
-                    format!("apply {}", function.name),
-                )
-            }
-            Kind::Filtered(inner, steps) => {
-                let inner = self.signal(inner);
-                steps.iter().fold(inner, |node, step| self.step(node, step))
-            }
-            Kind::OverAxis(operation, inner) => self.over_axis(operation, inner, signal),
-            Kind::Level(reducer, inner) => {
-                let (_, cut) = self.processed(inner, &[], from);
-                let label = format!("{} of {}", reducer.in_words(), self.origin(cut));
-                let kind = format!("reduce {}", reducer.in_words());
-                let number = self.add(
-                    Operation::Reduce(*reducer),
-                    vec![cut],
-                    dimension,
-                    from,
-                    reducer.in_words(),
-                    kind,
-                );
-                self.add(Operation::Level, vec![number], dimension, from, label, "level".into())
-            }
-            Kind::Cases(arms, otherwise) => {
-                let mut inputs: Vec<NodeId> =
-                    arms.iter().map(|(signal, _)| self.signal(signal)).collect();
-                if let Some(otherwise) = otherwise {
-                    inputs.push(self.signal(otherwise));
-                }
-                let conditions: Vec<Expr> =
-                    arms.iter().map(|(_, condition)| condition.clone()).collect();
-                let kind = format!(
-                    "select {}",
-                    conditions.iter().map(shape).collect::<Vec<_>>().join(";")
-                );
-                let label = format!("one of {}", self.joined(&inputs, ", "));
-                self.add(Operation::Select(conditions), inputs, dimension, from, label, kind)
-            }
-            // The checker allows sides only in values taken from both sides, which have no node.
-            _ => {
-                let kind = format!("constant {}", shape(signal));
-                let operation = Operation::Constant(signal.clone());
-                self.add(operation, Vec::new(), dimension, from, words(signal), kind)
-            }
-        }
-    }
-
-    fn over_axis(&mut self, operation: &AxisOperation, inner: &Expr, signal: &Expr) -> NodeId {
-        let inner = self.signal(inner);
-        let of_time = |over_time: bool| if over_time { ", time" } else { "" };
-        let (name, more, kind) = match operation {
-            AxisOperation::Shifted(distance) => {
-                ("shifted", format!(", {}", words(distance)), shape(distance))
-            }
-            AxisOperation::Derivative { over_time } => {
-                ("derivative", of_time(*over_time).to_string(), over_time.to_string())
-            }
-            AxisOperation::Integral { over_time } => {
-                ("integral", of_time(*over_time).to_string(), over_time.to_string())
-            }
-        };
-        let label = format!("{name}({}{more})", self.named(inner));
-        let operation = Operation::OverAxis(operation.clone());
-        self.add(
-            operation,
-            vec![inner],
-            signal.dimension(),
-            &signal.span,
-            label,
-            format!("{name} {kind}"),
-        )
-    }
-
-    fn joined(&self, nodes: &[NodeId], between: &str) -> String {
-        nodes.iter().map(|&node| self.named(node)).collect::<Vec<_>>().join(between)
-    }
-
-    /// Name of a signal inside an expression; a filtered signal is named after its input.
-    fn named(&self, node: NodeId) -> String {
-        match (&self.nodes[node].operation, self.nodes[node].inputs.first()) {
-            (Operation::Step(_), Some(&input)) => format!("{} filtered", self.grouped(input)),
-            _ => self.nodes[node].label.text.clone(),
-        }
-    }
-
-    /// The name, in parentheses where it has several parts.
-    fn grouped(&self, node: NodeId) -> String {
-        match self.nodes[node].operation {
-            Operation::Arithmetic(_) | Operation::Negative | Operation::Power(_) => {
-                format!("({})", self.named(node))
-            }
-            _ => self.named(node),
-        }
-    }
-
-    fn arithmetic_label(&self, operator: Operator, left: NodeId, right: NodeId) -> String {
-        let is_sum = |node: NodeId| {
-            matches!(
-                self.nodes[node].operation,
-                Operation::Arithmetic(Operator::Add | Operator::Subtract)
-            )
-        };
-        let product = matches!(operator, Operator::Multiply | Operator::Divide);
-        let left = if product && is_sum(left) { self.grouped(left) } else { self.named(left) };
-        let is_part =
-            matches!(self.nodes[right].operation, Operation::Arithmetic(_) | Operation::Negative);
-        let right = if is_part && (product || is_sum(right)) {
-            self.grouped(right)
-        } else {
-            self.named(right)
-        };
-        format!("{left}{}{right}", symbol(operator))
-    }
-
-    fn step(&mut self, node: NodeId, step: &Step) -> NodeId {
-        let dimension = self.nodes[node].dimension * step.factor;
-        let kind = format!("step {:?} {}", step.kind, step.factor);
-        self.add(
-            Operation::Step(step.kind.clone()),
-            vec![node],
-            dimension,
-            &step.span,
-            step.words.clone(),
-            kind,
-        )
-    }
-
-    /// The filtered signal of the record and the processed signal of the section.
-    fn processed(&mut self, signal: &Expr, chain: &[Step], from: &Span) -> (NodeId, NodeId) {
-        let mut node = self.signal(signal);
-        let inside = chain
-            .iter()
-            .position(|step| matches!(step.kind, StepSpec::Window { .. } | StepSpec::RemoveMean))
-            .unwrap_or(chain.len());
-        for step in &chain[..inside] {
-            node = self.step(node, step);
-        }
-        let filtered = node;
-        // A window takes samples up to the ends of the section itself; all other steps work on the
-        // samples cut out.
-        if !matches!(chain.get(inside).map(|step| &step.kind), Some(StepSpec::Window { .. })) {
-            let dimension = self.nodes[node].dimension;
-            node = self.add(
-                Operation::Cut,
-                vec![node],
-                dimension,
-                from,
-                "samples of the section".to_owned(),
-                "cut".into(),
-            );
-        }
-        for step in &chain[inside..] {
-            let dimension = self.nodes[node].dimension;
-            let kind = format!("window {:?}", step.kind);
-            node = self.add(
-                Operation::Window(step.kind.clone()),
-                vec![node],
-                dimension,
-                &step.span,
-                step.words.clone(),
-                kind,
-            );
-        }
-        (filtered, node)
+    fn own<'a>(&mut self, signal: &Expr, chain: &'a [Step], from: &Span) -> Own<'a> {
+        let (filtered, processed) = self.processed(signal, chain, from);
+        Own { filtered, processed, chain }
     }
 
     /// A value taken from a named signal, from the own signal, or from the own signal of both
@@ -362,8 +137,7 @@ impl Builder {
     fn input(&mut self, input: &Input, own: Option<Own<'_>>) -> InputNode {
         let own = match (&input.signal, own) {
             (Some(signal), _) if !matches!(input.taken, Taken::OfBoth(_)) => {
-                let (filtered, processed) = self.processed(signal, &input.chain, &input.span);
-                Own { filtered, processed, chain: &input.chain }
+                self.own(signal, &input.chain, &input.span)
             }
             (_, Some(own)) => own,
             // Not reached: the checker allows an input without signal only where there is an own
@@ -424,26 +198,15 @@ impl Builder {
         }
     }
 
-    /// The label of the signal that a processed signal was made from.
-    fn origin(&self, mut node: NodeId) -> String {
-        while let (Operation::Cut | Operation::Window(_) | Operation::Step(_), Some(&input)) =
-            (&self.nodes[node].operation, self.nodes[node].inputs.first())
-        {
-            node = input;
-        }
-        self.named(node)
-    }
-
     fn plausibility(&mut self, rule: &Plausibility) -> PlausibilityNodes {
-        let own: Vec<Option<Own<'_>>> = if rule.signals.is_empty() {
-            vec![None]
-        } else {
-            let own = |(_, signal): &(String, Expr)| {
-                let (filtered, processed) = self.processed(signal, &rule.chain, &rule.span);
-                Some(Own { filtered, processed, chain: &rule.chain })
-            };
-            rule.signals.iter().map(own).collect()
-        };
+        let mut own: Vec<Option<Own<'_>>> = rule
+            .signals
+            .iter()
+            .map(|(_, signal)| Some(self.own(signal, &rule.chain, &rule.span)))
+            .collect();
+        if own.is_empty() {
+            own.push(None);
+        }
         let position = |builder: &mut Self, own: Option<Own<'_>>| {
             let inputs = match &rule.test {
                 Test::Require(requirement) => {
@@ -550,8 +313,8 @@ impl Builder {
 
     fn position(&mut self, index: usize, quantity: &Quantity, number: usize) -> SignalNodes {
         let Position { name, signal, .. } = &quantity.positions[number];
-        let (filtered, processed) = self.processed(signal, &quantity.chain, &quantity.span);
-        let own = Own { filtered, processed, chain: &quantity.chain };
+        let own = self.own(signal, &quantity.chain, &quantity.span);
+        let Own { filtered, processed, .. } = own;
         let mut inputs = Vec::new();
         let (values, over, before) = match quantity.evaluation.as_ref() {
             Evaluation::Values { values, .. } => {
@@ -639,13 +402,4 @@ fn of_rows(scope: &Scope) -> String {
         words.push_str(&format!(", where {condition}"));
     }
     words
-}
-
-fn symbol(operator: Operator) -> &'static str {
-    match operator {
-        Operator::Add => " + ",
-        Operator::Subtract => " - ",
-        Operator::Multiply => " * ",
-        _ => " / ",
-    }
 }

@@ -152,6 +152,16 @@ impl Block {
         self.title_text().unwrap_or_else(|| self.name_text().replace('_', " "))
     }
 
+    /// The title, or the name as it is.
+    pub fn title_or_name(&self) -> String {
+        self.title_text().unwrap_or_else(|| self.own_name())
+    }
+
+    /// A copy of [`Self::name_text`].
+    pub fn own_name(&self) -> String {
+        self.name_text().to_owned()
+    }
+
     /// The name, or an empty text for a block without a name.
     pub fn name_text(&self) -> &str {
         self.name.as_ref().map_or("", |name| name.text.as_str())

@@ -57,14 +57,8 @@ impl YamlReader<'_> {
             let margin = nesting::block_at_margin(&key.text, node)
                 .filter(|_| rules::meant_kind(Form::Yaml, &key.text).is_none());
             if let Some(help) = margin {
-                self.reader.problems.push(
-                    error(
-                        "unknown-block",
-                        format!("`{}` is not a block of a protocol", key.text),
-                        &key.span,
-                    )
-                    .help(help),
-                );
+                let says = format!("`{}` is not a block of a protocol", key.text);
+                self.reader.problems.push(error("unknown-block", says, &key.span).help(help));
                 self.remarks.pass(end);
                 continue;
             }
@@ -164,20 +158,13 @@ impl YamlReader<'_> {
         }
         for (key, node) in node.entries() {
             self.remarks.pass(key.span.start);
-            let key_text =
-                Text { text: key.text.clone(), span: key.span.clone(), exact: key.exact };
+            let key = Text { text: key.text.clone(), span: key.span.clone(), exact: key.exact };
             match key.text.as_str() {
-                "title" => {
-                    let title =
-                        self.plain(&key_text, node, block.title.as_ref(), &mut block.comments);
-                    block.title = block.title.or(title);
-                }
+                "title" => self.plain(&key, node, &mut block.title, &mut block.comments),
                 "name" if kind.single && kind.named => {
-                    let name =
-                        self.plain(&key_text, node, block.name.as_ref(), &mut block.comments);
-                    block.name = block.name.or(name);
+                    self.plain(&key, node, &mut block.name, &mut block.comments);
                 }
-                _ => self.read_field(kind, key_text, node, &mut block),
+                _ => self.read_field(kind, key, node, &mut block),
             }
         }
         block.comments.after = self.remarks.deeper(&head, end);
@@ -189,30 +176,22 @@ impl YamlReader<'_> {
         &mut self,
         key: &Text,
         node: &Node,
-        first: Option<&Text>,
+        found: &mut Option<Text>,
         comments: &mut Comments,
-    ) -> Option<Text> {
+    ) {
         comments.before.extend(self.remarks.above());
         comments.put_beside(self.remarks.beside(node.span.end));
-        if let Some(first) = first {
-            self.reader.problems.push(
-                error(
-                    "duplicate-field",
-                    format!("a block can have only one `{}`", key.text),
-                    &key.span,
-                )
-                .also(&first.span, "the first"),
-            );
+        if let Some(first) = found {
+            let says = format!("a block can have only one `{}`", key.text);
+            self.reader
+                .problems
+                .push(error("duplicate-field", says, key).also(&*first, "the first"));
         } else if node.is_scalar() {
-            return Some(text(node));
+            *found = Some(text(node));
         } else {
-            self.wrong_shape(
-                &node.span,
-                format!("the {} is {}", key.text, node.kind_in_words()),
-                "expected one text",
-            );
+            let says = format!("the {} is {}", key.text, node.kind_in_words());
+            self.wrong_shape(&node.span, says, "expected one text");
         }
-        None
     }
 
     fn read_field(&mut self, kind: &'static Kind, key: Text, node: &Node, block: &mut Block) {
@@ -223,14 +202,8 @@ impl YamlReader<'_> {
             let nested = nesting::too_deep(&key.text, node)
                 .or_else(|| nesting::block_among_fields(kind, &key.text, node, beside));
             if let Some(help) = nested {
-                self.reader.problems.push(
-                    error(
-                        "unknown-field",
-                        format!("a `{}` has no field `{}`", kind.word, key.text),
-                        &key.span,
-                    )
-                    .help(help),
-                );
+                let says = format!("a `{}` has no field `{}`", kind.word, key.text);
+                self.reader.problems.push(error("unknown-field", says, &key).help(help));
                 return;
             }
         }
@@ -282,12 +255,8 @@ impl YamlReader<'_> {
                 Sort::Text => "expected one text".to_owned(),
             };
             let help = nesting::field_below_field(kind, known.word, node).unwrap_or(help);
-            self.wrong_shape(
-                &node.span,
-                format!("`{}` is {}", known.word, node.kind_in_words()),
-                &help,
-            );
-            return;
+            let says = format!("`{}` is {}", known.word, node.kind_in_words());
+            return self.wrong_shape(&node.span, says, &help);
         }
         let value = text(node);
         if known.sort == Sort::Phrase {
@@ -318,14 +287,9 @@ impl YamlReader<'_> {
                 opened = at;
             }
             if c == '#' && !inside {
-                self.reader.problems.push(
-                    error(
-                        "unexpected-text",
-                        "`#` is not allowed outside quotes",
-                        &phrase.place(at..at + 1),
-                    )
-                    .help("in the text form it begins a comment"),
-                );
+                let (says, place) = ("`#` is not allowed outside quotes", phrase.place(at..at + 1));
+                let help = "in the text form it begins a comment";
+                self.reader.problems.push(error("unexpected-text", says, &place).help(help));
             }
         }
         if quotes.inside {

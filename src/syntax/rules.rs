@@ -63,23 +63,24 @@ impl<'a> Reader<'a> {
             return Some(kind);
         }
         let owners = owners(word);
-        let problem = error("unknown-block", format!("`{word}` is not a block of a protocol"), at);
-        self.problems.push(match (near, owners.is_empty()) {
-            (Some(near), _) => problem.help(format!("did you mean `{}`?", spelt(near))),
-            (None, false) if self.form == Form::Lines => problem.help(format!(
-                "`{word}` is a field of {}; fields are indented below their block",
-                listed(&owners)
-            )),
-            (None, false) => problem.help(format!(
-                "`{word}` is a field of {}; fields are indented below the name of their block",
-                listed(&owners)
-            )),
-            (None, true) => {
+        let help = match near {
+            Some(near) => format!("did you mean `{}`?", spelt(near)),
+            None if owners.is_empty() => {
                 let mut known: Vec<&str> = KINDS.iter().map(spelt).collect();
                 known.dedup();
-                problem.help(format!("known here: {}", known.join(", ")))
+                format!("known here: {}", known.join(", "))
             }
-        });
+            None => {
+                let owners = listed(&owners);
+                let below = match form {
+                    Form::Lines => "their block",
+                    Form::Yaml => "the name of their block",
+                };
+                format!("`{word}` is a field of {owners}; fields are indented below {below}")
+            }
+        };
+        let says = format!("`{word}` is not a block of a protocol");
+        self.problems.push(error("unknown-block", says, at).help(help));
         near
     }
 
@@ -122,42 +123,38 @@ impl<'a> Reader<'a> {
         } else {
             words[..count.min(words.len())].join(" ")
         };
-        let block = match (of_twin, kind.named) {
-            (None, _) => format!("`{}`", kind.word),
-            (Some(_), true) => format!("`{}` with a name", kind.word),
-            (Some(_), false) => format!("`{}` without a name", kind.word),
+        let (word, group) = (kind.word, twin.group);
+        let of = match (of_twin, kind.named) {
+            (None, _) => "",
+            (Some(_), true) => " with a name",
+            (Some(_), false) => " without a name",
         };
-        let problem = error("unknown-field", format!("a {block} has no field `{written}`"), at);
-        if of_twin.is_some() {
-            self.problems.push(problem.help(match (kind.named, self.form) {
-                (true, Form::Lines) => {
-                    format!("it is a field of the `{}` without a name", kind.word)
-                }
-                (true, Form::Yaml) => format!("it is a field of `{}`", twin.group),
+        let help = if of_twin.is_some() {
+            match (kind.named, self.form) {
+                (true, Form::Lines) => format!("it is a field of the `{word}` without a name"),
+                (true, Form::Yaml) => format!("it is a field of `{group}`"),
                 (false, Form::Lines) => {
-                    format!("it is a field of a `{0}` with a name: `{0} some_name`", kind.word)
+                    format!("it is a field of a `{word}` with a name: `{word} some_name`")
                 }
-                (false, Form::Yaml) => format!("it is a field of `{}`, below a name", twin.group),
-            }));
-            return None;
-        }
-        self.problems.push(if written == "title" {
-            problem.help("write the title in quotes on the first line of its block")
-        } else if let ("remove", ["every", of, ..]) = (kind.word, words)
+                (false, Form::Yaml) => format!("it is a field of `{group}`, below a name"),
+            }
+        } else if written == "title" {
+            "write the title in quotes on the first line of its block".into()
+        } else if let ("remove", ["every", of, ..]) = (word, words)
             && kind.key(of).is_some()
         {
-            problem.help(format!("write `{of} every`"))
+            format!("write `{of} every`")
         } else if let Some((near, _)) = near {
-            problem.help(format!("did you mean `{}`?", near.word))
+            format!("did you mean `{}`?", near.word)
         } else if !other.is_empty() {
-            problem.help(format!("it is a field of {}", listed(&other)))
+            format!("it is a field of {}", listed(&other))
         } else {
-            problem.help(format!(
-                "known here: {}",
-                kind.keys.iter().map(|key| key.word).collect::<Vec<_>>().join(", ")
-            ))
-        });
-        near
+            let known: Vec<&str> = kind.keys.iter().map(|key| key.word).collect();
+            format!("known here: {}", known.join(", "))
+        };
+        let says = format!("a `{word}`{of} has no field `{written}`");
+        self.problems.push(error("unknown-field", says, at).help(help));
+        near.filter(|_| of_twin.is_none())
     }
 
     /// Adds a field to its block unless it is empty or already there.
@@ -167,25 +164,16 @@ impl<'a> Reader<'a> {
                 (super::keys::Sort::Text, Form::Lines) => quoted(key.example),
                 _ => key.example.to_owned(),
             };
-            self.problems.push(
-                error("missing-value", format!("`{}` has no value", key.word), &field.key.span)
-                    .help(format!(
-                        "for example: {}{} {example}",
-                        key.word,
-                        if self.form == Form::Yaml { ":" } else { "" }
-                    )),
-            );
+            let colon = if self.form == Form::Yaml { ":" } else { "" };
+            let help = format!("for example: {}{colon} {example}", key.word);
+            let says = format!("`{}` has no value", key.word);
+            self.problems.push(error("missing-value", says, &field.key).help(help));
             return;
         }
         if let Some(first) = block.field(key.word).filter(|_| !key.many) {
-            self.problems.push(
-                error(
-                    "duplicate-field",
-                    format!("a `{}` can have only one `{}`", kind.word, key.word),
-                    &field.key.span,
-                )
-                .also(&first.key.span, "the first"),
-            );
+            let says = format!("a `{}` can have only one `{}`", kind.word, key.word);
+            self.problems
+                .push(error("duplicate-field", says, &field.key).also(&first.key, "the first"));
             return;
         }
         block.fields.push(field);
@@ -193,55 +181,45 @@ impl<'a> Reader<'a> {
 
     /// Adds a block unless there is one with its kind and name.
     pub fn block(&mut self, kind: &'static Kind, block: Block) {
-        match &block.name {
-            None if kind.named => self.problems.push(
-                error(
-                    "missing-name",
-                    format!("this `{}` has no name", kind.word),
-                    &block.kind.span,
-                )
-                .help(match self.form {
-                    Form::Lines => {
-                        format!("write a name after the word: {} some_name", kind.word)
-                    }
+        let word = kind.word;
+        let problem = match &block.name {
+            None if kind.named => {
+                let help = match self.form {
+                    Form::Lines => format!("write a name after the word: {word} some_name"),
                     Form::Yaml if kind.single => "add an entry `name`".to_owned(),
                     Form::Yaml => "write its name as the key above its fields".to_owned(),
-                }),
-            ),
-            Some(name) if !kind.named => self.problems.push(
-                error(
-                    "unexpected-name",
-                    format!("a `{}` block has no name", kind.word),
-                    &name.span,
-                )
-                .help(format!("there is one `{}` block in a protocol", kind.word)),
-            ),
-            Some(name) if kind.has_families() && lines::is_family_name(&name.text) => {}
-            Some(name) if !lines::is_name(&name.text) => {
-                self.problems.push(match lines::is_family_name(&name.text) {
-                    true => bad_name(&name.text, &name.span).help(format!(
-                        "a `{}` cannot be a family: write its name without braces",
-                        kind.word
-                    )),
-                    false => bad_name(&name.text, &name.span),
-                })
+                };
+                let says = format!("this `{word}` has no name");
+                Some(error("missing-name", says, &block.kind).help(help))
             }
-            _ => {}
-        }
+            Some(name) if !kind.named => {
+                let says = format!("a `{word}` block has no name");
+                let help = format!("there is one `{word}` block in a protocol");
+                Some(error("unexpected-name", says, name).help(help))
+            }
+            Some(name) if kind.has_families() && lines::is_family_name(&name.text) => None,
+            Some(name) if !lines::is_name(&name.text) => {
+                let family = lines::is_family_name(&name.text).then(|| {
+                    format!("a `{word}` cannot be a family: write its name without braces")
+                });
+                Some(bad_name(name).help_if(family))
+            }
+            _ => None,
+        };
+        self.problems.add(problem);
         if let Some(title) = block.title.as_ref().filter(|title| title.text.trim().is_empty()) {
-            self.problems.push(error("missing-value", "the title is empty", &title.span));
+            self.problems.push(error("missing-value", "the title is empty", title));
         }
         // A block without its required name is not compared with others.
         if !kind.named || kind.single || block.name.is_some() {
-            let name = if kind.single { String::new() } else { block.name_text().to_owned() };
+            let name = if kind.single { String::new() } else { block.own_name() };
             if let Some(first) = self.seen.get(&(kind.word, name.clone())) {
-                let says = if kind.single {
-                    format!("a protocol can have only one `{}` block", kind.word)
+                let (code, says) = if kind.single {
+                    ("duplicate-block", format!("a protocol can have only one `{word}` block"))
                 } else {
-                    format!("there are two blocks `{} {name}`", kind.word)
+                    ("duplicate-name", format!("there are two blocks `{word} {name}`"))
                 };
-                let code = if kind.single { "duplicate-block" } else { "duplicate-name" };
-                self.problems.push(error(code, says, block.span()).also(first, "the first"));
+                self.problems.push(error(code, says, &block).also(first, "the first"));
                 return;
             }
             self.seen.insert((kind.word, name), block.span().clone());
@@ -255,14 +233,15 @@ pub fn unterminated(at: &Span) -> Problem {
         .help("write a quote inside a text as \\\"")
 }
 
-pub fn bad_name(name: &str, at: &Span) -> Problem {
+pub fn bad_name(written: &Text) -> Problem {
+    let name = &written.text;
     let made_of = if name.contains('{') {
         "in the name of a family, write a variable in braces without blanks: `Y_{part}`"
     } else {
         "use letters a to z, digits, `_`, `-` and `.`"
     };
     let help = lines::slip(name).unwrap_or_else(|| made_of.to_owned());
-    error("bad-name", format!("`{name}` cannot be a name"), at).help(help)
+    error("bad-name", format!("`{name}` cannot be a name"), written).help(help)
 }
 
 /// The longest key that the first words form, and its number of words.

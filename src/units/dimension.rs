@@ -53,6 +53,8 @@ impl Dimension {
     pub const LENGTH: Self = Self([1, 0, 0, 0, 0, 0]);
     pub const TIME: Self = Self([0, 0, 1, 0, 0, 0]);
     pub const FREQUENCY: Self = Self([0, 0, -1, 0, 0, 0]);
+    /// Of a frequency in cycles per length.
+    pub const PER_LENGTH: Self = Self([-1, 0, 0, 0, 0, 0]);
     pub const SPEED: Self = Self([1, 0, -1, 0, 0, 0]);
     pub const ACCELERATION: Self = Self([1, 0, -2, 0, 0, 0]);
     pub const FORCE: Self = Self([1, 1, -2, 0, 0, 0]);

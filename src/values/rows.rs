@@ -69,13 +69,13 @@ pub fn table(plan: &Plan, values: &Values) -> Result<RecordBatch, ArrowError> {
     all.text(QUANTITY, |row| Some(&row.quantity.id));
     all.text(SECTION, |row| Some(&row.unit.name));
     all.text(SIGNAL, |row| Some(&row.quantity.positions[row.row.position].name));
-    let positions = plan.quantities.iter().flat_map(|quantity| &quantity.positions);
-    let places = positions.flat_map(|position| &position.places).map(|(place, _)| place);
-    for place in places.collect::<BTreeSet<_>>() {
-        all.text(place, |row| {
-            let places = &row.quantity.positions[row.row.position].places;
-            places.iter().find(|(name, _)| name == place).map(|(_, member)| member)
-        });
+    let places = plan
+        .quantities
+        .iter()
+        .flat_map(|quantity| &quantity.positions)
+        .flat_map(|position| &position.places);
+    for place in places.map(|(place, _)| place).collect::<BTreeSet<_>>() {
+        all.text(place, |row| row.quantity.positions[row.row.position].places.get(place));
     }
     all.text(RECORD, |row| row.row.record.as_ref().map(ToString::to_string));
     all.text("run", |row| row.label.run.as_deref());

@@ -113,6 +113,16 @@ pub enum AxisOperation {
 }
 
 impl Expr {
+    /// A number, not of samples.
+    pub fn number(kind: Kind, dimension: Dimension, span: &Origin) -> Self {
+        Self { kind, ty: Type::Number(dimension), span: span.clone() }
+    }
+
+    /// A number for each sample of a record.
+    pub fn samples(kind: Kind, dimension: Dimension, track: bool, span: &Origin) -> Self {
+        Self { kind, ty: Type::Samples { dimension, track }, span: span.clone() }
+    }
+
     /// A comparison of two parts, or two conditions that are joined.
     pub fn flag(operator: Operator, left: Self, right: Self, span: &Origin) -> Self {
         let kind = Kind::Binary(operator, Box::new(left), Box::new(right));

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use indexmap::IndexMap;
+
 use super::{Axis, Expr, Limit, Report, Scope, Step};
 use crate::catalog::{Metric, Reducer};
 use crate::result;
@@ -119,7 +121,7 @@ pub struct Position {
     pub name: String,
     pub signal: Expr,
     /// Each place with its member, such as `wheelset` and `1`.
-    pub places: Vec<(String, String)>,
+    pub places: IndexMap<String, String>,
     /// The condition on the sections in which it is evaluated; `None` for all.
     pub only: Option<Expr>,
 }

@@ -218,16 +218,15 @@ impl<'a> Part<'a> {
 
     /// Which positions of the quantity belong to it.
     pub fn positions(&self, quantity: &Quantity) -> Vec<bool> {
-        let at = |position: &Position, place: &str, of: &str| {
-            position.places.iter().any(|(known, member)| known == place && member == of)
-        };
-        let belongs = |position: &Position| {
-            self.keys.iter().all(|(key, _, of)| match key {
-                Key::Place(place) => at(position, place, of),
-                _ => true,
-            })
-        };
-        quantity.positions.iter().map(belongs).collect()
+        let of_place =
+            |key: &Key| if let Key::Place(place) = key { Some(place.clone()) } else { None };
+        let asked: Vec<(String, &String)> =
+            self.keys.iter().filter_map(|(key, _, of)| Some((of_place(key)?, of))).collect();
+        quantity
+            .positions
+            .iter()
+            .map(|position| asked.iter().all(|(place, of)| position.places.get(place) == Some(*of)))
+            .collect()
     }
 
     /// Whether a limit of this scope also applies to the group, and how specific it is.

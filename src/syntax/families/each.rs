@@ -9,6 +9,7 @@ use crate::source::Spanned;
 use crate::syntax::document::Text;
 use crate::syntax::keys::EACH;
 use crate::syntax::layout::Quotes;
+use crate::syntax::phrase::normalised;
 
 /// The word of a member for one variable, with its place.
 pub type Word = Arc<Spanned<String>>;
@@ -34,9 +35,11 @@ pub fn read(text: &Text, places: &Places, problems: &mut Problems) -> Option<Vec
         heads.push(head);
     }
     if heads.first().is_none_or(|head| head.at != first(&text.text)) {
-        problems.push(error("syntax", format!("`{EACH}` needs a variable, `in` and members"), &text.span).help(format!(
+        let says = format!("`{EACH}` needs a variable, `in` and members");
+        let help = format!(
             "write `{EACH}  part in magnitude, phase`, and `{{part}}` where a member is inserted"
-        )));
+        );
+        problems.push(error("syntax", says, text).help(help));
         return None;
     }
     let ends = heads.iter().skip(1).map(|head| head.at).chain([text.text.len()]);
@@ -137,10 +140,8 @@ fn group(
     for item in &items {
         if item.is_empty() {
             let place = text.place(item.start.saturating_sub(1)..item.start);
-            problems.push(
-                error("no-members", "a member is missing at this comma", &place)
-                    .help("remove the comma or write the member"),
-            );
+            let problem = error("no-members", "a member is missing at this comma", &place);
+            problems.push(problem.help("remove the comma or write the member"));
             return None;
         }
         rows.push(match variables.len() {
@@ -200,19 +201,13 @@ fn row(
         vec![item.clone()]
     };
     if !whole || words.len() != count {
-        let here = if words.len() == 1 {
-            "is one word".to_owned()
-        } else {
-            format!("are {} words", words.len())
+        let here = match words.len() {
+            1 => "is one word".to_owned(),
+            several => format!("are {several} words"),
         };
-        problems.push(
-            error(
-                "member-count",
-                format!("{count} variables belong together, but here {here}"),
-                &text.place(item),
-            )
-            .help("write words that belong together in parentheses: `(Y, kN), (az, m/s^2)`"),
-        );
+        let says = format!("{count} variables belong together, but here {here}");
+        let help = "write words that belong together in parentheses: `(Y, kN), (az, m/s^2)`";
+        problems.push(error("member-count", says, &text.place(item)).help(help));
         return None;
     }
     words.into_iter().map(|part| word(text, part, false, problems)).collect()
@@ -226,26 +221,20 @@ fn word(text: &Text, range: Range<usize>, alone: bool, problems: &mut Problems) 
     if let Some(inside) = written.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')) {
         let value = unescaped(inside);
         if value.trim().is_empty() {
-            problems.push(
-                error("no-members", "the quotes are empty", &place)
-                    .help("write the member inside the quotes"),
-            );
+            let problem = error("no-members", "the quotes are empty", &place);
+            problems.push(problem.help("write the member inside the quotes"));
             return None;
         }
         return Some(Arc::new(Spanned::new(value, place)));
     }
     if let Some(at) = joined(written).filter(|_| alone) {
-        problems.push(
-            error(
-                "syntax",
-                "`and` must be followed by a variable and `in`",
-                &text.place(range.start + at..range.start + at + 3),
-            )
-            .help("separate members by commas; write a member that contains `and` in quotes"),
-        );
+        let and = text.place(range.start + at..range.start + at + 3);
+        let help = "separate members by commas; write a member that contains `and` in quotes";
+        let problem = error("syntax", "`and` must be followed by a variable and `in`", &and);
+        problems.push(problem.help(help));
         return None;
     }
-    Some(Arc::new(Spanned::new(written.split_whitespace().collect::<Vec<_>>().join(" "), place)))
+    Some(Arc::new(Spanned::new(normalised(written), place)))
 }
 
 fn unescaped(quoted: &str) -> String {
@@ -282,12 +271,10 @@ fn of_place(word: &Word, places: &Places, problems: &mut Problems) -> Option<Vec
     }
     // A word similar to the name of a place is probably a misspelling of it.
     if let Some(near) = nearest(&name, known()) {
-        problems.push(
-            error("unknown-place", format!("no place is called `{}`", word.value), &word.span)
-                .help(format!(
-                    "did you mean `{near}`? Write a single member that is not a place in quotes"
-                )),
-        );
+        let says = format!("no place is called `{}`", word.value);
+        let help =
+            format!("did you mean `{near}`? Write a single member that is not a place in quotes");
+        problems.push(error("unknown-place", says, &**word).help(help));
         return None;
     }
     Some(vec![vec![Arc::clone(word)]])

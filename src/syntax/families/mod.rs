@@ -16,7 +16,7 @@ use super::from_pest;
 use super::keys::{self, EACH, Kind, Sort};
 use super::layout::Quotes;
 use super::lines;
-use crate::problem::{Problem, Problems, error};
+use crate::problem::{Problem, Problems, error, nearest};
 use crate::source::{Filled, Member, Span, Spanned};
 use each::{Group, Word};
 use fill::{Template, Use};
@@ -59,10 +59,8 @@ pub fn expand(
             .field("members")
             .and_then(|field| from_pest::list(&field.value, &mut Problems::default()));
         if let Some(members) = members {
-            places.insert(
-                block.name_text().to_owned(),
-                members.into_iter().map(|member| member.node).collect(),
-            );
+            places
+                .insert(block.own_name(), members.into_iter().map(|member| member.node).collect());
         }
     }
     let mut writer = Writer {
@@ -117,6 +115,7 @@ impl Writer<'_> {
         };
         let each: Vec<Field> = block.fields_named(EACH).cloned().collect();
         let (of, name) = (block.kind.text.as_str(), block.name_text());
+        let of_kind = || self.known.iter().filter(|family| family.kind == of);
         if !each.is_empty() {
             return self.family(kind, block, &each, None);
         }
@@ -125,33 +124,21 @@ impl Writer<'_> {
             self.add(block.clone(), false);
             return;
         }
-        if let Some(family) =
-            self.known.iter().find(|family| family.kind == of && family.name == name).cloned()
-        {
+        if let Some(family) = of_kind().find(|family| family.name == name).cloned() {
             // The fields are those of the variant. The members are those of the parent that still
             // exist.
             let left: Vec<String> =
                 family.members.into_iter().filter(|member| self.parent_has(of, member)).collect();
             return self.family(kind, block, &family.each, Some(&left));
         }
+        let help = match nearest(name, of_kind().map(|family| family.name.as_str())) {
+            Some(near) => format!("the parent has `{near}`: to override it, use that name"),
+            None => format!("add a line `{EACH}  variable in one, another`"),
+        };
+        let says =
+            format!("`{name}` has braces like the name of a family, but the block has no `{EACH}`");
+        self.problems.push(error("unknown-variable", says, block).help(help));
         self.sound = false;
-        let problem = error(
-            "unknown-variable",
-            format!("`{name}` has braces like the name of a family, but the block has no `{EACH}`"),
-            block.span(),
-        );
-        let families: Vec<&str> = self
-            .known
-            .iter()
-            .filter(|family| family.kind == of)
-            .map(|family| family.name.as_str())
-            .collect();
-        self.problems.push(match crate::problem::nearest(name, families) {
-            Some(near) => {
-                problem.help(format!("the parent has `{near}`: to override it, use that name"))
-            }
-            None => problem.help(format!("add a line `{EACH}  variable in one, another`")),
-        });
     }
 
     fn parent_has(&self, kind: &str, name: &str) -> bool {
@@ -175,29 +162,27 @@ impl Writer<'_> {
             });
             let Some((at, _)) = brace else { continue };
             let end = text[at..].find('}').map_or(at + 1, |end| at + end + 1);
-            self.problems.push(
-                error(
-                    "unknown-variable",
-                    format!("`{}` is not a variable: the block has no `{EACH}`", &text[at..end]),
-                    &field.value.place(at..end),
-                )
-                .help(format!(
-                    "add a line `{EACH}  variable in one, another`, and `{{variable}}` to the name"
-                )),
+            let says = format!("`{}` is not a variable: the block has no `{EACH}`", &text[at..end]);
+            let help = format!(
+                "add a line `{EACH}  variable in one, another`, and `{{variable}}` to the name"
             );
+            let place = field.value.place(at..end);
+            self.problems.push(error("unknown-variable", says, &place).help(help));
             self.sound = false;
         }
     }
 
     /// Adds a block unless there is one with its name.
     fn add(&mut self, block: Block, of_family: bool) {
-        let key = (block.kind.text.clone(), block.name_text().to_owned());
+        let key = (block.kind.text.clone(), block.own_name());
         if let Some((first, other)) = self.seen.get(&key)
             && (of_family || *other)
         {
-            self.problems.push(error("duplicate-name", format!("there are two blocks `{} {}`", key.0, key.1), block.span()).also(first, "the first").help(
-                "write what differs between members with a variable, or override it in a variant",
-            ));
+            let says = format!("there are two blocks `{} {}`", key.0, key.1);
+            let help =
+                "write what differs between members with a variable, or override it in a variant";
+            let problem = error("duplicate-name", says, &block);
+            self.problems.push(problem.also(first, "the first").help(help));
             return;
         }
         self.seen.insert(key, (block.span().clone(), of_family));
@@ -206,31 +191,29 @@ impl Writer<'_> {
 
     /// Expands a family; with `only`, just the members with these names.
     fn family(&mut self, kind: &Kind, block: &Block, each: &[Field], only: Option<&[String]>) {
-        let Some(groups) = self.groups(block, each) else {
-            self.sound = false;
-            return;
-        };
+        self.sound &= self.expanded(kind, block, each, only).is_some();
+    }
+
+    /// Nothing where the family could not be expanded.
+    fn expanded(
+        &mut self,
+        kind: &Kind,
+        block: &Block,
+        each: &[Field],
+        only: Option<&[String]>,
+    ) -> Option<()> {
+        let groups = self.groups(block, each)?;
         let variables: Vec<Spanned<String>> =
             groups.iter().flat_map(|group| group.variables.iter().cloned()).collect();
-        let Some(parts) = Parts::new(kind, block, &variables, self.problems) else {
-            self.sound = false;
-            return;
-        };
-        if only.is_none() {
-            for (_, variable) in
-                variables.iter().enumerate().filter(|(index, _)| !parts.uses(*index))
-            {
-                self.problems.push(
-                    error(
-                        "unused-variable",
-                        format!("the variable `{}` is not used", variable.value),
-                        &variable.span,
-                    )
-                    .help(format!(
-                        "write `{{{}}}` where its members are inserted, or remove the variable",
-                        variable.value
-                    )),
+        let parts = Parts::new(kind, block, &variables, self.problems)?;
+        for (index, variable) in variables.iter().enumerate() {
+            if only.is_none() && !parts.uses(index) {
+                let name = &variable.value;
+                let says = format!("the variable `{name}` is not used");
+                let help = format!(
+                    "write `{{{name}}}` where its members are inserted, or remove the variable"
                 );
+                self.problems.push(error("unused-variable", says, variable).help(help));
             }
         }
         let mut names: IndexMap<String, Vec<Word>> = IndexMap::new();
@@ -256,61 +239,43 @@ impl Writer<'_> {
                         MOST_BYTES >> 20
                     )
                 };
-                self.problems.push(
-                    error("too-large", says, block.span())
-                        .help("use fewer members or shorter texts"),
-                );
-                self.sound = false;
-                return;
+                let help = "use fewer members or shorter texts";
+                self.problems.push(error("too-large", says, block).help(help));
+                return None;
             }
-            let member =
-                Arc::new(Member { name: name.clone(), family: block.name_text().to_owned() });
+            let member = Arc::new(Member { name: name.clone(), family: block.own_name() });
             let filled = parts.fill(block, &words, &member);
             if !lines::is_name(&name)
                 && let Some(text) = &filled.name
             {
-                self.problems.push(
-                    error("bad-name", format!("`{name}` cannot be a name"), &text.span)
-                        .help("use letters a to z, digits, `_`, `-` and `.`"),
-                );
+                let help = "use letters a to z, digits, `_`, `-` and `.`";
+                let says = format!("`{name}` cannot be a name");
+                self.problems.push(error("bad-name", says, text).help(help));
             }
             self.add(filled, true);
             names.insert(name, words);
         }
         if names.is_empty() {
-            self.problems.push(
-                error(
-                    "no-members",
-                    format!(
-                        "no member of the family `{}` of the parent is left",
-                        block.name_text()
-                    ),
-                    block.span(),
-                )
-                .help(format!("give it members with `{EACH}`")),
-            );
+            let says =
+                format!("no member of the family `{}` of the parent is left", block.name_text());
+            let help = format!("give it members with `{EACH}`");
+            self.problems.push(error("no-members", says, block).help(help));
         }
         let members: Vec<String> = names.into_keys().collect();
         let same = |family: &&mut Known| {
             family.kind == block.kind.text && family.name == block.name_text()
         };
+        let (kind, name, each) = (block.kind.text.clone(), block.own_name(), each.to_vec());
         match self.known.iter_mut().find(same) {
             Some(family) => {
-                family.each = each.to_vec();
-                family.members.extend(
-                    members
-                        .into_iter()
-                        .filter(|member| !family.members.contains(member))
-                        .collect::<Vec<_>>(),
-                );
+                family.each = each;
+                let new = |member: &String| !family.members.contains(member);
+                let new: Vec<String> = members.into_iter().filter(new).collect();
+                family.members.extend(new);
             }
-            None => self.known.push(Known {
-                kind: block.kind.text.clone(),
-                name: block.name_text().to_owned(),
-                each: each.to_vec(),
-                members,
-            }),
+            None => self.known.push(Known { kind, name, each, members }),
         }
+        Some(())
     }
 
     /// The variables and members of a family.
@@ -326,24 +291,14 @@ impl Writer<'_> {
         for variable in groups.iter().flat_map(|group| &group.variables) {
             let name = &variable.value;
             if let Some(first) = seen.iter().find(|known| known.value == *name) {
-                self.problems.push(
-                    error(
-                        "duplicate-name",
-                        format!("`{name}` is declared twice as a variable of this family"),
-                        &variable.span,
-                    )
-                    .also(&first.span, "the first"),
-                );
+                let says = format!("`{name}` is declared twice as a variable of this family");
+                let problem = error("duplicate-name", says, variable);
+                self.problems.push(problem.also(*first, "the first"));
                 sound = false;
             } else if self.places.contains_key(name) {
-                self.problems.push(
-                    error(
-                        "name-clash",
-                        format!("`{name}` is both a place and a variable"),
-                        &variable.span,
-                    )
-                    .help(format!("give the variable another name: `{EACH}  x in {name}`")),
-                );
+                let says = format!("`{name}` is both a place and a variable");
+                let help = format!("give the variable another name: `{EACH}  x in {name}`");
+                self.problems.push(error("name-clash", says, variable).help(help));
                 sound = false;
             }
             seen.push(variable);
@@ -469,18 +424,11 @@ fn same_name(
         .enumerate()
         .find(|(index, _)| first[*index].span != second[*index].span && !differs.contains(index));
     if let Some((index, _)) = repeated.filter(|_| differs.is_empty()) {
-        return error(
-            "duplicate-name",
-            format!("the member `{}` is given twice", second[index].value),
-            &second[index].span,
-        )
-        .also(&first[index].span, "the first");
+        let says = format!("the member `{}` is given twice", second[index].value);
+        return error("duplicate-name", says, &*second[index]).also(&*first[index], "the first");
     }
-    let problem = error(
-        "duplicate-name",
-        format!("two members of the family are called `{name}`"),
-        block.span(),
-    );
+    let says = format!("two members of the family are called `{name}`");
+    let problem = error("duplicate-name", says, block);
     match differs.iter().find(|index| !written.uses(**index)) {
         Some(index) => problem.help(format!("write `{{{}}}` in the name", variables[*index].value)),
         None => problem.help(
